@@ -1,0 +1,1 @@
+"""Robot descriptions: one MJCF text per robot, read by MuJoCo and by Pinocchio."""

@@ -1,0 +1,1 @@
+"""Walking planner: points, pendulums, footsteps and terrain heights; it knows no robot and no simulator."""

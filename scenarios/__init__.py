@@ -1,0 +1,1 @@
+"""Composition root: scenario files, closed loop, MCAP log, metrics, verdict and command line."""

@@ -1,0 +1,1 @@
+"""The MCAP log: channels, writer, reader and recovery."""

@@ -1,0 +1,1 @@
+"""MuJoCo world: terrain geometry, sensors, pushes and rendering."""

@@ -1,0 +1,98 @@
+"""Which contacts the whole-body QP holds, and how much load each may take: plan and feeling combined."""
+
+from dataclasses import dataclass
+
+from wbc.types import FootSensing, WbcReference
+
+
+@dataclass(frozen=True, slots=True)
+class ContactParameters:
+    """Thresholds of the contact schedule.
+
+    Attributes:
+        felt_force: a foot feels the ground above this normal force [N].
+        felt_ticks: for so many consecutive control ticks [-].
+        early_progress: a swing foot may land from this share of its swing on [-].
+        early_cap: load allowed on a foot that landed before its time [N].
+        loading_time: time in which a landed foot's allowed load grows to the full weight [s].
+        unloading_time: time before lift-off in which a foot's allowed load shrinks to its planned share [s].
+        share_margin: allowed load above the planned share at the start of unloading [-].
+    """
+
+    felt_force: float = 20.0
+    felt_ticks: int = 2
+    early_progress: float = 0.6
+    early_cap: float = 50.0
+    loading_time: float = 0.05
+    unloading_time: float = 0.1
+    share_margin: float = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class ContactState:
+    """Contacts of one tick, (left, right).
+
+    Attributes:
+        active: held by the QP as rigid contacts.
+        felt: loaded, as the feet feel it.
+        force_cap: largest normal force the QP may ask of each [N].
+    """
+
+    active: tuple[bool, bool]
+    felt: tuple[bool, bool]
+    force_cap: tuple[float, float]
+
+
+class ContactSchedule:
+    """Follows the plan, but never against the feet.
+
+    - A planned contact becomes active when the foot feels the ground: a late foot goes on searching downwards.
+    - A swing foot that feels the ground after ``early_progress`` becomes active at once, with a small load until its
+      planned touchdown. The plan's clock does not move.
+    - A foot is released when the plan lifts it, unless it would be the last contact.
+    - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in force.
+    """
+
+    def __init__(self, parameters: ContactParameters, weight: float, control_period: float) -> None:
+        """Start with both feet loaded; ``weight`` [N], ``control_period`` [s]."""
+        self._parameters = parameters
+        self._weight = weight
+        self._full = 3.0 * weight
+        self._period = control_period
+        self._active = [True, True]
+        self._ticks_felt = [parameters.felt_ticks, parameters.felt_ticks]
+        self._loading = [1.0, 1.0]
+
+    def update(self, reference: WbcReference, sensing: FootSensing) -> ContactState:
+        """Contacts of this tick from the plan and the measured normal forces."""
+        felt = (self._feel(0, sensing.normal_force[0]), self._feel(1, sensing.normal_force[1]))
+        planned = reference.planned_contact
+        for k in (0, 1):
+            early = not planned[k] and reference.swing_progress >= self._parameters.early_progress
+            if not self._active[k]:
+                if felt[k] and (planned[k] or early):
+                    self._active[k] = True
+                    self._loading[k] = 0.0
+            elif not planned[k] and not (early and felt[k]) and self._active[1 - k]:
+                self._active[k] = False
+        active = (self._active[0], self._active[1])
+        return ContactState(active, felt, (self._cap(0, reference), self._cap(1, reference)))
+
+    def _feel(self, k: int, normal_force: float) -> bool:
+        self._ticks_felt[k] = self._ticks_felt[k] + 1 if normal_force > self._parameters.felt_force else 0
+        return self._ticks_felt[k] >= self._parameters.felt_ticks
+
+    def _cap(self, k: int, reference: WbcReference) -> float:
+        parameters = self._parameters
+        if not self._active[k]:
+            return 0.0
+        if not self._active[1 - k]:
+            return self._full
+        if not reference.planned_contact[k]:
+            return parameters.early_cap
+        self._loading[k] = min(1.0, self._loading[k] + self._period / parameters.loading_time)
+        cap = parameters.early_cap + self._loading[k] * (self._full - parameters.early_cap)
+        if reference.lifting_foot == k and self._loading[1 - k] >= 1.0:
+            remaining = min(1.0, reference.time_to_switch / parameters.unloading_time)
+            cap = min(cap, self._weight * (reference.load_share[k] + parameters.share_margin * remaining))
+        return cap

@@ -1,0 +1,176 @@
+"""The whole-body controller: reference and measurement in, joint torques out."""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+import pinocchio as pin
+
+from wbc.balance import BalanceGains, SupportRegion, com_acceleration
+from wbc.cone import CONE_ROWS, wrench_cone
+from wbc.contacts import ContactParameters, ContactSchedule, ContactState
+from wbc.dynamics import ContactGains, HardConstraints
+from wbc.limits import JointLimits
+from wbc.model import BodyFrames, RobotTerms
+from wbc.qp import QpData, QpLayout, allocate
+from wbc.solvers import QpSolution, equalities_only, make_solver
+from wbc.tasks import TaskGains, TaskStack, TaskWeights
+from wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
+
+ACCEPTED_VIOLATION = 1e-3
+"""A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sole:
+    """The sole's contact: half sizes [m] and the friction coefficient that the controller counts on [-]."""
+
+    half_length: float
+    half_width: float
+    friction: float
+    cop_share: float = 0.9
+    """Share of the half sizes that the planned CoP may use [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class WbcParameters:
+    """Everything one may turn.
+
+    Attributes:
+        weights: of the tasks.
+        gains: of the tasks.
+        balance: gains of the CoM law.
+        contact: gains of the rigid contacts.
+        schedule: thresholds of the contact schedule.
+        solver: the solver tried first, chosen by ``benchmarks/qp_solvers.py``.
+        second_solver: the one tried when the first fails.
+    """
+
+    weights: TaskWeights = field(default_factory=TaskWeights)
+    gains: TaskGains = field(default_factory=TaskGains)
+    balance: BalanceGains = field(default_factory=BalanceGains)
+    contact: ContactGains = field(default_factory=ContactGains)
+    schedule: ContactParameters = field(default_factory=ContactParameters)
+    solver: str = "daqp"
+    second_solver: str = "proxqp"
+
+
+class WholeBodyController:
+    """Weighted inverse-dynamics QP, solved once per control tick.
+
+    Herzog et al., "Momentum control with hierarchical inverse dynamics", Autonomous Robots 2016, in its weighted form,
+    with the CoM law of ``wbc.balance``. A tick that no solver answers degrades as ``SolveStatus`` says; it never raises.
+    """
+
+    def __init__(
+        self,
+        model: pin.Model,
+        frames: BodyFrames,
+        sole: Sole,
+        limits: JointLimits,
+        posture: Array,
+        leg_joints: Array,
+        control_period: float,
+        parameters: WbcParameters,
+    ) -> None:
+        """Build the QP for a robot.
+
+        Args:
+            model: the robot, with a free-flyer base.
+            frames: what to steer.
+            sole: contact geometry and friction.
+            limits: of the joints.
+            posture: joint positions the upper body returns to, shape (nj,) [rad].
+            leg_joints: which joints are leg joints, bool, shape (nj,).
+            control_period: time between two updates [s].
+            parameters: weights and gains.
+        """
+        self.terms = RobotTerms(model, frames)
+        self.layout = QpLayout(model.nv, CONE_ROWS)
+        self.qp: QpData = allocate(self.layout)
+        share = sole.cop_share
+        cone = wrench_cone(share * sole.half_length, share * sole.half_width, sole.friction / np.sqrt(2.0))
+        self._hard = HardConstraints(self.qp, self.layout, cone, limits, parameters.contact)
+        self._tasks = TaskStack(self.layout, parameters.weights, parameters.gains, posture, leg_joints)
+        self._contacts = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
+        self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
+        self._region_contacts: tuple[bool, bool] | None = None
+        self._balance = parameters.balance
+        self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
+        self._limits = limits
+        self._period = control_period
+        self._torque = np.zeros(self.layout.joints)
+        self._acceleration = np.zeros(self.layout.nv)
+        self._wrench = np.zeros((2, 6))
+        self._task_error = np.zeros(18)
+
+    def update(
+        self, state: RobotState, reference: WbcReference, sensing: FootSensing, fail_solvers: bool = False
+    ) -> WbcReport:
+        """Torques for this tick.
+
+        Args:
+            state: measured or estimated state.
+            reference: what to do.
+            sensing: what the feet feel.
+            fail_solvers: pretend that both QP solvers failed, to exercise the fallback.
+        """
+        start = time.perf_counter()
+        self.terms.update(state.q, state.v)
+        contacts = self._contacts.update(reference, sensing)
+        self._assemble(state, reference, contacts)
+        built = time.perf_counter()
+        status, solution = self._solve(fail_solvers)
+        violation = self._apply(solution, state.v)
+        solved = time.perf_counter()
+        return WbcReport(
+            torque=self._torque,
+            status=status,
+            iterations=solution.iterations if solution else 0,
+            primal_residual=violation,
+            dual_residual=solution.dual_residual if solution else float("nan"),
+            acceleration=self._acceleration,
+            wrench=self._wrench,
+            active=contacts.active,
+            felt=contacts.felt,
+            task_error=self._task_error,
+            build_time=built - start,
+            solve_time=solved - built,
+        )
+
+    def _assemble(self, state: RobotState, reference: WbcReference, contacts: ContactState) -> None:
+        terms = self.terms
+        if contacts.active != self._region_contacts:
+            self._region.rebuild(terms.sole_position, terms.sole_rotation, contacts.active)
+            self._region_contacts = contacts.active
+        acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
+        self._tasks.write(self.qp, terms, state.q, state.v, acceleration, reference)
+        self._hard.write(self.qp, terms, state.q, state.v, contacts)
+
+    def _solve(self, fail_solvers: bool) -> tuple[SolveStatus, QpSolution | None]:
+        if not fail_solvers:
+            for status, solver in zip((SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER), self._solvers, strict=True):
+                solution = solver.solve(self.qp)
+                if solution is not None and self.qp.violation(solution.x) <= ACCEPTED_VIOLATION:
+                    return status, solution
+        x = equalities_only(self.qp)
+        if x is not None:
+            return SolveStatus.EQUALITIES_ONLY, QpSolution(x, 0, float("nan"))
+        return SolveStatus.HELD, None
+
+    def _apply(self, solution: QpSolution | None, v: Array) -> float:
+        """Interpret the solution into torque, acceleration and wrenches; returns the violation of the QP's rows."""
+        limit = self._limits.torque
+        if solution is None:
+            # Fade the last torque out within about 50 ms while damping the joints.
+            self._torque += self._period / 0.05 * (-0.02 * limit * v[6:] - self._torque)
+            np.clip(self._torque, -limit, limit, out=self._torque)
+            return float("inf")
+        x, nv = solution.x, self.layout.nv
+        np.matmul(self.qp.A[self.layout.torque_rows], x, out=self._torque)
+        self._torque += self.terms.bias[6:]
+        np.clip(self._torque, -limit, limit, out=self._torque)
+        self._acceleration[:] = x[:nv]
+        self._wrench[:] = x[nv:].reshape(2, 6)
+        self._task_error[:] = self._tasks.residual(x)
+        return self.qp.violation(x)

@@ -1,0 +1,117 @@
+"""Inverse kinematics: the walking posture for given feet, CoM and heading."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+import qpsolvers
+
+from wbc.limits import JointLimits
+from wbc.model import BodyFrames
+from wbc.types import Array
+
+
+@dataclass(frozen=True, slots=True)
+class PostureTarget:
+    """What the posture shall fulfil; world frame.
+
+    Attributes:
+        sole_position: sole centres, shape (2, 3) [m].
+        sole_yaw: headings of the flat soles, shape (2,) [rad].
+        com: CoM, shape (3,) [m].
+        heading: yaw of the upright pelvis and torso [rad].
+    """
+
+    sole_position: Array
+    sole_yaw: Array
+    com: Array
+    heading: float
+
+
+@dataclass(frozen=True, slots=True)
+class PostureResult:
+    """Outcome of the search.
+
+    Attributes:
+        q: configuration, shape (nq,).
+        error: largest remaining error over sole positions and CoM [m] and sole, pelvis and torso rotations [rad].
+        reached: whether the error is within the tolerance.
+        iterations: Gauss-Newton steps taken.
+    """
+
+    q: Array
+    error: float
+    reached: bool
+    iterations: int
+
+
+class PostureIk:
+    """Gauss-Newton on the manifold of configurations; each step is a QP within the joint limits.
+
+    Minimises ||J dq - e||² + μ ||dq_joints - (posture - q)||² + ν ||dq||² with J and e of all tasks in local frames. Tasks are
+    consistent wherever the legs can reach, so the small μ only chooses among the solutions.
+    """
+
+    def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits, posture: Array) -> None:
+        """Search postures of ``model`` near the joint positions ``posture``, shape (nj,) [rad]."""
+        self._model, self._data = model, model.createData()
+        self._soles = tuple(model.getFrameId(name) for name in frames.soles)
+        self._torso = model.getFrameId(frames.torso)
+        self._limits, self._posture = limits, posture
+
+    def solve(
+        self, target: PostureTarget, q: Array, tolerance: float = 1e-7, max_iterations: int = 60, nearness: float = 1e-9
+    ) -> PostureResult:
+        """Find a posture.
+
+        Args:
+            target: what to fulfil.
+            q: where to start, shape (nq,).
+            tolerance: of the error [m, rad].
+            max_iterations: bound on the steps.
+            nearness: weight μ of the posture against the tasks.
+
+        Returns:
+            The posture found; with ``reached`` False the nearest one, e.g. for a stance beyond the legs' length.
+        """
+        error = np.inf
+        for iteration in range(max_iterations):
+            J, e = self._tasks(q, target)
+            error = float(np.abs(e).max())
+            if error <= tolerance:
+                return PostureResult(q, error, True, iteration)
+            q = pin.integrate(self._model, q, self._step(J, e, q, nearness))
+        return PostureResult(q, error, False, max_iterations)
+
+    def _step(self, J: Array, e: Array, q: Array, nearness: float) -> Array:
+        nv = self._model.nv
+        H = J.T @ J + 1e-10 * np.eye(nv)
+        H[6:, 6:] += nearness * np.eye(nv - 6)
+        g = -J.T @ e
+        g[6:] -= nearness * (self._posture - q[7:])
+        # A step of at most 0.3 rad or m keeps the linearisation honest; joints stop at their limits.
+        lower, upper = np.full(nv, -0.3), np.full(nv, 0.3)
+        lower[6:] = np.minimum(np.maximum(lower[6:], self._limits.lower - q[7:]), 0.3)
+        upper[6:] = np.maximum(np.minimum(upper[6:], self._limits.upper - q[7:]), lower[6:])
+        step = qpsolvers.solve_qp(H, g, lb=lower, ub=upper, solver="daqp")
+        if step is None:
+            raise ArithmeticError(f"posture step of robot '{self._model.name}' has no solution: joint positions {q[7:]}")
+        return np.asarray(step, dtype=np.float64)
+
+    def _tasks(self, q: Array, target: PostureTarget) -> tuple[Array, Array]:
+        model, data = self._model, self._data
+        pin.computeJointJacobians(model, data, q)
+        pin.updateFramePlacements(model, data)
+        jacobians, errors = [], []
+        for k, frame in enumerate(self._soles):
+            desired = pin.SE3(pin.utils.rotate("z", target.sole_yaw[k]), target.sole_position[k])
+            errors.append(pin.log6(data.oMf[frame].actInv(desired)).vector)
+            jacobians.append(pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL))
+        upright = pin.utils.rotate("z", target.heading)
+        errors.append(pin.log3(data.oMi[1].rotation.T @ upright))
+        jacobians.append(np.hstack([np.zeros((3, 3)), np.eye(3), np.zeros((3, model.nv - 6))]))
+        errors.append(pin.log3(data.oMf[self._torso].rotation.T @ upright))
+        jacobians.append(pin.getFrameJacobian(model, data, self._torso, pin.ReferenceFrame.LOCAL)[3:])
+        jacobians.append(pin.jacobianCenterOfMass(model, data, q))
+        errors.append(target.com - data.com[0])
+        return np.vstack(jacobians), np.concatenate(errors)

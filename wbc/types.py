@@ -1,0 +1,133 @@
+"""Values that cross the whole-body controller's boundary.
+
+Robot states follow Pinocchio: ``q = [base position, base quaternion xyzw, joints]`` and
+``v = [base linear, base angular, joints]`` with the base velocity in the base frame. Foot arrays hold the left
+foot first. Wrenches are ``[fx, fy, fz, tx, ty, tz]`` at the sole centre in the sole frame. Units are SI.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+GRAVITY = 9.81
+"""Gravitational acceleration [m/s^2] of the model; checked against the Pinocchio model at construction."""
+
+
+class SolveStatus(IntEnum):
+    """Where the torque of one tick came from."""
+
+    SOLVED = 0
+    """The default solver solved the QP."""
+    SECOND_SOLVER = 1
+    """The default solver failed and the second one solved it."""
+    EQUALITIES_ONLY = 2
+    """Both failed: dynamics and contacts hold, inequalities are dropped and the torque is clipped."""
+    HELD = 3
+    """Nothing could be solved: the last torque is held and faded into damping."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotState:
+    """State of the floating-base robot.
+
+    Attributes:
+        q: configuration, shape (nq,).
+        v: velocity, shape (nv,).
+    """
+
+    q: Array
+    v: Array
+
+
+@dataclass(frozen=True, slots=True)
+class FootSensing:
+    """What the feet feel.
+
+    Attributes:
+        normal_force: force along each sole's normal, (left, right) [N].
+    """
+
+    normal_force: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class WbcReference:
+    """What the whole-body controller shall do at this instant; world frame.
+
+    Attributes:
+        com: CoM position, shape (3,) [m].
+        com_velocity: CoM velocity, shape (3,) [m/s].
+        com_acceleration: CoM acceleration, shape (3,) [m/s^2].
+        zmp: ZMP in the horizontal plane, shape (2,) [m].
+        omega: natural frequency of the time-varying DCM [1/s].
+        stiffness: pendulum stiffness λ = (g + z'') / (z - p_z) [1/s^2].
+        heading: yaw of pelvis and torso [rad].
+        heading_rate: its rate [rad/s].
+        planned_contact: which feet the plan has on the ground, (left, right).
+        load_share: share of the weight the plan puts on each foot, (left, right), sums to 1.
+        time_to_switch: time until the plan's next contact change [s]; infinite when standing.
+        lifting_foot: index of the foot that the plan lifts at that change, -1 for none.
+        swing_foot: index of the swing foot, -1 when both feet stand.
+        swing_progress: share of the swing that has passed, 0 to 1 [-].
+        swing_position: sole centre of the swing foot, shape (3,) [m].
+        swing_velocity: its velocity, shape (3,) [m/s].
+        swing_acceleration: its acceleration, shape (3,) [m/s^2].
+        swing_yaw: (yaw, yaw rate, yaw acceleration) of the swing foot [rad, rad/s, rad/s^2].
+    """
+
+    com: Array
+    com_velocity: Array
+    com_acceleration: Array
+    zmp: Array
+    omega: float
+    stiffness: float
+    heading: float
+    heading_rate: float
+    planned_contact: tuple[bool, bool]
+    load_share: tuple[float, float]
+    time_to_switch: float
+    lifting_foot: int
+    swing_foot: int
+    swing_progress: float
+    swing_position: Array
+    swing_velocity: Array
+    swing_acceleration: Array
+    swing_yaw: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class WbcReport:
+    """What the controller did in one tick. Arrays are overwritten by the next tick.
+
+    Attributes:
+        torque: joint torques, shape (nj,) [N·m].
+        status: where the torque came from.
+        iterations: iterations of the solver that answered.
+        primal_residual: largest violation of the QP's constraints [-].
+        dual_residual: largest violation of stationarity, NaN where the solver does not tell [-].
+        acceleration: planned generalised acceleration, shape (nv,).
+        wrench: planned contact wrenches, shape (2, 6) [N, N·m].
+        active: contacts held by the QP, (left, right).
+        felt: contacts felt by the feet, (left, right).
+        task_error: weighted-task residuals before weighting, shape (18,): CoM acceleration 3, angular momentum rate over
+            mass 3, pelvis 3, torso 3, swing foot 6.
+        build_time: wall-clock time of terms and assembly [s].
+        solve_time: wall-clock time of the solve [s].
+    """
+
+    torque: Array
+    status: SolveStatus
+    iterations: int
+    primal_residual: float
+    dual_residual: float
+    acceleration: Array
+    wrench: Array
+    active: tuple[bool, bool]
+    felt: tuple[bool, bool]
+    task_error: Array
+    build_time: float
+    solve_time: float

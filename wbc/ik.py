@@ -104,10 +104,10 @@ class PostureIk:
         pin.updateFramePlacements(model, data)
         jacobians, errors = [], []
         for k, frame in enumerate(self._soles):
-            desired = pin.SE3(pin.utils.rotate("z", target.sole_yaw[k]), target.sole_position[k])
+            desired = pin.SE3(pin.utils.rotate("z", float(target.sole_yaw[k])), target.sole_position[k])
             errors.append(pin.log6(data.oMf[frame].actInv(desired)).vector)
             jacobians.append(pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL))
-        upright = pin.utils.rotate("z", target.heading)
+        upright = pin.utils.rotate("z", float(target.heading))
         errors.append(pin.log3(data.oMi[1].rotation.T @ upright))
         jacobians.append(np.hstack([np.zeros((3, 3)), np.eye(3), np.zeros((3, model.nv - 6))]))
         errors.append(pin.log3(data.oMf[self._torso].rotation.T @ upright))

@@ -51,7 +51,6 @@ class RobotTerms:
         self.data = model.createData()
         self._soles = tuple(_frame_id(model, name) for name in frames.soles)
         self._torso = _frame_id(model, frames.torso)
-        self._zero = np.zeros(model.nv)
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         nv = model.nv
         self.mass_matrix = np.zeros((nv, nv))
@@ -68,9 +67,8 @@ class RobotTerms:
     def update(self, q: Array, v: Array) -> None:
         """Compute every term at configuration q, shape (nq,), and velocity v, shape (nv,)."""
         model, data = self.model, self.data
+        # Leaves in data.a the velocity-product accelerations, those of zero generalised acceleration.
         pin.computeAllTerms(model, data, q, v)
-        # Velocity-product accelerations: forward kinematics at zero generalised acceleration.
-        pin.forwardKinematics(model, data, q, v, self._zero)
         self.mass_matrix[:] = data.M
         self.bias[:] = data.nle
         self.com[:] = data.com[0]

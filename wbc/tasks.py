@@ -101,11 +101,12 @@ class TaskStack:
         self._trunk(terms, reference)
         self._swing(terms, reference)
         self._regularisation(terms, q, v, reference)
-        np.matmul(self._rows.T, self._rows, out=qp.H)
-        qp.H.reshape(-1)[:: qp.H.shape[0] + 1] += self._diagonal
-        np.matmul(self._target, self._rows, out=qp.g)
-        qp.g += self._diagonal * self._diagonal_target
-        np.negative(qp.g, out=qp.g)
+        H, g = qp.H, qp.g
+        np.matmul(self._rows.T, self._rows, out=H)
+        H.reshape(-1)[:: H.shape[0] + 1] += self._diagonal
+        np.matmul(self._target, self._rows, out=g)
+        g += self._diagonal * self._diagonal_target
+        np.negative(g, out=g)
 
     def residual(self, x: Array) -> Array:
         """Unweighted residuals of the tasks at the solution x, shape (18,); rows of absent tasks are zero."""

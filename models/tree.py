@@ -86,7 +86,7 @@ class Body:
     children: tuple["Body", ...] = ()
 
     def walk(self) -> Iterator["Body"]:
-        """This body and all below, depth first: the order of bodies and joints in both engines."""
+        """All bodies from here on, depth first: the order of bodies and joints in both engines."""
         yield self
         for child in self.children:
             yield from child.walk()

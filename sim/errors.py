@@ -1,7 +1,7 @@
 """What can go wrong in the simulator."""
 
 
-class SimulationDiverged(RuntimeError):
+class SimulationDiverged(RuntimeError):  # noqa: N818  the event, not a mistake of the caller
     """The state or the commanded torque is no longer finite; the world holds the last finite state.
 
     Attributes:

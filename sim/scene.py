@@ -39,7 +39,8 @@ def _add_options(root: ElementTree.Element, timestep: float) -> None:
     """Solver options.
 
     Euler is exact for this use, since joints have no damping; the elliptic cone is Coulomb's; the dense constraint
-    Jacobian is faster at this size; a bad state must be reported, not reset away.
+    Jacobian and no islands are fastest at this size; impratio 10 keeps the creep of a standing sole under 0.01 mm/s;
+    a bad state must be reported, not reset away.
     """
     option = ElementTree.SubElement(
         root,
@@ -52,7 +53,7 @@ def _add_options(root: ElementTree.Element, timestep: float) -> None:
         jacobian="dense",
         solver="Newton",
     )
-    ElementTree.SubElement(option, "flag", autoreset="disable", eulerdamp="disable")
+    ElementTree.SubElement(option, "flag", autoreset="disable", eulerdamp="disable", island="disable")
 
 
 def _add_look(root: ElementTree.Element) -> None:

@@ -17,7 +17,7 @@ class SensorReader:
     """Fills one set of buffers; array views are made once, since making them costs more than reading them.
 
     MuJoCo has already moved the joints to the end of the step while body frames, accelerations and contact forces
-    still are those of its beginning. So joint state and gyro are read from the joints, the rest from one common instant.
+    still are those of its beginning. So joint state and gyro are read from the joints, the rest from that one instant.
 
     The IMU must sit in the frame of the floating base: then the gyro is the base's angular velocity and the
     accelerometer needs no kinematics.
@@ -34,10 +34,13 @@ class SensorReader:
         self._base_rotation = data.xmat[base].reshape(3, 3)
         self._gravity = model.opt.gravity.copy()
         self._com, self._body_com = data.subtree_com[base], data.xipos
-        self._soles = [(foot, data.site_xpos[sole], data.site_xmat[sole]) for foot, sole in zip(feet, soles, strict=True)]
+        self._soles = [
+            (foot, data.site_xpos[sole], data.site_xmat[sole]) for foot, sole in zip(feet, soles, strict=True)
+        ]
         self._external = data.cfrc_ext
         self._contact = np.zeros_like(data.cfrc_ext)
         self._masked = np.zeros_like(data.cfrc_ext)
+        self._masked_flat = self._masked.reshape(-1)
         self._nonfoot = np.ones_like(data.cfrc_ext)
         self._nonfoot[[0, *feet]] = 0.0
         self._allocate(model.nq, model.nv)
@@ -46,17 +49,11 @@ class SensorReader:
         self._q, self._v, self._torque = np.zeros(nq), np.zeros(nv), np.zeros(nv - 6)
         self._specific_force, self._accelerometer = np.zeros(3), np.zeros(3)
         self._wrench, self._push = np.zeros((2, 6)), np.zeros(3)
-        self._out = {
-            "joint_position": _read_only(self._q[7:]),
-            "joint_velocity": _read_only(self._v[6:]),
-            "joint_torque": _read_only(self._torque),
-            "gyro": _read_only(self._v[3:6]),
-            "accelerometer": _read_only(self._accelerometer),
-            "wrench": _read_only(self._wrench),
-            "q": _read_only(self._q),
-            "v": _read_only(self._v),
-            "external_force": _read_only(self._push),
-        }
+        self._q_view, self._v_view = _read_only(self._q), _read_only(self._v)
+        self._joint_position, self._joint_velocity = self._q_view[7:], self._v_view[6:]
+        self._gyro, self._torque_view = self._v_view[3:6], _read_only(self._torque)
+        self._accelerometer_view, self._wrench_view = _read_only(self._accelerometer), _read_only(self._wrench)
+        self._push_view = _read_only(self._push)
 
     def read(self, time: float, pushes: PushSchedule) -> Measurement:
         """Everything at `time` [s]; `pushes` are the forces of the step that ended there."""
@@ -71,8 +68,19 @@ class SensorReader:
         for wrench, (foot, position, rotation) in zip(self._wrench, self._soles, strict=True):
             wrench[:] = _at_sole(contact[foot].tolist(), com, position.tolist(), rotation.tolist())
         np.multiply(contact, self._nonfoot, out=self._masked)
-        touching = float(np.vdot(self._masked, self._masked)) > 0.0
-        return Measurement(time=time, nonfoot_contact=touching, **self._out)
+        return Measurement(
+            time=time,
+            joint_position=self._joint_position,
+            joint_velocity=self._joint_velocity,
+            joint_torque=self._torque_view,
+            gyro=self._gyro,
+            accelerometer=self._accelerometer_view,
+            wrench=self._wrench_view,
+            q=self._q_view,
+            v=self._v_view,
+            external_force=self._push_view,
+            nonfoot_contact=bool(self._masked_flat.dot(self._masked_flat) > 0.0),
+        )
 
     def _without_pushes(self, pushes: PushSchedule) -> Array:
         """External forces of the bodies minus the pushes: what the terrain does."""
@@ -86,7 +94,9 @@ class SensorReader:
         return self._contact
 
 
-def _at_sole(external: list[float], com: list[float], position: list[float], rotation: list[float]) -> tuple[float, ...]:
+def _at_sole(
+    external: list[float], com: list[float], position: list[float], rotation: list[float]
+) -> tuple[float, ...]:
     """Spatial force about the CoM in world axes (torque first) as a wrench at the sole in sole axes (force first).
 
     Plain floats: at this size they are faster than arrays.
@@ -106,7 +116,7 @@ def _at_sole(external: list[float], com: list[float], position: list[float], rot
 
 
 def _read_only(array: Array) -> Array:
-    view = array.view()
+    view: Array = array[:]
     view.setflags(write=False)
     return view
 

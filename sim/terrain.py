@@ -7,8 +7,6 @@ Priority 1 makes MuJoCo take friction and contact stiffness from the terrain alo
 from collections.abc import Iterable
 from xml.etree import ElementTree
 
-import numpy as np
-
 from planner.terrain import Box, Terrain
 
 GROUND = "ground"
@@ -47,5 +45,6 @@ def add_terrain(worldbody: ElementTree.Element, terrain: Terrain) -> None:
         ElementTree.SubElement(worldbody, "geom", {**shape, **surface})
 
 
-def _axes(box: Box) -> Iterable[float]:
-    return np.concatenate((box.rotation[:, 0], box.rotation[:, 1])).tolist()
+def _axes(box: Box) -> list[float]:
+    """First two columns of the rotation, as MJCF wants them."""
+    return [float(value) for value in box.rotation[:, :2].T.flat]

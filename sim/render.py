@@ -101,9 +101,7 @@ class _Painter:
             mujoco.mj_camlight(self._model, self._data)
             self._follow()
             everything = mujoco.mjtCatBit.mjCAT_ALL.value
-            mujoco.mjv_updateScene(
-                self._model, self._data, self._option, None, self._view, everything, self._scene
-            )
+            mujoco.mjv_updateScene(self._model, self._data, self._option, None, self._view, everything, self._scene)
             mujoco.mjr_render(self._area, self._scene, self._context)
             yield self._pixels()
 

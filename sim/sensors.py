@@ -38,10 +38,10 @@ class SensorReader:
             (foot, data.site_xpos[sole], data.site_xmat[sole]) for foot, sole in zip(feet, soles, strict=True)
         ]
         self._external = data.cfrc_ext
-        self._contact = np.zeros_like(data.cfrc_ext)
-        self._masked = np.zeros_like(data.cfrc_ext)
+        self._contact: Array = np.zeros((model.nbody, 6))
+        self._masked: Array = np.zeros((model.nbody, 6))
         self._masked_flat = self._masked.reshape(-1)
-        self._nonfoot = np.ones_like(data.cfrc_ext)
+        self._nonfoot: Array = np.ones((model.nbody, 6))
         self._nonfoot[[0, *feet]] = 0.0
         self._allocate(model.nq, model.nv)
 

@@ -80,7 +80,7 @@ def _pelvis(foot_length: float, foot_width: float) -> Body:
 
 def _mild_crouch(joint_names: tuple[str, ...]) -> Array:
     """Joint angles [rad] with the CoM near 1.0 m above the soles and hanging arms."""
-    knee = 0.6
+    knee = 0.65
     angles = {
         "hip_pitch": -knee / 2,
         "knee": knee,

@@ -2,7 +2,6 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
-from sim_helpers import Holder, standing_configuration, weight
 
 from models.pinocchio import pinocchio_model
 from models.registry import describe
@@ -28,27 +27,31 @@ def _momentum(world: World) -> np.ndarray:
     return np.concatenate((world.description.mass * world.data.subtree_linvel[1], world.data.subtree_angmom[1]))
 
 
-def _held(world: World, steps: int) -> np.ndarray:
-    q = standing_configuration(world)
-    Holder(world, q).hold(world, steps)
-    return q
+@pytest.fixture
+def hold(standing_configuration, make_holder):
+    """Stand and hold for a number of physics steps."""
+
+    def run(world: World, steps: int) -> None:
+        make_holder(world, standing_configuration(world)).hold(world, steps)
+
+    return run
 
 
 @pytest.mark.parametrize("options", [RobotOptions(), HUMAN_FEET, RobotOptions(0.22, 0.11, payload_mass=10.0)])
-def test_wrenches_of_a_held_robot_sum_to_its_weight(options: RobotOptions) -> None:
+def test_wrenches_of_a_held_robot_sum_to_its_weight(options: RobotOptions, hold) -> None:
     world = _world(options)
-    _held(world, 500)
+    hold(world, 500)
     now = world.measure()
-    assert now.wrench[:, 2].sum() == pytest.approx(weight(world.description), rel=0.02)
+    assert now.wrench[:, 2].sum() == pytest.approx(9.81 * world.description.mass, rel=0.02)
     np.testing.assert_allclose(now.wrench[0, :3] * (1, -1, 1), now.wrench[1, :3], atol=2.0)
     assert not now.nonfoot_contact
 
 
-def test_wrenches_and_weight_are_the_rate_of_centroidal_momentum() -> None:
+def test_wrenches_and_weight_are_the_rate_of_centroidal_momentum(standing_configuration, make_holder) -> None:
     """Newton and Euler over 0.2 s of a moving robot: impulse of the soles and of gravity against momentum."""
     world = _world()
     q = standing_configuration(world)
-    holder = Holder(world, q)
+    holder = make_holder(world, q)
     v = np.zeros(31)
     v[:6] = 0.3, 0.2, 0.0, 0.1, -0.2, 0.3
     world.reset(q, v)
@@ -64,13 +67,13 @@ def test_wrenches_and_weight_are_the_rate_of_centroidal_momentum() -> None:
             force = R @ wrench[:3]
             linear += force / 1000
             angular += (np.cross(sole.xpos - com, force) + R @ wrench[3:]) / 1000
-    linear[2] -= weight(world.description) * 0.2
+    linear[2] -= 9.81 * world.description.mass * 0.2
     change = _momentum(world) - start
     assert np.abs(change).max() > 5.0
     np.testing.assert_allclose(np.concatenate((linear, angular)), change, atol=0.02 * np.abs(change).max())
 
 
-def test_wrench_sensor_agrees_with_a_scan_of_the_contacts() -> None:
+def test_wrench_sensor_agrees_with_a_scan_of_the_contacts(standing_configuration) -> None:
     """In a tilted, turned, moving state; the scan is the slow definition of what the sensor computes."""
     world = _world(pushes=(Push(0.0, 1.0, np.array([80.0, 50.0, 0.0]), "left_foot"),))
     q = standing_configuration(world)
@@ -95,7 +98,7 @@ def test_wrench_sensor_agrees_with_a_scan_of_the_contacts() -> None:
     np.testing.assert_allclose(now.wrench, expected, atol=1e-8)
 
 
-def test_measurement_is_the_true_state_in_pinocchio_convention() -> None:
+def test_measurement_is_the_true_state_in_pinocchio_convention(standing_configuration) -> None:
     world = _world()
     rng = np.random.default_rng(2)
     q = standing_configuration(world)
@@ -114,18 +117,18 @@ def test_measurement_is_the_true_state_in_pinocchio_convention() -> None:
     np.testing.assert_allclose(data.vcom[0], world.data.subtree_linvel[1], atol=1e-12)
 
 
-def test_accelerometer_feels_nothing_in_free_fall_and_gravity_when_standing() -> None:
+def test_accelerometer_feels_nothing_in_free_fall_and_gravity_when_standing(hold, standing_configuration) -> None:
     world = _world()
     q = standing_configuration(world)
     q[2] += 10.0
     world.reset(q)
     world.advance(np.zeros(25), 20)
     np.testing.assert_allclose(world.measure().accelerometer, 0.0, atol=1e-6)
-    _held(world, 500)
+    hold(world, 500)
     np.testing.assert_allclose(world.measure().accelerometer, (0.0, 0.0, 9.81), atol=0.2)
 
 
-def test_gyro_and_accelerometer_integrate_to_the_true_motion() -> None:
+def test_gyro_and_accelerometer_integrate_to_the_true_motion(standing_configuration) -> None:
     """Strapdown integration with the simulator's own step reproduces orientation and velocity exactly."""
     world = _world()
     q = standing_configuration(world)
@@ -142,7 +145,7 @@ def test_gyro_and_accelerometer_integrate_to_the_true_motion() -> None:
     np.testing.assert_allclose(R.T @ velocity, now.v[:3], atol=1e-9)
 
 
-def test_torques_are_clipped_to_the_limits_and_reported() -> None:
+def test_torques_are_clipped_to_the_limits_and_reported(standing_configuration) -> None:
     world = _world()
     world.reset(standing_configuration(world))
     world.advance(np.full(25, 1e4), 1)
@@ -151,7 +154,7 @@ def test_torques_are_clipped_to_the_limits_and_reported() -> None:
     np.testing.assert_array_equal(world.measure().joint_torque, np.linspace(-5.0, 5.0, 25))
 
 
-def test_without_torque_the_robot_falls_on_the_floor() -> None:
+def test_without_torque_the_robot_falls_on_the_floor(standing_configuration) -> None:
     world = _world()
     world.reset(standing_configuration(world))
     world.advance(np.zeros(25), 3000)
@@ -163,10 +166,12 @@ def test_without_torque_the_robot_falls_on_the_floor() -> None:
 
 
 @pytest.mark.parametrize(("friction", "slips"), [(0.02, True), (0.8, False)])
-def test_friction_decides_whether_a_push_moves_the_feet(friction: float, slips: bool) -> None:
+def test_friction_decides_whether_a_push_moves_the_feet(
+    friction: float, slips: bool, standing_configuration, make_holder
+) -> None:
     world = _world(terrain=flat(friction), pushes=(Push(0.1, 0.2, np.array([0.0, 100.0, 0.0]), "pelvis"),))
     q = standing_configuration(world)
-    holder = Holder(world, q)
+    holder = make_holder(world, q)
     holder.hold(world, 100)
     before = [world.data.site(site).xpos.copy() for site in world.description.sole_sites]
     holder.hold(world, 200)
@@ -175,7 +180,7 @@ def test_friction_decides_whether_a_push_moves_the_feet(friction: float, slips: 
     assert (moved.min() > 0.005) if slips else (moved.max() < 2e-4)
 
 
-def test_steps_together_are_the_same_as_steps_apart() -> None:
+def test_steps_together_are_the_same_as_steps_apart(standing_configuration) -> None:
     push = Push(0.0105, 0.02, np.array([50.0, 0.0, 0.0]), "torso")
     ends = []
     for chunk in (1, 2, 25):
@@ -188,7 +193,7 @@ def test_steps_together_are_the_same_as_steps_apart() -> None:
     np.testing.assert_array_equal(ends[0], ends[2])
 
 
-def test_a_torque_that_is_no_number_is_reported_with_its_time() -> None:
+def test_a_torque_that_is_no_number_is_reported_with_its_time(standing_configuration) -> None:
     world = _world()
     world.reset(standing_configuration(world))
     world.advance(np.zeros(25), 4)
@@ -200,7 +205,9 @@ def test_a_torque_that_is_no_number_is_reported_with_its_time() -> None:
 
 
 @pytest.mark.parametrize("speed", [1e200, np.nan])
-def test_divergence_is_reported_and_the_last_finite_state_kept(speed: float, tmp_path, monkeypatch) -> None:
+def test_divergence_is_reported_and_the_last_finite_state_kept(
+    speed: float, tmp_path, monkeypatch, standing_configuration
+) -> None:
     monkeypatch.chdir(tmp_path)
     world = _world()
     q = standing_configuration(world)
@@ -217,7 +224,7 @@ def test_divergence_is_reported_and_the_last_finite_state_kept(speed: float, tmp
     assert not list(tmp_path.iterdir())  # the engine wrote no log file of its own
 
 
-def test_measurements_cannot_be_written_to() -> None:
+def test_measurements_cannot_be_written_to(standing_configuration) -> None:
     world = _world()
     world.reset(standing_configuration(world))
     with pytest.raises(ValueError, match="read-only"):

@@ -1,13 +1,15 @@
-"""A robot standing in its nominal posture, held by joint PD with the torques that carry its weight."""
+"""Fixtures: a robot in its nominal posture, held by joint PD with the torques that carry its weight."""
+
+from collections.abc import Callable
 
 import mujoco
 import numpy as np
+import pytest
 
-from models.types import RobotDescription
 from sim.world import World
 
 
-def standing_configuration(world: World) -> np.ndarray:
+def _standing_configuration(world: World) -> np.ndarray:
     """Nominal posture with the left sole at z = 0 and the CoM above the sole centres, in Pinocchio's convention."""
     q = np.concatenate(([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], world.description.nominal_joint_positions))
     world.reset(q)
@@ -31,7 +33,7 @@ class Holder:
         J = np.zeros((3, world.model.nv))
         for site in world.description.sole_sites:
             mujoco.mj_jacSite(world.model, world.data, J, None, world.model.site(site).id)
-            self.feedforward -= J[2, 6:] * weight(world.description) / 2
+            self.feedforward -= J[2, 6:] * 9.81 * world.description.mass / 2
 
     def hold(self, world: World, steps: int) -> None:
         for _ in range(steps):
@@ -40,5 +42,13 @@ class Holder:
             world.advance(self.feedforward + self.stiffness * error - self.damping * now.joint_velocity, 1)
 
 
-def weight(description: RobotDescription) -> float:
-    return 9.81 * description.mass
+@pytest.fixture
+def standing_configuration() -> Callable[[World], np.ndarray]:
+    """Function from a world to a configuration in Pinocchio's convention."""
+    return _standing_configuration
+
+
+@pytest.fixture
+def make_holder() -> type[Holder]:
+    """Constructor of a controller that holds a posture; it resets the world."""
+    return Holder

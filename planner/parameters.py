@@ -26,6 +26,8 @@ class PlannerParameters:
         jerk_limit: bound of the CoM jerk per axis [m/s^3].
         jerk_rate_limit: bound of its change from one block to the next [m/s^3 per sample]; infinite for none.
         jerk_weight: cost of a squared move, against 1 for a squared ZMP error [(m / (m/s^3))^2].
+        terminal_weight: cost of the squared DCM error at the end of the horizon; 2 / (ω T_s) is the cost-to-go of the
+            best linear DCM feedback, 32 at 1 m [-].
         step_weight: cost of a squared footstep shift; smaller ones shorten the nominal steps [-].
         zmp_slack: quadratic and linear cost of leaving the ZMP box [-, m].
         terminal_slack: quadratic and linear cost of leaving the terminal DCM bound [-, m].
@@ -52,6 +54,7 @@ class PlannerParameters:
     jerk_limit: float = 60.0
     jerk_rate_limit: float = math.inf
     jerk_weight: float = 1e-6
+    terminal_weight: float = 32.0
     step_weight: float = 30.0
     zmp_slack: tuple[float, float] = (1e3, 30.0)
     terminal_slack: tuple[float, float] = (1e3, 10.0)
@@ -72,7 +75,7 @@ class PlannerParameters:
             value = getattr(self, field.name)
             if not isinstance(value, int | float):
                 continue
-            may_be_zero = field.name in ("late_touchdown", "freeze_time", "touchdown_speed", "search_speed")
+            may_be_zero = field.name in ("late_touchdown", "freeze_time", "touchdown_speed", "search_speed", "terminal_weight")
             if not (value > 0 or (may_be_zero and value == 0)):
                 raise ValueError(f"planner.{field.name} is {value:g}, but it must be greater than 0.")
             if not math.isfinite(value) and field.name != "jerk_rate_limit":

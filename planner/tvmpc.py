@@ -59,8 +59,11 @@ def build_problem(
 ) -> TvmpcProblem:
     """Assemble both axes.
 
-    Cost (eq. costfunction with what it lacks): squared ZMP error, footstep shifts, moves, slacks. All constraints on
-    the motion are soft (the paper's hard ones are infeasible under noise), so that the problem always has a solution.
+    Cost (eq. costfunction with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks.
+    The terminal cost is what the best linear feedback would still spend on the squared ZMP error after the horizon;
+    without it the optimum prefers a constant ZMP error of millimetres to paying once for its correction.
+    All constraints on the motion are soft (the paper's hard ones are infeasible under noise), so that the problem
+    always has a solution.
 
     Args:
         parameters: planner parameters.
@@ -81,18 +84,19 @@ def build_problem(
     end_error = state @ end - constraints.terminal_center
 
     P = np.zeros((m + _EXTRA, m + _EXTRA))
-    P[: m + 2, : m + 2] = 2.0 * (design.T @ design)
+    end_row = np.concatenate((end_moves, -constraints.terminal_gain))
+    weighted = parameters.terminal_weight * end_row
+    P[: m + 2, : m + 2] = 2.0 * (design.T @ design + np.outer(weighted, end_row))
     P.flat[:: m + _EXTRA + 1] += _diagonal_cost(parameters, m)
     G = np.zeros((2 * n + 2, m + _EXTRA))
     G[:n, : m + 2] = design
     G[n : 2 * n, : m + 2] = -design
     G[: 2 * n, m + 2] = -1.0
-    G[2 * n, :m] = end_moves
-    G[2 * n, m : m + 2] = -constraints.terminal_gain
-    G[2 * n + 1] = -G[2 * n]
+    G[2 * n, : m + 2] = end_row
+    G[2 * n + 1, : m + 2] = -end_row
     G[2 * n :, m + 3] = -1.0
     q = np.empty((2, m + _EXTRA))
-    q[:, : m + 2] = 2.0 * (error.T @ design)
+    q[:, : m + 2] = 2.0 * (error.T @ design + np.outer(end_error, weighted))
     q[:, m + 2], q[:, m + 3] = parameters.zmp_slack[1], parameters.terminal_slack[1]
     h = np.empty((2, 2 * n + 2))
     h[:, :n] = (constraints.half_size - error).T

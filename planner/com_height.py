@@ -93,7 +93,9 @@ class HeightPreview:
     stiffness: Array
 
 
-def preview_height(shape: HeightShape, start: int, count: int, support_height: Array, zmp_height: Array) -> HeightPreview:
+def preview_height(
+    shape: HeightShape, start: int, count: int, support_height: Array, zmp_height: Array
+) -> HeightPreview:
     """CoM height and pendulum stiffness of a window.
 
     λ counts the height above the ZMP, z - p_z; the paper's equation leaves p_z out, which is wrong on stairs.

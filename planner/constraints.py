@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.dcm import viability_weights
+from planner.footsteps import FootstepPlan
+from planner.frames import frame_rotation
 from planner.parameters import PlannerParameters
-from planner.types import Array
+from planner.types import Array, Foot
 from planner.zmp_reference import ZmpReference
 
 
@@ -112,3 +114,19 @@ def _step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Arr
         upper[0] = np.minimum(upper[0], np.maximum(here + travel, lower[0]))
         lower[0] = low
     return lower, upper
+
+
+def check_reach(footsteps: FootstepPlan, parameters: PlannerParameters) -> None:
+    """Refuse nominal footsteps outside the reach box.
+
+    Raises:
+        ValueError: names the first such footstep and where it would have to land.
+    """
+    for row in range(2, footsteps.steps + 2):
+        step = footsteps.increment[row] @ frame_rotation(float(footsteps.yaw[row - 1]))
+        low, high = reach_box(parameters, 1.0 if footsteps.feet[row] is Foot.LEFT else -1.0)
+        if np.any(step < low - 1e-9) or np.any(step > high + 1e-9):
+            raise ValueError(
+                f"Footstep {row - 1} would land {step[0]:.3f} m ahead and {step[1]:.3f} m to the left of its stance"
+                f" foot, but it must be {low[0]:g} to {high[0]:g} m ahead and {low[1]:g} to {high[1]:g} m to the left."
+            )

@@ -1,10 +1,10 @@
 """The sequence of footsteps, kept as increments so that a step landed elsewhere shifts all that follow."""
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from planner.frames import frame_rotation, wrap_angle
 from planner.gait import GaitParameters
 from planner.terrain import Terrain
 from planner.types import Array, FeetState, Foot, Footstep
@@ -83,20 +83,10 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     position[0], position[1] = feet.position[rows[0]], feet.position[rows[1]]
     for row in range(2, n + 2):
         if row < n + 1:
-            path = path + _rotate(gait.step_length, gait.lateral_step, 0.5 * (yaw[row - 1] + yaw[row]))
+            path = path + frame_rotation(0.5 * (yaw[row - 1] + yaw[row])) @ (gait.step_length, gait.lateral_step)
         side = 0.5 * gait.step_width * (1.0 if rows[row] is Foot.LEFT else -1.0)
-        position[row, :2] = path + _rotate(0.0, side, yaw[row])
+        position[row, :2] = path + frame_rotation(yaw[row]) @ (0.0, side)
         position[row, 2] = terrain.height(float(position[row, 0]), float(position[row, 1]))
     increment = np.zeros((n + 2, 2))
     increment[1:] = np.diff(position[:, :2], axis=0)
     return FootstepPlan(rows, position, yaw, increment)
-
-
-def wrap_angle(angle: float) -> float:
-    """The same angle in [-pi, pi) [rad]."""
-    return (angle + math.pi) % (2.0 * math.pi) - math.pi
-
-
-def _rotate(x: float, y: float, yaw: float) -> Array:
-    c, s = math.cos(yaw), math.sin(yaw)
-    return np.array([c * x - s * y, s * x + c * y])

@@ -75,7 +75,13 @@ class PlannerParameters:
             value = getattr(self, field.name)
             if not isinstance(value, int | float):
                 continue
-            may_be_zero = field.name in ("late_touchdown", "freeze_time", "touchdown_speed", "search_speed", "terminal_weight")
+            may_be_zero = field.name in (
+                "late_touchdown",
+                "freeze_time",
+                "touchdown_speed",
+                "search_speed",
+                "terminal_weight",
+            )
             if not (value > 0 or (may_be_zero and value == 0)):
                 raise ValueError(f"planner.{field.name} is {value:g}, but it must be greater than 0.")
             if not math.isfinite(value) and field.name != "jerk_rate_limit":

@@ -60,7 +60,8 @@ class Pendulum:
         Args:
             duration: [s].
             zmp_command: wanted ZMP, shape (2,) [m].
-            support: real support polygon, anticlockwise, shape (v, 2) [m]; the ZMP is its point nearest to the wanted one.
+            support: real support polygon, anticlockwise, shape (v, 2) [m]; the ZMP is its point
+                nearest to the wanted one.
             stiffness: λ [1/s^2].
             force: horizontal force, shape (2,) [N].
         """

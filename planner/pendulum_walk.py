@@ -21,7 +21,7 @@ class PendulumTrace:
         com: true CoM, shape (k, 3) [m].
         zmp: true ZMP at the end of the tick, shape (k, 2) [m].
         zmp_reference: the ZMP reference there, shape (k, 2) [m].
-        margin: least distance of the true ZMP to the edge of the inner (90 %) support polygon within the tick, shape (k,) [m].
+        margin: least distance of the true ZMP to the edge of the inner (90 %) polygon within the tick, shape (k,) [m].
         fall_time: instant of the fall, or None [s].
         plans: the plans, length k.
     """
@@ -105,7 +105,13 @@ def walk_pendulum(
             break
     time, positions, zmp, reference, margins = zip(*rows, strict=True)
     return PendulumTrace(
-        np.array(time), np.array(positions), np.array(zmp), np.array(reference), np.array(margins), fall_time, tuple(plans)
+        np.array(time),
+        np.array(positions),
+        np.array(zmp),
+        np.array(reference),
+        np.array(margins),
+        fall_time,
+        tuple(plans),
     )
 
 

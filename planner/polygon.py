@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from planner.frames import frame_rotation
 from planner.types import Array, Footstep
-from planner.zmp_reference import frame_rotation
 
 
 def sole_corners(footstep: Footstep, half_size: Array) -> Array:

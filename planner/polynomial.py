@@ -38,18 +38,3 @@ def shifted(coefficients: Array, time: float) -> Array:
     """The same polynomials with their local time starting at `time`."""
     powers = np.array([time**i for i in _EXPONENT])
     return np.asarray((_BINOMIAL * powers[_POWER]) @ coefficients)
-
-
-def basis(time: float) -> Array:
-    """Rows that turn coefficients into position, velocity and acceleration, shape (3, 6)."""
-    t = time
-    t2 = t * t
-    t3 = t2 * t
-    t4 = t3 * t
-    return np.array(
-        (
-            (1.0, t, t2, t3, t4, t4 * t),
-            (0.0, 1.0, 2.0 * t, 3.0 * t2, 4.0 * t3, 5.0 * t4),
-            (0.0, 0.0, 2.0, 6.0 * t, 12.0 * t2, 20.0 * t3),
-        )
-    )

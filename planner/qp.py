@@ -1,13 +1,14 @@
 """Solving one axis: two solvers, then nothing; what failed is said, never hidden."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import qpsolvers
 
 from planner.types import Array
 
-_EXACT = {"daqp": {"primal_tol": 1e-9, "dual_tol": 1e-12}}
+_EXACT: dict[str, dict[str, Any]] = {"daqp": {"primal_tol": 1e-9, "dual_tol": 1e-12}}
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.plan import WalkPlan
-from planner.polynomial import basis, quintic
+from planner.polynomial import quintic
 from planner.types import GRAVITY, Array, Foot
 
 
@@ -65,8 +65,9 @@ class PlanSampler:
         self.plan = plan
         self._last = len(plan.jerk) - 1
         self._interval = -1
-        self._polynomials = np.zeros((6, 7))
-        self._linear = np.zeros((2, 5))
+        self._start = plan.time
+        self._table = np.zeros((6, 26))
+        self._load_rate = 0.0
         self._contacts = (True, True)
         self._swing_foot: Foot | None = None
 
@@ -76,54 +77,60 @@ class PlanSampler:
         Args:
             time: instant, not before the plan [s].
         """
-        plan = self.plan
-        since = max(0.0, time - plan.time)
-        interval = min(int(since / plan.sample_time + 1e-6), self._last)
+        step = self.plan.sample_time
+        interval = min(max(int((time - self.plan.time) / step + 1e-6), 0), self._last)
         if interval != self._interval:
             self._enter(interval)
-        since = min(since - interval * plan.sample_time, plan.sample_time)
-        motion = basis(since) @ self._polynomials
-        linear = self._linear[0] + since * self._linear[1]
-        omega, ground, load = linear[2:].tolist()
-        com, velocity, acceleration = motion[0, :3], motion[1, :3], motion[2, :3]
-        stiffness = (GRAVITY + float(acceleration[2])) / (float(com[2]) - ground)
+        t = min(max(time - self._start, 0.0), step)
+        t2 = t * t
+        t3 = t2 * t
+        values = np.array((1.0, t, t2, t3, t3 * t, t3 * t2)) @ self._table
+        com, velocity, acceleration = values[0:3], values[7:10], values[14:17]
+        omega, ground, load = values[23:].tolist()
+        stiffness = (GRAVITY + float(values[16])) / (float(values[2]) - ground)
         return PlanSample(
             time,
             com,
             velocity,
             acceleration,
-            com[:2] - acceleration[:2] / stiffness,
-            linear[:2],
-            com[:2] + velocity[:2] / omega,
+            values[0:2] - values[14:16] / stiffness,
+            values[21:23],
+            values[0:2] + values[7:9] / omega,
             omega,
             stiffness,
             self._contacts,
             load,
-            float(self._linear[1, 4]),
+            self._load_rate,
             self._swing_foot,
-            motion[0, 3:],
-            motion[1, 3:],
-            motion[2, 3:],
+            values[3:7],
+            values[10:14],
+            values[17:21],
         )
 
     def _enter(self, i: int) -> None:
+        """Prepare an interval: 7 polynomials, their two derivatives, and 5 linear functions as columns."""
         plan, t = self.plan, self.plan.sample_time
-        self._interval = i
-        polynomials = np.zeros((6, 7))
-        polynomials[0, :2], polynomials[1, :2] = plan.com[i, :2], plan.com_velocity[i, :2]
-        polynomials[2, :2], polynomials[3, :2] = 0.5 * plan.com_acceleration[i, :2], plan.jerk[i] / 6.0
-        vertical = np.array([(plan.com[j, 2], plan.com_velocity[j, 2], plan.com_acceleration[j, 2]) for j in (i, i + 1)])
-        polynomials[:, 2] = quintic(vertical[0][:, None], vertical[1][:, None], t)[:, 0]
+        self._interval, self._start = i, plan.time + i * t
+        table = np.zeros((6, 26))
+        table[0, :2], table[1, :2] = plan.com[i, :2], plan.com_velocity[i, :2]
+        table[2, :2], table[3, :2] = 0.5 * plan.com_acceleration[i, :2], plan.jerk[i] / 6.0
+        heights = np.stack(
+            (plan.com[i : i + 2, 2], plan.com_velocity[i : i + 2, 2], plan.com_acceleration[i : i + 2, 2])
+        )
+        table[:, 2] = quintic(heights[:, :1], heights[:, 1:], t)[:, 0]
         left, right = plan.contacts[i].tolist()
         self._contacts, self._swing_foot = (left, right), None
         if plan.swing is not None and not plan.contacts[i, plan.swing.foot]:
             self._swing_foot = plan.swing.foot
-            polynomials[:, 3:] = plan.swing.coefficients(plan.time + i * t)
-        self._polynomials = polynomials
-        ends = np.array(
-            [
-                (*plan.zmp_reference[j], plan.omega[j], plan.zmp_height[j], plan.load_left[j])
-                for j in (i, i + 1)
-            ]
-        )
-        self._linear[0], self._linear[1] = ends[0], (ends[1] - ends[0]) / t
+            table[:, 3:7] = plan.swing.coefficients(self._start)
+        table[:5, 7:14] = _DERIVATIVE * table[1:, :7]
+        table[:4, 14:21] = _DERIVATIVE[:4] * table[1:5, 7:14]
+        table[0, 21:23], table[0, 23] = plan.zmp_reference[i], plan.omega[i]
+        table[0, 24], table[0, 25] = plan.zmp_height[i], plan.load_left[i]
+        table[1, 21:23], table[1, 23] = plan.zmp_reference[i + 1], plan.omega[i + 1]
+        table[1, 24], table[1, 25] = plan.zmp_height[i + 1], plan.load_left[i + 1]
+        table[1, 21:] = (table[1, 21:] - table[0, 21:]) / t
+        self._table, self._load_rate = table, float(table[1, 25])
+
+
+_DERIVATIVE = np.arange(1.0, 6.0)[:, None]

@@ -65,7 +65,7 @@ class Schedule:
 
     def phase(self, sample: int) -> Phase:
         """The phase at a sample, which may lie beyond the end of the walk."""
-        return self.phases[self.phase_index[min(sample, self.last)]]
+        return self.phases[int(self.phase_index[min(sample, self.last)])]
 
 
 def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule:

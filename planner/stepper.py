@@ -8,7 +8,10 @@ from planner.footsteps import FootstepPlan
 from planner.parameters import PlannerParameters, StepAdaptation
 from planner.schedule import Phase, Schedule
 from planner.terrain import Terrain
-from planner.types import Array, FeetState, Foot, PhaseInfo, PhaseKind
+from planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
+
+_SAME_GROUND = 1e-3
+"""Footstep shift up to which the ground height is not looked up again [m]."""
 
 
 class Stepper:
@@ -93,6 +96,26 @@ class Stepper:
                 self.early = True
                 self.fix(feet.position[swing])
         self.tick = following
+
+    def upcoming(self, time: float, shifts: Array) -> tuple[PlannedFootstep, ...]:
+        """The next footsteps, at most three.
+
+        Args:
+            time: now [s].
+            shifts: shifts of the first two from their nominal increments, in the world frame, shape (2, 2) [m].
+        """
+        steps, planned = self.footsteps, []
+        shift = np.zeros(2)
+        for ahead, row in enumerate(range(self.row + 1, min(self.row + 4, steps.steps + 2))):
+            position = steps.position[row].copy()
+            if ahead < 2 and self.free[ahead]:
+                shift = shift + shifts[ahead]
+            position[:2] += shift
+            if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND:
+                position[2] = self._terrain.height(float(position[0]), float(position[1]))
+            footstep = Footstep(steps.feet[row], position, float(steps.yaw[row]))
+            planned.append(PlannedFootstep(row - 1, footstep, time + self.time_to_touchdown(row - 1)))
+        return tuple(planned)
 
     def fix(self, position: Array) -> None:
         """Decide the next footstep.

@@ -94,7 +94,12 @@ _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 
 
 def start_swing(
-    foot: Foot, pose: Array, target: Array, times: tuple[float, float, float], clearance: float, parameters: PlannerParameters
+    foot: Foot,
+    pose: Array,
+    target: Array,
+    times: tuple[float, float, float],
+    clearance: float,
+    parameters: PlannerParameters,
 ) -> SwingTrajectory:
     """Swing from rest.
 
@@ -128,7 +133,7 @@ def start_swing(
 
 
 def _with_height(trajectory: SwingTrajectory, time: float, state: Array, apex: float) -> SwingTrajectory:
-    """z from a state up to the apex height and down to the target; 4 h / t² at the apex keeps both pieces monotone."""
+    """Height from a state up to the apex height and down to the target; 4 h / t² at the apex keeps both monotone."""
     up, down = trajectory.apex_time - time, trajectory.touchdown_time - trajectory.apex_time
     end = float(trajectory.target[2])
     bend = -4.0 * min((apex - float(state[0, 0])) / up**2, (apex - end) / down**2)
@@ -147,5 +152,3 @@ def _to_rest(state: Array, target: Array, duration: float) -> Array:
     end = np.zeros((3, 3))
     end[0] = target
     return quintic(state, end, duration)
-
-

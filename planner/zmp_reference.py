@@ -1,11 +1,11 @@
 """ZMP planner: the reference of eq. zmpEquation over a window, linear in the next two footsteps."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from planner.footsteps import FootstepPlan
+from planner.frames import frame_rotation
 from planner.schedule import Schedule
 from planner.types import Array
 
@@ -90,12 +90,6 @@ def zmp_reference(schedule: Schedule, table: SupportTable, start: int, count: in
     fraction = schedule.fraction[start : start + count]
     rows = table.values[index] + fraction[:, None] * table.steps[index]
     return ZmpReference(rows[:, :2], rows[:, 2:4], rows[:, 4:6], rows[:, 6])
-
-
-def frame_rotation(yaw: float) -> Array:
-    """Rotation from a frame of that heading to the world, shape (2, 2)."""
-    c, s = math.cos(yaw), math.sin(yaw)
-    return np.array([[c, -s], [s, c]])
 
 
 def _inscribed_boxes(yaw: Array, half_size: Array) -> Array:

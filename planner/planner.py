@@ -78,7 +78,6 @@ class WalkingPlanner:
         for name, size in (("foot_length", foot_length), ("foot_width", foot_width)):
             if not (size > 0.0 and math.isfinite(size)):
                 raise ValueError(f"{name} is {size}, but it must be a finite number greater than 0.")
-        self._terrain = terrain
         self._half_size = 0.5 * np.array([foot_length, foot_width])
         self.schedule = schedule(gait, p.sample_time, p.horizon + p.preview)
         footsteps = plan_footsteps(gait, feet, terrain)

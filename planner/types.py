@@ -75,3 +75,69 @@ class FeetState:
     position: Array
     yaw: Array
     contact: tuple[bool, bool]
+
+
+class SolverStatus(IntEnum):
+    """How the jerk of a plan came about; higher is worse."""
+
+    SOLVED = 0
+    """The first solver solved both axes."""
+    SECOND_SOLVER = 1
+    """The first solver failed on an axis and the second one solved it."""
+    HELD = 2
+    """Both solvers failed on an axis: its previous jerk sequence was shifted and kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlanStatus:
+    """How a plan was made.
+
+    Attributes:
+        solver: the worse status of the two axes.
+        zmp_slack: violation of the ZMP box that the optimum accepts, shape (2,) for the plan frame's axes [m].
+        terminal_slack: violation of the terminal DCM bound, shape (2,) [m].
+        age: number of ticks since the last plan in which both axes were solved; 0 for a fresh one.
+        late_touchdown: ticks for which the phase clock has waited for the touchdown.
+        early_touchdown: the swing foot landed before its time; its foothold is fixed, the clock is not moved.
+    """
+
+    solver: SolverStatus
+    zmp_slack: Array
+    terminal_slack: Array
+    age: int
+    late_touchdown: int
+    early_touchdown: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseInfo:
+    """Where a plan stands in the gait.
+
+    Attributes:
+        kind: support phase.
+        stance: the supporting foot in single support, otherwise None.
+        step: number of the step being swung (single support) or last landed (otherwise); 0 before the first.
+        elapsed: time since the phase began, without the time for which the clock waited [s].
+        duration: length of the phase, infinite for the final standing [s].
+    """
+
+    kind: PhaseKind
+    stance: Foot | None
+    step: int
+    elapsed: float
+    duration: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedFootstep:
+    """A footstep to come.
+
+    Attributes:
+        step: its number in the walk, from 1.
+        footstep: where it lands as planned now.
+        touchdown_time: when it lands by the phase clock [s].
+    """
+
+    step: int
+    footstep: Footstep
+    touchdown_time: float

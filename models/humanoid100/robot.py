@@ -1,0 +1,93 @@
+"""The robot `humanoid100`: 100.0 kg without payload, 1.80 m tall, 25 joints."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+import models.humanoid100.dimensions as dim
+from models import inertia
+from models.humanoid100.leg import leg
+from models.humanoid100.upper_body import upper_body
+from models.mjcf import robot_mjcf
+from models.options import foot_size, with_payload
+from models.tree import Body, Geom, Role
+from models.types import Array, RobotDescription, RobotOptions
+
+NAME = "humanoid100"
+
+_MATERIALS: Mapping[str, Mapping[str, str]] = {
+    "shell": {"rgba": "0.90 0.91 0.93 1", "specular": "0.4", "shininess": "0.6"},
+    "joint": {"rgba": "0.16 0.17 0.20 1", "specular": "0.5", "shininess": "0.5"},
+    "accent": {"rgba": "0.95 0.45 0.10 1", "specular": "0.4", "shininess": "0.6"},
+    "rubber": {"rgba": "0.08 0.08 0.09 1", "specular": "0.1", "shininess": "0.1"},
+    "visor": {"rgba": "0.05 0.10 0.16 1", "specular": "0.9", "shininess": "0.9"},
+}
+
+
+def describe(options: RobotOptions) -> RobotDescription:
+    """The robot with the chosen feet and payload.
+
+    Raises:
+        RobotError: an option is out of range or names an unknown body.
+    """
+    length, width = foot_size(options, dim.FOOT_LENGTH, dim.FOOT_WIDTH)
+    base = with_payload(_pelvis(length, width), options, default_body="torso")
+    bodies = tuple(base.walk())
+    joints = tuple(body.joint for body in bodies if body.joint is not None)
+    return RobotDescription(
+        name=NAME,
+        mjcf=robot_mjcf(NAME, replace(base, position=(0.0, 0.0, dim.LEG)), _MATERIALS),
+        mass=float(sum(body.inertial.mass for body in bodies)),
+        joint_names=tuple(joint.name for joint in joints),
+        torque_limit=np.array([joint.actuator.torque_limit for joint in joints]),
+        velocity_limit=np.array([joint.actuator.velocity_limit for joint in joints]),
+        position_lower=np.array([joint.lower for joint in joints]),
+        position_upper=np.array([joint.upper for joint in joints]),
+        sole_sites=("left_sole", "right_sole"),
+        sole_length=length,
+        sole_width=width,
+        pelvis_body="pelvis",
+        torso_body="torso",
+        imu_site="imu",
+        hip_width=2 * dim.HIP_HALF_WIDTH,
+        leg_length=dim.LEG,
+        nominal_joint_positions=_mild_crouch(tuple(joint.name for joint in joints)),
+        com_height=1.0,
+        bodies=tuple(body.name for body in bodies),
+    )
+
+
+def _pelvis(foot_length: float, foot_width: float) -> Body:
+    """The floating base; its frame is midway between the hip centres."""
+    return Body(
+        "pelvis",
+        (0.0, 0.0, 0.0),
+        inertia.ellipsoid(14.2, (0.10, 0.15, 0.10), (0.0, 0.0, 0.035)),
+        geoms=(
+            Geom("ellipsoid", (0.095, 0.135, 0.065), (0.0, 0.0, 0.055)),
+            Geom("ellipsoid", (0.08, 0.055, 0.085), (0.0, 0.0, 0.01), material="joint"),
+            Geom("sphere", (0.11,), (0.0, 0.0, 0.03), role=Role.COLLISION),
+        ),
+        sites=(("imu", (0.0, 0.0, 0.0)),),
+        children=(
+            leg("left", foot_length, foot_width),
+            leg("right", foot_length, foot_width),
+            upper_body(),
+        ),
+    )
+
+
+def _mild_crouch(joint_names: tuple[str, ...]) -> Array:
+    """Joint angles [rad] with the CoM near 1.0 m above the soles and hanging arms."""
+    knee = 0.65
+    angles = {
+        "hip_pitch": -knee / 2,
+        "knee": knee,
+        "ankle_pitch": -knee / 2,
+        "shoulder_pitch": 0.1,
+        "left_shoulder_roll": 0.12,
+        "right_shoulder_roll": -0.12,
+        "elbow": -0.4,
+    }
+    return np.array([angles.get(name, angles.get(name.split("_", 1)[-1], 0.0)) for name in joint_names])

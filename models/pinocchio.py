@@ -1,0 +1,45 @@
+"""The Pinocchio model of a robot, from the very text that MuJoCo compiles."""
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+
+from models.types import RobotDescription, RobotError
+
+
+def pinocchio_model(description: RobotDescription) -> pin.Model:
+    """Read the robot's MJCF with Pinocchio; sites are frames, armatures are inside the mass matrix.
+
+    Effort and velocity limits come from the description, because the MJCF reader does not take them from motors.
+
+    Raises:
+        RobotError: Pinocchio's total mass or joint order is not the description's.
+    """
+    model = _read(description.mjcf)
+    mass = sum(inertia.mass for inertia in model.inertias)
+    if abs(mass - description.mass) > 1e-9 * description.mass:
+        raise RobotError(
+            f"Pinocchio reads {mass} kg from the MJCF of {description.name}, it must be {description.mass} kg"
+        )
+    joints = tuple(model.names)[2:]
+    if joints != description.joint_names:
+        raise RobotError(
+            f"Pinocchio reads the joints {joints} of {description.name}, it must be {description.joint_names}"
+        )
+    base_effort = np.zeros(6)
+    model.upperEffortLimit = np.concatenate((base_effort, description.torque_limit))
+    model.lowerEffortLimit = -model.upperEffortLimit
+    free = np.full(6, np.inf)
+    model.upperVelocityLimit = np.concatenate((free, description.velocity_limit))
+    model.lowerVelocityLimit = -model.upperVelocityLimit
+    return model
+
+
+def _read(mjcf: str) -> pin.Model:
+    """Pinocchio reads MJCF from files only."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "robot.xml"
+        path.write_text(mjcf, encoding="utf-8")
+        return pin.buildModelFromMJCF(str(path))

@@ -1,0 +1,69 @@
+"""Divergent component of motion ξ = x + x'/ω of the pendulum x'' = λ(t) (x - p) with varying stiffness.
+
+With ω' = ω² - λ the DCM obeys ξ' = (λ/ω) (ξ - p) exactly; at constant height ω = sqrt(λ) and this is the usual
+first-order system. The DCM is the *unstable* part of the motion (the paper calls it stable).
+"""
+
+import numpy as np
+
+from planner.types import Array
+
+
+def natural_frequency(stiffness: Array, sample_time: float) -> Array:
+    """ω over a window, by backward integration of the Riccati equation ω' = ω² - λ.
+
+    Backward in time the equation forgets its end value at the rate 2ω; the end value here is the constant-height
+    sqrt(λ). Each interval is integrated exactly for the mean of λ at its ends.
+
+    Args:
+        stiffness: λ, shape (n,) [1/s^2].
+        sample_time: [s].
+
+    Returns:
+        ω, shape (n,) [1/s].
+    """
+    mean = 0.5 * (stiffness[1:] + stiffness[:-1])
+    root = np.sqrt(mean)
+    stretched = np.tanh(root * sample_time) / root
+    pull = (mean * stretched).tolist()
+    w = float(np.sqrt(stiffness[-1]))
+    values = [w]
+    for t, b in zip(stretched[::-1].tolist(), reversed(pull), strict=True):
+        w = (w + b) / (1.0 + w * t)
+        values.append(w)
+    values.reverse()
+    return np.array(values)
+
+
+def dcm(position: Array, velocity: Array, omega: Array | float) -> Array:
+    """DCM ξ = x + x'/ω (eq. dcm), with the ω of the Riccati equation when the height varies."""
+    return np.asarray(position + velocity / omega)
+
+
+def dcm_constant_zmp(start: Array, zmp: Array, omega: float, time: float) -> Array:
+    """Closed form at constant height and ZMP: ξ(t) = p + (ξ(0) - p) e^{ωt}."""
+    return np.asarray(zmp + (start - zmp) * np.exp(omega * time))
+
+
+def viability_weights(stiffness: Array, omega: Array, sample_time: float) -> Array:
+    """Weights w with which the future ZMP fixes the DCM that stays bounded: ξ = Σ w_j p_j.
+
+    It is the solution of ξ' = (λ/ω)(ξ - p) that ends on the last ZMP; the ZMP is linear between samples and the decay
+    constant within one. A DCM outside the weighted sum of all ZMPs that the feet allow cannot be brought back.
+
+    Args:
+        stiffness: λ, shape (n,) [1/s^2].
+        omega: ω, shape (n,) [1/s].
+        sample_time: [s].
+
+    Returns:
+        Weights that sum to 1, shape (n,).
+    """
+    rate = stiffness / omega
+    decay = np.exp(-0.5 * sample_time * np.concatenate(([0.0], np.cumsum(rate[1:] + rate[:-1]))))
+    share = 0.5 * (decay[:-1] - decay[1:])
+    weights = np.zeros_like(stiffness)
+    weights[:-1] = share
+    weights[1:] += share
+    weights[-1] += decay[-1]
+    return weights

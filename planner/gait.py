@@ -1,0 +1,87 @@
+"""The gait as the user asks for it: how many steps, how long, how fast, how high."""
+
+import math
+from dataclasses import dataclass, fields
+
+from planner.types import Foot
+
+_POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
+_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds")
+
+
+@dataclass(frozen=True, slots=True)
+class GaitParameters:
+    """Parameters of a walk from standing to standing (the paper's table of parameters, with what it leaves open).
+
+    `steps` counts every step taken. The last step brings its foot beside the other one, so that the robot ends in a
+    square stance; the path therefore advances `steps - 1` times by (`step_length`, `lateral_step`).
+
+    Attributes:
+        steps: number of steps, 0 stands for ever.
+        step_length: distance from one footstep to the next along the heading, negative walks backward (S_L) [m].
+        step_width: lateral distance between the two feet in the square stance [m].
+        lateral_step: lateral progress of the path per step, positive to the left; diagonal walking (S_w) [m].
+        turn: change of heading per step, positive to the left [rad].
+        single_support: duration of single support (T_ss) [s].
+        double_support: duration of double support (T_ds) [s].
+        swing_height: clearance of the swing sole above the higher of lift-off and touchdown [m].
+        com_height: CoM height above the support (z_c0) [m].
+        initial_stand: rest before the first double support [s].
+        first_foot: the foot that swings first.
+        apex_ss: rise of the CoM in the middle of single support (A_ss) [m].
+        apex_ds: rise of the CoM in the middle of double support (A_ds) [m].
+
+    Raises:
+        ValueError: a value is not finite, has the wrong sign or makes the swing higher than the CoM.
+    """
+
+    steps: int = 5
+    step_length: float = 0.2
+    step_width: float = 0.25
+    lateral_step: float = 0.0
+    turn: float = 0.0
+    single_support: float = 1.5
+    double_support: float = 0.5
+    swing_height: float = 0.05
+    com_height: float = 1.0
+    initial_stand: float = 1.0
+    first_foot: Foot = Foot.LEFT
+    apex_ss: float = 0.0135
+    apex_ds: float = 0.00135
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not math.isfinite(value):
+                raise ValueError(f"gait.{field.name} is {value}, but it must be a finite number.")
+            if field.name in _POSITIVE and value <= 0.0:
+                raise ValueError(f"gait.{field.name} is {value:g}, but it must be greater than 0.")
+            if field.name in _NOT_NEGATIVE and value < 0.0:
+                raise ValueError(f"gait.{field.name} is {value:g}, but it must not be negative.")
+        if self.steps < 0 or self.steps != int(self.steps):
+            raise ValueError(f"gait.steps is {self.steps}, but it must be a whole number of at least 0.")
+
+    def step_foot(self, step: int) -> Foot:
+        """The foot that step number `step` moves; steps count from 1, number 0 and -1 are the start feet."""
+        return self.first_foot if step % 2 == 1 else Foot(self.first_foot).other
+
+
+def samples(name: str, duration: float, sample_time: float) -> int:
+    """Number of planner samples in a duration.
+
+    Args:
+        name: what the duration is called, for the message.
+        duration: duration [s].
+        sample_time: planner sample time [s].
+
+    Raises:
+        ValueError: the duration is no multiple of the sample time; the message names the nearest that is.
+    """
+    count = round(duration / sample_time)
+    if abs(count * sample_time - duration) > 1e-9 * max(1.0, duration):
+        nearest = max(count, 1) * sample_time
+        raise ValueError(
+            f"{name} is {duration:g} s, but it must be a multiple of the planner's sample time of {sample_time:g} s;"
+            f" the nearest is {nearest:g} s."
+        )
+    return count

@@ -1,0 +1,88 @@
+"""Parameters of the planner itself, apart from the gait."""
+
+import math
+from dataclasses import dataclass, fields
+from enum import Enum
+
+from planner.moves import BLOCK_STARTS
+
+
+class StepAdaptation(Enum):
+    """What a disturbance may change about the footsteps."""
+
+    NONE = "none"
+    LOCATION = "location"
+
+
+@dataclass(frozen=True, slots=True)
+class PlannerParameters:
+    """Parameters of the walking planner; the defaults are the measured robust formulation.
+
+    Attributes:
+        sample_time: T_s [s].
+        horizon: samples over which the jerk is planned (N_p).
+        preview: samples beyond the horizon in which known footsteps still shape the terminal DCM bound and ω.
+        moves: first sample of each block of constant jerk (see `planner.moves`).
+        jerk_limit: bound of the CoM jerk per axis [m/s^3].
+        jerk_rate_limit: bound of its change from one block to the next [m/s^3 per sample]; infinite for none.
+        jerk_weight: cost of a squared move, against 1 for a squared ZMP error [(m / (m/s^3))^2].
+        terminal_weight: cost of the squared DCM error at the end of the horizon; 2 / (ω T_s) is the cost-to-go of the
+            best linear DCM feedback, 32 at 1 m [-].
+        step_weight: cost of a squared footstep shift; smaller ones shorten the nominal steps [-].
+        zmp_slack: quadratic and linear cost of leaving the ZMP box [-, m].
+        terminal_slack: quadratic and linear cost of leaving the terminal DCM bound [-, m].
+        foot_margin: share of the foot in which the ZMP must stay (the paper's 90 %) [-].
+        terminal_margin: share of the box's half size that bounds the terminal DCM [-].
+        step_adaptation: what a disturbance may change about the footsteps.
+        reach_length: largest distance of a footstep ahead of or behind the stance foot [m].
+        reach_width: smallest and largest lateral distance of a footstep from the stance foot [m].
+        swing_speed: fastest mean speed of the swing foot to a shifted footstep [m/s].
+        freeze_time: time before touchdown from which the footstep is fixed [s].
+        late_touchdown: longest wait of the phase clock for a touchdown [s].
+        touchdown_speed: downward speed of the swing foot at the planned touchdown [m/s].
+        search_speed: downward speed of the swing foot after it, while it feels no ground [m/s].
+        solvers: QP solvers of qpsolvers, in the order in which they are tried.
+
+    Raises:
+        ValueError: a number is not positive, or not finite where it must be.
+    """
+
+    sample_time: float = 0.02
+    horizon: int = 50
+    preview: int = 100
+    moves: tuple[int, ...] = BLOCK_STARTS
+    jerk_limit: float = 60.0
+    jerk_rate_limit: float = math.inf
+    jerk_weight: float = 1e-6
+    terminal_weight: float = 32.0
+    step_weight: float = 30.0
+    zmp_slack: tuple[float, float] = (1e3, 30.0)
+    terminal_slack: tuple[float, float] = (1e3, 10.0)
+    foot_margin: float = 0.9
+    terminal_margin: float = 0.8
+    step_adaptation: StepAdaptation = StepAdaptation.LOCATION
+    reach_length: float = 0.4
+    reach_width: tuple[float, float] = (0.08, 0.4)
+    swing_speed: float = 3.0
+    freeze_time: float = 0.08
+    late_touchdown: float = 0.2
+    touchdown_speed: float = 0.05
+    search_speed: float = 0.1
+    solvers: tuple[str, str] = ("daqp", "quadprog")
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not isinstance(value, int | float):
+                continue
+            may_be_zero = field.name in (
+                "late_touchdown",
+                "freeze_time",
+                "touchdown_speed",
+                "search_speed",
+                "terminal_weight",
+            )
+            if not (value > 0 or (may_be_zero and value == 0)):
+                raise ValueError(f"planner.{field.name} is {value:g}, but it must be greater than 0.")
+            if not math.isfinite(value) and field.name != "jerk_rate_limit":
+                raise ValueError(f"planner.{field.name} is {value:g}, but it must be finite.")

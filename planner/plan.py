@@ -1,0 +1,58 @@
+"""What the planner hands over at every tick."""
+
+from dataclasses import dataclass
+
+from numpy import bool_
+from numpy.typing import NDArray
+
+from planner.swing import SwingTrajectory
+from planner.types import Array, Footstep, PhaseInfo, PlannedFootstep, PlanStatus
+
+
+@dataclass(frozen=True, slots=True)
+class WalkPlan:
+    """A plan from the measured state at `time` over N samples; world frame.
+
+    Attributes:
+        time: instant of the measurement [s].
+        sample_time: length of a sample [s].
+        com: CoM positions at samples 0..N, shape (N + 1, 3) [m].
+        com_velocity: shape (N + 1, 3) [m/s].
+        com_acceleration: shape (N + 1, 3) [m/s^2].
+        jerk: horizontal CoM jerk of each sample, shape (N, 2) [m/s^3].
+        zmp: ZMP that this motion has, shape (N + 1, 2) [m].
+        zmp_reference: ZMP that the footsteps define, shape (N + 1, 2) [m].
+        zmp_height: ground height under it, shape (N + 1,) [m].
+        stiffness: λ = (g + z'') / (z - p_z), shape (N + 1,) [1/s^2].
+        omega: ω of the DCM, ω' = ω² - λ, shape (N + 1,) [1/s].
+        phase: where the plan stands in the gait.
+        contacts: planned contacts (left, right) from each sample on, shape (N + 1, 2).
+        load_left: planned share of the weight on the left foot, shape (N + 1,); the right one has the rest.
+        support_polygon: hull of the planned soles now, anticlockwise, shape (v, 2) [m].
+        inner_polygon: the same of the soles shrunk to the ZMP margin (90 %), shape (v, 2) [m].
+        footholds: where the left and the right foot stand now, or stood last.
+        footsteps: the next footsteps, at most three.
+        swing: trajectory of the swing foot in single support, otherwise None.
+        status: how the plan was made.
+    """
+
+    time: float
+    sample_time: float
+    com: Array
+    com_velocity: Array
+    com_acceleration: Array
+    jerk: Array
+    zmp: Array
+    zmp_reference: Array
+    zmp_height: Array
+    stiffness: Array
+    omega: Array
+    phase: PhaseInfo
+    contacts: NDArray[bool_]
+    load_left: Array
+    support_polygon: Array
+    inner_polygon: Array
+    footholds: tuple[Footstep, Footstep]
+    footsteps: tuple[PlannedFootstep, ...]
+    swing: SwingTrajectory | None
+    status: PlanStatus

@@ -1,0 +1,234 @@
+"""The walking planner: the four modules of the paper, put together once per tick."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.com_height import HeightPreview, HeightProfile, SmoothHeight, preview_height
+from planner.constraints import StepContext, check_reach, generate_constraints
+from planner.dcm import natural_frequency
+from planner.footsteps import FootstepPlan, plan_footsteps
+from planner.frames import wrap_angle
+from planner.gait import GaitParameters
+from planner.moves import block_moves
+from planner.parameters import PlannerParameters
+from planner.plan import WalkPlan
+from planner.prediction import predict
+from planner.schedule import schedule
+from planner.solution import TvmpcSolution, solve_problem
+from planner.stepper import Stepper
+from planner.support import Support, present_support
+from planner.swing import SwingTrajectory, start_swing
+from planner.terrain import Terrain, flat
+from planner.tvmpc import Trajectory, TvmpcProblem, build_problem, trajectory
+from planner.types import Array, CentroidalState, FeetState, Foot, PlannedFootstep, PlanStatus, SolverStatus
+from planner.zmp_reference import ZmpReference, zmp_reference
+
+
+@dataclass(frozen=True, slots=True)
+class _Preview:
+    """What is known of the window before solving."""
+
+    reference: ZmpReference
+    height: HeightPreview
+    omega: Array
+
+
+class WalkingPlanner:
+    """Receding-horizon planner of CoM, ZMP and footsteps, from the measured state at every tick.
+
+    It plans in a frame with origin and planned heading at the stance foot (the foot landed last in double support), so
+    that its numbers do not depend on where in the world it walks, and ZMP boxes and reach boxes are aligned with it.
+    CoM position and velocity come from the measurement, the acceleration from the plan before.
+
+    Args:
+        gait: the walk.
+        feet: where the feet stand at the start.
+        foot_length: length of the sole [m].
+        foot_width: width of the sole [m].
+        terrain: what the planner believes about the ground.
+        parameters: the planner's own parameters.
+        height_profile: vertical CoM motion.
+
+    Attributes:
+        gait: the walk.
+        parameters: the planner's own parameters.
+        schedule: its phases on the clock.
+        problem: the QPs of the last tick, to be looked at or stored; None before the first.
+
+    Raises:
+        ValueError: a duration is no multiple of the sample time, or a footstep is out of reach.
+    """
+
+    def __init__(
+        self,
+        gait: GaitParameters,
+        feet: FeetState,
+        foot_length: float,
+        foot_width: float,
+        terrain: Terrain | None = None,
+        parameters: PlannerParameters | None = None,
+        height_profile: HeightProfile | None = None,
+    ) -> None:
+        self.gait = gait
+        self.parameters = parameters or PlannerParameters()
+        p = self.parameters
+        terrain = terrain or flat()
+        for name, size in (("foot_length", foot_length), ("foot_width", foot_width)):
+            if not (size > 0.0 and math.isfinite(size)):
+                raise ValueError(f"{name} is {size}, but it must be a finite number greater than 0.")
+        self._half_size = 0.5 * np.array([foot_length, foot_width])
+        self.schedule = schedule(gait, p.sample_time, p.horizon + p.preview)
+        footsteps = plan_footsteps(gait, feet, terrain)
+        check_reach(footsteps, p)
+        self._stepper = Stepper(self.schedule, footsteps, terrain, p)
+        self._shape = (height_profile or SmoothHeight()).shape(gait, self.schedule)
+        self._prediction = predict(p.sample_time, block_moves(p.moves, p.horizon))
+        self._support: Support | None = None
+        self._swing: SwingTrajectory | None = None
+        self._plan: WalkPlan | None = None
+        self.problem: TvmpcProblem | None = None
+
+    @property
+    def footsteps(self) -> FootstepPlan:
+        """All footholds: landed ones as measured, the others as nominally planned from them."""
+        return self._stepper.footsteps
+
+    def update(self, state: CentroidalState, feet: FeetState) -> WalkPlan:
+        """Plan from a measurement; call it once per sample time.
+
+        Args:
+            state: measured CoM.
+            feet: measured feet.
+
+        Raises:
+            ValueError: the measured CoM is not finite.
+        """
+        if not math.isfinite(float(state.com.sum() + state.com_velocity.sum())):
+            raise ValueError(f"The measured CoM is {state.com} at {state.time:g} s, but it must be finite.")
+        p, stepper, n = self.parameters, self._stepper, self.parameters.horizon
+        stepper.advance(feet)
+        self._fix_imminent_footstep(state.time)
+        support = present_support(self._support, stepper, self._half_size, p.foot_margin)
+        self._support = support
+        window = (stepper.sample, n + p.preview + 1)
+        reference = zmp_reference(self.schedule, support.table, *window)
+        height = preview_height(self._shape, *window, support.heights, reference.height)
+        omega = natural_frequency(height.stiffness, p.sample_time)
+        steps = self._step_context(support, feet)
+        self.problem = build_problem(
+            p,
+            self._prediction,
+            self._local_state(state, support),
+            height.stiffness[: n + 1],
+            reference,
+            generate_constraints(p, reference, height.stiffness, omega, steps),
+            self._local_jerk(support)[0],
+        )
+        solution = solve_problem(self.problem, self._prediction, p.solvers, self._shifted_jerk(support))
+        footsteps = stepper.upcoming(state.time, solution.shifts @ support.rotation.T)
+        self._update_swing(state.time, feet, footsteps, solution)
+        motion = trajectory(self._prediction, self.problem, solution.jerk)
+        preview = _Preview(reference, height, omega)
+        self._plan = self._world_plan(state.time, support, preview, motion, solution, footsteps)
+        return self._plan
+
+    def _world_plan(
+        self,
+        time: float,
+        support: Support,
+        preview: _Preview,
+        motion: Trajectory,
+        solution: TvmpcSolution,
+        footsteps: tuple[PlannedFootstep, ...],
+    ) -> WalkPlan:
+        stepper, reference, height = self._stepper, preview.reference, preview.height
+        count, to_world = self.parameters.horizon + 1, support.rotation.T
+        com = np.empty((3, count, 3))
+        com[:, :, :2] = motion.com @ to_world
+        com[0, :, :2] += support.origin
+        com[:, :, 2] = height.height[:, :count]
+        point = reference.point[:count] + reference.gain[:count] @ solution.shifts
+        window = slice(stepper.sample, stepper.sample + count)
+        return WalkPlan(
+            time=time,
+            sample_time=self.parameters.sample_time,
+            com=com[0],
+            com_velocity=com[1],
+            com_acceleration=com[2],
+            jerk=motion.jerk @ to_world,
+            zmp=motion.zmp @ to_world + support.origin,
+            zmp_reference=point @ to_world + support.origin,
+            zmp_height=reference.height[:count],
+            stiffness=height.stiffness[:count],
+            omega=preview.omega[:count],
+            phase=stepper.info,
+            contacts=self.schedule.contacts[window],
+            load_left=self.schedule.load_left[window],
+            support_polygon=support.outer,
+            inner_polygon=support.inner,
+            footholds=support.footholds,
+            footsteps=footsteps,
+            swing=self._swing,
+            status=self._status(solution),
+        )
+
+    def _fix_imminent_footstep(self, time: float) -> None:
+        stepper, swing = self._stepper, self._swing
+        if swing is None or stepper.swing_foot is None or stepper.fixed:
+            return
+        if swing.touchdown_time - time <= self.parameters.freeze_time + 1e-9:
+            stepper.fix(swing.target[:3])
+
+    def _step_context(self, support: Support, feet: FeetState) -> StepContext:
+        stepper, steps = self._stepper, self._stepper.footsteps
+        row, swing = stepper.row, stepper.swing_foot
+        increment = np.zeros((2, 2))
+        ahead = np.diff(steps.position[row : row + 3, :2], axis=0) @ support.rotation
+        increment[: len(ahead)] = ahead
+        side = 1.0 if steps.feet[row] is Foot.RIGHT else -1.0
+        here = None if swing is None else (feet.position[swing, :2] - support.origin) @ support.rotation
+        left = 0.0 if swing is None else stepper.time_to_touchdown(stepper.phase.step)
+        return StepContext(increment, (side, -side), stepper.free, here, left)
+
+    def _local_state(self, state: CentroidalState, support: Support) -> Array:
+        """Position and velocity as measured, acceleration as the last plan had it for now."""
+        local = np.empty((3, 2))
+        local[0] = state.com[:2] - support.origin
+        local[1] = state.com_velocity[:2]
+        local[2] = self._plan.com_acceleration[1, :2] if self._plan is not None else 0.0
+        return np.ascontiguousarray((local @ support.rotation).T)
+
+    def _local_jerk(self, support: Support) -> Array:
+        if self._plan is None:
+            return np.zeros((self.parameters.horizon, 2))
+        return self._plan.jerk @ support.rotation
+
+    def _shifted_jerk(self, support: Support) -> Array:
+        jerk = np.zeros((self.parameters.horizon, 2))
+        jerk[:-1] = self._local_jerk(support)[1:]
+        return jerk
+
+    def _update_swing(
+        self, time: float, feet: FeetState, footsteps: tuple[PlannedFootstep, ...], solution: TvmpcSolution
+    ) -> None:
+        stepper, phase, foot = self._stepper, self._stepper.phase, self._stepper.swing_foot
+        if foot is None:
+            self._swing = None
+            return
+        target = np.append(footsteps[0].footstep.position, footsteps[0].footstep.yaw)
+        if self._swing is None:
+            t = self.parameters.sample_time
+            yaw = float(stepper.footsteps.yaw[stepper.row - 1])
+            pose = np.append(feet.position[foot], yaw + wrap_angle(float(feet.yaw[foot]) - yaw))
+            times = (time, time + phase.samples // 2 * t, time + phase.samples * t)
+            self._swing = start_swing(foot, pose, target, times, self.gait.swing_height, self.parameters)
+        elif not stepper.fixed and solution.solver is not SolverStatus.HELD:
+            self._swing = self._swing.retargeted(time, target)
+
+    def _status(self, solution: TvmpcSolution) -> PlanStatus:
+        held = solution.solver is SolverStatus.HELD
+        age = (self._plan.status.age if self._plan is not None else 0) + 1 if held else 0
+        waited, early = self._stepper.waited, self._stepper.early
+        return PlanStatus(solution.solver, solution.zmp_slack, solution.terminal_slack, age, waited, early)

@@ -1,0 +1,136 @@
+"""References for the fast controller, at any instant of a plan."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.plan import WalkPlan
+from planner.polynomial import quintic
+from planner.types import GRAVITY, Array, Foot
+
+
+@dataclass(frozen=True, slots=True)
+class PlanSample:
+    """References at one instant; world frame, arrays are fresh at every call.
+
+    Attributes:
+        time: instant [s].
+        com: CoM position, shape (3,) [m].
+        com_velocity: shape (3,) [m/s].
+        com_acceleration: shape (3,) [m/s^2].
+        zmp: ZMP of this motion, shape (2,) [m].
+        zmp_reference: ZMP that the footsteps define, shape (2,) [m].
+        dcm: ξ = c + c'/ω, shape (2,) [m].
+        omega: ω [1/s].
+        stiffness: λ [1/s^2].
+        contacts: planned contacts (left, right).
+        load_left: planned share of the weight on the left foot [-].
+        load_left_rate: its rate [1/s].
+        swing_foot: the swinging foot, or None; the swing arrays are zero without one.
+        swing: swing sole x, y, z [m] and yaw [rad], shape (4,).
+        swing_velocity: shape (4,) [m/s, rad/s].
+        swing_acceleration: shape (4,) [m/s^2, rad/s^2].
+    """
+
+    time: float
+    com: Array
+    com_velocity: Array
+    com_acceleration: Array
+    zmp: Array
+    zmp_reference: Array
+    dcm: Array
+    omega: float
+    stiffness: float
+    contacts: tuple[bool, bool]
+    load_left: float
+    load_left_rate: float
+    swing_foot: Foot | None
+    swing: Array
+    swing_velocity: Array
+    swing_acceleration: Array
+
+
+class PlanSampler:
+    """Evaluates a plan between its samples.
+
+    The horizontal CoM is the exact cubic of the sample's jerk, its height the quintic through both samples' z, z', z'';
+    ω, ZMP reference and load are linear. Each interval's polynomials are prepared when it is entered. After the end of
+    the horizon the last sample is held.
+
+    Attributes:
+        plan: the plan.
+    """
+
+    def __init__(self, plan: WalkPlan) -> None:
+        self.plan = plan
+        self._last = len(plan.jerk) - 1
+        self._interval = -1
+        self._start = plan.time
+        self._table = np.zeros((6, 26))
+        self._load_rate = 0.0
+        self._contacts = (True, True)
+        self._swing_foot: Foot | None = None
+
+    def sample(self, time: float) -> PlanSample:
+        """References at an instant.
+
+        Args:
+            time: instant, not before the plan [s].
+        """
+        step = self.plan.sample_time
+        interval = min(max(int((time - self.plan.time) / step + 1e-6), 0), self._last)
+        if interval != self._interval:
+            self._enter(interval)
+        t = min(max(time - self._start, 0.0), step)
+        t2 = t * t
+        t3 = t2 * t
+        values = np.array((1.0, t, t2, t3, t3 * t, t3 * t2)) @ self._table
+        com, velocity, acceleration = values[0:3], values[7:10], values[14:17]
+        omega, ground, load = values[23:].tolist()
+        stiffness = (GRAVITY + float(values[16])) / (float(values[2]) - ground)
+        return PlanSample(
+            time,
+            com,
+            velocity,
+            acceleration,
+            values[0:2] - values[14:16] / stiffness,
+            values[21:23],
+            values[0:2] + values[7:9] / omega,
+            omega,
+            stiffness,
+            self._contacts,
+            load,
+            self._load_rate,
+            self._swing_foot,
+            values[3:7],
+            values[10:14],
+            values[17:21],
+        )
+
+    def _enter(self, i: int) -> None:
+        """Prepare an interval: 7 polynomials, their two derivatives, and 5 linear functions as columns."""
+        plan, t = self.plan, self.plan.sample_time
+        self._interval, self._start = i, plan.time + i * t
+        table = np.zeros((6, 26))
+        table[0, :2], table[1, :2] = plan.com[i, :2], plan.com_velocity[i, :2]
+        table[2, :2], table[3, :2] = 0.5 * plan.com_acceleration[i, :2], plan.jerk[i] / 6.0
+        heights = np.stack(
+            (plan.com[i : i + 2, 2], plan.com_velocity[i : i + 2, 2], plan.com_acceleration[i : i + 2, 2])
+        )
+        table[:, 2] = quintic(heights[:, :1], heights[:, 1:], t)[:, 0]
+        left, right = plan.contacts[i].tolist()
+        self._contacts, self._swing_foot = (left, right), None
+        if plan.swing is not None and not plan.contacts[i, plan.swing.foot]:
+            self._swing_foot = plan.swing.foot
+            table[:, 3:7] = plan.swing.coefficients(self._start)
+        table[:5, 7:14] = _DERIVATIVE * table[1:, :7]
+        table[:4, 14:21] = _DERIVATIVE[:4] * table[1:5, 7:14]
+        table[0, 21:23], table[0, 23] = plan.zmp_reference[i], plan.omega[i]
+        table[0, 24], table[0, 25] = plan.zmp_height[i], plan.load_left[i]
+        table[1, 21:23], table[1, 23] = plan.zmp_reference[i + 1], plan.omega[i + 1]
+        table[1, 24], table[1, 25] = plan.zmp_height[i + 1], plan.load_left[i + 1]
+        table[1, 21:] = (table[1, 21:] - table[0, 21:]) / t
+        self._table, self._load_rate = table, float(table[1, 25])
+
+
+_DERIVATIVE = np.arange(1.0, 6.0)[:, None]

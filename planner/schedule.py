@@ -1,0 +1,129 @@
+"""The phases of a gait on the integer clock of planner samples."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.gait import GaitParameters, samples
+from planner.types import Array, Foot, PhaseKind
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """One support phase; it covers the samples `start` <= k < `start + samples`.
+
+    Attributes:
+        kind: stand, double or single support.
+        start: first sample.
+        samples: length in samples; the last phase of a schedule has 0, which means for ever.
+        step: number of the step that this phase swings (single support) or has just landed (otherwise); 0 before.
+        stance: the only supporting foot of a single support, otherwise None.
+    """
+
+    kind: PhaseKind
+    start: int
+    samples: int
+    step: int
+    stance: Foot | None
+
+    @property
+    def end(self) -> int:
+        """First sample after the phase (meaningless for the last one)."""
+        return self.start + self.samples
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """Phases and what follows from them at every sample; the arrays hold `preview` samples beyond the last change.
+
+    The support point moves along the polyline of support points 0 (between the start feet), 1..n (the stance feet of
+    the n steps), n + 1 (between the last feet): at sample k it is the fraction `fraction[k]` of the way from point
+    `index[k]` to the next.
+
+    Attributes:
+        phases: in order, without gaps; the last one never ends.
+        phase_index: index into `phases`, shape (K,).
+        index: support point that the ZMP reference leaves, shape (K,).
+        fraction: share of the way to the next support point, shape (K,), in [0, 1).
+        fraction_rate: rate of that share within the phase's ramp, shape (K,) [1/s].
+        load_left: share of the weight on the left foot, shape (K,).
+        contacts: planned contacts (left, right), shape (K, 2).
+        sample_time: length of a sample [s].
+        last: first sample of the final standing; the clock need not go beyond it.
+    """
+
+    phases: tuple[Phase, ...]
+    phase_index: NDArray[np.intp]
+    index: NDArray[np.intp]
+    fraction: Array
+    fraction_rate: Array
+    load_left: Array
+    contacts: NDArray[np.bool_]
+    sample_time: float
+    last: int
+
+    def phase(self, sample: int) -> Phase:
+        """The phase at a sample, which may lie beyond the end of the walk."""
+        return self.phases[int(self.phase_index[min(sample, self.last)])]
+
+
+def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule:
+    """Lay the gait's phases on the clock.
+
+    Stand, a first double support of twice the usual length that rests for its first half (so that the DCM is
+    consistent when the weight shift begins), then single and double supports in turn, then standing for ever. The last
+    double support brings the ZMP back between the feet.
+
+    Args:
+        gait: the gait.
+        sample_time: planner sample time [s].
+        preview: samples that a window may reach beyond the current one.
+
+    Raises:
+        ValueError: a duration is no multiple of the sample time.
+    """
+    phases = _phases(gait, sample_time)
+    last = phases[-1].start
+    count = last + preview + 2
+    phase_index = np.empty(count, dtype=np.intp)
+    index = np.empty(count, dtype=np.intp)
+    fraction = np.zeros(count)
+    rate = np.zeros(count)
+    contacts = np.ones((count, 2), dtype=np.bool_)
+    for i, phase in enumerate(phases):
+        span = slice(phase.start, phase.end if phase.samples else count)
+        phase_index[span] = i
+        index[span] = _support_index(phase, gait.steps)
+        if phase.kind is PhaseKind.DOUBLE:
+            ramp = phase.samples if phase.step else phase.samples // 2
+            ramp_span = slice(phase.end - ramp, phase.end)
+            fraction[ramp_span] = np.arange(ramp) / ramp
+            rate[ramp_span] = 1.0 / (ramp * sample_time)
+        if phase.stance is not None:
+            contacts[span, phase.stance.other] = False
+    on_left = np.array([0.5, *(float(gait.step_foot(i - 1) == Foot.LEFT) for i in range(1, gait.steps + 1)), 0.5, 0.5])
+    load_left = (1.0 - fraction) * on_left[index] + fraction * on_left[index + 1]
+    return Schedule(phases, phase_index, index, fraction, rate, load_left, contacts, sample_time, last)
+
+
+def _phases(gait: GaitParameters, sample_time: float) -> tuple[Phase, ...]:
+    stand = samples("gait.initial_stand", gait.initial_stand, sample_time)
+    single = samples("gait.single_support", gait.single_support, sample_time)
+    double = samples("gait.double_support", gait.double_support, sample_time)
+    if gait.steps == 0:
+        return (Phase(PhaseKind.STAND, 0, 0, 0, None),)
+    phases = [Phase(PhaseKind.STAND, 0, stand, 0, None)] if stand else []
+    phases.append(Phase(PhaseKind.DOUBLE, stand, 2 * double, 0, None))
+    for step in range(1, gait.steps + 1):
+        stance = gait.step_foot(step).other
+        phases.append(Phase(PhaseKind.SINGLE, phases[-1].end, single, step, stance))
+        phases.append(Phase(PhaseKind.DOUBLE, phases[-1].end, double, step, None))
+    phases.append(Phase(PhaseKind.STAND, phases[-1].end, 0, gait.steps, None))
+    return tuple(phases)
+
+
+def _support_index(phase: Phase, steps: int) -> int:
+    if phase.kind is PhaseKind.STAND and phase.samples == 0:
+        return steps + 1
+    return phase.step

@@ -1,0 +1,154 @@
+"""Swing foot trajectory: quintic over the ground, up to an apex and softly down, replanned at every planner tick."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from planner.parameters import PlannerParameters
+from planner.polynomial import quintic, shifted
+from planner.types import Array, Foot
+
+_NOW = 1e-9
+"""Times of ticks carry rounding; a piece begins this much early [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SwingTrajectory:
+    """Motion of a swing foot; columns are x, y, z [m] and yaw [rad] in the world frame.
+
+    x, y and yaw are one quintic from the state at the last change of target to rest at the target, so that an unchanged
+    target is continued identically. z is one quintic up to the apex and one down to the touchdown height, joined with
+    continuous acceleration. After the touchdown time x, y, yaw hold and z goes down at the search speed; the downward
+    speed changes there from the touchdown speed to the search speed.
+
+    Attributes:
+        foot: the foot that swings.
+        start_time: local time zero of x, y, yaw [s].
+        apex_time: when the sole is highest [s].
+        touchdown_time: when it is planned to land [s].
+        target: touchdown position and yaw, shape (4,).
+        clearance: swing height above the higher of lift-off and touchdown [m].
+        touchdown_speed: downward speed at touchdown [m/s].
+        search_speed: downward speed after it [m/s].
+        level: coefficients of x, y, yaw from `start_time`, shape (6, 3).
+        rise_start: local time zero of the rise [s].
+        rise: coefficients of z until the apex, shape (6, 1).
+        fall_start: local time zero of the fall [s].
+        fall: coefficients of z from the apex on, shape (6, 1).
+    """
+
+    foot: Foot
+    start_time: float
+    apex_time: float
+    touchdown_time: float
+    target: Array
+    clearance: float
+    touchdown_speed: float
+    search_speed: float
+    level: Array
+    rise_start: float
+    rise: Array
+    fall_start: float
+    fall: Array
+
+    def coefficients(self, time: float) -> Array:
+        """Polynomials in the local time from `time` on, valid until the next apex or touchdown, shape (6, 4)."""
+        result = np.zeros((6, 4))
+        if time >= self.touchdown_time - _NOW:
+            result[0] = self.target
+            result[0, 2] -= self.search_speed * (time - self.touchdown_time)
+            result[1, 2] = -self.search_speed
+            return result
+        level = shifted(self.level, time - self.start_time)
+        result[:, :2], result[:, 3] = level[:, :2], level[:, 2]
+        if time >= self.apex_time - _NOW:
+            result[:, 2] = shifted(self.fall, time - self.fall_start)[:, 0]
+        else:
+            result[:, 2] = shifted(self.rise, time - self.rise_start)[:, 0]
+        return result
+
+    def evaluate(self, time: float) -> Array:
+        """Position, velocity and acceleration at an instant after the start, shape (3, 4)."""
+        return np.asarray(self.coefficients(time)[:3] * _FACTORIAL)
+
+    def retargeted(self, time: float, target: Array) -> "SwingTrajectory":
+        """The trajectory that goes on from its own state at `time` to another target.
+
+        Args:
+            time: instant of the change, before the touchdown [s].
+            target: new touchdown position and yaw, shape (4,).
+        """
+        state = self.evaluate(time)
+        level = _to_rest(state[:, [0, 1, 3]], target[[0, 1, 3]], self.touchdown_time - time)
+        moved = replace(self, start_time=time, level=level, target=np.array(target))
+        if target[2] == self.target[2]:
+            return moved
+        if time < self.apex_time - _NOW:
+            height = state[:, 2:3]
+            return _with_height(moved, time, height, max(float(height[0, 0]), float(target[2])) + self.clearance)
+        fall = _fall(state[:, 2:3], float(target[2]), self.touchdown_speed, self.touchdown_time - time)
+        return replace(moved, fall_start=time, fall=fall)
+
+
+_FACTORIAL = np.array([[1.0], [1.0], [2.0]])
+
+
+def start_swing(
+    foot: Foot,
+    pose: Array,
+    target: Array,
+    times: tuple[float, float, float],
+    clearance: float,
+    parameters: PlannerParameters,
+) -> SwingTrajectory:
+    """Swing from rest.
+
+    Args:
+        foot: the foot that swings.
+        pose: lift-off position and yaw, shape (4,).
+        target: touchdown position and yaw, shape (4,).
+        times: lift-off, apex and touchdown [s].
+        clearance: swing height above the higher of both ends [m].
+        parameters: give the touchdown and search speeds.
+    """
+    lift, apex, touchdown = times
+    rest = np.zeros((3, 4))
+    rest[0] = pose
+    trajectory = SwingTrajectory(
+        foot=foot,
+        start_time=lift,
+        apex_time=apex,
+        touchdown_time=touchdown,
+        target=np.array(target),
+        clearance=clearance,
+        touchdown_speed=parameters.touchdown_speed,
+        search_speed=parameters.search_speed,
+        level=_to_rest(rest[:, [0, 1, 3]], target[[0, 1, 3]], touchdown - lift),
+        rise_start=lift,
+        rise=np.zeros((6, 1)),
+        fall_start=apex,
+        fall=np.zeros((6, 1)),
+    )
+    return _with_height(trajectory, lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
+
+
+def _with_height(trajectory: SwingTrajectory, time: float, state: Array, apex: float) -> SwingTrajectory:
+    """Height from a state up to the apex height and down to the target; 4 h / t² at the apex keeps both monotone."""
+    up, down = trajectory.apex_time - time, trajectory.touchdown_time - trajectory.apex_time
+    end = float(trajectory.target[2])
+    bend = -4.0 * min((apex - float(state[0, 0])) / up**2, (apex - end) / down**2)
+    top = np.array([[apex], [0.0], [bend]])
+    fall = _fall(top, end, trajectory.touchdown_speed, down)
+    return replace(
+        trajectory, rise_start=time, rise=quintic(state, top, up), fall_start=trajectory.apex_time, fall=fall
+    )
+
+
+def _fall(state: Array, height: float, speed: float, duration: float) -> Array:
+    return quintic(state, np.array([[height], [-speed], [0.0]]), duration)
+
+
+def _to_rest(state: Array, target: Array, duration: float) -> Array:
+    end = np.zeros((3, 3))
+    end[0] = target
+    return quintic(state, end, duration)

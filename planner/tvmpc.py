@@ -1,0 +1,141 @@
+"""TVMPC: from state, reference and constraints to one QP per axis, and from its solution to a trajectory."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.constraints import Constraints
+from planner.parameters import PlannerParameters
+from planner.prediction import Prediction, zmp_response
+from planner.qp import Qp
+from planner.types import Array
+from planner.zmp_reference import ZmpReference
+
+_EXTRA = 4
+"""Variables after the moves: two footstep shifts, ZMP slack, terminal slack."""
+
+
+@dataclass(frozen=True, slots=True)
+class TvmpcProblem:
+    """The QPs of one tick, to be looked at, solved or stored.
+
+    Variables per axis: m moves of the jerk [m/s^3], shifts of the next two footsteps [m], ZMP slack [m], terminal slack
+    [m]. The two axes share P and G.
+
+    Attributes:
+        axes: the problems of the plan frame's x and y axis.
+        state: CoM position, velocity, acceleration per axis, shape (2, 3).
+        stiffness: λ at samples 0..N, shape (N + 1,) [1/s^2].
+    """
+
+    axes: tuple[Qp, Qp]
+    state: Array
+    stiffness: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """A predicted motion in the plan frame.
+
+    Attributes:
+        com: position, velocity, acceleration at samples 0..N, shape (3, N + 1, 2).
+        zmp: shape (N + 1, 2) [m].
+        jerk: shape (N, 2) [m/s^3].
+    """
+
+    com: Array
+    zmp: Array
+    jerk: Array
+
+
+def build_problem(
+    parameters: PlannerParameters,
+    prediction: Prediction,
+    state: Array,
+    stiffness: Array,
+    reference: ZmpReference,
+    constraints: Constraints,
+    last_jerk: Array,
+) -> TvmpcProblem:
+    """Assemble both axes.
+
+    Cost (eq. costfunction with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks.
+    The terminal cost is what the best linear feedback would still spend on the squared ZMP error after the horizon;
+    without it the optimum prefers a constant ZMP error of millimetres to paying once for its correction.
+    All constraints on the motion are soft (the paper's hard ones are infeasible under noise), so that the problem
+    always has a solution.
+
+    Args:
+        parameters: planner parameters.
+        prediction: cached prediction matrices.
+        state: CoM position, velocity, acceleration per axis, shape (2, 3).
+        stiffness: λ at samples 0..N, shape (N + 1,).
+        reference: ZMP reference, at least N + 1 samples.
+        constraints: bounds of this tick.
+        last_jerk: jerk applied now, shape (2,) [m/s^3]; enters only with a finite rate limit.
+    """
+    n, m = prediction.basis.shape
+    moves = zmp_response(prediction.moves[:, 1:], stiffness[1:])
+    free = zmp_response(prediction.state[:, 1:] @ state.T, stiffness[1:])
+    error = free - reference.point[1 : n + 1]
+    design = np.concatenate((moves, -reference.gain[1 : n + 1]), axis=1)
+    end = prediction.state[0, n] + prediction.state[1, n] / constraints.terminal_omega
+    end_moves = prediction.moves[0, n] + prediction.moves[1, n] / constraints.terminal_omega
+    end_error = state @ end - constraints.terminal_center
+
+    P = np.zeros((m + _EXTRA, m + _EXTRA))
+    end_row = np.concatenate((end_moves, -constraints.terminal_gain))
+    weighted = parameters.terminal_weight * end_row
+    P[: m + 2, : m + 2] = 2.0 * (design.T @ design + np.outer(weighted, end_row))
+    P.flat[:: m + _EXTRA + 1] += _diagonal_cost(parameters, m)
+    G = np.zeros((2 * n + 2, m + _EXTRA))
+    G[:n, : m + 2] = design
+    G[n : 2 * n, : m + 2] = -design
+    G[: 2 * n, m + 2] = -1.0
+    G[2 * n, : m + 2] = end_row
+    G[2 * n + 1, : m + 2] = -end_row
+    G[2 * n :, m + 3] = -1.0
+    q = np.empty((2, m + _EXTRA))
+    q[:, : m + 2] = 2.0 * (error.T @ design + np.outer(end_error, weighted))
+    q[:, m + 2], q[:, m + 3] = parameters.zmp_slack[1], parameters.terminal_slack[1]
+    h = np.empty((2, 2 * n + 2))
+    h[:, :n] = (constraints.half_size - error).T
+    h[:, n : 2 * n] = (constraints.half_size + error).T
+    h[:, 2 * n] = constraints.terminal_half_size - end_error
+    h[:, 2 * n + 1] = constraints.terminal_half_size + end_error
+    if np.isfinite(parameters.jerk_rate_limit):
+        G, h = _with_rate_limit(G, h, m, parameters.jerk_rate_limit, last_jerk)
+    lower, upper = _bounds(parameters, constraints, m)
+    x, y = (Qp(P, q[i], G, h[i], lower[i], upper[i]) for i in range(2))
+    return TvmpcProblem((x, y), state, stiffness)
+
+
+def trajectory(prediction: Prediction, problem: TvmpcProblem, jerk: Array) -> Trajectory:
+    """Motion under a jerk sequence, shape (N, 2), from the problem's state."""
+    com = prediction.state @ problem.state.T + prediction.samples @ jerk
+    return Trajectory(com, zmp_response(com, problem.stiffness), jerk)
+
+
+def _diagonal_cost(parameters: PlannerParameters, m: int) -> Array:
+    cost = np.full(m + _EXTRA, 2.0 * parameters.jerk_weight)
+    cost[m : m + 2] = 2.0 * parameters.step_weight
+    cost[m + 2], cost[m + 3] = 2.0 * parameters.zmp_slack[0], 2.0 * parameters.terminal_slack[0]
+    return cost
+
+
+def _bounds(parameters: PlannerParameters, constraints: Constraints, m: int) -> tuple[Array, Array]:
+    lower, upper = np.zeros((2, m + _EXTRA)), np.full((2, m + _EXTRA), np.inf)
+    lower[:, :m], upper[:, :m] = -parameters.jerk_limit, parameters.jerk_limit
+    lower[:, m : m + 2], upper[:, m : m + 2] = constraints.step_lower.T, constraints.step_upper.T
+    return lower, upper
+
+
+def _with_rate_limit(G: Array, h: Array, m: int, limit: float, last_jerk: Array) -> tuple[Array, Array]:
+    """Bound the change of the jerk from the last tick and from block to block (the paper's ±0.1, per sample)."""
+    change = np.eye(m) - np.eye(m, k=-1)
+    rows = np.zeros((2 * m, G.shape[1]))
+    rows[:m, :m], rows[m:, :m] = change, -change
+    bound = np.full((2, 2 * m), limit)
+    bound[:, 0] += last_jerk
+    bound[:, m] -= last_jerk
+    return np.concatenate((G, rows)), np.concatenate((h, bound), axis=1)

@@ -1,0 +1,19 @@
+"""What can go wrong in the simulator."""
+
+
+class SimulationDiverged(RuntimeError):  # noqa: N818  the event, not a mistake of the caller
+    """The state or the commanded torque is no longer finite; the world holds the last finite state.
+
+    Attributes:
+        time: start of the advance in which it happened [s].
+        cause: what is not finite.
+    """
+
+    def __init__(self, time: float, cause: str) -> None:
+        super().__init__(f"simulation diverged after t = {time:.4f} s: {cause}; the world holds the last finite state")
+        self.time = time
+        self.cause = cause
+
+
+class WorldError(ValueError):
+    """A world was asked for that cannot be built, or a call does not fit it."""

@@ -1,0 +1,118 @@
+"""Off-screen pictures of a run: configurations in, RGB frames out. Slow, so never in the control loop."""
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from models.convert import pinocchio_to_mujoco
+from sim.gl import make_context
+
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
+MAX_GEOMS = 4000
+SMOOTHING = 0.1
+"""Share of the way to the robot that a tracking camera goes per frame."""
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A camera that looks at a point which follows the floating base horizontally.
+
+    Attributes:
+        distance: from the point it looks at [m].
+        azimuth: viewing direction about the world's z axis; 180 looks the robot in the face [deg].
+        elevation: viewing direction against the horizontal, negative looks down [deg].
+        height: of the point it looks at above the ground plane [m].
+        tracking: whether it follows the robot; otherwise it stays at the first frame's point.
+    """
+
+    distance: float = 3.2
+    azimuth: float = 135.0
+    elevation: float = -10.0
+    height: float = 0.9
+    tracking: bool = True
+
+
+def render_frames(
+    mjcf: str,
+    configurations: Iterable[Array],
+    width: int = 1280,
+    height: int = 720,
+    camera: Camera | None = None,
+    shadows: bool = True,
+) -> Iterator[Image]:
+    """Draw the robot of a world in each configuration.
+
+    Args:
+        mjcf: text of the world, from `World.mjcf()` or a log.
+        configurations: Pinocchio's convention, shape (7 + nj,) each.
+        width: picture width [px].
+        height: picture height [px].
+        camera: where to look from; a three-quarter view from the front by default.
+        shadows: cast shadows and reflect; without them software rendering is about twice as fast.
+
+    Yields:
+        one picture per configuration, shape (height, width, 3).
+
+    Raises:
+        RenderingUnavailableError: the machine has no off-screen OpenGL.
+    """
+    model = _compiled(mjcf, width, height)
+    context = make_context(width, height)
+    try:
+        yield from _Painter(model, width, height, camera or Camera(), shadows).paint(configurations)
+    finally:
+        context.free()
+
+
+def _compiled(mjcf: str, width: int, height: int) -> mujoco.MjModel:
+    model = mujoco.MjModel.from_xml_string(mjcf)
+    model.vis.global_.offwidth = width
+    model.vis.global_.offheight = height
+    return model
+
+
+class _Painter:
+    """MuJoCo's scene and GPU resources for one sequence of frames, in the current OpenGL context."""
+
+    def __init__(self, model: mujoco.MjModel, width: int, height: int, camera: Camera, shadows: bool) -> None:
+        self._model, self._data, self._style = model, mujoco.MjData(model), camera
+        self._scene = mujoco.MjvScene(model, maxgeom=MAX_GEOMS)
+        for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
+            self._scene.flags[flag] = shadows
+        self._option, self._view = mujoco.MjvOption(), mujoco.MjvCamera()
+        self._view.distance, self._view.azimuth = camera.distance, camera.azimuth
+        self._view.elevation, self._view.lookat[:] = camera.elevation, (math.nan, math.nan, camera.height)
+        self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
+        self._area = mujoco.MjrRect(0, 0, width, height)
+
+    def paint(self, configurations: Iterable[Array]) -> Iterator[Image]:
+        """One picture per configuration."""
+        rest = np.zeros(self._model.nv)
+        for q in configurations:
+            pinocchio_to_mujoco(q, rest, self._data.qpos, self._data.qvel)
+            mujoco.mj_kinematics(self._model, self._data)
+            mujoco.mj_comPos(self._model, self._data)
+            mujoco.mj_camlight(self._model, self._data)
+            self._follow()
+            everything = mujoco.mjtCatBit.mjCAT_ALL.value
+            mujoco.mjv_updateScene(self._model, self._data, self._option, None, self._view, everything, self._scene)
+            mujoco.mjr_render(self._area, self._scene, self._context)
+            yield self._pixels()
+
+    def _follow(self) -> None:
+        target = self._data.qpos[:2]
+        if math.isnan(self._view.lookat[0]):
+            self._view.lookat[:2] = target
+        elif self._style.tracking:
+            self._view.lookat[:2] += SMOOTHING * (target - self._view.lookat[:2])
+
+    def _pixels(self) -> Image:
+        image = np.empty((self._area.height, self._area.width, 3), dtype=np.uint8)
+        mujoco.mjr_readPixels(image, None, self._area, self._context)
+        return image[::-1].copy()

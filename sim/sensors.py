@@ -1,0 +1,131 @@
+"""Reading the sensors out of MuJoCo's state, without a look at single contacts."""
+
+import mujoco
+import numpy as np
+
+from models.convert import mujoco_to_pinocchio
+from models.types import RobotDescription
+from sim.errors import WorldError
+from sim.measurement import Array, Measurement
+from sim.pushes import PushSchedule
+
+ROUND_OFF = 1e-9
+"""Share of a push below which what remains of a body's external force is rounding."""
+
+
+class SensorReader:
+    """Fills one set of buffers; array views are made once, since making them costs more than reading them.
+
+    MuJoCo has already moved the joints to the end of the step while body frames, accelerations and contact forces
+    still are those of its beginning. So joint state and gyro are read from the joints, the rest from that one instant.
+
+    The IMU must sit in the frame of the floating base: then the gyro is the base's angular velocity and the
+    accelerometer needs no kinematics.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription) -> None:
+        self._model, self._data = model, data
+        base = model.body(description.pelvis_body).id
+        _check_imu(model, description, base)
+        soles = [model.site(name).id for name in description.sole_sites]
+        feet = [int(model.site_bodyid[sole]) for sole in soles]
+        self._qpos, self._qvel, self._qacc_base = data.qpos, data.qvel, data.qacc[:3]
+        self._joint_force = data.qfrc_actuator[6:]
+        self._base_rotation = data.xmat[base].reshape(3, 3)
+        self._gravity = model.opt.gravity.copy()
+        self._com, self._body_com = data.subtree_com[base], data.xipos
+        self._soles = [
+            (foot, data.site_xpos[sole], data.site_xmat[sole]) for foot, sole in zip(feet, soles, strict=True)
+        ]
+        self._external = data.cfrc_ext
+        self._contact: Array = np.zeros((model.nbody, 6))
+        self._masked: Array = np.zeros((model.nbody, 6))
+        self._masked_flat = self._masked.reshape(-1)
+        self._nonfoot: Array = np.ones((model.nbody, 6))
+        self._nonfoot[[0, *feet]] = 0.0
+        self._allocate(model.nq, model.nv)
+
+    def _allocate(self, nq: int, nv: int) -> None:
+        self._q, self._v, self._torque = np.zeros(nq), np.zeros(nv), np.zeros(nv - 6)
+        self._specific_force, self._accelerometer = np.zeros(3), np.zeros(3)
+        self._wrench, self._push = np.zeros((2, 6)), np.zeros(3)
+        self._q_view, self._v_view = _read_only(self._q), _read_only(self._v)
+        self._joint_position, self._joint_velocity = self._q_view[7:], self._v_view[6:]
+        self._gyro, self._torque_view = self._v_view[3:6], _read_only(self._torque)
+        self._accelerometer_view, self._wrench_view = _read_only(self._accelerometer), _read_only(self._wrench)
+        self._push_view = _read_only(self._push)
+
+    def read(self, time: float, pushes: PushSchedule) -> Measurement:
+        """Everything at `time` [s]; `pushes` are the forces of the step that ended there."""
+        mujoco.mj_rnePostConstraint(self._model, self._data)
+        mujoco_to_pinocchio(self._qpos, self._qvel, self._q, self._v)
+        self._torque[:] = self._joint_force
+        np.subtract(self._qacc_base, self._gravity, out=self._specific_force)
+        np.dot(self._specific_force, self._base_rotation, out=self._accelerometer)
+        self._push[:] = pushes.total
+        contact = self._without_pushes(pushes) if pushes.active else self._external
+        com = self._com.tolist()
+        for wrench, (foot, position, rotation) in zip(self._wrench, self._soles, strict=True):
+            wrench[:] = _at_sole(contact[foot].tolist(), com, position.tolist(), rotation.tolist())
+        np.multiply(contact, self._nonfoot, out=self._masked)
+        return Measurement(
+            time=time,
+            joint_position=self._joint_position,
+            joint_velocity=self._joint_velocity,
+            joint_torque=self._torque_view,
+            gyro=self._gyro,
+            accelerometer=self._accelerometer_view,
+            wrench=self._wrench_view,
+            q=self._q_view,
+            v=self._v_view,
+            external_force=self._push_view,
+            nonfoot_contact=bool(self._masked_flat.dot(self._masked_flat) > 0.0),
+        )
+
+    def _without_pushes(self, pushes: PushSchedule) -> Array:
+        """External forces of the bodies minus the pushes: what the terrain does."""
+        self._contact[:] = self._external
+        for body, force in pushes.active:
+            row = self._contact[body]
+            row[:3] -= np.cross(self._body_com[body] - self._com, force)
+            row[3:] -= force
+            if np.abs(row).max() < ROUND_OFF * np.abs(force).max():
+                row[:] = 0.0
+        return self._contact
+
+
+def _at_sole(
+    external: list[float], com: list[float], position: list[float], rotation: list[float]
+) -> tuple[float, ...]:
+    """Spatial force about the CoM in world axes (torque first) as a wrench at the sole in sole axes (force first).
+
+    Plain floats: at this size they are faster than arrays.
+    """
+    tx, ty, tz, fx, fy, fz = external
+    x, y, z = com[0] - position[0], com[1] - position[1], com[2] - position[2]
+    tx, ty, tz = tx + y * fz - z * fy, ty + z * fx - x * fz, tz + x * fy - y * fx
+    a, b, c, d, e, f, g, h, i = rotation
+    return (
+        a * fx + d * fy + g * fz,
+        b * fx + e * fy + h * fz,
+        c * fx + f * fy + i * fz,
+        a * tx + d * ty + g * tz,
+        b * tx + e * ty + h * tz,
+        c * tx + f * ty + i * tz,
+    )
+
+
+def _read_only(array: Array) -> Array:
+    view: Array = array[:]
+    view.setflags(write=False)
+    return view
+
+
+def _check_imu(model: mujoco.MjModel, description: RobotDescription, base: int) -> None:
+    site = model.site(description.imu_site).id
+    at_base = model.site_bodyid[site] == base and not model.site_pos[site].any()
+    if not (at_base and np.array_equal(model.site_quat[site], (1.0, 0.0, 0.0, 0.0))):
+        raise WorldError(
+            f"site {description.imu_site} of {description.name} is not the frame of {description.pelvis_body}, "
+            "it must coincide with the floating base"
+        )

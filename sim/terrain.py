@@ -1,0 +1,50 @@
+"""Terrain as data turned into MJCF geoms.
+
+Terrain has contype 1 and conaffinity 0, robots 0 and 1: a robot touches the terrain, and nothing else touches.
+Priority 1 makes MuJoCo take friction and contact stiffness from the terrain alone instead of the larger of the two.
+"""
+
+from collections.abc import Iterable
+from xml.etree import ElementTree
+
+from planner.terrain import Box, Terrain
+
+GROUND = "ground"
+"""Name of the ground plane's geom; boxes are `terrain_0`, `terrain_1`, ..."""
+
+
+def numbers(values: Iterable[float]) -> str:
+    """Numbers as an XML attribute; reading them back gives the same doubles."""
+    return " ".join(repr(float(value)) for value in values)
+
+
+def add_terrain(worldbody: ElementTree.Element, terrain: Terrain) -> None:
+    """Add the ground plane and the boxes to a worldbody element."""
+    surface = {
+        "contype": "1",
+        "conaffinity": "0",
+        "condim": "3",
+        "priority": "1",
+        "group": "0",
+        "friction": numbers((terrain.friction, 0.0, 0.0)),
+        # 5 ms critically damped, nearly rigid from the first micrometre: a standing sole sinks in by micrometres.
+        "solref": "0.005 1",
+        "solimp": "0.95 0.99 0.0001",
+    }
+    plane = {"name": GROUND, "type": "plane", "size": "0 0 1", "material": "floor"}
+    ElementTree.SubElement(worldbody, "geom", {**plane, **surface})
+    for index, box in enumerate(terrain.boxes):
+        shape = {
+            "name": f"terrain_{index}",
+            "type": "box",
+            "pos": numbers(box.center),
+            "xyaxes": numbers(_axes(box)),
+            "size": numbers(box.half_size),
+            "material": "step",
+        }
+        ElementTree.SubElement(worldbody, "geom", {**shape, **surface})
+
+
+def _axes(box: Box) -> list[float]:
+    """First two columns of the rotation, as MJCF wants them."""
+    return [float(value) for value in box.rotation[:, :2].T.flat]

@@ -1,0 +1,42 @@
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from models.registry import describe
+from models.types import RobotOptions
+from planner.terrain import flat
+from sim import gl
+from sim.render import Camera, render_frames
+from sim.world import World
+
+pytestmark = pytest.mark.unit
+
+
+def test_importing_touches_no_opengl() -> None:
+    code = "import sys, sim.render; sys.exit(any(name.startswith('OpenGL') for name in sys.modules))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_without_opengl_the_error_names_the_packages(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gl, "BACKENDS", {"egl": "libNoSuchEGL.so.1"})
+    with pytest.raises(gl.RenderingUnavailableError, match="libegl1 libegl-mesa0 libgl1-mesa-dri, or libosmesa6"):
+        gl.make_context(64, 64)
+
+
+def test_pictures_show_the_robot_and_follow_it() -> None:
+    world = World(describe("humanoid100", RobotOptions()), flat(), 1000)
+    q = np.concatenate(([0.0, 0.0, 0.9, 0.0, 0.0, 0.0, 1.0], world.description.nominal_joint_positions))
+    away = q.copy()
+    away[0] += 50.0
+    try:
+        here, gone = render_frames(world.mjcf(), [q, away], 160, 120, Camera(azimuth=90, tracking=False), shadows=False)
+    except gl.RenderingUnavailableError as error:
+        pytest.skip(str(error))
+    assert here.shape == (120, 160, 3)
+    orange = (here[..., 0] > 150) & (here[..., 2] < 80)
+    assert orange.sum() > 10
+    assert not ((gone[..., 0] > 150) & (gone[..., 2] < 80)).any()
+    (tracked,) = render_frames(world.mjcf(), [away], 160, 120, Camera(azimuth=90), shadows=False)
+    assert ((tracked[..., 0] > 150) & (tracked[..., 2] < 80)).sum() == pytest.approx(orange.sum(), rel=0.2)

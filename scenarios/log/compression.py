@@ -5,6 +5,9 @@ import zstandard
 
 from scenarios.errors import LogError
 
+_GREATEST_RATIO = 100_000
+"""No sound chunk is compressed more; a damaged size must not exhaust the memory."""
+
 
 def compress(data: bytes, method: str) -> bytes:
     """Compress a chunk by lz4, zstd or, for an empty method, not at all."""
@@ -24,9 +27,11 @@ def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:
     Raises:
         LogError: the bytes are damaged or the method is unknown.
     """
+    if size > _GREATEST_RATIO * len(data) + 1024:
+        raise LogError("a chunk states more bytes than compression can yield; its bytes are damaged")
     try:
         if method == "lz4":
-            whole = lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=size)
+            whole = lz4.frame.decompress(data)
         elif method == "zstd":
             whole = zstandard.ZstdDecompressor().decompress(data, max_output_size=size)
         elif method == "":

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
 from scenarios.errors import LogError, nearest
@@ -15,7 +14,7 @@ from scenarios.log.compression import decompress
 from scenarios.log.encode import MAGIC
 from scenarios.log.extract import records_of
 from scenarios.log.layout import record_dtype
-from scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, message_header, records_in, scan, take_definition
+from scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, scan
 from scenarios.log.spec import FieldSpec, layout_of
 
 
@@ -44,7 +43,7 @@ class ChannelData:
     @property
     def time(self) -> NDArray[np.float64]:
         """Simulated time of each message, shape (n,) [s]."""
-        return self.time_ns * 1e-9
+        return np.asarray(self.time_ns * 1e-9)
 
     def field(self, name: str) -> NDArray[Any]:
         """Values of one field, shape (n, *field shape).
@@ -69,13 +68,15 @@ class Log:
         topics: every topic, in order of channel id.
         truncated: whether the end of the file is missing, as after a killed run.
         damage: what could not be read, in words; grows as channels are loaded.
+        contents: records of the file and their places.
+        data: bytes of the file.
     """
 
     def __init__(self, path: Path, data: Buffer) -> None:
         self.path = path
         self.size = len(data)
-        self._data = data
-        self._contents = contents = scan(data)
+        self.data = data
+        self.contents = contents = scan(data)
         self.truncated = contents.truncated
         self.damage = contents.damage
         self._index_rest()
@@ -118,37 +119,44 @@ class Log:
     def count(self, topic: str) -> int:
         """Number of messages of a topic, by the index."""
         number = self._ids[topic]
-        chunked = sum(len(chunk.index.get(number, ())) for chunk in self._contents.chunks)
-        return chunked + len(self._contents.loose.get(number, ()))
+        chunked = sum(len(chunk.index.get(number, ())) for chunk in self.contents.chunks)
+        return chunked + len(self.contents.loose.get(number, ()))
 
     def time_range(self) -> tuple[float, float]:
         """First and last time of all messages [s]; zeros when there is none."""
-        starts = [chunk.start_ns for chunk in self._contents.chunks]
-        ends = [chunk.end_ns for chunk in self._contents.chunks]
-        loose = [time for entries in self._contents.loose.values() for time, _ in entries]
+        starts = [chunk.start_ns for chunk in self.contents.chunks]
+        ends = [chunk.end_ns for chunk in self.contents.chunks]
+        loose = [time for entries in self.contents.loose.values() for time, _ in entries]
         return min([*starts, *loose], default=0) * 1e-9, max([*ends, *loose], default=0) * 1e-9
 
     def verify(self) -> None:
         """Compare every chunk with its checksum; what does not agree is added to `damage`."""
-        for chunk in self._contents.chunks:
+        for _ in self.sound_chunks():
+            pass
+
+    def sound_chunks(self) -> Iterator[tuple[ChunkPlace, bytes]]:
+        """Every chunk that agrees with its checksum, and its decompressed bytes; the others add to `damage`."""
+        for chunk in self.contents.chunks:
             data = self._decompressed(chunk)
             if data is not None and chunk.crc and zlib.crc32(data) != chunk.crc:
                 self.damage.append(f"the chunk at byte {chunk.position} does not agree with its checksum")
+            elif data is not None:
+                yield chunk, data
 
     def _layout(self, topic: str) -> tuple[FieldSpec, ...]:
         if topic not in self._ids:
             raise LogError(f"{self.path}: no topic '{topic}'; {nearest(topic, self.topics or ('none',))}")
         try:
-            return layout_of(self._contents.channels[self._ids[topic]].metadata)
+            return layout_of(self.contents.channels[self._ids[topic]].metadata)
         except ValueError:
             right = "read it by its schema with the mcap package"
             raise LogError(f"{self.path}: topic {topic} states no layout of fixed size; {right}") from None
 
     def _indexed_blocks(self, numbers: set[int]) -> Iterator[tuple[Buffer, dict[int, NDArray[np.void]]]]:
         """Bytes and index of everything that holds messages of these channels."""
-        if numbers & self._contents.loose.keys():
-            yield self._data, {n: np.array(e, INDEX_ENTRY) for n, e in self._contents.loose.items()}
-        for chunk in self._contents.chunks:
+        if numbers & self.contents.loose.keys():
+            yield self.data, {n: np.array(e, INDEX_ENTRY) for n, e in self.contents.loose.items()}
+        for chunk in self.contents.chunks:
             if numbers & chunk.index.keys():
                 data = self._decompressed(chunk)
                 if data is not None:
@@ -156,7 +164,7 @@ class Log:
 
     def _decompressed(self, chunk: ChunkPlace) -> bytes | None:
         try:
-            return decompress(self._data[chunk.data], chunk.compression, chunk.size)
+            return decompress(self.data[chunk.data], chunk.compression, chunk.size)
         except LogError as error:
             note = f"at byte {chunk.position} {error}"
             if note not in self.damage:
@@ -165,21 +173,11 @@ class Log:
 
     def _index_rest(self) -> None:
         """Index chunks that stand without an index, or whose channels are defined only inside them."""
-        for chunk in self._contents.chunks:
-            if not chunk.index or chunk.index.keys() - self._contents.channels.keys():
+        for chunk in self.contents.chunks:
+            if not chunk.index or chunk.index.keys() - self.contents.channels.keys():
                 data = self._decompressed(chunk)
                 if data is not None:
-                    self._index_chunk(chunk, data)
-
-    def _index_chunk(self, chunk: ChunkPlace, data: bytes) -> None:
-        entries: dict[int, list[tuple[int, int]]] = {}
-        for opcode, offset, body in records_in(data):
-            if opcode == Opcode.MESSAGE and body.stop - body.start >= 22:
-                number, time = message_header(data, body.start)
-                entries.setdefault(number, []).append((time, offset))
-            else:
-                take_definition(opcode, data[body], self._contents)
-        chunk.index = {number: np.array(found, INDEX_ENTRY) for number, found in entries.items()}
+                    chunk.index = index_chunk(data, self.contents)
 
 
 def read(path: str | Path) -> Log:

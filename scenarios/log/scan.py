@@ -108,7 +108,7 @@ def records_in(data: Buffer) -> Iterator[tuple[int, int, slice]]:
         position = body + length
 
 
-def take_definition(opcode: int, body: bytes, contents: Contents) -> None:
+def _take_definition(opcode: int, body: bytes, contents: Contents) -> None:
     """Note a schema or channel record."""
     if opcode == Opcode.SCHEMA:
         schema = _decode(Schema.read, body)
@@ -118,7 +118,19 @@ def take_definition(opcode: int, body: bytes, contents: Contents) -> None:
         contents.channels.setdefault(channel.id, channel)
 
 
-def message_header(data: Buffer, body: int) -> tuple[int, int]:
+def index_chunk(data: bytes, contents: Contents) -> dict[int, NDArray[np.void]]:
+    """Index the messages of a decompressed chunk by channel id, and note the schemas and channels it defines."""
+    entries: dict[int, list[tuple[int, int]]] = {}
+    for opcode, offset, body in records_in(data):
+        if opcode == Opcode.MESSAGE and body.stop - body.start >= _MESSAGE.size:
+            number, time = _message_header(data, body.start)
+            entries.setdefault(number, []).append((time, offset))
+        else:
+            _take_definition(opcode, data[body], contents)
+    return {number: np.array(found, INDEX_ENTRY) for number, found in entries.items()}
+
+
+def _message_header(data: Buffer, body: int) -> tuple[int, int]:
     """Channel id and log time [ns] of a message record's body."""
     channel_id, _, log_time, _ = _MESSAGE.unpack_from(data, body)
     return channel_id, log_time
@@ -135,10 +147,10 @@ def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Conte
         entries = np.frombuffer(data[body.start + 6 : min(body.start + 6 + length, body.stop)], INDEX_ENTRY)
         contents.chunks[-1].index[channel_id] = entries
     elif opcode == Opcode.MESSAGE:
-        channel_id, time = message_header(data, body.start)
+        channel_id, time = _message_header(data, body.start)
         contents.loose.setdefault(channel_id, []).append((time, position))
     elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-        take_definition(opcode, data[body], contents)
+        _take_definition(opcode, data[body], contents)
     elif opcode == Opcode.METADATA:
         contents.metadata.append(_decode(Metadata.read, data[body]))
     elif opcode == Opcode.ATTACHMENT:

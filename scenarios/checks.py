@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+from scenarios.criteria import ELEMENTS
 from scenarios.errors import Problem, nearest
 from scenarios.reach import longest_step
 from scenarios.robots import RobotFacts, Robots
@@ -73,6 +74,11 @@ def _criteria(scenario: Scenario) -> Iterator[Problem]:
         low, high = bound.min, bound.max
         if isinstance(low, float) and isinstance(high, float) and low > high:
             yield Problem(("criteria", name), f"criteria.{name}: min {low} exceeds max {high}", "swap them")
+        size = ELEMENTS.get(name, 1)
+        for side, limit in (("min", low), ("max", high)):
+            if isinstance(limit, tuple) and len(limit) != size:
+                what = f"criteria.{name}.{side} has {len(limit)} elements"
+                yield Problem(("criteria", name, side), what, f"give one number, or {size} of them")
 
 
 def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:

@@ -39,6 +39,9 @@ METRIC_NAMES = (
 TIMED = ("planner_time", "wbc_time")
 """Metrics that are a median and a 99th percentile."""
 
+ELEMENTS = {"zmp_error_rms": 2, "com_error_rms": 3, "dcm_error_rms": 2}
+"""Number of elements of the list-valued metrics."""
+
 BOUNDABLE = tuple(
     name
     for metric in METRIC_NAMES

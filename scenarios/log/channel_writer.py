@@ -114,4 +114,4 @@ class ChannelWriter:
         header = _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(entries) + 6, self.channel_id, len(entries))
         self.count = 0
         self.total += n
-        return memoryview(self._bytes[:n]).cast("B"), header + entries
+        return self._bytes[:n].data.cast("B"), header + entries

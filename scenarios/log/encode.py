@@ -10,4 +10,4 @@ def encoded(record: McapRecord) -> bytes:
     """Encode a record with its opcode and length."""
     builder = RecordBuilder()
     record.write(builder)
-    return bytes(builder.end())
+    return bytes(builder.end())  # type: ignore[no-untyped-call]

@@ -86,6 +86,12 @@ class LogWriter:
         self._channels.append(writer)
         return writer
 
+    def attach(self, file: AttachedFile) -> None:
+        """Write an attachment after everything appended so far."""
+        self.flush()
+        record = Attachment(0, 0, file.name, file.media_type, file.data)
+        self._output.write(self._summary.add_attachment(record, self._output.position))
+
     def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
         """Write a metadata record after everything appended so far."""
         self.flush()

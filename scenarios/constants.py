@@ -1,0 +1,78 @@
+"""Numbers of a run that its metrics need and no channel carries; they travel in the log's metadata."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+from scenarios.errors import LogError
+
+RECORD = "run"
+"""Name of the metadata record."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunConstants:
+    """What is fixed during a run.
+
+    Attributes:
+        scenario: its name.
+        seed: its seed.
+        steps_planned: footsteps asked for.
+        mass: of the robot [kg].
+        com_height: nominal CoM height above the soles [m].
+        foot_length: of the soles [m].
+        foot_width: of the soles [m].
+        control_rate: ticks of the controller [Hz].
+        sample_time: of the planner's preview [s].
+        joint_names: in the order of the joint arrays.
+        torque_limit: by joint [N m].
+        position_lower: by joint [rad].
+        position_upper: by joint [rad].
+        terrain: kind of ground.
+    """
+
+    scenario: str
+    seed: int
+    steps_planned: int
+    mass: float
+    com_height: float
+    foot_length: float
+    foot_width: float
+    control_rate: int
+    sample_time: float
+    joint_names: tuple[str, ...]
+    torque_limit: tuple[float, ...]
+    position_lower: tuple[float, ...]
+    position_upper: tuple[float, ...]
+    terrain: str
+
+    def to_metadata(self) -> dict[str, str]:
+        """Write as metadata: JSON by name."""
+        return {name: json.dumps(value) for name, value in asdict(self).items()}
+
+    @classmethod
+    def from_metadata(cls, records: Mapping[str, Mapping[str, str]], log_name: str) -> "RunConstants":
+        """Read back.
+
+        Args:
+            records: the metadata of a log.
+            log_name: what to call the log in messages.
+
+        Raises:
+            LogError: the log does not carry them.
+        """
+        try:
+            record = records[RECORD]
+            return cls(**{field.name: _value(record[field.name], str(field.type)) for field in fields(cls)})
+        except (KeyError, TypeError, ValueError, RecursionError):
+            raise LogError(f"{log_name}: does not describe a run; give a log that `surefoot run` has written") from None
+
+
+def _value(text: str, kind: str) -> Any:
+    """Parse a JSON value and insist on its type."""
+    value = json.loads(text)
+    if kind.startswith("tuple"):
+        item = str if "str" in kind else float
+        return tuple(item(element) for element in value)
+    return {"str": str, "int": int, "float": float}[kind](value)

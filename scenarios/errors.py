@@ -1,0 +1,56 @@
+"""Errors that a user can mend, and what is said about them."""
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+Key = tuple[str | int, ...]
+"""Path of a value in a scenario: keys and list indices."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What is wrong with one value.
+
+    Attributes:
+        key: the value's path in the scenario.
+        what: the fault.
+        right: what would be right.
+        at_key: whether the key is at fault rather than its value.
+    """
+
+    key: Key
+    what: str
+    right: str
+    at_key: bool = False
+
+    def __str__(self) -> str:
+        return f"{self.what}; {self.right}"
+
+
+class ScenarioError(Exception):
+    """A scenario that cannot be run.
+
+    Attributes:
+        problems: one sentence each, with its place: ``file:line:column: what; what would be right``.
+    """
+
+    def __init__(self, problems: Iterable[str]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(self.problems))
+
+
+class LogError(Exception):
+    """A log that cannot be written or read; the message says what, where and what would be right."""
+
+
+def nearest(name: str, valid: Iterable[str]) -> str:
+    """Say which of the valid names was meant, or list them."""
+    names = sorted(valid)
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+    return f"did you mean '{close[0]}'?" if close else f"valid are {', '.join(names)}"
+
+
+def dotted(key: Key) -> str:
+    """Spell a path as it is written in ``--set``."""
+    return ".".join(str(part) for part in key)

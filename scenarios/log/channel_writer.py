@@ -1,0 +1,117 @@
+"""The hot end of the log: copies values into preallocated message records."""
+
+import struct
+from collections.abc import Callable
+
+import numpy as np
+from mcap.opcode import Opcode
+from numpy.typing import ArrayLike, NDArray
+
+from scenarios.log.layout import blank_records
+from scenarios.log.spec import ChannelSpec
+
+_INDEX_HEADER = struct.Struct("<BQHI")
+_INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
+
+
+class Clock:
+    """When the chunk under way is due.
+
+    Attributes:
+        due: simulated time [ns] from which the next message completes the chunk.
+    """
+
+    __slots__ = ("due",)
+
+    def __init__(self, due: int) -> None:
+        self.due = due
+
+
+class ChannelWriter:
+    """Messages of one channel that wait for their chunk.
+
+    Attributes:
+        spec: the channel.
+        channel_id: its number in the file.
+        count: messages waiting.
+        total: messages handed over to chunks so far.
+    """
+
+    __slots__ = (
+        "_bytes",
+        "_capacity",
+        "_clock",
+        "_flush",
+        "_index",
+        "_offsets",
+        "_records",
+        "_stamps",
+        "_views",
+        "channel_id",
+        "count",
+        "spec",
+        "total",
+    )
+
+    def __init__(
+        self, spec: ChannelSpec, channel_id: int, capacity: int, clock: Clock, flush: Callable[[int], None]
+    ) -> None:
+        self.spec = spec
+        self.channel_id = channel_id
+        self.count = 0
+        self.total = 0
+        self._records = blank_records(spec.fields, channel_id, capacity)
+        self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[field.name] for field in spec.fields)
+        self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
+        self._stamps = np.zeros(capacity, np.uint64)
+        self._index = np.zeros(capacity, _INDEX_ENTRY)
+        self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._records.dtype.itemsize)
+        self._capacity = capacity
+        self._clock = clock
+        self._flush = flush
+
+    def append(self, time_ns: int, *values: ArrayLike) -> None:
+        """Add a message; the values are copied.
+
+        Args:
+            time_ns: simulated time [ns].
+            values: one per field, of the field's shape.
+
+        Raises:
+            ValueError: the number of values or a shape does not fit the channel.
+            LogError: the chunk that this message completes cannot be written.
+        """
+        n = self.count
+        self._stamps[n] = time_ns
+        for view, value in zip(self._views, values, strict=True):
+            view[n] = value
+        self.count = n = n + 1
+        if time_ns >= self._clock.due or n == self._capacity:
+            self._flush(time_ns)
+
+    def time_range(self) -> tuple[int, int]:
+        """Least and greatest stamp waiting [ns]."""
+        stamps = self._stamps[: self.count]
+        return int(stamps.min()), int(stamps.max())
+
+    def take(self, offset: int) -> tuple[memoryview, bytes]:
+        """Hand over what waits.
+
+        Args:
+            offset: where its block begins in the chunk [bytes].
+
+        Returns:
+            the message records, valid until the next `append`, and their MessageIndex record.
+        """
+        n = self.count
+        records, stamps = self._records[:n], self._stamps[:n]
+        records["_log_time"] = records["_publish_time"] = records["_stamp"] = stamps
+        records["_sequence"] = np.arange(self.total, self.total + n, dtype=np.uint32)
+        index = self._index[:n]
+        index["time"] = stamps
+        index["offset"] = self._offsets[:n] + np.uint64(offset)
+        entries = index.tobytes()
+        header = _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(entries) + 6, self.channel_id, len(entries))
+        self.count = 0
+        self.total += n
+        return self._bytes[:n].data.cast("B"), header + entries

@@ -1,0 +1,124 @@
+"""Makes a whole, indexed log of what a truncated or damaged one still holds."""
+
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+from mcap.records import Attachment, Chunk, Header, MessageIndex, Metadata
+from numpy.typing import NDArray
+
+from scenarios.errors import LogError
+from scenarios.log.encode import MAGIC, encoded
+from scenarios.log.reader import Log, read
+from scenarios.log.scan import PREFIX, index_chunk
+from scenarios.log.summary import Summary
+
+Index = dict[int, NDArray[np.void]]
+
+
+@dataclass(frozen=True, slots=True)
+class Recovery:
+    """What was saved.
+
+    Attributes:
+        messages: number of messages.
+        start: time of the first one [s].
+        end: time of the last one [s].
+        lost: what could not be read, in words.
+    """
+
+    messages: int
+    start: float
+    end: float
+    lost: tuple[str, ...]
+
+
+def recover(source: str | Path, target: str | Path) -> Recovery:
+    """Write everything sound of a log to a new file, which appears under its name only when it is whole.
+
+    Raises:
+        LogError: the source is no MCAP file, the target is the source or cannot be written.
+    """
+    log, target = read(source), Path(target)
+    if target.exists() and target.samefile(log.path):
+        raise LogError(f"{target}: the log that is to be recovered; give another file to write to")
+    temporary = target.with_name(f".{target.name}.new")
+    try:
+        with temporary.open("wb") as file:
+            messages = _Rewriter(log, file).run()
+        temporary.replace(target)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        reason = (error.strerror or str(error)).lower()
+        raise LogError(f"{target}: cannot be written, {reason}; choose another directory") from None
+    start, end = log.time_range()
+    return Recovery(messages, start, end, tuple(log.damage))
+
+
+class _Rewriter:
+    def __init__(self, log: Log, file: BinaryIO) -> None:
+        self._log = log
+        self._file = file
+        self._position = 0
+        self._summary = Summary()
+        self._counts: dict[int, int] = {}
+
+    def run(self) -> int:
+        contents = self._log.contents
+        chunks = [(place, index_chunk(data, contents)) for place, data in self._log.sound_chunks()]
+        self._write(MAGIC + encoded(Header("", "surefoot recover")))
+        for record in contents.metadata:
+            self._write(self._summary.add_metadata(record, self._position))
+        origin = Metadata("recovered", {"from": self._log.path.name, "lost": "; ".join(self._log.damage)})
+        self._write(self._summary.add_metadata(origin, self._position))
+        for attachment in contents.attachments:
+            self._attach(attachment)
+        self._define()
+        for place, index in chunks:
+            chunk = Chunk(
+                compression=place.compression,
+                data=bytes(self._log.data[place.data]),
+                message_end_time=place.end_ns,
+                message_start_time=place.start_ns,
+                uncompressed_crc=place.crc,
+                uncompressed_size=place.size,
+            )
+            self._chunk(chunk, index)
+        self._loose()
+        self._write(self._summary.finish(self._position, self._counts))
+        return sum(self._counts.values())
+
+    def _attach(self, attachment: Attachment) -> None:
+        self._write(self._summary.add_attachment(attachment, self._position))
+
+    def _define(self) -> None:
+        contents = self._log.contents
+        for schema in contents.schemas.values():
+            self._write(encoded(schema))
+        for channel in contents.channels.values():
+            self._summary.add_channel(contents.schemas.get(channel.schema_id), channel)
+            self._write(encoded(channel))
+
+    def _chunk(self, chunk: Chunk, index: Index) -> None:
+        record = encoded(chunk)
+        indexes = [(number, encoded(MessageIndex(number, entries.tolist()))) for number, entries in index.items()]
+        self._summary.add_chunk(chunk, self._position, len(record), indexes)
+        self._write(b"".join((record, *(entry for _, entry in indexes))))
+        for number, entries in index.items():
+            self._counts[number] = self._counts.get(number, 0) + len(entries)
+
+    def _loose(self) -> None:
+        """Gather the messages that stand outside chunks into one."""
+        data = self._log.data
+        entries = sorted(entry for channel in self._log.contents.loose.values() for entry in channel)
+        records = [data[at : at + PREFIX.size + PREFIX.unpack_from(data, at)[1]] for _, at in entries]
+        if records:
+            block = b"".join(records)
+            chunk = Chunk("", block, entries[-1][0], entries[0][0], zlib.crc32(block), len(block))
+            self._chunk(chunk, index_chunk(block, self._log.contents))
+
+    def _write(self, data: bytes) -> None:
+        self._file.write(data)
+        self._position += len(data)

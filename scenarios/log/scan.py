@@ -1,0 +1,203 @@
+"""Walks the records of a log file, whole or not: what is there, where, and what could not be read."""
+
+import struct
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from io import BytesIO
+from typing import Any, TypeVar
+
+import numpy as np
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, ChunkIndex, Footer, Metadata, Schema
+from numpy.typing import NDArray
+
+from scenarios.log.encode import MAGIC
+
+Buffer = Any
+"""A read-only bytes-like object: bytes or a memory map."""
+
+INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
+PREFIX = struct.Struct("<BQ")
+_CHUNK = struct.Struct("<QQQII")
+_MESSAGE = struct.Struct("<HIQQ")
+_PRIVATE = 0x80
+_T = TypeVar("_T")
+
+
+@dataclass(slots=True)
+class ChunkPlace:
+    """A chunk in the file.
+
+    Attributes:
+        position: of its record [bytes].
+        length: of its record [bytes].
+        start_ns: least time of its messages [ns].
+        end_ns: greatest time of its messages [ns].
+        size: uncompressed [bytes].
+        crc: of the uncompressed bytes, 0 for none.
+        compression: method.
+        data: where its compressed bytes begin and end.
+        index: times and offsets of the messages by channel id; empty when the index is missing.
+    """
+
+    position: int
+    length: int
+    start_ns: int
+    end_ns: int
+    size: int
+    crc: int
+    compression: str
+    data: slice
+    index: dict[int, NDArray[np.void]] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class Contents:
+    """What a scan found.
+
+    Attributes:
+        schemas: by id.
+        channels: by id.
+        chunks: in file order.
+        loose: index of the messages outside chunks, by channel id.
+        metadata: records in file order.
+        attachments: in file order.
+        truncated: whether the end of the file is missing.
+        damage: what could not be read, in words.
+    """
+
+    schemas: dict[int, Schema] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
+    chunks: list[ChunkPlace] = field(default_factory=list)
+    loose: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
+    metadata: list[Metadata] = field(default_factory=list)
+    attachments: list[Attachment] = field(default_factory=list)
+    truncated: bool = True
+    damage: list[str] = field(default_factory=list)
+
+
+def scan(data: Buffer) -> Contents:
+    """Walk a file that begins with the MCAP magic."""
+    contents = Contents()
+    size, position = len(data), len(MAGIC)
+    while position < size and contents.truncated:
+        opcode, length = PREFIX.unpack_from(data, position) if position + PREFIX.size <= size else (0, size)
+        body, end = position + PREFIX.size, position + PREFIX.size + length
+        if end > size or not (0 < opcode <= Opcode.DATA_END or opcode >= _PRIVATE):
+            position = _resume(data, position, contents)
+            continue
+        try:
+            _take(opcode, data, position, slice(body, end), contents)
+        except _UNREADABLE:
+            contents.damage.append(f"the {_name(opcode)} record at byte {position} is damaged")
+        position = end
+    return contents
+
+
+def records_in(data: Buffer) -> Iterator[tuple[int, int, slice]]:
+    """Walk the records inside a decompressed chunk: opcode, offset of the record, place of its body."""
+    position, size = 0, len(data)
+    while position + PREFIX.size <= size:
+        opcode, length = PREFIX.unpack_from(data, position)
+        body = position + PREFIX.size
+        if body + length > size:
+            return
+        yield opcode, position, slice(body, body + length)
+        position = body + length
+
+
+def _take_definition(opcode: int, body: bytes, contents: Contents) -> None:
+    """Note a schema or channel record."""
+    if opcode == Opcode.SCHEMA:
+        schema = _decode(Schema.read, body)
+        contents.schemas.setdefault(schema.id, schema)
+    elif opcode == Opcode.CHANNEL:
+        channel = _decode(Channel.read, body)
+        contents.channels.setdefault(channel.id, channel)
+
+
+def index_chunk(data: bytes, contents: Contents) -> dict[int, NDArray[np.void]]:
+    """Index the messages of a decompressed chunk by channel id, and note the schemas and channels it defines."""
+    entries: dict[int, list[tuple[int, int]]] = {}
+    for opcode, offset, body in records_in(data):
+        if opcode == Opcode.MESSAGE and body.stop - body.start >= _MESSAGE.size:
+            number, time = _message_header(data, body.start)
+            entries.setdefault(number, []).append((time, offset))
+        else:
+            _take_definition(opcode, data[body], contents)
+    return {number: np.array(found, INDEX_ENTRY) for number, found in entries.items()}
+
+
+def _message_header(data: Buffer, body: int) -> tuple[int, int]:
+    """Channel id and log time [ns] of a message record's body."""
+    channel_id, _, log_time, _ = _MESSAGE.unpack_from(data, body)
+    return channel_id, log_time
+
+
+_UNREADABLE = (McapError, ValueError, struct.error, OverflowError, MemoryError)
+
+
+def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Contents) -> None:
+    if opcode == Opcode.CHUNK:
+        contents.chunks.append(_chunk(data, position, body))
+    elif opcode == Opcode.MESSAGE_INDEX and contents.chunks:
+        channel_id, length = struct.unpack_from("<HI", data, body.start)
+        entries = np.frombuffer(data[body.start + 6 : min(body.start + 6 + length, body.stop)], INDEX_ENTRY)
+        contents.chunks[-1].index[channel_id] = entries
+    elif opcode == Opcode.MESSAGE:
+        channel_id, time = _message_header(data, body.start)
+        contents.loose.setdefault(channel_id, []).append((time, position))
+    elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+        _take_definition(opcode, data[body], contents)
+    elif opcode == Opcode.METADATA:
+        contents.metadata.append(_decode(Metadata.read, data[body]))
+    elif opcode == Opcode.ATTACHMENT:
+        contents.attachments.append(_decode(Attachment.read, data[body]))
+    elif opcode == Opcode.FOOTER:
+        contents.truncated = data[body.stop : body.stop + len(MAGIC)] != MAGIC
+
+
+def _chunk(data: Buffer, position: int, body: slice) -> ChunkPlace:
+    start, end, size, crc, name_length = _CHUNK.unpack_from(data, body.start)
+    name = body.start + _CHUNK.size
+    (data_length,) = struct.unpack_from("<Q", data, name + name_length)
+    begin = name + name_length + 8
+    if begin + data_length > body.stop:
+        raise ValueError("chunk longer than its record")
+    compression = str(data[name : name + name_length], "utf-8")
+    place = slice(begin, begin + data_length)
+    return ChunkPlace(position, body.stop - position, start, end, size, crc, compression, place)
+
+
+def _resume(data: Buffer, position: int, contents: Contents) -> int:
+    """Where to read on after a record that makes no sense: the next chunk that the file's own index knows."""
+    following = next((start for start in _indexed_chunks(data) if start > position), None)
+    if following is None:
+        if data[-len(MAGIC) :] == MAGIC:
+            contents.damage.append(f"nothing can be read from byte {position} on")
+        return len(data)
+    contents.damage.append(f"bytes {position} to {following} cannot be read")
+    return following
+
+
+def _indexed_chunks(data: Buffer) -> list[int]:
+    """Positions of the chunks by the summary at the end of the file, if it is whole."""
+    try:
+        footer_at = len(data) - len(MAGIC) - PREFIX.size - 20
+        if data[-len(MAGIC) :] != MAGIC or data[footer_at] != Opcode.FOOTER:
+            return []
+        summary = data[_decode(Footer.read, data[footer_at + PREFIX.size :]).summary_start : footer_at]
+        indexes = [summary[body] for opcode, _, body in records_in(summary) if opcode == Opcode.CHUNK_INDEX]
+        return sorted(_decode(ChunkIndex.read, index).chunk_start_offset for index in indexes)
+    except (*_UNREADABLE, IndexError):
+        return []
+
+
+def _decode(read: Callable[[ReadDataStream], _T], body: bytes) -> _T:
+    return read(ReadDataStream(BytesIO(body)))
+
+
+def _name(opcode: int) -> str:
+    return Opcode(opcode).name.lower().replace("_", " ") if opcode < _PRIVATE else "private"

@@ -1,0 +1,138 @@
+"""Writes a log: what the run was first, then a chunk of messages every few hundredths of a simulated second."""
+
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Literal, Self
+
+from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
+
+from scenarios.log.channel_writer import ChannelWriter, Clock
+from scenarios.log.compression import compress
+from scenarios.log.encode import MAGIC, encoded
+from scenarios.log.layout import PACKAGE, file_descriptor_set
+from scenarios.log.output import Output
+from scenarios.log.spec import ChannelSpec
+from scenarios.log.summary import Summary
+
+Compression = Literal["lz4", "zstd", ""]
+CHUNK_PERIOD_NS = 40_000_000
+"""Simulated time in one chunk: what a killed process loses at most, and a tick [ns]."""
+
+_CAPACITY = 64
+_PROFILE, _LIBRARY = "", "surefoot"
+
+
+@dataclass(frozen=True, slots=True)
+class AttachedFile:
+    """A file inside the log."""
+
+    name: str
+    media_type: str
+    data: bytes
+
+
+class LogWriter:
+    """An MCAP file under way.
+
+    Messages wait in their channels until a chunk is due, which is then written in one go; so the file on disk is
+    always whole up to the last chunk. `close` adds the index. Usable as a context manager.
+
+    Attributes:
+        path: where the log is.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        metadata: Mapping[str, Mapping[str, str]],
+        attachments: Sequence[AttachedFile] = (),
+        compression: Compression = "lz4",
+    ) -> None:
+        """Create the file; metadata and attachments are on disk when this returns.
+
+        Args:
+            path: file to create; an older log of that name is replaced.
+            metadata: named records of key and value.
+            attachments: files to carry.
+            compression: of the chunks.
+
+        Raises:
+            LogError: the file cannot be created or written; nothing of that name is then created or replaced.
+        """
+        self.path = path
+        self._compression = compression
+        self._summary = Summary()
+        self._channels: list[ChannelWriter] = []
+        self._clock = Clock(CHUNK_PERIOD_NS)
+        beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
+        for name, values in metadata.items():
+            beginning += self._summary.add_metadata(Metadata(name, dict(values)), len(beginning))
+        for file in attachments:
+            record = Attachment(0, 0, file.name, file.media_type, file.data)
+            beginning += self._summary.add_attachment(record, len(beginning))
+        self._output = Output(path, bytes(beginning))
+
+    def channel(self, spec: ChannelSpec) -> ChannelWriter:
+        """Add a channel, before or between messages."""
+        number = len(self._channels) + 1
+        schema = Schema(number, file_descriptor_set(spec), "protobuf", f"{PACKAGE}.{spec.message}")
+        channel = Channel(number, spec.topic, "protobuf", spec.metadata(), number)
+        self._output.write(encoded(schema) + encoded(channel))
+        self._summary.add_channel(schema, channel)
+        writer = ChannelWriter(spec, number, _CAPACITY, self._clock, self._flush)
+        self._channels.append(writer)
+        return writer
+
+    def attach(self, file: AttachedFile) -> None:
+        """Write an attachment after everything appended so far."""
+        self.flush()
+        record = Attachment(0, 0, file.name, file.media_type, file.data)
+        self._output.write(self._summary.add_attachment(record, self._output.position))
+
+    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Write a metadata record after everything appended so far."""
+        self.flush()
+        self._output.write(self._summary.add_metadata(Metadata(name, dict(values)), self._output.position))
+
+    def flush(self) -> None:
+        """Write what waits as one chunk, if anything waits."""
+        waiting = [channel for channel in self._channels if channel.count]
+        if not waiting:
+            return
+        ranges = [channel.time_range() for channel in waiting]
+        start, end = min(first for first, _ in ranges), max(last for _, last in ranges)
+        blocks, indexes, offset = [], [], 0
+        for channel in waiting:
+            block, index = channel.take(offset)
+            blocks.append(block)
+            indexes.append((channel.channel_id, index))
+            offset += len(block)
+        data = b"".join(blocks)
+        chunk = Chunk(self._compression, compress(data, self._compression), end, start, zlib.crc32(data), len(data))
+        record = encoded(chunk)
+        self._summary.add_chunk(chunk, self._output.position, len(record), indexes)
+        self._output.write(b"".join((record, *(index for _, index in indexes))))
+
+    def close(self) -> None:
+        """Write what waits and the index, and close the file; a second call does nothing."""
+        if self._output.closed:
+            return
+        self.flush()
+        counts = {channel.channel_id: channel.total for channel in self._channels}
+        self._output.write(self._summary.finish(self._output.position, counts))
+        self._output.close()
+
+    def _flush(self, time_ns: int) -> None:
+        self._clock.due = time_ns + CHUNK_PERIOD_NS
+        self.flush()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

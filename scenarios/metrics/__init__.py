@@ -1,0 +1,81 @@
+"""Metrics: pure functions of a log."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from scenarios.criteria import METRIC_NAMES
+from scenarios.log import Log
+from scenarios.metrics import balance, effort, walking
+from scenarios.metrics.view import RunView
+
+_BODY = ("/truth",)
+_FEET = ("/truth", "/contact")
+_PLAN = ("/truth", "/plan")
+
+_METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
+    "fell": (_BODY, walking.fell),
+    "fall_time": (_BODY, walking.fall_time),
+    "duration": (_BODY, walking.duration),
+    "steps_planned": ((), walking.steps_planned),
+    "steps_taken": (_BODY, walking.steps_taken),
+    "standing_time_final": (_FEET, walking.standing_time_final),
+    "zmp_inside_fraction": ((*_FEET, "/reference"), balance.zmp_inside_fraction),
+    "cop_ratio_p99": (("/contact", "/reference"), balance.cop_ratio_p99),
+    "cop_ratio_max": (("/contact", "/reference"), balance.cop_ratio_max),
+    "zmp_error_rms": (("/contact", "/reference"), balance.zmp_error_rms),
+    "com_error_rms": (_PLAN, balance.com_error_rms),
+    "dcm_error_rms": (_PLAN, balance.dcm_error_rms),
+    "footstep_error_max": (("/footstep",), walking.footstep_error_max),
+    "foot_slip_max": (_FEET, walking.foot_slip_max),
+    "torque_ratio_max": (("/torque",), effort.torque_ratio_max),
+    "joint_limit_margin_min": (("/measurement",), effort.joint_limit_margin_min),
+    "knee_angle_mean": (("/measurement", "/reference"), walking.knee_angle_mean),
+    "cost_of_transport": (("/truth", "/measurement"), effort.cost_of_transport),
+    "speed_mean": (("/truth", "/reference"), walking.speed_mean),
+    "com_height_range": (_BODY, walking.com_height_range),
+    "estimation_error_rms": (("/truth", "/estimate"), balance.estimation_error_rms),
+    "planner_time": (("/timing",), effort.planner_time),
+    "wbc_time": (("/timing",), effort.wbc_time),
+    "real_time_factor": (("/timing",), effort.real_time_factor),
+    "qp_failures": (("/wbc",), effort.qp_failures),
+    "wbc_fallbacks": (("/wbc",), effort.wbc_fallbacks),
+    "log_bytes": ((), effort.log_bytes),
+}
+
+
+def compute(log: Log) -> dict[str, Any]:
+    """Compute every metric of the public contract.
+
+    Args:
+        log: a log of a run, whole or truncated.
+
+    Returns:
+        values by metric name, None where a metric does not apply or its channels are missing; plain JSON values.
+
+    Raises:
+        LogError: the log does not describe a run.
+    """
+    run = RunView(log)
+    needed = {topic for topics, _ in _METRICS.values() for topic in topics}
+    log.load(*(topic for topic in log.topics if topic in needed | {"/footstep"}))
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        return {name: _metric(run, name) for name in METRIC_NAMES}
+
+
+def _metric(run: RunView, name: str) -> Any:
+    if name not in _METRICS:
+        return None
+    topics, function = _METRICS[name]
+    return _plain(function(run)) if run.has(*topics) else None
+
+
+def _plain(value: Any) -> Any:
+    """The value for JSON: what is not a finite number becomes None."""
+    if isinstance(value, list):
+        return [_plain(element) for element in value]
+    if isinstance(value, dict):
+        return {key: _plain(element) for key, element in value.items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,122 @@
+"""Metrics of balance: ZMP, centre of pressure, CoM and DCM against what was planned."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenarios.metrics.view import Array, RunView
+
+Rows = NDArray[np.intp]
+
+MARGIN = 0.9
+"""Share of each foot that the planned ZMP may use, the paper's margin."""
+
+PREDICTION = 0.2
+"""Age of the plan that the true state is compared with [s]."""
+
+
+def zmp_inside_fraction(run: RunView) -> float:
+    """Share of ticks with the measured ZMP inside the planned support polygon of feet shrunk to 90 %.
+
+    A hull of shrunk feet is the hull of the feet with each edge moved in by a tenth of the foot's half extent along
+    the edge's normal; exact for parallel feet, and on the safe side for others. Flight counts as outside.
+    """
+    zmp = run.field("/contact", "zmp")[:, None, :2]
+    vertices = run.field("/reference", "support")
+    edges = np.roll(vertices, -1, axis=1) - vertices
+    lengths = np.linalg.norm(edges, axis=2)
+    normals = np.stack([-edges[..., 1], edges[..., 0]], axis=2) / np.where(lengths > 0, lengths, 1.0)[..., None]
+    normals *= np.sign(_signed_area(vertices))[:, None, None]
+    depth = np.sum(normals * (zmp - vertices), axis=2)
+    inside = (depth >= (1 - MARGIN) * _half_extent(run, normals) - 1e-9) | (lengths < 1e-9)
+    return float(np.mean(inside.all(axis=1)))
+
+
+def cop_ratios(run: RunView) -> Array:
+    """Centre of pressure of the stance foot over its half size in single support, the worse axis, shape (k,)."""
+    size = np.array([run.constants.foot_length, run.constants.foot_width]) / 2
+    stance = run.field("/reference", "stance")
+    cops = np.where((stance == 0)[:, None], run.field("/contact", "cop_left"), run.field("/contact", "cop_right"))
+    ratios = np.max(np.abs(cops[run.single_support & (stance >= 0)]) / size, axis=1)
+    return np.asarray(ratios[np.isfinite(ratios)])
+
+
+def cop_ratio_p99(run: RunView) -> float | None:
+    """99th percentile of `cop_ratios`."""
+    ratios = cop_ratios(run)
+    return float(np.percentile(ratios, 99)) if len(ratios) else None
+
+
+def cop_ratio_max(run: RunView) -> float | None:
+    """Largest of `cop_ratios`."""
+    ratios = cop_ratios(run)
+    return float(ratios.max()) if len(ratios) else None
+
+
+def zmp_error_rms(run: RunView) -> list[float] | None:
+    """Measured ZMP minus the ZMP reference that the footsteps define, RMS, x and y [m]."""
+    return rms(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
+
+
+def com_error_rms(run: RunView) -> list[float] | None:
+    """True CoM minus what the plan of 0.2 s earlier predicted for this instant, RMS, x, y and z [m]."""
+    prediction = _predictions(run)
+    if prediction is None:
+        return None
+    rows, plans, sample = prediction
+    return rms(run.log["/truth"].field("com")[rows] - run.log["/plan"].field("com")[plans, sample])
+
+
+def dcm_error_rms(run: RunView) -> list[float] | None:
+    """True DCM minus what the plan of 0.2 s earlier predicted, both by the predicted frequency, RMS, x and y [m]."""
+    prediction = _predictions(run)
+    if prediction is None:
+        return None
+    rows, plans, sample = prediction
+    truth, plan = run.log["/truth"], run.log["/plan"]
+    omega = plan.field("omega")[plans, sample, None]
+    position = truth.field("com")[rows, :2] - plan.field("com")[plans, sample, :2]
+    velocity = truth.field("com_velocity")[rows, :2] - plan.field("com_velocity")[plans, sample, :2]
+    return rms(position + velocity / omega)
+
+
+def estimation_error_rms(run: RunView) -> float | None:
+    """Distance of the estimated from the true CoM, RMS [m]."""
+    error = run.field("/estimate", "com") - run.field("/truth", "com")
+    value = rms(np.linalg.norm(error, axis=1)[:, None])
+    return value[0] if value else None
+
+
+def rms(error: Array) -> list[float] | None:
+    """Root mean square of each column over the rows that are finite; None when there is none."""
+    sound = error[np.isfinite(error).all(axis=1)]
+    return [float(value) for value in np.sqrt(np.mean(sound**2, axis=0))] if len(sound) else None
+
+
+def _predictions(run: RunView) -> tuple[Rows, Rows, int] | None:
+    """Rows of /truth, rows of /plan that predicted them, and the sample of the horizon; held plans predict nothing."""
+    plan = run.log["/plan"]
+    sample = round(PREDICTION / run.constants.sample_time)
+    if sample >= plan.field("com").shape[1]:
+        return None
+    ahead = round(sample * run.constants.sample_time * 1e9)
+    rows, near = run.rows_at("/truth", plan.time_ns + ahead)
+    plans = np.flatnonzero(near & (plan.field("held") == 0))
+    return (rows[plans], plans, sample) if len(plans) else None
+
+
+def _signed_area(vertices: Array) -> Array:
+    """Signed area of polygons, counter-clockwise positive, shape (n,)."""
+    x, y = vertices[..., 0], vertices[..., 1]
+    return np.asarray(0.5 * np.sum(x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y, axis=1))
+
+
+def _half_extent(run: RunView, normals: Array) -> Array:
+    """Half extent of the supporting feet along edge normals, the larger of two, shape (n, edges)."""
+    stance = run.field("/reference", "stance")
+    extents = []
+    for foot, yaw in enumerate(run.sole_yaw.T):
+        along = np.abs(normals[..., 0] * np.cos(yaw)[:, None] + normals[..., 1] * np.sin(yaw)[:, None])
+        across = np.abs(normals[..., 1] * np.cos(yaw)[:, None] - normals[..., 0] * np.sin(yaw)[:, None])
+        extent = (along * run.constants.foot_length + across * run.constants.foot_width) / 2
+        extents.append(np.where((stance == 1 - foot)[:, None], 0.0, extent))
+    return np.maximum(*extents)

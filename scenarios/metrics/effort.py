@@ -1,0 +1,74 @@
+"""Metrics of effort: torques, limits, energy, solver and computing time."""
+
+import numpy as np
+
+from scenarios.metrics.view import Array, RunView
+
+GRAVITY = 9.81
+"""Gravitational acceleration [m/s^2]."""
+
+SHORTEST_WAY = 0.05
+"""Way below which a cost of transport means nothing [m]."""
+
+
+def torque_ratio_max(run: RunView) -> float:
+    """Largest commanded joint torque over its limit [-]."""
+    return float(np.max(np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit)))
+
+
+def joint_limit_margin_min(run: RunView) -> float:
+    """Least distance of a joint from its limits, negative beyond them [rad]."""
+    position = run.field("/measurement", "joint_position")
+    below = position - np.array(run.constants.position_lower)
+    above = np.array(run.constants.position_upper) - position
+    return float(min(below.min(), above.min()))
+
+
+def cost_of_transport(run: RunView) -> float | None:
+    """Joint work, absolute, over weight times the CoM's horizontal way from begin to end [-]."""
+    com = run.field("/truth", "com")[:, :2]
+    way = float(np.linalg.norm(com[-1] - com[0]))
+    if not way > SHORTEST_WAY:
+        return None
+    power = np.abs(run.field("/measurement", "joint_torque") * run.field("/measurement", "joint_velocity"))
+    work = float(power.sum()) / run.constants.control_rate
+    return work / (run.constants.mass * GRAVITY * way)
+
+
+def qp_failures(run: RunView) -> int:
+    """Ticks at which the whole-body QP's default solver failed."""
+    return int(np.count_nonzero((run.field("/wbc", "status") != 0) | (run.field("/wbc", "solver") != 0)))
+
+
+def wbc_fallbacks(run: RunView) -> int:
+    """Ticks at which no solver succeeded and the fallback torque was used."""
+    return int(np.count_nonzero(run.field("/wbc", "fallback")))
+
+
+def planner_time(run: RunView) -> dict[str, float] | None:
+    """Wall-clock time of a plan: median and 99th percentile [s]."""
+    spent = run.field("/timing", "planner")
+    return _spread(spent[spent > 0])
+
+
+def wbc_time(run: RunView) -> dict[str, float] | None:
+    """Wall-clock time to build and solve the whole-body QP: median and 99th percentile [s]."""
+    return _spread(run.field("/timing", "wbc_build") + run.field("/timing", "wbc_solve"))
+
+
+def real_time_factor(run: RunView) -> float | None:
+    """Simulated over wall-clock time of the loop [-]."""
+    wall = float(run.field("/timing", "tick").sum()) * 1e-6
+    return run.ticks / run.constants.control_rate / wall if wall > 0 else None
+
+
+def log_bytes(run: RunView) -> int:
+    """Size of the log [bytes]."""
+    return run.log.size
+
+
+def _spread(microseconds: Array) -> dict[str, float] | None:
+    if not len(microseconds):
+        return None
+    median, p99 = np.percentile(microseconds, (50, 99)) * 1e-6
+    return {"median": float(median), "p99": float(p99)}

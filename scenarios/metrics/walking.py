@@ -1,0 +1,102 @@
+"""Metrics of the walk: falls, steps, speed, feet and posture."""
+
+import numpy as np
+
+from scenarios.metrics.view import Mask, RunView
+
+FALLEN_HEIGHT = 0.6
+"""Share of the nominal CoM height above the feet below which a robot has fallen."""
+
+FALLEN_TILT = np.deg2rad(60.0)
+"""Torso tilt beyond which a robot has fallen [rad]."""
+
+STILL_SPEED = 0.02
+"""CoM speed of a robot that stands still [m/s]."""
+
+
+def fall_time(run: RunView) -> float | None:
+    """First time at which the CoM is low over the lower foot, the torso lies, or more than feet touches [s]."""
+    height = run.field("/truth", "com")[:, 2] - run.soles[:, :, 2].min(axis=1)
+    low = height < FALLEN_HEIGHT * run.constants.com_height
+    lying = run.field("/truth", "torso_tilt") > FALLEN_TILT
+    touching = run.field("/truth", "nonfoot_contact") != 0
+    fallen = np.flatnonzero(low | lying | touching)
+    return float(run.time[fallen[0]]) if len(fallen) else None
+
+
+def fell(run: RunView) -> bool:
+    """Whether the robot fell."""
+    return fall_time(run) is not None
+
+
+def duration(run: RunView) -> float:
+    """Simulated time [s]."""
+    return float(run.time[-1] - run.time[0]) + 1 / run.constants.control_rate
+
+
+def steps_planned(run: RunView) -> int:
+    """Footsteps asked for."""
+    return run.constants.steps_planned
+
+
+def steps_taken(run: RunView) -> int:
+    """Touchdowns before a fall."""
+    if "/footstep" not in run.log:
+        return 0
+    end = fall_time(run)
+    times = run.log["/footstep"].time
+    return len(times) if end is None else int(np.count_nonzero(times < end))
+
+
+def standing_time_final(run: RunView) -> float:
+    """How long the run ends with the CoM still and both feet loaded [s]."""
+    speed = np.linalg.norm(run.field("/truth", "com_velocity"), axis=1)
+    still = (speed < STILL_SPEED) & (run.field("/contact", "felt") != 0).all(axis=1)
+    moving = np.flatnonzero(~still)
+    first = moving[-1] + 1 if len(moving) else 0
+    return (run.ticks - int(first)) / run.constants.control_rate
+
+
+def footstep_error_max(run: RunView) -> float | None:
+    """Largest distance of a sole at touchdown from its footstep as last planned [m]."""
+    steps = run.log["/footstep"]
+    errors = np.linalg.norm(steps.field("actual")[:, :3] - steps.field("planned")[:, :3], axis=1)
+    return float(errors.max())
+
+
+def foot_slip_max(run: RunView) -> float | None:
+    """Largest horizontal distance of a sole from where its stance began, over all stances [m]."""
+    contact = (run.field("/contact", "planned") != 0) & (run.field("/contact", "felt") != 0)
+    slips = [
+        np.linalg.norm(run.soles[start:end, foot, :2] - run.soles[start, foot, :2], axis=1).max()
+        for foot in range(2)
+        for start, end in _runs(contact[:, foot])
+    ]
+    return float(max(slips)) if slips else None
+
+
+def knee_angle_mean(run: RunView) -> float | None:
+    """Mean flexion of both knees while walking, or over the whole run when no foot was lifted [rad]."""
+    knees = [i for i, name in enumerate(run.constants.joint_names) if "knee" in name]
+    ticks = run.walking if run.walking.stop else slice(None)
+    return float(np.mean(np.abs(run.field("/measurement", "joint_position")[ticks][:, knees]))) if knees else None
+
+
+def speed_mean(run: RunView) -> float | None:
+    """Horizontal way of the CoM from the first lift-off to the last touchdown over the time it took [m/s]."""
+    if not run.walking.stop:
+        return None
+    com = run.field("/truth", "com")[run.walking, :2]
+    time = run.time[run.walking]
+    return float(np.linalg.norm(com[-1] - com[0]) / (time[-1] - time[0])) if len(time) > 1 else None
+
+
+def com_height_range(run: RunView) -> float:
+    """Highest minus lowest CoM [m]."""
+    return float(np.ptp(run.field("/truth", "com")[:, 2]))
+
+
+def _runs(mask: Mask) -> list[tuple[int, int]]:
+    """Begin and end of each run of true values."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(np.int8), [0]))))
+    return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]

@@ -1,0 +1,182 @@
+"""The keys of a scenario file: types, units, bounds and defaults.
+
+One frozen model per group. Every key has a default, so a scenario file states only what it changes. What
+relates several keys (rates that divide, steps within reach) is checked in ``checks``.
+"""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+from scenarios.criteria import Bound, standing_walk
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Angle = Annotated[float, Field(ge=-6.3, le=6.3, allow_inf_nan=False)]
+NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
+Rate = Annotated[int, Field(ge=1, le=100_000)]
+
+
+def _tuple(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
+
+
+Vector = Annotated[tuple[Finite, Finite, Finite], BeforeValidator(_tuple)]
+
+
+class Group(BaseModel):
+    """A group of keys: immutable, strictly typed, closed to unknown keys."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, validate_default=True)
+
+
+class RobotSettings(Group):
+    """What of the robot may be changed."""
+
+    foot_length: Positive | None = Field(default=None, description="sole length, null: the robot's own [m]")
+    foot_width: Positive | None = Field(default=None, description="sole width, null: the robot's own [m]")
+    payload_mass: NonNegative = Field(default=0.0, description="mass carried [kg]")
+    payload_body: str | None = Field(default=None, description="body that carries it, null: the torso")
+
+
+class TerrainSettings(Group):
+    """The ground."""
+
+    kind: Literal["flat", "stairs", "blocks", "slope"] = Field(default="flat", description="shape of the ground")
+    riser: NonNegative = Field(default=0.1, description="height of a stair or block [m]")
+    tread: Positive = Field(default=0.3, description="depth of a stair or block [m]")
+    count: Annotated[int, Field(ge=1, le=10_000)] = Field(default=5, description="number of stairs or blocks [-]")
+    direction: Literal["up", "down", "up_down"] = Field(default="up", description="which way the stairs go")
+    height_noise: NonNegative = Field(default=0.0, description="half range of the block heights [m]")
+    angle: Angle = Field(default=0.0, description="inclination of a slope [rad]")
+    friction: NonNegative = Field(default=0.8, description="Coulomb coefficient of every surface [-]")
+
+
+class Gait(Group):
+    """The walk that is asked for; defaults are the paper's table."""
+
+    steps: Annotated[int, Field(ge=0, le=100_000)] = Field(default=5, description="footsteps to take [-]")
+    step_length: Finite = Field(default=0.2, description="forward distance between successive footsteps [m]")
+    step_width: Positive = Field(default=0.25, description="lateral distance between the feet's centres [m]")
+    lateral_step: Finite = Field(default=0.0, description="lateral progress of each footstep, left positive [m]")
+    turn: Angle = Field(default=0.0, description="heading change of each footstep, left positive [rad]")
+    single_support: Positive = Field(default=1.5, description="duration of a single support [s]")
+    double_support: Positive = Field(default=0.5, description="duration of a double support [s]")
+    swing_height: Positive = Field(default=0.05, description="apex of the swing foot above the ground [m]")
+    com_height: Positive = Field(default=1.0, description="CoM height above the soles [m]")
+    initial_stand: NonNegative = Field(default=1.0, description="standing before the first weight shift [s]")
+    apex_single: Finite = Field(
+        default=0.0135, description="apex of the CoM rise in single support, A_ss of the paper [m]"
+    )
+    apex_double: Finite = Field(
+        default=0.00135, description="apex of the CoM dip in double support, A_ds of the paper [m]"
+    )
+
+
+class PlannerSettings(Group):
+    """The walking planner."""
+
+    profile: Literal["default", "paper", "repaired", "lti", "preview", "dcm"] = Field(
+        default="default", description="formulation of the planner"
+    )
+    horizon: Annotated[int, Field(ge=2, le=1000)] = Field(default=50, description="samples of the preview [-]")
+    sample_time: Positive = Field(default=0.02, description="sample time of the preview, and of replanning [s]")
+    jerk_limit: Positive = Field(default=60.0, description="bound on the CoM jerk [m/s^3]")
+    jerk_rate_limit: Positive | None = Field(
+        default=None, description="bound on its change per sample, null: none [m/s^3]"
+    )
+    step_adaptation: Literal["none", "location", "timing"] = Field(
+        default="location", description="what of the next footstep the planner may change"
+    )
+    knee: Literal["stretched", "bent"] = Field(default="stretched", description="law of the vertical CoM motion")
+
+
+class Sensing(Group):
+    """What the controller knows of the robot; noises are standard deviations."""
+
+    source: Literal["truth", "estimated"] = Field(default="truth", description="state given to planner and controller")
+    zmp_noise: NonNegative = Field(default=0.0, description="of the measured ZMP [m]")
+    com_noise: NonNegative = Field(default=0.0, description="of the measured CoM [m]")
+    encoder_noise: NonNegative = Field(default=0.0, description="of the joint encoders [rad]")
+    gyro_noise: NonNegative = Field(default=0.0, description="of the gyroscope [rad/s]")
+    accelerometer_noise: NonNegative = Field(default=0.0, description="of the accelerometer [m/s^2]")
+    wrench_noise: NonNegative = Field(default=0.0, description="of the foot force sensors [N]")
+    latency: NonNegative = Field(default=0.0, description="age of the measurement [s]")
+
+
+class Start(Group):
+    """Where the robot starts; noises are half ranges drawn from the seed."""
+
+    x: Finite = Field(default=0.0, description="world position forward [m]")
+    y: Finite = Field(default=0.0, description="world position left [m]")
+    yaw: Angle = Field(default=0.0, description="heading about the world's z axis [rad]")
+    position_noise: NonNegative = Field(default=0.0, description="random offset of the base position [m]")
+    angle_noise: NonNegative = Field(default=0.0, description="random offset of base attitude and joint angles [rad]")
+
+
+class BeliefErrors(Group):
+    """The planner's belief minus the truth."""
+
+    com_height: Finite = Field(default=0.0, description="error of the CoM height [m]")
+    mass_scale: Positive = Field(default=1.0, description="believed over true mass [-]")
+    friction: Finite = Field(default=0.0, description="error of the friction coefficient [-]")
+
+
+class PushSettings(Group):
+    """A force on a body, beginning at a time or at a point of the gait."""
+
+    time: NonNegative | None = Field(default=None, description="begin [s]; or give step, phase and fraction")
+    step: Annotated[int, Field(ge=1)] | None = Field(default=None, description="footstep, 1 is the first [-]")
+    phase: Literal["single", "double"] | None = Field(
+        default=None, description="its support phase; double precedes single"
+    )
+    fraction: Annotated[float, Field(ge=0, le=1)] | None = Field(
+        default=None, description="elapsed share of the phase [-]"
+    )
+    duration: Positive = Field(default=0.1, description="how long the force acts [s]")
+    force: Vector = Field(default=(0.0, 0.0, 0.0), description="force in the world frame [N]")
+    body: str | None = Field(default=None, description="body it acts on, at its centre of mass; null: the torso")
+
+
+class Fault(Group):
+    """A fault injected for negative controls."""
+
+    kind: Literal["torque_loss", "planner_freeze", "state_nan", "qp_failure"] = Field(
+        description="zero torque; plan not updated; NaN in the measured state; QP solver reports failure"
+    )
+    time: NonNegative = Field(default=0.0, description="begin [s]")
+    duration: Positive | None = Field(default=None, description="how long, null: to the end [s]")
+
+
+class Rates(Group):
+    """Rates of the one integer clock; each must divide the one before."""
+
+    physics: Rate = Field(default=1000, description="simulator steps [Hz]")
+    control: Rate = Field(default=500, description="whole-body controller ticks [Hz]")
+    planner: Rate = Field(default=50, description="plans [Hz]; 1 / planner.sample_time")
+
+
+class Scenario(Group):
+    """A walk to simulate and the criteria it must meet."""
+
+    name: str = Field(
+        default="scenario", min_length=1, max_length=100, pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", description="name"
+    )
+    robot: str = Field(default="humanoid100", description="name of a robot, see `surefoot list`")
+    fidelity: Literal["full", "pendulum"] = Field(
+        default="full", description="whole body in MuJoCo, or the pendulum alone"
+    )
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = Field(default=0, description="seed of everything random [-]")
+    duration: Positive | None = Field(default=None, description="simulated time, null: until the gait has ended [s]")
+    robot_options: RobotSettings = Field(default=RobotSettings(), description="changes to the robot")
+    terrain: TerrainSettings = Field(default=TerrainSettings(), description="the ground")
+    gait: Gait = Field(default=Gait(), description="the walk")
+    planner: PlannerSettings = Field(default=PlannerSettings(), description="the planner")
+    sensing: Sensing = Field(default=Sensing(), description="the sensors")
+    start: Start = Field(default=Start(), description="the start pose")
+    errors: BeliefErrors = Field(default=BeliefErrors(), description="the planner's belief minus the truth")
+    pushes: Annotated[tuple[PushSettings, ...], BeforeValidator(_tuple)] = Field(default=(), description="disturbances")
+    faults: Annotated[tuple[Fault, ...], BeforeValidator(_tuple)] = Field(default=(), description="injected faults")
+    rates: Rates = Field(default=Rates(), description="the clock")
+    criteria: dict[str, Bound] = Field(default_factory=standing_walk, description="bounds on metrics")

@@ -1,0 +1,165 @@
+"""YAML text to plain values that know where they stand in the text."""
+
+import math
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+import yaml
+
+from scenarios.errors import Key, Problem, ScenarioError
+
+MAX_BYTES = 1_000_000
+MAX_DEPTH = 20
+MAX_VALUES = 20_000
+_INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]{0,18})")
+_FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
+_WORDS: dict[str, Any] = {
+    **dict.fromkeys(("", "~", "null", "Null", "NULL")),
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
+    **dict.fromkeys((".nan", ".NaN", ".NAN"), math.nan),
+    **dict.fromkeys((".inf", ".Inf", ".INF", "+.inf"), math.inf),
+    **dict.fromkeys(("-.inf", "-.Inf", "-.INF"), -math.inf),
+}
+
+
+@dataclass(slots=True)
+class Source:
+    """Plain values with the places they came from.
+
+    Attributes:
+        name: file name as the user knows it.
+        value: mappings, lists and scalars.
+        key_places: 1-based (line, column) of each key, by path.
+        value_places: 1-based (line, column) of each value, by path.
+        overridden: places of paths that were set from outside the text.
+        problems: faults of the text itself, such as a key given twice.
+    """
+
+    name: str
+    value: Any = None
+    key_places: dict[Key, tuple[int, int]] = field(default_factory=dict)
+    value_places: dict[Key, tuple[int, int]] = field(default_factory=dict)
+    overridden: dict[Key, str] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+
+    def spot(self, problem: Problem) -> tuple[int, int]:
+        """Line and column of what is at fault, or of the nearest enclosing value; (0, 0) outside the text."""
+        key = problem.key
+        if self._override(key):
+            return 0, 0
+        if problem.at_key and key in self.key_places:
+            return self.key_places[key]
+        return next(
+            (self.value_places[key[:n]] for n in range(len(key), -1, -1) if key[:n] in self.value_places), (1, 1)
+        )
+
+    def describe(self, problem: Problem) -> str:
+        """Say what is wrong and where."""
+        line, column = self.spot(problem)
+        return f"{self._override(problem.key) or f'{self.name}:{line}:{column}'}: {problem}"
+
+    def _override(self, key: Key) -> str | None:
+        """Place of the override that set a path, part of it, or a group that the text has not got."""
+        inside = (self.overridden[key[:n]] for n in range(len(key), 0, -1) if key[:n] in self.overridden)
+        made = (place for path, place in self.overridden.items() if path[: len(key)] == key and key)
+        return next(inside, None) or (next(made, None) if key not in self.value_places else None)
+
+
+def parse(text: str, name: str) -> Source:
+    """Read YAML text.
+
+    Args:
+        text: one YAML document.
+        name: what to call the text in messages.
+
+    Returns:
+        its values with their places; keys given twice are listed as problems.
+
+    Raises:
+        ScenarioError: the text is no YAML, nests too deep or expands to too many values.
+    """
+    source = Source(name)
+    try:
+        root = _Composer(text).get_single_node()
+        if root is not None:
+            source.value = _Reader(source).read(root, ())
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = f"{mark.line + 1}:{mark.column + 1}" if mark else "1:1"
+        reason = " ".join(str(error.problem or error.context or "not YAML").split())
+        raise ScenarioError([f"{name}:{place}: not valid YAML, {reason}; mend the YAML syntax here"]) from None
+    except yaml.reader.ReaderError as error:
+        before = text[: error.position]
+        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        message = f"{name}:{line}:{column}: a character that YAML does not allow; use plain text"
+        raise ScenarioError([message]) from None
+    except RecursionError:
+        raise ScenarioError([f"{name}:1:1: nested too deep; at most {MAX_DEPTH} levels"]) from None
+    return source
+
+
+def _scalar(text: str) -> Any:
+    """Plain scalar of the YAML 1.2 core schema (so 1e-3 is a number and `no` a word)."""
+    if text in _WORDS:
+        return _WORDS[text]
+    if _INTEGER.fullmatch(text):
+        return int(text)
+    return float(text) if _FLOAT.fullmatch(text) else text
+
+
+class _Composer(yaml.SafeLoader):
+    """Composes nodes, and stops before nesting exhausts the interpreter's stack."""
+
+    depth = 0
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            mark = self.peek_event().start_mark
+            raise yaml.composer.ComposerError(None, None, f"nested deeper than {MAX_DEPTH} levels", mark)
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
+
+
+class _Reader:
+    """Builds values from nodes and remembers the places."""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self._count = 0
+
+    def read(self, node: yaml.Node, key: Key) -> Any:
+        self._count += 1
+        if self._count > MAX_VALUES or len(key) > MAX_DEPTH:
+            reason = f"more than {MAX_VALUES} values or {MAX_DEPTH} levels once aliases are expanded"
+            raise yaml.composer.ComposerError(None, None, reason, node.start_mark)
+        self._source.value_places[key] = _spot(node)
+        if isinstance(node, yaml.MappingNode):
+            return self._mapping(node, key)
+        if isinstance(node, yaml.SequenceNode):
+            return [self.read(item, (*key, i)) for i, item in enumerate(node.value)]
+        return _scalar(node.value) if node.style is None and node.tag != "!" else node.value
+
+    def _mapping(self, node: yaml.MappingNode, key: Key) -> dict[str, Any]:
+        values: dict[str, Any] = {}
+        for key_node, value_node in node.value:
+            if not isinstance(key_node, yaml.ScalarNode):
+                raise yaml.constructor.ConstructorError(None, None, "a key must be a word", key_node.start_mark)
+            path = (*key, key_node.value)
+            spot = _spot(key_node)
+            if key_node.value in values:
+                first = self._source.key_places[path]
+                what = f"'{key_node.value}' is given twice, first at line {first[0]}"
+                self._source.key_places[path] = spot
+                self._source.problems.append(Problem(path, what, "keep one of them", at_key=True))
+                continue
+            self._source.key_places[path] = spot
+            values[key_node.value] = self.read(value_node, path)
+        return values
+
+
+def _spot(node: yaml.Node) -> tuple[int, int]:
+    return node.start_mark.line + 1, node.start_mark.column + 1

@@ -1,0 +1,39 @@
+"""When the phases of a gait begin: standing, then for each footstep a double and a single support, then standing.
+
+Times are nominal; step adaptation may shift the true ones.
+"""
+
+from scenarios.schema import Gait, PushSettings, Scenario
+
+FINAL_STAND = 2.0
+"""Standing after the last double support that ends a run whose duration is not given [s]."""
+
+
+def phase_start(gait: Gait, step: int, phase: str) -> float:
+    """Begin [s] of a support phase of a footstep; step 1 is the first, its double support shifts the weight."""
+    before = gait.initial_stand + (step - 1) * (gait.double_support + gait.single_support)
+    return before if phase == "double" else before + gait.double_support
+
+
+def phase_duration(gait: Gait, phase: str) -> float:
+    """Duration [s] of a support phase."""
+    return gait.double_support if phase == "double" else gait.single_support
+
+
+def push_time(gait: Gait, push: PushSettings) -> float:
+    """Begin [s] of a push, given directly or by step, phase and fraction."""
+    if push.time is not None:
+        return push.time
+    if push.step is None or push.phase is None:
+        raise ValueError("a push needs a time, or a step and a phase")
+    return phase_start(gait, push.step, push.phase) + (push.fraction or 0.0) * phase_duration(gait, push.phase)
+
+
+def run_duration(scenario: Scenario) -> float:
+    """Simulated time [s]: as given, or the gait and two seconds of standing."""
+    if scenario.duration is not None:
+        return scenario.duration
+    gait = scenario.gait
+    if gait.steps == 0:
+        return gait.initial_stand + FINAL_STAND
+    return phase_start(gait, gait.steps + 1, "single") + FINAL_STAND

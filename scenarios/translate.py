@@ -1,0 +1,120 @@
+"""Validation errors of the schema in words, and values without what was wrong."""
+
+import copy
+import itertools
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from scenarios.criteria import BOUNDABLE, Bound
+from scenarios.errors import Key, Problem, dotted, nearest
+from scenarios.schema import Scenario
+
+_EXPECTED = {
+    "int_type": "give a whole number",
+    "int_from_float": "give a whole number",
+    "float_type": "give a number",
+    "finite_number": "give a finite number",
+    "bool_type": "give true or false",
+    "string_type": "give a word",
+    "tuple_type": "give a list",
+    "model_type": "give a group of keys",
+    "dict_type": "give a group of keys",
+    "too_long": "give fewer elements",
+    "too_short": "give more elements",
+    "string_pattern_mismatch": "use letters, digits, '.', '_' and '-'",
+}
+_BOUNDS = {"greater_than": ("gt", "more than"), "greater_than_equal": ("ge", "at least")} | {
+    "less_than": ("lt", "less than"),
+    "less_than_equal": ("le", "at most"),
+}
+
+
+def problems_of(error: ValidationError, data: Any) -> list[Problem]:
+    """Say each validation error once, at the deepest path that exists in the data."""
+    found: dict[Key, Problem] = {}
+    for detail in error.errors(include_url=False):
+        problem = _problem(detail, data)
+        found.setdefault(problem.key, problem)
+    return list(found.values())
+
+
+def unknown_metrics(criteria: Any) -> list[Problem]:
+    """Criteria on names that are no metrics."""
+    names = [name for name in criteria if name not in BOUNDABLE] if isinstance(criteria, dict) else []
+    return [Problem(("criteria", name), f"unknown metric '{name}'", nearest(name, BOUNDABLE), True) for name in names]
+
+
+def without(data: Any, problems: list[Problem]) -> Any:
+    """The data without what is at fault, so that the rest can still be checked; a list goes as a whole."""
+    rest = copy.deepcopy(data)
+    for problem in problems:
+        path = list(itertools.takewhile(lambda part: isinstance(part, str), problem.key))
+        path = path[:2] if path[:1] == ["criteria"] else path
+        group = rest
+        for part in path[:-1]:
+            group = group.get(part) if isinstance(group, dict) else None
+        if path and isinstance(group, dict):
+            group.pop(path[-1], None)
+    return rest
+
+
+def _problem(detail: ErrorDetails, data: Any) -> Problem:
+    key = _existing(detail["loc"], data)
+    value, kind, context = detail["input"], detail["type"], detail.get("ctx", {})
+    name = dotted(key) or "the file"
+    if kind == "extra_forbidden":
+        return Problem(key, f"unknown key '{key[-1]}'", nearest(str(key[-1]), _fields(key[:-1])), at_key=True)
+    if kind == "missing":
+        missing = detail["loc"][-1]
+        return Problem(key, f"{name} lacks element {missing}", f"give '{missing}'")
+    if kind in _BOUNDS:
+        bound, words = _BOUNDS[kind]
+        return Problem(key, f"{name} is {_short(value)}", f"it must be {words} {context[bound]}")
+    if kind == "literal_error":
+        return Problem(key, f"{name} is {_short(value)}", f"it must be {context['expected']}")
+    if kind == "value_error":
+        what, _, right = str(context["error"]).partition("; ")
+        return Problem(key, f"{name}: {what}", right)
+    return Problem(
+        key, f"{name} is {_short(value)}", _EXPECTED.get(kind, detail["msg"][:1].lower() + detail["msg"][1:])
+    )
+
+
+def _existing(location: tuple[str | int, ...], data: Any) -> Key:
+    """The part of a location that leads to a value; union branches and missing keys are dropped."""
+    key: Key = ()
+    for part in location:
+        try:
+            data = data[part]
+        except (KeyError, IndexError, TypeError):
+            break
+        key = (*key, part)
+    return key
+
+
+def _fields(key: Key) -> list[str]:
+    """Valid keys of the group at a path."""
+    model: Any = Scenario
+    for part in key:
+        if isinstance(part, int):
+            continue
+        annotation = model.model_fields[part].annotation
+        inner = [a for a in (annotation, *getattr(annotation, "__args__", ())) if _is_model(a)]
+        model = Bound if part == "criteria" else inner[0]
+        if part == "criteria":
+            break
+    return list(model.model_fields)
+
+
+def _is_model(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
+
+
+def _short(value: Any) -> str:
+    if value is None:
+        return "null"
+    text = str(value) if isinstance(value, bool | int | float) else repr(value)
+    text = text.lower() if isinstance(value, bool) else text
+    return text if len(text) <= 40 else text[:37] + "..."

@@ -1,0 +1,139 @@
+"""From a log to a verdict: its metrics against the criteria of its scenario."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import ValidationError
+
+from scenarios.criteria import Bound, standing_walk
+from scenarios.errors import LogError
+from scenarios.log import Log
+from scenarios.metrics import compute
+
+SCENARIO_FILE = "scenario.yaml"
+"""Attachment that holds the scenario as run."""
+
+END_RECORD = "end"
+"""Metadata record written last: how the run ended."""
+
+_ACCEPTED_ENDS = ("completed", "fall")
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether a run met its criteria.
+
+    Attributes:
+        passed: all criteria met, and the run came to its end.
+        reasons: why not, one sentence each.
+        metrics: values by name.
+    """
+
+    passed: bool
+    reasons: tuple[str, ...]
+    metrics: Mapping[str, Any]
+
+    def to_json(self) -> dict[str, Any]:
+        """Write as one JSON object with the names of the public contract."""
+        return {"verdict": "pass" if self.passed else "fail", "reasons": list(self.reasons), **self.metrics}
+
+    def write(self, path: Path) -> None:
+        """Write as a JSON file.
+
+        Raises:
+            LogError: it cannot be written.
+        """
+        try:
+            path.write_text(json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        except OSError as error:
+            path.unlink(missing_ok=True)
+            raise LogError(f"{path}: cannot be written, {(error.strerror or str(error)).lower()}") from None
+
+
+def judge(log: Log) -> Verdict:
+    """Judge a run by its log alone.
+
+    Raises:
+        LogError: the log does not describe a run.
+    """
+    metrics = compute(log)
+    reasons = [*_unfinished(log), *missed(metrics, criteria_of(log))]
+    return Verdict(not reasons, tuple(reasons), metrics)
+
+
+def criteria_of(log: Log) -> dict[str, Bound]:
+    """The criteria of the scenario that a log carries.
+
+    Raises:
+        LogError: it carries none that can be read.
+    """
+    try:
+        scenario = yaml.safe_load(log.attachments[SCENARIO_FILE])
+        bounds = scenario.get("criteria")
+        return standing_walk() if bounds is None else {n: Bound.model_validate(b) for n, b in bounds.items()}
+    except (KeyError, AttributeError, ValidationError, yaml.YAMLError, ValueError, RecursionError):
+        raise LogError(f"{log.path}: holds no readable scenario; its criteria are unknown") from None
+
+
+def missed(metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> list[str]:
+    """Say which criteria are not met."""
+    return [reason for name, bound in criteria.items() for reason in _missed(name, bound, metrics)]
+
+
+def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str]:
+    value = _lookup(metrics, name)
+    if bound.equals is not None:
+        expected = metrics.get(bound.equals, bound.equals) if isinstance(bound.equals, str) else bound.equals
+        if value != expected:
+            yield f"{name} is {_text(value)}, must be {_text(expected)}"
+    if bound.min is None and bound.max is None:
+        return
+    if value is None:
+        yield f"{name} is not available, so its bound cannot be checked"
+        return
+    values = value if isinstance(value, list) else [value]
+    for index, element in enumerate(values):
+        label = name if len(values) == 1 else f"{name}[{index}]"
+        low, high = (_element(limit, index) for limit in (bound.min, bound.max))
+        if element is None:
+            yield f"{label} is not a number"
+        elif low is not None and element < low:
+            yield f"{label} is {_text(element)}, bound is at least {_text(low)}"
+        elif high is not None and element > high:
+            yield f"{label} is {_text(element)}, bound is at most {_text(high)}"
+
+
+def _unfinished(log: Log) -> list[str]:
+    """Say why a run did not come to its end, if it did not."""
+    end = log.metadata.get(END_RECORD)
+    if end is None:
+        last = log.time_range()[1]
+        return [f"the run was cut off; its log ends at {last:.3f} s"]
+    if end.get("kind") in _ACCEPTED_ENDS:
+        return []
+    return [f"the run ended at {end.get('time', '?')} s: {end.get('reason', 'unknown reason')}"]
+
+
+def _lookup(metrics: Mapping[str, Any], name: str) -> Any:
+    """A metric, or the part of one after a dot."""
+    metric, _, part = name.partition(".")
+    value = metrics.get(metric)
+    return value.get(part) if part and isinstance(value, dict) else value
+
+
+def _element(limit: float | tuple[float, ...] | None, index: int) -> float | None:
+    if isinstance(limit, tuple):
+        return limit[index] if index < len(limit) else None
+    return limit
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "not available"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -99,24 +99,27 @@ class WholeBodyController:
         self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
         self._limits = limits
         self._period = control_period
+        self._state = RobotState(pin.neutral(model), np.zeros(model.nv))
         self._torque = np.zeros(self.layout.joints)
         self._acceleration = np.zeros(self.layout.nv)
         self._wrench = np.zeros((2, 6))
         self._task_error = np.zeros(18)
 
-    def update(
-        self, state: RobotState, reference: WbcReference, sensing: FootSensing, fail_solvers: bool = False
-    ) -> WbcReport:
-        """Torques for this tick.
+    def observe(self, state: RobotState) -> RobotTerms:
+        """Take the measured or estimated state of this tick; returns its terms, which the next call overwrites."""
+        self._state = state
+        self.terms.update(state.q, state.v)
+        return self.terms
+
+    def update(self, reference: WbcReference, sensing: FootSensing, fail_solvers: bool = False) -> WbcReport:
+        """Torques for the state last observed.
 
         Args:
-            state: measured or estimated state.
             reference: what to do.
             sensing: what the feet feel.
             fail_solvers: pretend that both QP solvers failed, to exercise the fallback.
         """
-        start = time.perf_counter()
-        self.terms.update(state.q, state.v)
+        start, state = time.perf_counter(), self._state
         contacts = self._contacts.update(reference, sensing)
         self._assemble(state, reference, contacts)
         built = time.perf_counter()

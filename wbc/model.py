@@ -34,7 +34,7 @@ class RobotTerms:
         bias: Coriolis, centrifugal and gravity terms h, shape (nv,).
         com, com_velocity, angular_momentum: centroidal state in the world frame, shape (3,) each.
         base_rotation, torso_rotation: orientation in the world, shape (3, 3).
-        sole_position: shape (2, 3); sole_rotation: shape (2, 3, 3).
+        sole_position: shape (2, 3); sole_rotation: shape (2, 3, 3); sole_pose: x y z qx qy qz qw, shape (2, 7).
         sole_jacobian: shape (2, 6, nv); sole_velocity, sole_bias: shape (2, 6).
         torso_jacobian: angular rows, shape (3, nv); torso_velocity, torso_bias: shape (3,).
     """
@@ -59,6 +59,7 @@ class RobotTerms:
         self.base_rotation, self.torso_rotation = np.eye(3), np.eye(3)
         self.base_angular_velocity = np.zeros(3)
         self.sole_position, self.sole_rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
+        self.sole_pose = np.zeros((2, 7))
         self.sole_jacobian = np.zeros((2, 6, nv))
         self.sole_velocity, self.sole_bias = np.zeros((2, 6)), np.zeros((2, 6))
         self.torso_jacobian = np.zeros((3, nv))
@@ -84,6 +85,7 @@ class RobotTerms:
             placement = pin.updateFramePlacement(model, data, frame)
             self.sole_position[k] = placement.translation
             self.sole_rotation[k] = placement.rotation
+            self.sole_pose[k] = pin.SE3ToXYZQUAT(placement)
             self.sole_jacobian[k] = pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL)
             self.sole_velocity[k] = pin.getFrameVelocity(model, data, frame, pin.ReferenceFrame.LOCAL).vector
             self.sole_bias[k] = pin.getFrameClassicalAcceleration(

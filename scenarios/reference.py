@@ -1,0 +1,49 @@
+"""From the plan to the whole-body controller: the one place where their two vocabularies meet."""
+
+import math
+
+from planner.plan import WalkPlan
+from planner.sampling import PlanSample
+from planner.types import PhaseKind
+from wbc.types import WbcReference
+
+
+def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
+    """What the whole-body controller shall do at the sample's instant of the plan.
+
+    The heading of pelvis and torso is the mean of both feet's yaws, so that it turns smoothly with the swing foot.
+    """
+    phase = plan.phase
+    passed = phase.elapsed + sample.time - plan.time
+    swing, rate, bend = sample.swing, sample.swing_velocity, sample.swing_acceleration
+    foot = -1 if sample.swing_foot is None else int(sample.swing_foot)
+    yaw = [plan.footholds[0].yaw, plan.footholds[1].yaw]
+    if foot >= 0:
+        yaw[foot] = float(swing[3])
+    return WbcReference(
+        com=sample.com,
+        com_velocity=sample.com_velocity,
+        com_acceleration=sample.com_acceleration,
+        zmp=sample.zmp,
+        omega=sample.omega,
+        stiffness=sample.stiffness,
+        heading=0.5 * (yaw[0] + yaw[1]),
+        heading_rate=0.5 * float(rate[3]),
+        planned_contact=sample.contacts,
+        load_share=(sample.load_left, 1.0 - sample.load_left),
+        time_to_switch=max(0.0, phase.duration - passed),
+        lifting_foot=_lifting_foot(plan),
+        swing_foot=foot,
+        swing_progress=min(1.0, passed / phase.duration) if foot >= 0 and math.isfinite(phase.duration) else 0.0,
+        swing_position=swing[:3],
+        swing_velocity=rate[:3],
+        swing_acceleration=bend[:3],
+        swing_yaw=(float(swing[3]), float(rate[3]), float(bend[3])),
+    )
+
+
+def _lifting_foot(plan: WalkPlan) -> int:
+    """The foot that leaves the ground when the present double support ends, -1 if none does."""
+    if plan.phase.kind is not PhaseKind.DOUBLE or not plan.footsteps:
+        return -1
+    return int(plan.footsteps[0].footstep.foot)

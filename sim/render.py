@@ -100,6 +100,8 @@ class _Painter:
             mujoco.mj_comPos(self._model, self._data)
             mujoco.mj_camlight(self._model, self._data)
             self._follow()
+            # The engine centres the endless floor on the camera of the frame before, unless told of this one's.
+            mujoco.mjv_updateCamera(self._model, self._data, self._view, self._scene)
             everything = mujoco.mjtCatBit.mjCAT_ALL.value
             mujoco.mjv_updateScene(self._model, self._data, self._option, None, self._view, everything, self._scene)
             mujoco.mjr_render(self._area, self._scene, self._context)

@@ -17,8 +17,9 @@ from models.types import Array, RobotDescription, RobotOptions
 NAME = "humanoid100"
 
 _MATERIALS: Mapping[str, Mapping[str, str]] = {
-    "shell": {"rgba": "0.90 0.91 0.93 1", "specular": "0.4", "shininess": "0.6"},
+    "shell": {"rgba": "0.84 0.85 0.87 1", "specular": "0.4", "shininess": "0.6"},
     "joint": {"rgba": "0.16 0.17 0.20 1", "specular": "0.5", "shininess": "0.5"},
+    "trim": {"rgba": "0.42 0.46 0.52 1", "specular": "0.4", "shininess": "0.6"},
     "accent": {"rgba": "0.95 0.45 0.10 1", "specular": "0.4", "shininess": "0.6"},
     "rubber": {"rgba": "0.08 0.08 0.09 1", "specular": "0.1", "shininess": "0.1"},
     "visor": {"rgba": "0.05 0.10 0.16 1", "specular": "0.9", "shininess": "0.9"},

@@ -41,10 +41,10 @@ def describe(options: RobotOptions) -> RobotDescription:
         mjcf=robot_mjcf(NAME, replace(base, position=(0.0, 0.0, dim.LEG)), _MATERIALS),
         mass=float(sum(body.inertial.mass for body in bodies)),
         joint_names=tuple(joint.name for joint in joints),
-        torque_limit=np.array([joint.actuator.torque_limit for joint in joints]),
-        velocity_limit=np.array([joint.actuator.velocity_limit for joint in joints]),
-        position_lower=np.array([joint.lower for joint in joints]),
-        position_upper=np.array([joint.upper for joint in joints]),
+        torque_limit=_constant([joint.actuator.torque_limit for joint in joints]),
+        velocity_limit=_constant([joint.actuator.velocity_limit for joint in joints]),
+        position_lower=_constant([joint.lower for joint in joints]),
+        position_upper=_constant([joint.upper for joint in joints]),
         sole_sites=("left_sole", "right_sole"),
         sole_length=length,
         sole_width=width,
@@ -79,6 +79,13 @@ def _pelvis(foot_length: float, foot_width: float) -> Body:
     )
 
 
+def _constant(values: list[float]) -> Array:
+    """A read-only array."""
+    array: Array = np.array(values)
+    array.setflags(write=False)
+    return array
+
+
 def _mild_crouch(joint_names: tuple[str, ...]) -> Array:
     """Joint angles [rad] with the CoM near 1.0 m above the soles and hanging arms."""
     knee = 0.65
@@ -91,4 +98,4 @@ def _mild_crouch(joint_names: tuple[str, ...]) -> Array:
         "right_shoulder_roll": -0.12,
         "elbow": -0.4,
     }
-    return np.array([angles.get(name, angles.get(name.split("_", 1)[-1], 0.0)) for name in joint_names])
+    return _constant([angles.get(name, angles.get(name.split("_", 1)[-1], 0.0)) for name in joint_names])

@@ -33,7 +33,8 @@ class RobotOptions:
 class RobotDescription:
     """A robot, complete: `mjcf` is read by MuJoCo and by Pinocchio, the rest repeats facts of that text.
 
-    Joints are revolute, one motor each, in the order of the MJCF, which is the order of both engines.
+    Joints are revolute, one motor each, in the order of the MJCF, which is the order of both engines. Arrays are
+    read-only.
 
     Attributes:
         name: name in the registry.

@@ -20,20 +20,18 @@ SMOOTHING = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """A camera that looks at a point which follows the floating base horizontally.
+    """A camera that looks at the floating base.
 
     Attributes:
         distance: from the point it looks at [m].
         azimuth: viewing direction about the world's z axis; 180 looks the robot in the face [deg].
         elevation: viewing direction against the horizontal, negative looks down [deg].
-        height: of the point it looks at above the ground plane [m].
-        tracking: whether it follows the robot; otherwise it stays at the first frame's point.
+        tracking: whether it follows the robot, smoothly; otherwise it keeps looking at the place of the first frame.
     """
 
     distance: float = 3.2
     azimuth: float = 135.0
     elevation: float = -10.0
-    height: float = 0.9
     tracking: bool = True
 
 
@@ -86,7 +84,7 @@ class _Painter:
             self._scene.flags[flag] = shadows
         self._option, self._view = mujoco.MjvOption(), mujoco.MjvCamera()
         self._view.distance, self._view.azimuth = camera.distance, camera.azimuth
-        self._view.elevation, self._view.lookat[:] = camera.elevation, (math.nan, math.nan, camera.height)
+        self._view.elevation, self._view.lookat[:] = camera.elevation, math.nan
         self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         self._area = mujoco.MjrRect(0, 0, width, height)
@@ -100,17 +98,19 @@ class _Painter:
             mujoco.mj_comPos(self._model, self._data)
             mujoco.mj_camlight(self._model, self._data)
             self._follow()
+            # The engine centres the endless floor on the camera of the frame before, unless told of this one's.
+            mujoco.mjv_updateCamera(self._model, self._data, self._view, self._scene)
             everything = mujoco.mjtCatBit.mjCAT_ALL.value
             mujoco.mjv_updateScene(self._model, self._data, self._option, None, self._view, everything, self._scene)
             mujoco.mjr_render(self._area, self._scene, self._context)
             yield self._pixels()
 
     def _follow(self) -> None:
-        target = self._data.qpos[:2]
+        target = self._data.qpos[:3]
         if math.isnan(self._view.lookat[0]):
-            self._view.lookat[:2] = target
+            self._view.lookat[:] = target
         elif self._style.tracking:
-            self._view.lookat[:2] += SMOOTHING * (target - self._view.lookat[:2])
+            self._view.lookat[:] += SMOOTHING * (target - self._view.lookat)
 
     def _pixels(self) -> Image:
         image = np.empty((self._area.height, self._area.width, 3), dtype=np.uint8)

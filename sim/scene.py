@@ -29,8 +29,7 @@ def world_mjcf(description: RobotDescription, terrain: Terrain, timestep: float)
         raise ValueError(f"the MJCF of {description.name} lacks a worldbody or asset element, it must have both")
     _add_floor_materials(asset)
     add_terrain(worldbody, terrain)
-    sun = {"pos": "3 -4 8", "dir": "-0.3 0.4 -0.8", "diffuse": "0.75 0.75 0.72", "castshadow": "true"}
-    ElementTree.SubElement(worldbody, "light", sun, name="sun", type="directional")
+    _add_sun(worldbody, description.pelvis_body)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
@@ -58,12 +57,20 @@ def _add_options(root: ElementTree.Element, timestep: float) -> None:
 
 def _add_look(root: ElementTree.Element) -> None:
     visual = ElementTree.SubElement(root, "visual")
-    headlight = {"ambient": "0.35 0.35 0.38", "diffuse": "0.45 0.45 0.45", "specular": "0.2 0.2 0.2"}
+    headlight = {"ambient": "0.30 0.30 0.32", "diffuse": "0.36 0.36 0.36", "specular": "0.2 0.2 0.2"}
     ElementTree.SubElement(visual, "headlight", headlight)
     ElementTree.SubElement(visual, "global", offwidth="1920", offheight="1080")
     ElementTree.SubElement(visual, "quality", shadowsize="4096")
-    ElementTree.SubElement(visual, "map", znear="0.02", zfar="40", haze="0.4")
+    ElementTree.SubElement(visual, "map", znear="0.02", zfar="40", haze="0.4", shadowclip="8")
     ElementTree.SubElement(visual, "rgba", haze="0.75 0.82 0.90 1")
+    ElementTree.SubElement(root, "statistic", extent="2", center="0 0 1")
+
+
+def _add_sun(worldbody: ElementTree.Element, base: str) -> None:
+    """A sun that travels with the robot, since shadows are drawn only around the place of their light."""
+    body = next(element for element in worldbody.iter("body") if element.get("name") == base)
+    sun = {"pos": "1.2 -1.6 3.2", "dir": "-0.3 0.4 -0.8", "diffuse": "0.75 0.74 0.70", "castshadow": "true"}
+    ElementTree.SubElement(body, "light", sun, name="sun", type="directional", mode="track")
 
 
 def _add_floor_materials(asset: ElementTree.Element) -> None:
@@ -72,6 +79,6 @@ def _add_floor_materials(asset: ElementTree.Element) -> None:
     checker = {"type": "2d", "builtin": "checker", "rgb1": "0.62 0.66 0.70", "rgb2": "0.55 0.59 0.63"}
     ElementTree.SubElement(asset, "texture", checker, name="floor", width="256", height="256")
     ElementTree.SubElement(
-        asset, "material", name="floor", texture="floor", texrepeat="1 1", texuniform="true", reflectance="0.08"
+        asset, "material", name="floor", texture="floor", texrepeat="1 1", texuniform="true", reflectance="0.05"
     )
     ElementTree.SubElement(asset, "material", name="step", rgba="0.70 0.62 0.52 1")

@@ -52,7 +52,7 @@ def _thigh(side: str, outward: float, shank: Body) -> Body:
             Geom("cylinder", (0.062,), ends=(0.0, -0.045, 0.0, 0.0, 0.06 * outward, 0.0), material="joint"),
             Geom("ellipsoid", (0.078, 0.07, 0.15), (0.008, 0.008 * outward, -0.155)),
             Geom("capsule", (0.05,), ends=(0.0, 0.0, -0.16, 0.0, 0.0, -0.36)),
-            Geom("ellipsoid", (0.045, 0.05, 0.11), (0.042, 0.0, -0.19), material="accent"),
+            Geom("ellipsoid", (0.045, 0.05, 0.11), (0.042, 0.006 * outward, -0.19), material="trim"),
             Geom("sphere", (0.06,), knee, role=Role.COLLISION),
         ),
         children=(shank,),

@@ -17,8 +17,9 @@ from models.types import Array, RobotDescription, RobotOptions
 NAME = "humanoid100"
 
 _MATERIALS: Mapping[str, Mapping[str, str]] = {
-    "shell": {"rgba": "0.90 0.91 0.93 1", "specular": "0.4", "shininess": "0.6"},
+    "shell": {"rgba": "0.84 0.85 0.87 1", "specular": "0.4", "shininess": "0.6"},
     "joint": {"rgba": "0.16 0.17 0.20 1", "specular": "0.5", "shininess": "0.5"},
+    "trim": {"rgba": "0.42 0.46 0.52 1", "specular": "0.4", "shininess": "0.6"},
     "accent": {"rgba": "0.95 0.45 0.10 1", "specular": "0.4", "shininess": "0.6"},
     "rubber": {"rgba": "0.08 0.08 0.09 1", "specular": "0.1", "shininess": "0.1"},
     "visor": {"rgba": "0.05 0.10 0.16 1", "specular": "0.9", "shininess": "0.9"},
@@ -40,10 +41,10 @@ def describe(options: RobotOptions) -> RobotDescription:
         mjcf=robot_mjcf(NAME, replace(base, position=(0.0, 0.0, dim.LEG)), _MATERIALS),
         mass=float(sum(body.inertial.mass for body in bodies)),
         joint_names=tuple(joint.name for joint in joints),
-        torque_limit=np.array([joint.actuator.torque_limit for joint in joints]),
-        velocity_limit=np.array([joint.actuator.velocity_limit for joint in joints]),
-        position_lower=np.array([joint.lower for joint in joints]),
-        position_upper=np.array([joint.upper for joint in joints]),
+        torque_limit=_constant([joint.actuator.torque_limit for joint in joints]),
+        velocity_limit=_constant([joint.actuator.velocity_limit for joint in joints]),
+        position_lower=_constant([joint.lower for joint in joints]),
+        position_upper=_constant([joint.upper for joint in joints]),
         sole_sites=("left_sole", "right_sole"),
         sole_length=length,
         sole_width=width,
@@ -78,6 +79,13 @@ def _pelvis(foot_length: float, foot_width: float) -> Body:
     )
 
 
+def _constant(values: list[float]) -> Array:
+    """A read-only array."""
+    array: Array = np.array(values)
+    array.setflags(write=False)
+    return array
+
+
 def _mild_crouch(joint_names: tuple[str, ...]) -> Array:
     """Joint angles [rad] with the CoM near 1.0 m above the soles and hanging arms."""
     knee = 0.65
@@ -90,4 +98,4 @@ def _mild_crouch(joint_names: tuple[str, ...]) -> Array:
         "right_shoulder_roll": -0.12,
         "elbow": -0.4,
     }
-    return np.array([angles.get(name, angles.get(name.split("_", 1)[-1], 0.0)) for name in joint_names])
+    return _constant([angles.get(name, angles.get(name.split("_", 1)[-1], 0.0)) for name in joint_names])

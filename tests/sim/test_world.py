@@ -6,7 +6,7 @@ import pytest
 from models.pinocchio import pinocchio_model
 from models.registry import describe
 from models.types import RobotOptions
-from planner.terrain import Terrain, flat
+from planner.terrain import Box, Terrain, flat
 from sim.errors import SimulationDiverged
 from sim.pushes import Push
 from sim.world import World
@@ -45,6 +45,18 @@ def test_wrenches_of_a_held_robot_sum_to_its_weight(options: RobotOptions, hold)
     assert now.wrench[:, 2].sum() == pytest.approx(9.81 * world.description.mass, rel=0.02)
     np.testing.assert_allclose(now.wrench[0, :3] * (1, -1, 1), now.wrench[1, :3], atol=2.0)
     assert not now.nonfoot_contact
+
+
+def test_boxes_carry_the_robot_like_the_plane(standing_configuration, make_holder) -> None:
+    """Also with the seam of two boxes below the soles."""
+    halves = [Box(np.array([x, 0.0, 0.05]), np.array([0.5, 1.0, 0.05]), np.eye(3)) for x in (-0.5, 0.5)]
+    world = _world(terrain=Terrain(tuple(halves)))
+    q = standing_configuration(world)
+    q[2] += 0.1
+    make_holder(world, q).hold(world, 500)
+    assert world.measure().wrench[:, 2].sum() == pytest.approx(981.0, rel=0.02)
+    for site in world.description.sole_sites:
+        assert world.data.site(site).xpos[2] == pytest.approx(0.1, abs=1e-4)
 
 
 def test_wrenches_and_weight_are_the_rate_of_centroidal_momentum(standing_configuration, make_holder) -> None:

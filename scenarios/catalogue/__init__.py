@@ -12,3 +12,8 @@ def names() -> tuple[str, ...]:
 def text(name: str) -> str:
     """YAML text of a catalogue scenario."""
     return (files(__name__) / f"{name}.yaml").read_text(encoding="utf-8")
+
+
+def summary(name: str) -> str:
+    """First comment line of a catalogue scenario: what it is."""
+    return text(name).split("\n", 1)[0].lstrip("# ")

@@ -61,7 +61,7 @@ def file_descriptor_set(spec: ChannelSpec) -> bytes:
         )
         comment = f" {field.doc} [{field.unit}] {field.frame}".rstrip()
         file.source_code_info.location.add(path=[4, 0, 2, index], span=[index, 0, 0], leading_comments=comment)
-    return descriptor_pb2.FileDescriptorSet(file=[file]).SerializeToString(deterministic=True)
+    return bytes(descriptor_pb2.FileDescriptorSet(file=[file]).SerializeToString(deterministic=True))
 
 
 def _tag(number: int, field: FieldSpec) -> bytes:

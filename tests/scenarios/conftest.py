@@ -1,0 +1,148 @@
+"""A robot, robots and a closed loop that need neither engine: the log is filled with motion of known metrics."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from scenarios.log import LogWriter, channels
+from scenarios.progress import End, Progress
+from scenarios.robots import RobotFacts
+from scenarios.schema import Scenario
+
+JOINTS = ("left_hip", "left_knee", "right_hip", "right_knee")
+SIZES = channels.Sizes(nj=4, nq=11, nv=10, horizon=50)
+CHANNELS = (
+    *(channels.measurement, channels.truth, channels.estimate, channels.contact, channels.reference),
+    *(channels.plan, channels.footstep, channels.wbc, channels.torque, channels.timing),
+)
+FOOT = 0.075
+
+
+class FakeRobots:
+    def names(self) -> tuple[str, ...]:
+        return ("humanoid100", "talos")
+
+    def facts(self, scenario: Scenario) -> RobotFacts:
+        return RobotFacts(bodies=("pelvis", "torso"), leg_length=0.92, hip_width=0.2, com_above_hip=0.114)
+
+
+@dataclass
+class Motion:
+    """What the fake loop writes; the defaults meet the default criteria of a scenario of two steps.
+
+    Each half second: stand, step on the left foot, step on the right foot, stand.
+    """
+
+    duration: float = 4.0
+    rate: int = 500
+    speed: float = 0.4
+    zmp_offset: tuple[float, float] = (0.003, -0.004)
+    plan_offset: tuple[float, float, float] = (0.001, 0.002, 0.003)
+    fall_at: float = np.inf
+    stop_at: float = np.inf
+    end: End = field(default_factory=lambda: End("completed", 4.0))
+    raises: BaseException | None = None
+
+    def __call__(self, scenario: Any, robot: Any, writer: LogWriter, on_progress: Callable[[Progress], None]) -> End:
+        _Loop(self, writer).run(on_progress)
+        if self.raises is not None:
+            raise self.raises
+        return self.end
+
+
+class _Loop:
+    def __init__(self, motion: Motion, writer: LogWriter) -> None:
+        self.motion = motion
+        self.out = {make.__name__: writer.channel(make(SIZES)) for make in CHANNELS}
+
+    def run(self, on_progress: Callable[[Progress], None]) -> None:
+        motion = self.motion
+        for tick in range(round(motion.duration * motion.rate)):
+            time = tick / motion.rate
+            if time >= motion.stop_at:
+                return
+            self.tick(time, tick * 10**9 // motion.rate)
+            if tick % (motion.rate // 50) == 0:
+                self.plan(time, tick * 10**9 // motion.rate)
+                on_progress(Progress(time, motion.duration, "standing", 3.0))
+            if time in (1.0, 1.5):
+                error = 0.006 if time == 1.0 else 0.002
+                index = int(time * 2) - 1
+                self.out["footstep"].append(tick * 10**9 // motion.rate, index, 0, np.zeros(4), [error, 0, 0, 0])
+
+    def com(self, time: Any) -> Any:
+        moved = self.motion.speed * (np.clip(time, 0.5, 1.5) - 0.5)
+        height = np.where(np.asarray(time) >= self.motion.fall_at, 0.3, 1.0)
+        return np.stack(np.broadcast_arrays(moved, 0.0, height), axis=-1)
+
+    def tick(self, time: float, ns: int) -> None:
+        single = 0.5 <= time < 1.5
+        stance = (0 if time < 1.0 else 1) if single else -1
+        com = self.com(time)
+        velocity = np.array([self.motion.speed if single else 0.0, 0.0, 0.0])
+        offset = np.array(self.motion.zmp_offset)
+        soles = [np.array([com[0], y, 0, 0, 0, 0, 1.0]) for y in (0.125, -0.125)]
+        loaded = [stance in (-1, 0), stance in (-1, 1)]
+        center = np.array([com[0], {-1: 0.0, 0: 0.125, 1: -0.125}[stance]])
+        half = np.array([FOOT / 2, FOOT / 2 + (0.125 if stance == -1 else 0.0)])
+        box = center + np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half
+        support = np.concatenate([box, np.repeat(box[-1:], 4, axis=0)])
+        cop = 0.4 * FOOT / 2 * np.array([0.5, -1.0])
+        out = self.out
+        zero3, zero6 = np.zeros(3), np.zeros(6)
+        joints = np.array([0.1, 0.3, 0.1, -0.5])
+        out["measurement"].append(ns, joints, np.full(4, 0.5), np.full(4, -10.0), zero3, zero3, zero6, zero6, zero3)
+        out["truth"].append(ns, np.zeros(11), np.zeros(10), com, velocity, zero3, *soles, 0.01, 0)
+        out["estimate"].append(ns, com + np.array([0.001, 0, 0]), velocity, com[:2], zero3, zero6)
+        zmp = np.array([*(center + offset), 0.0])
+        out["contact"].append(ns, zmp, [490, 490], loaded, loaded, loaded, cop, cop)
+        out["reference"].append(
+            ns,
+            *(com, velocity, zero3, center, com[:2], 3.13, center, zero3, zero3),
+            *(2 if single else 0, stance, 0, 0.0, 0.5, support, 4),
+        )
+        out["wbc"].append(ns, 0, 0, 5, 0, 1e-9, 1e-9, np.zeros(10), zero6, zero6, np.zeros(18))
+        out["torque"].append(ns, np.array([30.0, -40.0, 5.0, 0.0]), 0.4)
+        out["timing"].append(ns, 10, 80, 60, 200 if ns % 20_000_000 == 0 else 0, 30, 10, 500)
+
+    def plan(self, time: float, ns: int) -> None:
+        times = time + 0.02 * np.arange(51)
+        com = self.com(times) - np.array(self.motion.plan_offset)
+        velocity = np.zeros((51, 3))
+        velocity[:, 0] = np.where((times >= 0.5 - 1e-9) & (times < 1.5 - 1e-9), self.motion.speed, 0.0)
+        status = (0, [0, 0], 0)
+        flat = np.zeros((51, 2))
+        self.out["plan"].append(ns, com, velocity, flat, flat, np.zeros((50, 2)), np.full(51, 3.13), *status)
+
+
+@pytest.fixture
+def robots() -> FakeRobots:
+    return FakeRobots()
+
+
+@pytest.fixture
+def robot() -> SimpleNamespace:
+    return SimpleNamespace(
+        mjcf="<mujoco/>",
+        mass=100.0,
+        sole_length=FOOT,
+        sole_width=FOOT,
+        joint_names=JOINTS,
+        torque_limit=np.full(4, 100.0),
+        position_lower=np.full(4, -0.6),
+        position_upper=np.full(4, 2.0),
+    )
+
+
+@pytest.fixture
+def motion() -> type[Motion]:
+    return Motion
+
+
+@pytest.fixture
+def two_steps() -> Scenario:
+    return Scenario(name="two-steps", gait={"steps": 2})

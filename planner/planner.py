@@ -26,6 +26,10 @@ from planner.types import Array, CentroidalState, FeetState, Foot, PlannedFootst
 from planner.zmp_reference import ZmpReference, zmp_reference
 
 
+_SAME_TARGET = 1e-4
+"""Difference of touchdown pose that is not worth a new swing trajectory [m, rad]."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Preview:
     """What is known of the window before solving."""
@@ -225,7 +229,8 @@ class WalkingPlanner:
             times = (time, time + phase.samples // 2 * t, time + phase.samples * t)
             self._swing = start_swing(foot, pose, target, times, self.gait.swing_height, self.parameters)
         elif not stepper.fixed and solution.solver is not SolverStatus.HELD:
-            self._swing = self._swing.retargeted(time, target)
+            if np.abs(target - self._swing.target).max() > _SAME_TARGET:
+                self._swing = self._swing.retargeted(time, target)
 
     def _status(self, solution: TvmpcSolution) -> PlanStatus:
         held = solution.solver is SolverStatus.HELD

@@ -47,11 +47,11 @@ class IdealFeet:
 
     def follow(self, sampler: PlanSampler, time: float) -> None:
         """Move to where the plan has the feet at an instant, which may be the planned touchdown."""
-        before = sampler.sample(time - 1e-3)
         position, yaw = self.state.position.copy(), self.state.yaw.copy()
-        if before.swing_foot is not None:
-            sole = before.swing + 1e-3 * before.swing_velocity
-            position[before.swing_foot], yaw[before.swing_foot] = sole[:3], sole[3]
+        swing = sampler.plan.swing
+        if swing is not None:
+            sole = swing.evaluate(min(time, swing.touchdown_time))[0]
+            position[swing.foot], yaw[swing.foot] = sole[:3], sole[3]
         self.state = FeetState(position, yaw, sampler.sample(time).contacts)
 
 

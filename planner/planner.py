@@ -25,6 +25,9 @@ from planner.tvmpc import Trajectory, TvmpcProblem, build_problem, trajectory
 from planner.types import Array, CentroidalState, FeetState, Foot, PlannedFootstep, PlanStatus, SolverStatus
 from planner.zmp_reference import ZmpReference, zmp_reference
 
+_SAME_TARGET = 1e-4
+"""Difference of touchdown pose that is not worth a new swing trajectory [m, rad]."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Preview:
@@ -224,7 +227,9 @@ class WalkingPlanner:
             pose = np.append(feet.position[foot], yaw + wrap_angle(float(feet.yaw[foot]) - yaw))
             times = (time, time + phase.samples // 2 * t, time + phase.samples * t)
             self._swing = start_swing(foot, pose, target, times, self.gait.swing_height, self.parameters)
-        elif not stepper.fixed and solution.solver is not SolverStatus.HELD:
+            return
+        decided = stepper.fixed or solution.solver is SolverStatus.HELD
+        if not decided and np.abs(target - self._swing.target).max() > _SAME_TARGET:
             self._swing = self._swing.retargeted(time, target)
 
     def _status(self, solution: TvmpcSolution) -> PlanStatus:

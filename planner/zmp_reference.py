@@ -88,7 +88,7 @@ def zmp_reference(schedule: Schedule, table: SupportTable, start: int, count: in
     """
     index = schedule.index[start : start + count]
     fraction = schedule.fraction[start : start + count]
-    rows = table.values[index] + fraction[:, None] * table.steps[index]
+    rows = table.values.take(index, axis=0) + fraction[:, None] * table.steps.take(index, axis=0)
     return ZmpReference(rows[:, :2], rows[:, 2:4], rows[:, 4:6], rows[:, 6])
 
 

@@ -43,4 +43,6 @@ def test_height_starts_and_ends_at_com_height_over_its_support_and_reaches_the_a
 
 def test_stiffness_counts_the_height_above_the_zmp():
     preview, ground, _ = stairs_preview()
-    np.testing.assert_allclose(preview.stiffness * (preview.height[0] - ground), GRAVITY + preview.height[2], rtol=1e-12)
+    np.testing.assert_allclose(
+        preview.stiffness * (preview.height[0] - ground), GRAVITY + preview.height[2], rtol=1e-12
+    )

@@ -12,7 +12,7 @@ TARGET = np.array([1.4, 0.15, 0.0, 0.2])
 
 
 def swing(height=0.0, clearance=0.05):
-    target = TARGET + [0.0, 0.0, height, 0.0]
+    target = TARGET + np.array([0.0, 0.0, height, 0.0])
     return start_swing(Foot.LEFT, START, target, (2.0, 2.4, 2.8), clearance, PlannerParameters())
 
 
@@ -21,7 +21,7 @@ def test_swing_leaves_rest_clears_both_heights_and_touches_down_softly(height):
     trajectory = swing(height)
     start, end = trajectory.evaluate(2.0), trajectory.evaluate(2.8 - 1e-9 - 1e-10)
     np.testing.assert_allclose(start, [START, np.zeros(4), np.zeros(4)], atol=1e-12)
-    np.testing.assert_allclose(end[0], TARGET + [0.0, 0.0, height, 0.0], atol=1e-8)
+    np.testing.assert_allclose(end[0], TARGET + np.array([0.0, 0.0, height, 0.0]), atol=1e-8)
     np.testing.assert_allclose(end[1], [0.0, 0.0, -0.05, 0.0], atol=1e-6)
     z = np.array([trajectory.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.8, 801)])
     assert z.max() == pytest.approx(max(0.0, height) + 0.05, abs=1e-6)
@@ -48,7 +48,7 @@ def test_unchanged_target_is_continued_identically():
 @pytest.mark.parametrize("time", [2.1, 2.5])
 def test_new_target_is_reached_without_a_jump(time):
     trajectory = swing()
-    target = TARGET + [0.05, -0.03, 0.02, 0.1]
+    target = TARGET + np.array([0.05, -0.03, 0.02, 0.1])
     moved = trajectory.retargeted(time, target)
     np.testing.assert_allclose(moved.evaluate(time), trajectory.evaluate(time), atol=1e-9)
     np.testing.assert_allclose(moved.evaluate(2.8 - 2e-9)[0], target, atol=1e-6)

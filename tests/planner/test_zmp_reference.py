@@ -32,11 +32,13 @@ def test_reference_is_the_papers_zmp_equation(stand):
 @pytest.mark.parametrize("row", [1, 3, 4])
 def test_gain_is_the_derivative_of_the_reference(stand, row):
     steps, plan = setup(stand, steps=4, single_support=0.6, double_support=0.2)
-    start = [p.start for p in plan.phases if p.step == row and p.stance is not None][0]
+    start = next(p.start for p in plan.phases if p.step == row and p.stance is not None)
     table = support_table(steps, row, (True, True), HALF)
     base = zmp_reference(plan, table, start, 151)
     for j in range(2):
-        moved = steps.moved(row + 1 + j, steps.position[row + 1 + j] + [0.01, 0.0, 0.0], flat()) if row + j < 5 else steps
+        moved = (
+            steps.moved(row + 1 + j, steps.position[row + 1 + j] + [0.01, 0.0, 0.0], flat()) if row + j < 5 else steps
+        )
         shifted = zmp_reference(plan, support_table(moved, row, (True, True), HALF), start, 151)
         np.testing.assert_allclose((shifted.point - base.point)[:, 0] / 0.01, base.gain[:, j], atol=1e-9)
 

@@ -1,0 +1,193 @@
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from planner.frames import frame_rotation
+from planner.gait import GaitParameters
+from planner.parameters import PlannerParameters, StepAdaptation
+from planner.pendulum import PointPush
+from planner.pendulum_walk import walk_pendulum
+from planner.planner import WalkingPlanner
+from planner.types import CentroidalState, FeetState, Foot, PhaseKind, SolverStatus
+
+pytestmark = pytest.mark.unit
+
+HUMAN = (0.22, 0.11)
+
+
+def assert_walks(planner, trace, rms, step_error):
+    error = trace.zmp - trace.zmp_reference
+    nominal = planner.footsteps.increment[2:]
+    taken = np.diff(planner.footsteps.position[1:, :2], axis=0)
+    assert trace.fall_time is None
+    assert trace.margin.min() > 0.0
+    assert np.all(np.sqrt(np.mean(error**2, axis=0)) < rms)
+    assert np.abs(taken - nominal).max() < step_error
+    assert all(plan.status.solver is SolverStatus.SOLVED for plan in trace.plans)
+    assert max(np.max(plan.status.zmp_slack) for plan in trace.plans) < 1e-6
+    assert np.abs(trace.plans[-1].com_velocity[0]).max() < 1e-3
+    assert np.abs(trace.com[-1, :2] - planner.footsteps.support_points()[-1, :2]).max() < 1e-3
+
+
+def test_diagonal_walk_tracks_its_reference_inside_the_box(diagonal):
+    assert_walks(*diagonal, rms=1e-3, step_error=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("options", "foot"),
+    [
+        ({"step_length": 0.0, "lateral_step": 0.1}, (0.075, 0.075)),
+        ({"step_length": -0.15, "steps": 3}, (0.075, 0.075)),
+        ({"step_length": 0.25, "single_support": 0.8, "steps": 4}, (0.075, 0.075)),
+        ({"single_support": 0.6, "double_support": 0.2, "steps": 8}, (0.075, 0.075)),
+        ({"single_support": 0.5, "double_support": 0.16, "steps": 20}, HUMAN),
+        ({"step_length": 0.1, "turn": 0.2, "steps": 6, "first_foot": Foot.RIGHT}, HUMAN),
+        ({"steps": 1}, (0.075, 0.075)),
+    ],
+)
+def test_other_walks_stay_inside_the_box(walk, options, foot):
+    assert_walks(*walk(GaitParameters(**options), foot), rms=5e-3, step_error=2e-3)
+
+
+def test_standing_for_ever_never_runs_out(walk):
+    trace = walk(GaitParameters(steps=0), duration=5.0)[1]
+    assert trace.fall_time is None
+    assert trace.plans[-1].phase.kind is PhaseKind.STAND
+    assert trace.plans[-1].phase.elapsed == pytest.approx(4.98)
+    assert np.abs(trace.com[-1] - [0.0, 0.0, 1.0]).max() < 1e-9
+
+
+def test_same_walk_twice_is_identical(diagonal, walk):
+    again = walk(GaitParameters(lateral_step=0.1), duration=5.0)[1]
+    np.testing.assert_array_equal(again.com, diagonal[1].com[: len(again.com)])
+    np.testing.assert_array_equal(again.zmp, diagonal[1].zmp[: len(again.zmp)])
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.1])
+def test_plan_far_away_and_turned_is_the_same_plan(stand, walk, turn):
+    gait, origin, yaw = GaitParameters(lateral_step=0.1, steps=2, turn=turn), np.array([100.0, -50.0]), np.pi / 2
+    here = walk(gait, duration=5.0)[1]
+    feet = stand(origin=tuple(origin), yaw=yaw)
+    planner = WalkingPlanner(gait, feet, 0.075, 0.075)
+    there = walk_pendulum(planner, feet, 5.0, com=np.array([*origin, 1.0]), substeps=3)
+    R = frame_rotation(yaw)
+    np.testing.assert_allclose(there.com[:, :2], here.com[:, :2] @ R.T + origin, atol=1e-9)
+    for a, b in zip(here.plans[::10], there.plans[::10], strict=True):
+        np.testing.assert_allclose(b.zmp, a.zmp @ R.T + origin, atol=1e-9)
+
+
+@pytest.mark.parametrize("force", [(75.0, 75.0), (-75.0, 75.0), (300.0, 0.0), (0.0, -300.0)])
+def test_small_pushes_are_survived(walk, force):
+    push = PointPush(2.2, 0.01, np.array(force))
+    trace = walk(GaitParameters(lateral_step=0.1, steps=3), pushes=(push,))[1]
+    assert trace.fall_time is None
+    assert np.abs(trace.plans[-1].com_velocity[0]).max() < 1e-3
+
+
+def test_a_push_past_the_capture_limit_falls(walk):
+    push = PointPush(3.2, 0.1, np.array([0.0, 300.0]))
+    assert walk(GaitParameters(lateral_step=0.1), pushes=(push,))[1].fall_time is not None
+
+
+def test_a_frozen_plan_falls(walk):
+    trace = walk(GaitParameters(lateral_step=0.1), frozen_after=2.5)[1]
+    assert trace.fall_time is not None
+    assert trace.fall_time > 2.5
+
+
+def test_without_any_terminal_bound_or_cost_and_feedback_it_falls(walk, stand):
+    parameters = PlannerParameters(terminal_weight=0.0, terminal_slack=(1e-9, 0.0))
+    planner = WalkingPlanner(GaitParameters(lateral_step=0.1), stand(), 0.075, 0.075, parameters=parameters)
+    trace = walk_pendulum(planner, stand(), 12.0, com=np.array([0.0, 0.0, 1.0]), feedback=0.0, substeps=3)
+    assert trace.fall_time is not None
+
+
+def test_steps_move_only_when_adaptation_is_on(walk, stand):
+    gait = GaitParameters(lateral_step=0.1, single_support=0.6, double_support=0.2)
+    push, com = PointPush(2.0, 0.02, np.array([500.0, 0.0])), np.array([0.0, 0.0, 1.0])
+    moved = {}
+    for adaptation in StepAdaptation:
+        parameters = PlannerParameters(step_adaptation=adaptation)
+        planner = WalkingPlanner(gait, stand(), 0.075, 0.075, parameters=parameters)
+        trace = walk_pendulum(planner, stand(), 6.0, com=com, pushes=(push,), substeps=3)
+        assert trace.fall_time is None
+        taken = np.diff(planner.footsteps.position[1:, :2], axis=0)
+        moved[adaptation] = np.abs(taken - planner.footsteps.increment[2:]).max()
+    assert moved[StepAdaptation.NONE] < 1e-9
+    assert moved[StepAdaptation.LOCATION] > 0.005
+
+
+def drive(planner, feet, contact_of_swing, ticks):
+    """Follow the planner's own CoM with feet that stand where they started and a scripted swing contact."""
+    com, velocity, plans = np.array([0.0, 0.0, 1.0]), np.zeros(3), []
+    for tick in range(ticks):
+        plan = planner.update(CentroidalState(0.02 * tick, com, velocity), feet)
+        plans.append(plan)
+        com, velocity = plan.com[1], plan.com_velocity[1]
+        position, contact = feet.position.copy(), [True, True]
+        if plan.swing is not None:
+            position[plan.swing.foot] = plan.swing.evaluate(0.02 * (tick + 1))[0, :3]
+            contact[plan.swing.foot] = contact_of_swing(0.02 * (tick + 1))
+        feet = FeetState(position, feet.yaw, (contact[0], contact[1]))
+    return plans
+
+
+def test_late_touchdown_holds_the_clock_up_to_its_limit(stand):
+    gait = GaitParameters(initial_stand=0.0, single_support=0.6, double_support=0.2)
+    plans = drive(WalkingPlanner(gait, stand(), *HUMAN), stand(), lambda t: t > 1.0 + 0.11, 62)
+    waiting = [plan.status.late_touchdown for plan in plans]
+    assert max(waiting) == 6
+    landed = next(k for k, plan in enumerate(plans) if plan.phase.step == 1 and plan.phase.kind is PhaseKind.DOUBLE)
+    assert landed == 50 + 6
+    never = drive(WalkingPlanner(gait, stand(), *HUMAN), stand(), lambda t: False, 62)
+    landed = next(k for k, plan in enumerate(never) if plan.phase.step == 1 and plan.phase.kind is PhaseKind.DOUBLE)
+    assert landed == 50 + 10
+    assert never[58].swing.evaluate(1.16)[0, 2] == pytest.approx(-0.016)
+
+
+def test_early_touchdown_fixes_the_footstep_and_never_moves_the_clock(stand):
+    gait = GaitParameters(initial_stand=0.0, single_support=0.6, double_support=0.2)
+    plans = drive(WalkingPlanner(gait, stand(), *HUMAN), stand(), lambda t: t > 0.9, 60)
+    assert plans[46].status.early_touchdown
+    assert plans[49].phase.kind is PhaseKind.SINGLE
+    assert plans[50].phase.kind is PhaseKind.DOUBLE
+    assert len({plan.footsteps[0].footstep.position.tobytes() for plan in plans[46:50]}) == 1
+
+
+def test_measured_foothold_replaces_the_planned_one_and_carries_the_next(stand):
+    gait = GaitParameters(initial_stand=0.0, single_support=0.6, double_support=0.2)
+    planner = WalkingPlanner(gait, stand(), *HUMAN)
+    nominal = planner.footsteps.position.copy()
+    offset = np.array([0.02, -0.01, 0.003])
+    com, feet = np.array([0.0, 0.0, 1.0]), stand()
+    for tick in range(52):
+        plan = planner.update(CentroidalState(0.02 * tick, com, np.zeros(3)), feet)
+        position = feet.position.copy()
+        position[0] = nominal[2] + offset
+        feet = FeetState(position, feet.yaw, (True, True) if tick >= 48 else (False, True))
+    assert plan.phase.kind is PhaseKind.DOUBLE
+    np.testing.assert_allclose(plan.footholds[Foot.LEFT].position, nominal[2] + offset)
+    np.testing.assert_allclose(planner.footsteps.position[3, :2], nominal[3, :2] + offset[:2], atol=1e-12)
+
+
+def test_plan_arrays_have_the_shapes_they_say(diagonal):
+    plan = diagonal[1].plans[130]
+    shapes = {"com": (51, 3), "com_velocity": (51, 3), "com_acceleration": (51, 3), "zmp": (51, 2), "jerk": (50, 2)}
+    shapes |= {"zmp_reference": (51, 2), "stiffness": (51,), "omega": (51,), "contacts": (51, 2), "load_left": (51,)}
+    for field in fields(plan):
+        if field.name in shapes:
+            assert getattr(plan, field.name).shape == shapes[field.name]
+    assert [f.step for f in plan.footsteps] == [1, 2, 3]
+    assert plan.footsteps[0].touchdown_time == pytest.approx(2.0 + 1.5)
+
+
+def test_out_of_reach_and_nonsense_are_refused(stand):
+    with pytest.raises(ValueError, match=r"Footstep 1 would land 0\.500 m ahead.*\.$"):
+        WalkingPlanner(GaitParameters(step_length=0.5), stand(), 0.075, 0.075)
+    with pytest.raises(ValueError, match="foot_length is -1"):
+        WalkingPlanner(GaitParameters(), stand(), -1.0, 0.075)
+    with pytest.raises(ValueError, match="must be finite"):
+        WalkingPlanner(GaitParameters(), stand(), 0.075, 0.075).update(
+            CentroidalState(0.0, np.array([np.nan, 0.0, 1.0]), np.zeros(3)), stand()
+        )

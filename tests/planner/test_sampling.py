@@ -1,0 +1,66 @@
+import numpy as np
+import pytest
+
+from planner.sampling import PlanSampler
+from planner.types import PhaseKind
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.fixture(params=[20, 130, 180])
+def plan(request, diagonal):
+    return diagonal[1].plans[request.param]
+
+
+def test_samples_are_the_plans_own(plan):
+    sampler = PlanSampler(plan)
+    for k in (0, 1, 7, 50):
+        sample = sampler.sample(plan.time + k * plan.sample_time)
+        np.testing.assert_allclose(sample.com, plan.com[k], atol=1e-12)
+        np.testing.assert_allclose(sample.com_velocity, plan.com_velocity[k], atol=1e-12)
+        np.testing.assert_allclose(sample.com_acceleration, plan.com_acceleration[k], atol=1e-9)
+        np.testing.assert_allclose(sample.zmp, plan.zmp[k], atol=1e-9)
+        np.testing.assert_allclose(sample.zmp_reference, plan.zmp_reference[k], atol=1e-12)
+        assert sample.load_left == pytest.approx(plan.load_left[k])
+        assert sample.stiffness == pytest.approx(plan.stiffness[k])
+        assert sample.omega == pytest.approx(plan.omega[k])
+
+
+def test_derivatives_within_and_across_samples(plan):
+    sampler, step = PlanSampler(plan), 1e-4
+    samples = [sampler.sample(plan.time + 0.01 + step * i) for i in range(400)]
+    for value, rate, tolerance in (("com", "com_velocity", 1e-6), ("com_velocity", "com_acceleration", 4e-3)):
+        values = np.array([getattr(s, value) for s in samples])
+        rates = np.array([getattr(s, rate) for s in samples])
+        np.testing.assert_allclose(np.gradient(values, step, axis=0)[1:-1], rates[1:-1], atol=tolerance)
+
+
+def test_zmp_and_dcm_fit_the_motion(plan):
+    sample = PlanSampler(plan).sample(plan.time + 0.033)
+    np.testing.assert_allclose(
+        sample.stiffness * (sample.com[:2] - sample.zmp), sample.com_acceleration[:2], atol=1e-12
+    )
+    np.testing.assert_allclose(sample.omega * (sample.dcm - sample.com[:2]), sample.com_velocity[:2], atol=1e-12)
+
+
+def test_after_the_horizon_the_last_sample_is_held(plan):
+    sampler = PlanSampler(plan)
+    np.testing.assert_array_equal(sampler.sample(plan.time + 1.5).com, sampler.sample(plan.time + 9.0).com)
+
+
+def test_swing_is_there_only_in_single_support(diagonal):
+    for plan in diagonal[1].plans[::25]:
+        sample = PlanSampler(plan).sample(plan.time)
+        single = plan.phase.kind is PhaseKind.SINGLE
+        assert (sample.swing_foot is not None) == single == (not all(sample.contacts))
+        if single:
+            assert sample.swing_foot is plan.phase.stance.other
+            expected = plan.swing.evaluate(plan.time)
+            np.testing.assert_allclose([sample.swing, sample.swing_velocity, sample.swing_acceleration], expected)
+
+
+def test_load_rate_is_the_slope_of_the_load(diagonal):
+    plan = diagonal[1].plans[85]
+    a, b = (PlanSampler(plan).sample(plan.time + t) for t in (0.0, 0.01))
+    assert a.load_left_rate == pytest.approx((b.load_left - a.load_left) / 0.01)
+    assert a.load_left_rate != 0.0

@@ -39,8 +39,10 @@ class PlannerParameters:
         swing_speed: fastest mean speed of the swing foot to a shifted footstep [m/s].
         freeze_time: time before touchdown from which the footstep is fixed [s].
         late_touchdown: longest wait of the phase clock for a touchdown [s].
+        touchdown_lead: the swing ends this long before single support does, so that the foot is felt in time [s].
         touchdown_speed: downward speed of the swing foot at the planned touchdown [m/s].
-        search_speed: downward speed of the swing foot after it, while it feels no ground [m/s].
+        search_speed: greatest downward speed of the swing foot after it, while it feels no ground [m/s].
+        search_acceleration: at which that speed is gained [m/s^2].
         solvers: QP solvers of qpsolvers, in the order in which they are tried.
 
     Raises:
@@ -66,8 +68,10 @@ class PlannerParameters:
     swing_speed: float = 3.0
     freeze_time: float = 0.08
     late_touchdown: float = 0.2
-    touchdown_speed: float = 0.05
+    touchdown_lead: float = 0.02
+    touchdown_speed: float = 0.015
     search_speed: float = 0.1
+    search_acceleration: float = 0.5
     solvers: tuple[str, str] = ("daqp", "quadprog")
 
     def __post_init__(self) -> None:
@@ -78,6 +82,7 @@ class PlannerParameters:
             may_be_zero = field.name in (
                 "late_touchdown",
                 "freeze_time",
+                "touchdown_lead",
                 "touchdown_speed",
                 "search_speed",
                 "terminal_weight",

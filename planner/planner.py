@@ -225,7 +225,8 @@ class WalkingPlanner:
             t = self.parameters.sample_time
             yaw = float(stepper.footsteps.yaw[stepper.row - 1])
             pose = np.append(feet.position[foot], yaw + wrap_angle(float(feet.yaw[foot]) - yaw))
-            times = (time, time + phase.samples // 2 * t, time + phase.samples * t)
+            lead = min(self.parameters.touchdown_lead, 0.25 * phase.samples * t)
+            times = (time, time + phase.samples // 2 * t, time + phase.samples * t - lead)
             self._swing = start_swing(foot, pose, target, times, self.gait.swing_height, self.parameters)
             return
         decided = stepper.fixed or solution.solver is SolverStatus.HELD

@@ -18,8 +18,8 @@ class SwingTrajectory:
 
     x, y and yaw are one quintic from the state at the last change of target to rest at the target, so that an unchanged
     target is continued identically. z is one quintic up to the apex and one down to the touchdown height, joined with
-    continuous acceleration. After the touchdown time x, y, yaw hold and z goes down at the search speed; the downward
-    speed changes there from the touchdown speed to the search speed.
+    continuous acceleration. After the touchdown time x, y, yaw hold and z goes on downwards from the touchdown speed,
+    gaining speed up to the search speed: a jump in speed there would shake the ZMP of the stance foot.
 
     Attributes:
         foot: the foot that swings.
@@ -29,7 +29,8 @@ class SwingTrajectory:
         target: touchdown position and yaw, shape (4,).
         clearance: swing height above the higher of lift-off and touchdown [m].
         touchdown_speed: downward speed at touchdown [m/s].
-        search_speed: downward speed after it [m/s].
+        search_speed: greatest downward speed after it [m/s].
+        search_acceleration: at which that speed is gained [m/s^2].
         level: coefficients of x, y, yaw from `start_time`, shape (6, 3).
         rise_start: local time zero of the rise [s].
         rise: coefficients of z until the apex, shape (6, 1).
@@ -45,6 +46,7 @@ class SwingTrajectory:
     clearance: float
     touchdown_speed: float
     search_speed: float
+    search_acceleration: float
     level: Array
     rise_start: float
     rise: Array
@@ -56,8 +58,7 @@ class SwingTrajectory:
         result = np.zeros((6, 4))
         if time >= self.touchdown_time - _NOW:
             result[0] = self.target
-            result[0, 2] -= self.search_speed * (time - self.touchdown_time)
-            result[1, 2] = -self.search_speed
+            result[:3, 2] = self._search(time - self.touchdown_time)
             return result
         level = shifted(self.level, time - self.start_time)
         result[:, :2], result[:, 3] = level[:, :2], level[:, 2]
@@ -66,6 +67,16 @@ class SwingTrajectory:
         else:
             result[:, 2] = shifted(self.rise, time - self.rise_start)[:, 0]
         return result
+
+    def _search(self, since: float) -> tuple[float, float, float]:
+        """Height [m], speed [m/s] and half the acceleration [m/s^2] of the search for ground, `since` the touchdown time."""
+        speed, bend = self.touchdown_speed, self.search_acceleration
+        gaining = max(0.0, (self.search_speed - speed) / bend)
+        height = float(self.target[2]) - speed * since - 0.5 * bend * min(since, gaining) ** 2
+        if since < gaining:
+            return height, -speed - bend * since, -0.5 * bend
+        top = max(speed, self.search_speed)
+        return height - (top - speed) * (since - gaining), -top, 0.0
 
     def evaluate(self, time: float) -> Array:
         """Position, velocity and acceleration at an instant after the start, shape (3, 4)."""
@@ -109,7 +120,7 @@ def start_swing(
         target: touchdown position and yaw, shape (4,).
         times: lift-off, apex and touchdown [s].
         clearance: swing height above the higher of both ends [m].
-        parameters: give the touchdown and search speeds.
+        parameters: give the speeds of touchdown and search.
     """
     lift, apex, touchdown = times
     rest = np.zeros((3, 4))
@@ -123,6 +134,7 @@ def start_swing(
         clearance=clearance,
         touchdown_speed=parameters.touchdown_speed,
         search_speed=parameters.search_speed,
+        search_acceleration=parameters.search_acceleration,
         level=_to_rest(rest[:, [0, 1, 3]], target[[0, 1, 3]], touchdown - lift),
         rise_start=lift,
         rise=np.zeros((6, 1)),

@@ -5,19 +5,24 @@ Times are nominal; step adaptation may shift the true ones.
 
 from scenarios.schema import Gait, PushSettings, Scenario
 
-FINAL_STAND = 2.0
+FINAL_STAND = 2.5
 """Standing after the last double support that ends a run whose duration is not given [s]."""
 
 
 def phase_start(gait: Gait, step: int, phase: str) -> float:
-    """Begin [s] of a support phase of a footstep; step 1 is the first, its double support shifts the weight."""
-    before = gait.initial_stand + (step - 1) * (gait.double_support + gait.single_support)
-    return before if phase == "double" else before + gait.double_support
+    """Begin [s] of a support phase of a step; its double support precedes its single support.
+
+    Step 1 is the first; its double support shifts the weight from standing and takes twice the usual time.
+    """
+    single = gait.initial_stand + 2 * gait.double_support + (step - 1) * (gait.single_support + gait.double_support)
+    return single if phase == "single" else single - phase_duration(gait, step, phase)
 
 
-def phase_duration(gait: Gait, phase: str) -> float:
-    """Duration [s] of a support phase."""
-    return gait.double_support if phase == "double" else gait.single_support
+def phase_duration(gait: Gait, step: int, phase: str) -> float:
+    """Duration [s] of a support phase of a step."""
+    if phase == "single":
+        return gait.single_support
+    return 2 * gait.double_support if step == 1 else gait.double_support
 
 
 def push_time(gait: Gait, push: PushSettings) -> float:
@@ -26,7 +31,7 @@ def push_time(gait: Gait, push: PushSettings) -> float:
         return push.time
     if push.step is None or push.phase is None:
         raise ValueError("a push needs a time, or a step and a phase")
-    return phase_start(gait, push.step, push.phase) + (push.fraction or 0.0) * phase_duration(gait, push.phase)
+    return phase_start(gait, push.step, push.phase) + (push.fraction or 0.0) * phase_duration(gait, push.step, push.phase)
 
 
 def run_duration(scenario: Scenario) -> float:

@@ -69,7 +69,7 @@ class PlannerParameters:
     freeze_time: float = 0.08
     late_touchdown: float = 0.2
     touchdown_lead: float = 0.02
-    touchdown_speed: float = 0.015
+    touchdown_speed: float = 0.01
     search_speed: float = 0.1
     search_acceleration: float = 0.5
     solvers: tuple[str, str] = ("daqp", "quadprog")

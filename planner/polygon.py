@@ -1,6 +1,7 @@
 """Convex polygons on the ground: soles, their hull, and the nearest point in it."""
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from planner.frames import frame_rotation
 from planner.types import Array, Footstep
@@ -18,30 +19,12 @@ def sole_corners(footstep: Footstep, half_size: Array) -> Array:
 
 
 def convex_hull(points: Array) -> Array:
-    """Convex hull, anticlockwise (Andrew's monotone chain).
+    """Vertices of the convex hull, anticlockwise, shape (v, 2).
 
     Args:
         points: shape (n, 2) [m], at least three that are not on a line.
-
-    Returns:
-        Vertices without collinear ones, shape (v, 2).
     """
-    ordered = sorted({(float(x), float(y)) for x, y in points})
-    lower, upper = _chain(ordered), _chain(ordered[::-1])
-    return np.array(lower[:-1] + upper[:-1])
-
-
-def _chain(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    chain: list[tuple[float, float]] = []
-    for p in points:
-        while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 1e-12:
-            chain.pop()
-        chain.append(p)
-    return chain
-
-
-def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    return np.asarray(points[ConvexHull(points).vertices])
 
 
 def signed_distance(polygon: Array, point: Array) -> float:

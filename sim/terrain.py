@@ -28,7 +28,7 @@ def add_terrain(worldbody: ElementTree.Element, terrain: Terrain) -> None:
         "group": "0",
         "friction": numbers((terrain.friction, 0.0, 0.0)),
         # 5 ms critically damped, nearly rigid from the first micrometre: a standing sole sinks in by micrometres.
-        "solref": "0.005 1",
+        "solref": "0.01 1",
         "solimp": "0.95 0.99 0.0001",
     }
     plane = {"name": GROUND, "type": "plane", "size": "0 0 1", "material": "floor"}

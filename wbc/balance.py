@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from wbc.types import Array, WbcReference
 
@@ -40,10 +41,9 @@ class SupportRegion:
 
     def rebuild(self, positions: Array, rotations: Array, active: tuple[bool, bool]) -> None:
         """Hull of the active soles; positions (2, 3), rotations (2, 3, 3) in the world frame."""
-        points = [
-            positions[k, :2] + self._corners @ rotations[k, :2, :2].T for k in (0, 1) if active[k]
-        ]
-        self._vertices = convex_hull(np.concatenate(points))
+        soles = [positions[k, :2] + self._corners @ rotations[k, :2, :2].T for k in (0, 1) if active[k]]
+        points = np.concatenate(soles)
+        self._vertices = points[ConvexHull(points).vertices]
         edges = np.roll(self._vertices, -1, axis=0) - self._vertices
         lengths = np.linalg.norm(edges, axis=1)
         self._normals = np.column_stack([edges[:, 1], -edges[:, 0]]) / lengths[:, None]
@@ -58,25 +58,6 @@ class SupportRegion:
         along = np.einsum("ij,ij->i", point - start, edge) / np.einsum("ij,ij->i", edge, edge)
         nearest = start + np.clip(along, 0.0, 1.0)[:, None] * edge
         return nearest[np.argmin(np.einsum("ij,ij->i", nearest - point, nearest - point))]
-
-
-def convex_hull(points: Array) -> Array:
-    """Vertices of the convex hull of points (n, 2), counter-clockwise (Andrew's monotone chain)."""
-    ordered = sorted(set(map(tuple, points.tolist())))
-
-    def chain(sequence: list[tuple[float, float]]) -> list[tuple[float, float]]:
-        hull: list[tuple[float, float]] = []
-        for p in sequence:
-            while len(hull) >= 2 and _turn(hull[-2], hull[-1], p) <= 0.0:
-                hull.pop()
-            hull.append(p)
-        return hull[:-1]
-
-    return np.array(chain(ordered) + chain(ordered[::-1]))
-
-
-def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def com_acceleration(

@@ -1,0 +1,78 @@
+"""Variations of `diagonal-walk` that must pass with nothing else changed; run as a script for a table of all.
+
+    python tests/scenarios/variations.py [--jobs N] [--only TEXT]
+"""
+
+import argparse
+import math
+import tempfile
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+SCENARIO = "diagonal-walk"
+START_NOISE = ("start.position_noise=0.001", f"start.angle_noise={math.radians(1.0)}")
+
+
+@dataclass(frozen=True, slots=True)
+class Variation:
+    """Overrides of the scenario, and whether the physics tier runs it on every change."""
+
+    name: str
+    overrides: tuple[str, ...] = ()
+    every_change: bool = False
+
+
+VARIATIONS = (
+    Variation("as it is", (), True),
+    *(Variation(f"step length {v} m", (f"gait.step_length={v}",), v in (0.25, -0.15)) for v in (0.0, 0.1, 0.25, -0.15)),
+    *(Variation(f"single support {v} s", (f"gait.single_support={v}",), v == 0.8) for v in (0.8, 1.0, 2.0)),
+    Variation("20 steps", ("gait.steps=20",)),
+    Variation("human-size feet", ("robot_options.foot_length=0.22", "robot_options.foot_width=0.11"), True),
+    Variation("friction 0.5", ("terrain.friction=0.5",), True),
+    *(Variation(f"control at {v} Hz", (f"rates.control={v}",), v == 250) for v in (250, 1000)),
+    Variation("100 m away, turned 90 deg", ("start.x=100", "start.y=100", f"start.yaw={math.pi / 2}"), True),
+    *(Variation(f"start noise, seed {v}", (*START_NOISE, f"seed={v}"), v in (0, 1)) for v in range(10)),
+)
+
+
+def run(variation: Variation) -> dict[str, object]:
+    """Metrics of one variation, computed from its log."""
+    from scenarios.load import load_scenario
+    from scenarios.run import run_scenario
+
+    scenario = load_scenario(SCENARIO, list(variation.overrides))
+    with tempfile.TemporaryDirectory() as folder:
+        verdict = run_scenario(scenario, Path(folder)).verdict
+    return verdict.to_json()
+
+
+def _row(variation: Variation, metrics: dict[str, object]) -> str:
+    def number(name: str, scale: float = 1.0) -> str:
+        value = metrics.get(name)
+        values = value if isinstance(value, list) else [value]
+        return "/".join("-" if v is None else f"{scale * v:.3g}" for v in values)
+
+    cells = [
+        metrics["verdict"], f"{metrics['steps_taken']}/{metrics['steps_planned']}", number("zmp_inside_fraction"),
+        number("cop_ratio_p99"), number("com_error_rms", 1e3), number("zmp_error_rms", 1e3), number("torque_ratio_max"),
+        number("real_time_factor"), "; ".join(metrics["reasons"]),
+    ]  # fmt: skip
+    return "| " + " | ".join([variation.name, *map(str, cells)]) + " |"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--only", default="")
+    options = parser.parse_args()
+    chosen = [v for v in VARIATIONS if options.only in v.name]
+    print("| variation | verdict | steps | inside | CoP p99 | CoM error [mm] | ZMP error [mm] | torque | real time | why |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    with ProcessPoolExecutor(options.jobs) as pool:
+        for variation, metrics in zip(chosen, pool.map(run, chosen), strict=True):
+            print(_row(variation, metrics), flush=True)
+
+
+if __name__ == "__main__":
+    main()

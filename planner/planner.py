@@ -106,10 +106,10 @@ class WalkingPlanner:
             feet: measured feet.
 
         Raises:
-            ValueError: the measured CoM is not finite.
+            ValueError: the measured CoM or feet are not finite.
         """
-        if not math.isfinite(float(state.com.sum() + state.com_velocity.sum())):
-            raise ValueError(f"The measured CoM is {state.com} at {state.time:g} s, but it must be finite.")
+        if not math.isfinite(float(state.com.sum() + state.com_velocity.sum() + feet.position.sum() + feet.yaw.sum())):
+            raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         p, stepper, n = self.parameters, self._stepper, self.parameters.horizon
         stepper.advance(feet)
         self._fix_imminent_footstep(state.time)

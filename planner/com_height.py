@@ -10,7 +10,6 @@ from planner.gait import GaitParameters
 from planner.schedule import Phase, Schedule
 from planner.types import GRAVITY, Array, PhaseKind
 
-
 _FALL_LIMIT = 0.8
 """Downward CoM acceleration that a plan may ask for, as a share of gravity: beyond it the feet hardly press [-]."""
 

@@ -61,8 +61,8 @@ class WalkingPlanner:
         problem: the QPs of the last tick, to be looked at or stored; None before the first.
 
     Raises:
-        ValueError: a duration is no multiple of the sample time, a footstep is out of reach, or the CoM height would have to
-            fall freely.
+        ValueError: a duration is no multiple of the sample time, a footstep is out of reach, or the CoM would fall
+            almost freely.
     """
 
     def __init__(

@@ -10,6 +10,9 @@ from planner.gait import GaitParameters
 from planner.schedule import Phase, Schedule
 from planner.types import GRAVITY, Array, PhaseKind
 
+_FALL_LIMIT = 0.8
+"""Downward CoM acceleration that a plan may ask for, as a share of gravity: beyond it the feet hardly press [-]."""
+
 
 @dataclass(frozen=True, slots=True)
 class HeightShape:
@@ -113,3 +116,28 @@ def preview_height(
     height = shape.bump[:, window] + shape.rise[:, window] * step
     height[0] += support_height[index]
     return HeightPreview(height, (GRAVITY + height[2]) / (height[0] - zmp_height))
+
+
+def check_height(shape: HeightShape, schedule: Schedule, support_height: Array) -> None:
+    """Refuse a height that the body could only follow by nearly free fall, or that goes into the ground.
+
+    Args:
+        shape: height of the walk.
+        schedule: its phases.
+        support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
+
+    Raises:
+        ValueError: names the acceleration or the height that is out of bounds.
+    """
+    step = np.append(np.diff(support_height), 0.0)[schedule.index]
+    ground = support_height[schedule.index] + schedule.fraction * step
+    height = preview_height(shape, 0, len(ground), support_height, ground).height
+    lowest = float(np.min(height[0] - ground))
+    if lowest <= 0.0:
+        raise ValueError(f"The CoM comes within {lowest:.2f} m of the ground under it, but it must stay above it.")
+    fall = float(np.min(height[2]))
+    if fall < -_FALL_LIMIT * GRAVITY:
+        raise ValueError(
+            f"The CoM height falls off with {fall:.1f} m/s^2, but {-_FALL_LIMIT * GRAVITY:.1f} m/s^2 is the limit:"
+            " the height step between two footsteps needs a longer gait.double_support."
+        )

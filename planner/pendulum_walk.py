@@ -81,38 +81,29 @@ def walk_pendulum(
         mass: [kg].
         feedback: k of the DCM feedback, 0 for none [-].
         substeps: control steps per planner tick.
-        frozen_after: instant after which the planner is not asked any more [s].
+        frozen_after: instant after which the planner is not asked any more; it always makes the first plan [s].
     """
     t = planner.parameters.sample_time
     pendulum, ideal = Pendulum(mass, com[:2], np.zeros(2)), IdealFeet(feet)
-    position, velocity = np.array(com), np.zeros(3)
+    state = CentroidalState(0.0, np.array(com), np.zeros(3))
     rows: list[tuple[float, Array, Array, Array, float]] = []
     plans: list[WalkPlan] = []
     fall_time = None
-    for tick in range(round(duration / t)):
-        now = tick * t
-        if now < frozen_after:
-            plans.append(planner.update(CentroidalState(now, position, velocity), ideal.state))
+    while fall_time is None and len(rows) < round(duration / t):
+        if not plans or state.time < frozen_after:
+            plans.append(planner.update(state, ideal.state))
             sampler = PlanSampler(plans[-1])
-        margin = _run_tick(pendulum, sampler, pushes, now, t / substeps, substeps, feedback)
-        end = sampler.sample(now + t)
+        margin = _run_tick(pendulum, sampler, pushes, state.time, t / substeps, substeps, feedback)
+        now = (len(rows) + 1) * t
+        end = sampler.sample(now)
         position = np.append(pendulum.position, end.com[2])
-        velocity = np.append(pendulum.velocity, end.com_velocity[2])
-        ideal.follow(sampler, now + t)
-        rows.append((now + t, position, pendulum.zmp, end.zmp_reference, margin))
+        state = CentroidalState(now, position, np.append(pendulum.velocity, end.com_velocity[2]))
+        ideal.follow(sampler, now)
+        rows.append((now, position, pendulum.zmp, end.zmp_reference, margin))
         if pendulum.fallen(plans[-1].support_polygon, end.omega):
-            fall_time = now + t
-            break
-    time, positions, zmp, reference, margins = zip(*rows, strict=True)
-    return PendulumTrace(
-        np.array(time),
-        np.array(positions),
-        np.array(zmp),
-        np.array(reference),
-        np.array(margins),
-        fall_time,
-        tuple(plans),
-    )
+            fall_time = now
+    time, positions, zmp, reference, margins = (np.array(column) for column in zip(*rows, strict=True))
+    return PendulumTrace(time, positions, zmp, reference, margins, fall_time, tuple(plans))
 
 
 def _run_tick(

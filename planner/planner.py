@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.com_height import HeightPreview, HeightProfile, SmoothHeight, preview_height
+from planner.com_height import HeightPreview, HeightProfile, SmoothHeight, check_height, preview_height
 from planner.constraints import StepContext, check_reach, generate_constraints
 from planner.dcm import natural_frequency
 from planner.footsteps import FootstepPlan, plan_footsteps
@@ -61,7 +61,8 @@ class WalkingPlanner:
         problem: the QPs of the last tick, to be looked at or stored; None before the first.
 
     Raises:
-        ValueError: a duration is no multiple of the sample time, or a footstep is out of reach.
+        ValueError: a duration is no multiple of the sample time, a footstep is out of reach, or the CoM would fall
+            almost freely.
     """
 
     def __init__(
@@ -87,6 +88,7 @@ class WalkingPlanner:
         check_reach(footsteps, p)
         self._stepper = Stepper(self.schedule, footsteps, terrain, p)
         self._shape = (height_profile or SmoothHeight()).shape(gait, self.schedule)
+        check_height(self._shape, self.schedule, footsteps.support_points()[:, 2])
         self._prediction = predict(p.sample_time, block_moves(p.moves, p.horizon))
         self._support: Support | None = None
         self._swing: SwingTrajectory | None = None
@@ -106,10 +108,10 @@ class WalkingPlanner:
             feet: measured feet.
 
         Raises:
-            ValueError: the measured CoM is not finite.
+            ValueError: the measured CoM or feet are not finite.
         """
-        if not math.isfinite(float(state.com.sum() + state.com_velocity.sum())):
-            raise ValueError(f"The measured CoM is {state.com} at {state.time:g} s, but it must be finite.")
+        if not math.isfinite(float(state.com.sum() + state.com_velocity.sum() + feet.position.sum() + feet.yaw.sum())):
+            raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         p, stepper, n = self.parameters, self._stepper, self.parameters.horizon
         stepper.advance(feet)
         self._fix_imminent_footstep(state.time)

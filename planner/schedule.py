@@ -104,6 +104,8 @@ def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule
             contacts[span, phase.stance.other] = False
     on_left = np.array([0.5, *(float(gait.step_foot(i - 1) == Foot.LEFT) for i in range(1, gait.steps + 1)), 0.5, 0.5])
     load_left = (1.0 - fraction) * on_left[index] + fraction * on_left[index + 1]
+    for array in (phase_index, index, fraction, rate, load_left, contacts):
+        array.flags.writeable = False
     return Schedule(phases, phase_index, index, fraction, rate, load_left, contacts, sample_time, last)
 
 

@@ -74,35 +74,10 @@ def build_problem(
         constraints: bounds of this tick.
         last_jerk: jerk applied now, shape (2,) [m/s^3]; enters only with a finite rate limit.
     """
-    n, m = prediction.basis.shape
-    moves = zmp_response(prediction.moves[:, 1:], stiffness[1:])
-    free = zmp_response(prediction.state[:, 1:] @ state.T, stiffness[1:])
-    error = free - reference.point[1 : n + 1]
-    design = np.concatenate((moves, -reference.gain[1 : n + 1]), axis=1)
-    end = prediction.state[0, n] + prediction.state[1, n] / constraints.terminal_omega
-    end_moves = prediction.moves[0, n] + prediction.moves[1, n] / constraints.terminal_omega
-    end_error = state @ end - constraints.terminal_center
-
-    P = np.zeros((m + _EXTRA, m + _EXTRA))
-    end_row = np.concatenate((end_moves, -constraints.terminal_gain))
-    weighted = parameters.terminal_weight * end_row
-    P[: m + 2, : m + 2] = 2.0 * (design.T @ design + np.outer(weighted, end_row))
-    P.flat[:: m + _EXTRA + 1] += _diagonal_cost(parameters, m)
-    G = np.zeros((2 * n + 2, m + _EXTRA))
-    G[:n, : m + 2] = design
-    G[n : 2 * n, : m + 2] = -design
-    G[: 2 * n, m + 2] = -1.0
-    G[2 * n, : m + 2] = end_row
-    G[2 * n + 1, : m + 2] = -end_row
-    G[2 * n :, m + 3] = -1.0
-    q = np.empty((2, m + _EXTRA))
-    q[:, : m + 2] = 2.0 * (error.T @ design + np.outer(end_error, weighted))
-    q[:, m + 2], q[:, m + 3] = parameters.zmp_slack[1], parameters.terminal_slack[1]
-    h = np.empty((2, 2 * n + 2))
-    h[:, :n] = (constraints.half_size - error).T
-    h[:, n : 2 * n] = (constraints.half_size + error).T
-    h[:, 2 * n] = constraints.terminal_half_size - end_error
-    h[:, 2 * n + 1] = constraints.terminal_half_size + end_error
+    errors = _linear_errors(prediction, state, stiffness, reference, constraints)
+    m = prediction.basis.shape[1]
+    P, q = _cost(parameters, errors, m)
+    G, h = _inequalities(constraints, errors, m)
     if np.isfinite(parameters.jerk_rate_limit):
         G, h = _with_rate_limit(G, h, m, parameters.jerk_rate_limit, last_jerk)
     lower, upper = _bounds(parameters, constraints, m)
@@ -114,6 +89,61 @@ def trajectory(prediction: Prediction, problem: TvmpcProblem, jerk: Array) -> Tr
     """Motion under a jerk sequence, shape (N, 2), from the problem's state."""
     com = prediction.state @ problem.state.T + prediction.samples @ jerk
     return Trajectory(com, zmp_response(com, problem.stiffness), jerk)
+
+
+@dataclass(frozen=True, slots=True)
+class _Errors:
+    """ZMP error `zmp_rows @ z + zmp` (N, 2) and terminal DCM error `end_row @ z + end` (2,) in moves and shifts z."""
+
+    zmp_rows: Array
+    zmp: Array
+    end_row: Array
+    end: Array
+
+
+def _linear_errors(
+    prediction: Prediction, state: Array, stiffness: Array, reference: ZmpReference, constraints: Constraints
+) -> _Errors:
+    n = prediction.basis.shape[0]
+    moves = zmp_response(prediction.moves[:, 1:], stiffness[1:])
+    free = zmp_response(prediction.state[:, 1:] @ state.T, stiffness[1:])
+    end_state = prediction.state[0, n] + prediction.state[1, n] / constraints.terminal_omega
+    end_moves = prediction.moves[0, n] + prediction.moves[1, n] / constraints.terminal_omega
+    return _Errors(
+        zmp_rows=np.concatenate((moves, -reference.gain[1 : n + 1]), axis=1),
+        zmp=free - reference.point[1 : n + 1],
+        end_row=np.concatenate((end_moves, -constraints.terminal_gain)),
+        end=state @ end_state - constraints.terminal_center,
+    )
+
+
+def _cost(parameters: PlannerParameters, errors: _Errors, m: int) -> tuple[Array, Array]:
+    weighted_end = parameters.terminal_weight * errors.end_row
+    P = np.zeros((m + _EXTRA, m + _EXTRA))
+    P[: m + 2, : m + 2] = 2.0 * (errors.zmp_rows.T @ errors.zmp_rows + np.outer(weighted_end, errors.end_row))
+    P.flat[:: m + _EXTRA + 1] += _diagonal_cost(parameters, m)
+    q = np.empty((2, m + _EXTRA))
+    q[:, : m + 2] = 2.0 * (errors.zmp.T @ errors.zmp_rows + np.outer(errors.end, weighted_end))
+    q[:, m + 2], q[:, m + 3] = parameters.zmp_slack[1], parameters.terminal_slack[1]
+    return P, q
+
+
+def _inequalities(constraints: Constraints, errors: _Errors, m: int) -> tuple[Array, Array]:
+    """Rows: ZMP box above and below at samples 1..N, terminal DCM bound above and below."""
+    n = len(errors.zmp)
+    G = np.zeros((2 * n + 2, m + _EXTRA))
+    G[:n, : m + 2] = errors.zmp_rows
+    G[n : 2 * n, : m + 2] = -errors.zmp_rows
+    G[: 2 * n, m + 2] = -1.0
+    G[2 * n, : m + 2] = errors.end_row
+    G[2 * n + 1, : m + 2] = -errors.end_row
+    G[2 * n :, m + 3] = -1.0
+    h = np.empty((2, 2 * n + 2))
+    h[:, :n] = (constraints.half_size - errors.zmp).T
+    h[:, n : 2 * n] = (constraints.half_size + errors.zmp).T
+    h[:, 2 * n] = constraints.terminal_half_size - errors.end
+    h[:, 2 * n + 1] = constraints.terminal_half_size + errors.end
+    return G, h
 
 
 def _diagonal_cost(parameters: PlannerParameters, m: int) -> Array:

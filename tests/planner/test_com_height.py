@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from planner.com_height import SmoothHeight, preview_height
+from planner.com_height import SmoothHeight, check_height, preview_height
 from planner.gait import GaitParameters
 from planner.schedule import schedule
 from planner.types import GRAVITY
@@ -46,3 +46,12 @@ def test_stiffness_counts_the_height_above_the_zmp():
     np.testing.assert_allclose(
         preview.stiffness * (preview.height[0] - ground), GRAVITY + preview.height[2], rtol=1e-12
     )
+
+
+def test_a_step_too_high_for_its_double_support_is_refused():
+    gait = GaitParameters(steps=2, single_support=0.6, double_support=0.3)
+    plan = schedule(gait, 0.02, 150)
+    shape = SmoothHeight().shape(gait, plan)
+    check_height(shape, plan, np.array([0.0, 0.0, 0.1, 0.1]))
+    with pytest.raises(ValueError, match=r"falls off with -11\.\d m/s\^2.*double_support\.$"):
+        check_height(shape, plan, np.array([0.0, 0.0, 0.18, 0.18]))

@@ -9,6 +9,7 @@ from planner.parameters import PlannerParameters, StepAdaptation
 from planner.pendulum import PointPush
 from planner.pendulum_walk import walk_pendulum
 from planner.planner import WalkingPlanner
+from planner.terrain import Box, Terrain
 from planner.types import CentroidalState, FeetState, Foot, PhaseKind, SolverStatus
 
 pytestmark = pytest.mark.unit
@@ -187,7 +188,18 @@ def test_out_of_reach_and_nonsense_are_refused(stand):
         WalkingPlanner(GaitParameters(step_length=0.5), stand(), 0.075, 0.075)
     with pytest.raises(ValueError, match="foot_length is -1"):
         WalkingPlanner(GaitParameters(), stand(), -1.0, 0.075)
-    with pytest.raises(ValueError, match="must be finite"):
+    with pytest.raises(ValueError, match="not finite at 0 s"):
         WalkingPlanner(GaitParameters(), stand(), 0.075, 0.075).update(
             CentroidalState(0.0, np.array([np.nan, 0.0, 1.0]), np.zeros(3)), stand()
         )
+
+
+def test_stairs_are_climbed_with_the_previewed_stiffness(stand):
+    treads = [(0.1 + 0.2 * i, 0.1 * (i + 1)) for i in range(3)]
+    boxes = [Box(np.array([x + 5.0, 0.0, z / 2]), np.array([5.0, 2.0, z / 2]), np.eye(3)) for x, z in treads]
+    gait = GaitParameters(steps=4, single_support=0.8)
+    planner = WalkingPlanner(gait, stand(), 0.075, 0.075, terrain=Terrain(tuple(boxes)))
+    trace = walk_pendulum(planner, stand(), 10.0, com=np.array([0.0, 0.0, 1.0]), substeps=3)
+    assert_walks(planner, trace, rms=2e-3, step_error=1e-3)
+    assert trace.com[-1, 2] == pytest.approx(1.3)
+    assert min(plan.stiffness.min() for plan in trace.plans) < 8.0

@@ -2,8 +2,9 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
-from typing import Any
+from dataclasses import asdict, dataclass
+
+from pydantic import TypeAdapter
 
 from scenarios.errors import LogError
 
@@ -63,16 +64,7 @@ class RunConstants:
             LogError: the log does not carry them.
         """
         try:
-            record = records[RECORD]
-            return cls(**{field.name: _value(record[field.name], str(field.type)) for field in fields(cls)})
+            values = {name: json.loads(text) for name, text in records[RECORD].items()}
+            return TypeAdapter(cls).validate_python(values)
         except (KeyError, TypeError, ValueError, RecursionError):
             raise LogError(f"{log_name}: does not describe a run; give a log that `surefoot run` has written") from None
-
-
-def _value(text: str, kind: str) -> Any:
-    """Parse a JSON value and insist on its type."""
-    value = json.loads(text)
-    if kind.startswith("tuple"):
-        item = str if "str" in kind else float
-        return tuple(item(element) for element in value)
-    return {"str": str, "int": int, "float": float}[kind](value)

@@ -61,10 +61,7 @@ def run_scenario(
     Raises:
         LogError: the log or the verdict cannot be written.
     """
-    if simulate is None:
-        from scenarios.loop import simulate as closed_loop
-
-        simulate = closed_loop
+    simulate = simulate or closed_loop()
     robot = robot or describe(scenario)
     folder = _folder(out / f"{scenario.name}-{scenario.seed}")
     with LogWriter(folder / LOG_NAME, _metadata(scenario, robot), _attachments(scenario, robot)) as writer:
@@ -73,6 +70,13 @@ def run_scenario(
     verdict = judge(read(folder / LOG_NAME))
     verdict.write(folder / VERDICT_NAME)
     return Result(verdict, folder / LOG_NAME, end.kind == "interrupted")
+
+
+def closed_loop() -> Simulate:
+    """The closed loop in full physics, imported only when it is needed."""
+    from scenarios.loop import simulate
+
+    return simulate
 
 
 def scenario_yaml(scenario: Scenario) -> str:

@@ -34,7 +34,11 @@ class Robots(Protocol):
         ...
 
     def facts(self, scenario: Scenario) -> RobotFacts:
-        """Facts of a scenario's robot with its options."""
+        """Facts of a scenario's robot with its options.
+
+        Raises:
+            ValueError: the robot cannot have these options.
+        """
         ...
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import yaml
 
 from scenarios.constants import RECORD, RunConstants
-from scenarios.errors import LogError
+from scenarios.errors import LogError, ScenarioError
 from scenarios.log import AttachedFile, LogWriter, read
 from scenarios.progress import End, OnProgress, Progress
 from scenarios.provenance import versions
@@ -60,6 +60,7 @@ def run_scenario(
 
     Raises:
         LogError: the log or the verdict cannot be written.
+        ScenarioError: the loop cannot be set up as the scenario asks; no log is left.
     """
     simulate = simulate or closed_loop()
     robot = robot or describe(scenario)
@@ -121,6 +122,9 @@ def _watched(
     except KeyboardInterrupt:
         end = End("interrupted", last.time, "interrupted by the user")
     except LogError:
+        raise
+    except ScenarioError:
+        writer.discard()
         raise
     except Exception as error:
         _write_end(writer, End("fault", last.time, f"internal error, {type(error).__name__}: {error}"))

@@ -10,14 +10,20 @@ FINAL_STAND = 2.0
 
 
 def phase_start(gait: Gait, step: int, phase: str) -> float:
-    """Begin [s] of a support phase of a footstep; step 1 is the first, its double support shifts the weight."""
-    before = gait.initial_stand + (step - 1) * (gait.double_support + gait.single_support)
-    return before if phase == "double" else before + gait.double_support
+    """Begin [s] of a support phase of a footstep; step 1 is the first, its double support comes first.
+
+    The double support before the first step shifts the weight from rest and lasts twice as long as the others.
+    """
+    first = gait.initial_stand + 2 * gait.double_support
+    single = first + (step - 1) * (gait.single_support + gait.double_support)
+    return single if phase == "single" else single - phase_duration(gait, step, phase)
 
 
-def phase_duration(gait: Gait, phase: str) -> float:
-    """Duration [s] of a support phase."""
-    return gait.double_support if phase == "double" else gait.single_support
+def phase_duration(gait: Gait, step: int, phase: str) -> float:
+    """Duration [s] of a support phase of a footstep."""
+    if phase == "single":
+        return gait.single_support
+    return gait.double_support * (2 if step == 1 else 1)
 
 
 def push_time(gait: Gait, push: PushSettings) -> float:
@@ -26,7 +32,9 @@ def push_time(gait: Gait, push: PushSettings) -> float:
         return push.time
     if push.step is None or push.phase is None:
         raise ValueError("a push needs a time, or a step and a phase")
-    return phase_start(gait, push.step, push.phase) + (push.fraction or 0.0) * phase_duration(gait, push.phase)
+    return phase_start(gait, push.step, push.phase) + (push.fraction or 0.0) * phase_duration(
+        gait, push.step, push.phase
+    )
 
 
 def run_duration(scenario: Scenario) -> float:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scenarios.checks import is_multiple
 from scenarios.reach import longest_step
 from scenarios.schema import Gait, PushSettings, Scenario
-from scenarios.timeline import FINAL_STAND, phase_start, push_time, run_duration
+from scenarios.timeline import FINAL_STAND, phase_duration, phase_start, push_time, run_duration
 
 pytestmark = pytest.mark.unit
 
@@ -31,22 +31,24 @@ def test_lower_hips_reach_farther():
 def test_phases_follow_each_other():
     gait = Gait()
     assert phase_start(gait, 1, "double") == gait.initial_stand
+    assert phase_start(gait, 1, "single") == gait.initial_stand + 2 * gait.double_support
     for step in range(1, 5):
-        assert phase_start(gait, step, "single") == phase_start(gait, step, "double") + gait.double_support
-        assert phase_start(gait, step + 1, "double") == phase_start(gait, step, "single") + gait.single_support
+        for phase, following in (("double", (step, "single")), ("single", (step + 1, "double"))):
+            end = phase_start(gait, step, phase) + phase_duration(gait, step, phase)
+            assert phase_start(gait, *following) == pytest.approx(end)
 
 
 def test_pushes_by_point_of_the_gait():
     gait = Gait()
     push = PushSettings(step=2, phase="single", fraction=0.5)
-    assert push_time(gait, push) == pytest.approx(1.0 + 2.0 + 0.5 + 0.75)
+    assert push_time(gait, push) == pytest.approx(1.0 + 1.0 + 2.0 + 0.75)
     assert push_time(gait, PushSettings(time=2.2)) == 2.2
     with pytest.raises(ValueError, match="needs a time"):
         push_time(gait, PushSettings(step=2))
 
 
 def test_a_run_lasts_until_the_robot_has_stood():
-    assert run_duration(Scenario()) == pytest.approx(1.0 + 5 * 2.0 + 0.5 + FINAL_STAND)
+    assert run_duration(Scenario()) == pytest.approx(1.0 + 1.0 + 5 * 2.0 + FINAL_STAND)
     assert run_duration(Scenario(duration=3.0)) == 3.0
     assert run_duration(Scenario(gait=Gait(steps=0))) == 1.0 + FINAL_STAND
 

@@ -5,7 +5,7 @@ import json
 import pytest
 import yaml
 
-from scenarios.errors import LogError
+from scenarios.errors import LogError, ScenarioError
 from scenarios.log import read
 from scenarios.run import run_scenario
 
@@ -49,6 +49,12 @@ def test_a_defect_is_raised_after_the_log_was_closed(tmp_path, robot, motion, tw
     log = read(tmp_path / "two-steps-0" / "log.mcap")
     assert not log.truncated
     assert log.metadata["end"]["reason"] == "internal error, ZeroDivisionError: x"
+
+
+def test_a_scenario_that_the_loop_refuses_leaves_no_log(tmp_path, robot, motion, two_steps):
+    with pytest.raises(ScenarioError):
+        run_scenario(two_steps, tmp_path, None, motion(raises=ScenarioError(["planner.horizon is too short"])), robot)
+    assert list((tmp_path / "two-steps-0").iterdir()) == []
 
 
 def test_no_stale_verdict_beside_a_new_log(tmp_path, robot, motion, two_steps):

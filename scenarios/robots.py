@@ -65,8 +65,8 @@ class RegisteredRobots:
 
 def describe(scenario: Scenario) -> "RobotDescription":
     """Describe a scenario's robot with its options."""
-    from models.registry import RobotOptions
     from models.registry import describe as describe_robot
+    from models.types import RobotOptions
 
     return describe_robot(scenario.robot, RobotOptions(**scenario.robot_options.model_dump()))
 

@@ -82,6 +82,23 @@ def test_interrupted(surefoot, scenario, tmp_path, motion):
     assert "interrupted; the log up to here is whole" in err
 
 
+def test_a_defect_is_no_verdict(surefoot, scenario, tmp_path, motion):
+    code, out, err = surefoot("run", scenario, "--out", tmp_path, loop=motion(raises=ZeroDivisionError("x")))
+    assert code == 70
+    assert out == ""
+    assert "ZeroDivisionError: x" in err
+
+
+def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("scenarios.load.load_scenario", interrupt)
+    code, _, err = surefoot("run", scenario)
+    assert code in (1, 130)
+    assert "Traceback" not in err
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

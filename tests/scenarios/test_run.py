@@ -34,6 +34,8 @@ def test_the_log_says_all_about_the_run(tmp_path, robot, motion, two_steps):
 def test_the_same_run_gives_the_same_log(tmp_path, robot, motion, two_steps):
     logs = [run_scenario(two_steps, tmp_path / name, None, motion(), robot).log for name in "ab"]
     assert logs[0].read_bytes() == logs[1].read_bytes()
+    first, second = (read(log) for log in logs)
+    assert all(first[topic].content() == second[topic].content() for topic in first.topics)
 
 
 def test_interrupted_by_the_user_the_log_is_whole(tmp_path, robot, motion, two_steps):

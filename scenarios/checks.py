@@ -86,7 +86,11 @@ def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
     if scenario.robot not in names:
         yield Problem(("robot",), f"unknown robot '{scenario.robot}'", nearest(scenario.robot, names))
         return
-    facts = robots.facts(scenario)
+    try:
+        facts = robots.facts(scenario)
+    except ValueError as error:
+        yield Problem(("robot_options",), str(error).rstrip("."), "change robot_options")
+        return
     bodies = [(("pushes", i, "body"), push.body) for i, push in enumerate(scenario.pushes)]
     for key, body in (*bodies, (("robot_options", "payload_body"), scenario.robot_options.payload_body)):
         if body is not None and body not in facts.bodies:

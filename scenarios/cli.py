@@ -1,7 +1,8 @@
-"""The command line. Exit codes: 0 criteria met, 1 criteria missed, 2 bad input or usage, 130 interrupted."""
+"""The command line. Exit codes: 0 criteria met, 1 missed, 2 bad input or usage, 70 a defect, 130 interrupted."""
 
 import json
 import sys
+import traceback
 from pathlib import Path
 from typing import Annotated
 
@@ -18,7 +19,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-MISSED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+MISSED, BAD_INPUT, DEFECT, INTERRUPTED = 1, 2, 70, 130
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 
@@ -113,9 +114,15 @@ def schema() -> None:
 
 
 def main() -> None:
-    """Run the command line; an error that the user can mend is one message, never a traceback."""
+    """Run the command line.
+
+    An error that the user can mend is one message; a defect of the program is a traceback and an exit code of its own.
+    """
     try:
         app()
     except (ScenarioError, LogError) as error:
         typer.echo(str(error), err=True)
         sys.exit(BAD_INPUT)
+    except Exception:
+        traceback.print_exc()
+        sys.exit(DEFECT)

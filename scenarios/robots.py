@@ -34,7 +34,11 @@ class Robots(Protocol):
         ...
 
     def facts(self, scenario: Scenario) -> RobotFacts:
-        """Facts of a scenario's robot with its options."""
+        """Facts of a scenario's robot with its options.
+
+        Raises:
+            ValueError: the robot cannot have these options.
+        """
         ...
 
 
@@ -61,8 +65,8 @@ class RegisteredRobots:
 
 def describe(scenario: Scenario) -> "RobotDescription":
     """Describe a scenario's robot with its options."""
-    from models.registry import RobotOptions
     from models.registry import describe as describe_robot
+    from models.types import RobotOptions
 
     return describe_robot(scenario.robot, RobotOptions(**scenario.robot_options.model_dump()))
 

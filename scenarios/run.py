@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import yaml
 
 from scenarios.constants import RECORD, RunConstants
-from scenarios.errors import LogError
+from scenarios.errors import LogError, ScenarioError
 from scenarios.log import AttachedFile, LogWriter, read
 from scenarios.progress import End, OnProgress, Progress
 from scenarios.provenance import versions
@@ -60,11 +60,9 @@ def run_scenario(
 
     Raises:
         LogError: the log or the verdict cannot be written.
+        ScenarioError: the loop cannot be set up as the scenario asks; no log is left.
     """
-    if simulate is None:
-        from scenarios.loop import simulate as closed_loop
-
-        simulate = closed_loop
+    simulate = simulate or closed_loop()
     robot = robot or describe(scenario)
     folder = _folder(out / f"{scenario.name}-{scenario.seed}")
     with LogWriter(folder / LOG_NAME, _metadata(scenario, robot), _attachments(scenario, robot)) as writer:
@@ -73,6 +71,13 @@ def run_scenario(
     verdict = judge(read(folder / LOG_NAME))
     verdict.write(folder / VERDICT_NAME)
     return Result(verdict, folder / LOG_NAME, end.kind == "interrupted")
+
+
+def closed_loop() -> Simulate:
+    """The closed loop in full physics, imported only when it is needed."""
+    from scenarios.loop import simulate
+
+    return simulate
 
 
 def scenario_yaml(scenario: Scenario) -> str:
@@ -117,6 +122,9 @@ def _watched(
     except KeyboardInterrupt:
         end = End("interrupted", last.time, "interrupted by the user")
     except LogError:
+        raise
+    except ScenarioError:
+        writer.discard()
         raise
     except Exception as error:
         _write_end(writer, End("fault", last.time, f"internal error, {type(error).__name__}: {error}"))

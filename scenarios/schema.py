@@ -13,6 +13,7 @@ from scenarios.criteria import Bound, standing_walk
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+FootSize = Annotated[float, Field(ge=0.01, le=0.5)]
 Angle = Annotated[float, Field(ge=-6.3, le=6.3, allow_inf_nan=False)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000)]
@@ -34,8 +35,8 @@ class Group(BaseModel):
 class RobotSettings(Group):
     """What of the robot may be changed."""
 
-    foot_length: Positive | None = Field(default=None, description="sole length, null: the robot's own [m]")
-    foot_width: Positive | None = Field(default=None, description="sole width, null: the robot's own [m]")
+    foot_length: FootSize | None = Field(default=None, description="sole length, null: the robot's own [m]")
+    foot_width: FootSize | None = Field(default=None, description="sole width, null: the robot's own [m]")
     payload_mass: NonNegative = Field(default=0.0, description="mass carried [kg]")
     payload_body: str | None = Field(default=None, description="body that carries it, null: the torso")
 
@@ -66,11 +67,11 @@ class Gait(Group):
     swing_height: Positive = Field(default=0.05, description="apex of the swing foot above the ground [m]")
     com_height: Positive = Field(default=1.0, description="CoM height above the soles [m]")
     initial_stand: NonNegative = Field(default=1.0, description="standing before the first weight shift [s]")
-    apex_single: Finite = Field(
+    apex_single: NonNegative = Field(
         default=0.0135, description="apex of the CoM rise in single support, A_ss of the paper [m]"
     )
-    apex_double: Finite = Field(
-        default=0.00135, description="apex of the CoM dip in double support, A_ds of the paper [m]"
+    apex_double: NonNegative = Field(
+        default=0.00135, description="apex of the CoM rise in double support, A_ds of the paper [m]"
     )
 
 

@@ -10,19 +10,20 @@ FINAL_STAND = 2.5
 
 
 def phase_start(gait: Gait, step: int, phase: str) -> float:
-    """Begin [s] of a support phase of a step; its double support precedes its single support.
+    """Begin [s] of a support phase of a footstep; step 1 is the first, its double support comes first.
 
-    Step 1 is the first; its double support shifts the weight from standing and takes twice the usual time.
+    The double support before the first step shifts the weight from rest and lasts twice as long as the others.
     """
-    single = gait.initial_stand + 2 * gait.double_support + (step - 1) * (gait.single_support + gait.double_support)
+    first = gait.initial_stand + 2 * gait.double_support
+    single = first + (step - 1) * (gait.single_support + gait.double_support)
     return single if phase == "single" else single - phase_duration(gait, step, phase)
 
 
 def phase_duration(gait: Gait, step: int, phase: str) -> float:
-    """Duration [s] of a support phase of a step."""
+    """Duration [s] of a support phase of a footstep."""
     if phase == "single":
         return gait.single_support
-    return 2 * gait.double_support if step == 1 else gait.double_support
+    return gait.double_support * (2 if step == 1 else 1)
 
 
 def push_time(gait: Gait, push: PushSettings) -> float:
@@ -31,7 +32,9 @@ def push_time(gait: Gait, push: PushSettings) -> float:
         return push.time
     if push.step is None or push.phase is None:
         raise ValueError("a push needs a time, or a step and a phase")
-    return phase_start(gait, push.step, push.phase) + (push.fraction or 0.0) * phase_duration(gait, push.step, push.phase)
+    return phase_start(gait, push.step, push.phase) + (push.fraction or 0.0) * phase_duration(
+        gait, push.step, push.phase
+    )
 
 
 def run_duration(scenario: Scenario) -> float:

@@ -45,6 +45,10 @@ class ChannelData:
         """Simulated time of each message, shape (n,) [s]."""
         return np.asarray(self.time_ns * 1e-9)
 
+    def content(self) -> bytes:
+        """Bytes of all messages in order, for exact comparison of two runs."""
+        return self._records.tobytes()
+
     def field(self, name: str) -> NDArray[Any]:
         """Values of one field, shape (n, *field shape).
 

@@ -125,6 +125,11 @@ class LogWriter:
         self._output.write(self._summary.finish(self._output.position, counts))
         self._output.close()
 
+    def discard(self) -> None:
+        """Close and remove the file: there is no run to log."""
+        self._output.close()
+        self.path.unlink(missing_ok=True)
+
     def _flush(self, time_ns: int) -> None:
         self._clock.due = time_ns + CHUNK_PERIOD_NS
         self.flush()

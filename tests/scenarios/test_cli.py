@@ -1,0 +1,166 @@
+"""The command line: exit codes, one message for what a user can mend, JSON alone on standard output."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from scenarios import cli, run
+from scenarios.log import read
+from scenarios.robots import RegisteredRobots
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.fixture
+def surefoot(monkeypatch, capsys, robot, robots, motion):
+    """Run a command with the fake robot and loop; gives exit code, standard output and standard error."""
+
+    def command(*arguments, loop=None):
+        monkeypatch.setattr(sys, "argv", ["surefoot", *map(str, arguments)])
+        monkeypatch.setattr(run, "describe", lambda scenario: robot)
+        monkeypatch.setattr(run, "closed_loop", lambda: loop or motion())
+        monkeypatch.setattr(RegisteredRobots, "names", lambda self: robots.names())
+        monkeypatch.setattr(RegisteredRobots, "facts", lambda self, scenario: robots.facts(scenario))
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        captured = capsys.readouterr()
+        return ended.value.code or 0, captured.out, captured.err
+
+    return command
+
+
+@pytest.fixture
+def scenario(tmp_path):
+    path = tmp_path / "two-steps.yaml"
+    path.write_text("gait: {steps: 2}\n")
+    return path
+
+
+def test_list(surefoot):
+    code, out, _ = surefoot("list")
+    assert code == 0
+    assert "diagonal-walk" in out
+    assert "robot     humanoid100" in out
+
+
+def test_schema_is_json(surefoot):
+    code, out, _ = surefoot("schema")
+    assert code == 0
+    assert json.loads(out)["properties"]["gait"]
+
+
+def test_run_passes(surefoot, scenario, tmp_path):
+    code, out, err = surefoot("run", scenario, "--out", tmp_path / "out")
+    assert code == 0
+    assert out.startswith("verdict: pass")
+    assert "2 of 2" in out
+    assert out.rstrip().endswith(str(tmp_path / "out" / "two-steps-0" / "log.mcap"))
+    assert err == ""
+
+
+def test_run_fails_with_1(surefoot, scenario, tmp_path, motion):
+    code, out, _ = surefoot("run", scenario, "--out", tmp_path, loop=motion(fall_at=1.0))
+    assert code == 1
+    assert "fell is true, must be false" in out
+
+
+def test_run_json_is_one_object(surefoot, scenario, tmp_path):
+    code, out, err = surefoot("run", scenario, "--json", "--seed", 7, "--set", "gait.steps=2", "--out", tmp_path)
+    assert code == 0
+    found = json.loads(out)
+    assert found["verdict"] == "pass"
+    assert found["log"].endswith("two-steps-7/log.mcap")
+    assert err == ""
+
+
+def test_interrupted(surefoot, scenario, tmp_path, motion):
+    stopped = motion(stop_at=1.0, raises=KeyboardInterrupt())
+    code, _, err = surefoot("run", scenario, "--out", tmp_path, loop=stopped)
+    assert code == 130
+    assert "interrupted; the log up to here is whole" in err
+
+
+def test_a_defect_is_no_verdict(surefoot, scenario, tmp_path, motion):
+    code, out, err = surefoot("run", scenario, "--out", tmp_path, loop=motion(raises=ZeroDivisionError("x")))
+    assert code == 70
+    assert out == ""
+    assert "ZeroDivisionError: x" in err
+
+
+def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("scenarios.load.load_scenario", interrupt)
+    code, _, err = surefoot("run", scenario)
+    assert code in (1, 130)
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "no-such"], "no such scenario file or catalogue name"),
+        (["run", "walk", "--set", "gait.steps=x", "--set", "seed=-1"], "--set gait.steps: gait.steps is 'x'"),
+        (["run", "walk", "--out", "/dev/null/x"], "cannot be created"),
+        (["run", "walk", "--video", "x"], "No such option"),
+        (["run"], "Missing argument"),
+        (["fly"], "No such command"),
+        (["inspect", "/dev/null"], "not an MCAP file"),
+        (["inspect", "/"], "a directory"),
+        (["inspect", "/no/such"], "no such file"),
+        (["recover", "/dev/null", "/tmp/x"], "not an MCAP file"),
+    ],
+)
+def test_bad_input_is_one_message_and_2(surefoot, arguments, message):
+    code, out, err = surefoot(*arguments)
+    assert code == 2
+    assert message in err
+    assert out == ""
+    assert "Traceback" not in err
+
+
+def test_inspect_repeats_the_verdict(surefoot, scenario, tmp_path):
+    surefoot("run", scenario, "--out", tmp_path)
+    log = tmp_path / "two-steps-0" / "log.mcap"
+    code, out, _ = surefoot("inspect", log, "--json")
+    found = json.loads(out)
+    assert code == 0
+    assert found["verdict"] == "pass"
+    assert found["truncated"] is False
+    assert {"topic": "/truth", "messages": 2000, "rate": pytest.approx(500, rel=1e-3)} in found["topics"]
+    assert {**json.loads(log.with_name("verdict.json").read_text()), **found} == found
+
+
+def test_inspect_and_recover_a_truncated_log(surefoot, scenario, tmp_path):
+    surefoot("run", scenario, "--out", tmp_path)
+    log = tmp_path / "two-steps-0" / "log.mcap"
+    log.write_bytes(log.read_bytes()[: log.stat().st_size // 2])
+    code, out, _ = surefoot("inspect", log)
+    assert code == 1
+    assert "truncated" in out
+    assert "the run was cut off" in out
+    code, out, err = surefoot("recover", log, tmp_path / "whole.mcap")
+    assert code == 0
+    assert "messages from 0.000 s" in err
+    assert not read(tmp_path / "whole.mcap").truncated
+    assert surefoot("inspect", tmp_path / "whole.mcap")[0] == 1
+
+
+def test_inspect_a_topic(surefoot, scenario, tmp_path):
+    surefoot("run", scenario, "--out", tmp_path)
+    log = tmp_path / "two-steps-0" / "log.mcap"
+    code, out, _ = surefoot("inspect", log, "--topic", "/truth", "--json")
+    assert code == 0
+    com = json.loads(out)["com"]
+    assert (com["shape"], com["messages"], com["not_finite"], com["min"], com["max"]) == ([3], 2000, 0, 0.0, 1.0)
+    assert "com_velocity" in surefoot("inspect", log, "--topic", "/truth")[1]
+    assert surefoot("inspect", log, "--topic", "/trut")[0] == 2
+
+
+def test_help_needs_no_heavy_package():
+    code = "import sys; import scenarios.cli; print(*(m for m in ('numpy', 'mujoco', 'pydantic') if m in sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""

@@ -33,6 +33,7 @@ class PlannerParameters:
         terminal_slack: quadratic and linear cost of leaving the terminal DCM bound [-, m].
         foot_margin: share of the foot in which the ZMP must stay (the paper's 90 %) [-].
         terminal_margin: share of the box's half size that bounds the terminal DCM [-].
+        leg_mass_ratio: mass of one leg, reduced to its sole, over the total mass; 0 is the paper's point mass [-].
         step_adaptation: what a disturbance may change about the footsteps.
         reach_length: largest distance of a footstep ahead of or behind the stance foot [m].
         reach_width: smallest and largest lateral distance of a footstep from the stance foot [m].
@@ -62,6 +63,7 @@ class PlannerParameters:
     terminal_slack: tuple[float, float] = (1e3, 10.0)
     foot_margin: float = 0.9
     terminal_margin: float = 0.8
+    leg_mass_ratio: float = 0.0
     step_adaptation: StepAdaptation = StepAdaptation.LOCATION
     reach_length: float = 0.4
     reach_width: tuple[float, float] = (0.08, 0.4)
@@ -86,6 +88,7 @@ class PlannerParameters:
                 "touchdown_speed",
                 "search_speed",
                 "terminal_weight",
+                "leg_mass_ratio",
             )
             if not (value > 0 or (may_be_zero and value == 0)):
                 raise ValueError(f"planner.{field.name} is {value:g}, but it must be greater than 0.")

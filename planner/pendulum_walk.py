@@ -122,7 +122,7 @@ def _run_tick(
         error = pendulum.position + pendulum.velocity / reference.omega - sampler.sample(start + i * step).dcm
         pendulum.advance(
             step,
-            reference.zmp + feedback * error,
+            reference.pendulum_zmp + feedback * error,
             plan.support_polygon,
             reference.stiffness,
             pushing_force(pushes, start + i * step),

@@ -21,9 +21,9 @@ class WalkPlan:
         com_acceleration: shape (N + 1, 3) [m/s^2].
         jerk: horizontal CoM jerk of each sample, shape (N, 2) [m/s^3].
         zmp: ZMP that this motion has, shape (N + 1, 2) [m].
+        zmp_offset: what the swing leg adds to it (see `planner.leg_inertia`), shape (N + 1, 2) [m].
         zmp_reference: ZMP that the footsteps define, shape (N + 1, 2) [m].
-        zmp_height: ground height under it, shape (N + 1,) [m].
-        stiffness: λ = (g + z'') / (z - p_z), shape (N + 1,) [1/s^2].
+        stiffness: λ of c'' = λ (c - (zmp - zmp_offset)), shape (N + 1,) [1/s^2].
         omega: ω of the DCM, ω' = ω² - λ, shape (N + 1,) [1/s].
         phase: where the plan stands in the gait.
         contacts: planned contacts (left, right) from each sample on, shape (N + 1, 2).
@@ -43,8 +43,8 @@ class WalkPlan:
     com_acceleration: Array
     jerk: Array
     zmp: Array
+    zmp_offset: Array
     zmp_reference: Array
-    zmp_height: Array
     stiffness: Array
     omega: Array
     phase: PhaseInfo

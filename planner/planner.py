@@ -1,7 +1,7 @@
 """The walking planner: the four modules of the paper, put together once per tick."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from planner.dcm import natural_frequency
 from planner.footsteps import FootstepPlan, plan_footsteps
 from planner.frames import wrap_angle
 from planner.gait import GaitParameters
+from planner.leg_inertia import softening, swing_shape, zmp_offset
 from planner.moves import block_moves
 from planner.parameters import PlannerParameters
 from planner.plan import WalkPlan
@@ -19,7 +20,7 @@ from planner.schedule import schedule
 from planner.solution import TvmpcSolution, solve_problem
 from planner.stepper import Stepper
 from planner.support import Support, present_support
-from planner.swing import SwingTrajectory, start_swing
+from planner.swing import SwingTrajectory, start_swing, swing_times
 from planner.terrain import Terrain, flat
 from planner.tvmpc import Trajectory, TvmpcProblem, build_problem, trajectory
 from planner.types import Array, CentroidalState, FeetState, Foot, PlannedFootstep, PlanStatus, SolverStatus
@@ -34,7 +35,9 @@ class _Preview:
     """What is known of the window before solving."""
 
     reference: ZmpReference
+    offset: Array
     height: HeightPreview
+    stiffness: Array
     omega: Array
 
 
@@ -89,6 +92,7 @@ class WalkingPlanner:
         self._stepper = Stepper(self.schedule, footsteps, terrain, p)
         self._shape = (height_profile or SmoothHeight()).shape(gait, self.schedule)
         check_height(self._shape, self.schedule, footsteps.support_points()[:, 2])
+        self._swing_shape = swing_shape(gait, self.schedule, p)
         self._prediction = predict(p.sample_time, block_moves(p.moves, p.horizon))
         self._support: Support | None = None
         self._swing: SwingTrajectory | None = None
@@ -120,24 +124,43 @@ class WalkingPlanner:
         window = (stepper.sample, n + p.preview + 1)
         reference = zmp_reference(self.schedule, support.table, *window)
         height = preview_height(self._shape, *window, support.heights, reference.height)
-        omega = natural_frequency(height.stiffness, p.sample_time)
+        offset = self._leg_offset(support, window, reference, height)
+        driving = replace(reference, point=reference.point - offset)
+        stiffness = softening(p.leg_mass_ratio) * height.stiffness
+        omega = natural_frequency(stiffness, p.sample_time)
         steps = self._step_context(support, feet)
         self.problem = build_problem(
             p,
             self._prediction,
             self._local_state(state, support),
-            height.stiffness[: n + 1],
-            reference,
-            generate_constraints(p, reference, height.stiffness, omega, steps),
+            stiffness[: n + 1],
+            driving,
+            generate_constraints(p, driving, stiffness, omega, steps),
             self._local_jerk(support)[0],
         )
         solution = solve_problem(self.problem, self._prediction, p.solvers, self._shifted_jerk(support))
         footsteps = stepper.upcoming(state.time, solution.shifts @ support.rotation.T)
         self._update_swing(state.time, feet, footsteps, solution)
         motion = trajectory(self._prediction, self.problem, solution.jerk)
-        preview = _Preview(reference, height, omega)
+        preview = _Preview(reference, offset, height, stiffness, omega)
         self._plan = self._world_plan(state.time, support, preview, motion, solution, footsteps)
         return self._plan
+
+    def _leg_offset(
+        self, support: Support, window: tuple[int, int], reference: ZmpReference, height: HeightPreview
+    ) -> Array:
+        if self.parameters.leg_mass_ratio == 0.0:
+            return np.zeros_like(reference.point)
+        return zmp_offset(
+            self._swing_shape,
+            self._stepper.footsteps,
+            (support.rotation, support.origin),
+            slice(window[0], window[0] + window[1]),
+            reference.point,
+            height.stiffness,
+            height.height[0] - reference.height,
+            self.parameters.leg_mass_ratio,
+        )
 
     def _world_plan(
         self,
@@ -163,10 +186,10 @@ class WalkingPlanner:
             com_velocity=com[1],
             com_acceleration=com[2],
             jerk=motion.jerk @ to_world,
-            zmp=motion.zmp @ to_world + support.origin,
+            zmp=(motion.zmp + preview.offset[:count]) @ to_world + support.origin,
+            zmp_offset=preview.offset[:count] @ to_world,
             zmp_reference=point @ to_world + support.origin,
-            zmp_height=reference.height[:count],
-            stiffness=height.stiffness[:count],
+            stiffness=preview.stiffness[:count],
             omega=preview.omega[:count],
             phase=stepper.info,
             contacts=self.schedule.contacts[window],
@@ -224,11 +247,9 @@ class WalkingPlanner:
             return
         target = np.append(footsteps[0].footstep.position, footsteps[0].footstep.yaw)
         if self._swing is None:
-            t = self.parameters.sample_time
             yaw = float(stepper.footsteps.yaw[stepper.row - 1])
             pose = np.append(feet.position[foot], yaw + wrap_angle(float(feet.yaw[foot]) - yaw))
-            lead = min(self.parameters.touchdown_lead, 0.25 * phase.samples * t)
-            times = (time, time + phase.samples // 2 * t, time + phase.samples * t - lead)
+            times = swing_times(time, phase.samples, self.parameters)
             self._swing = start_swing(foot, pose, target, times, self.gait.swing_height, self.parameters)
             return
         decided = stepper.fixed or solution.solver is SolverStatus.HELD

@@ -6,7 +6,7 @@ import numpy as np
 
 from planner.plan import WalkPlan
 from planner.polynomial import quintic
-from planner.types import GRAVITY, Array, Foot
+from planner.types import Array, Foot
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +19,7 @@ class PlanSample:
         com_velocity: shape (3,) [m/s].
         com_acceleration: shape (3,) [m/s^2].
         zmp: ZMP of this motion, shape (2,) [m].
+        pendulum_zmp: the ZMP less what the swing leg adds: c - c''/λ, which drives the CoM, shape (2,) [m].
         zmp_reference: ZMP that the footsteps define, shape (2,) [m].
         dcm: ξ = c + c'/ω, shape (2,) [m].
         omega: ω [1/s].
@@ -37,6 +38,7 @@ class PlanSample:
     com_velocity: Array
     com_acceleration: Array
     zmp: Array
+    pendulum_zmp: Array
     zmp_reference: Array
     dcm: Array
     omega: float
@@ -54,7 +56,7 @@ class PlanSampler:
     """Evaluates a plan between its samples.
 
     The horizontal CoM is the exact cubic of the sample's jerk, its height the quintic through both samples' z, z', z'';
-    ω, ZMP reference and load are linear. Each interval's polynomials are prepared when it is entered. After the end of
+    ω, λ, ZMP reference, ZMP offset and load are linear. Each interval's polynomials are prepared when it is entered. After the end of
     the horizon the last sample is held.
 
     Attributes:
@@ -66,7 +68,7 @@ class PlanSampler:
         self._last = len(plan.jerk) - 1
         self._interval = -1
         self._start = plan.time
-        self._table = np.zeros((6, 26))
+        self._table = np.zeros((6, _COLUMNS))
         self._load_rate = 0.0
         self._contacts = (True, True)
         self._swing_foot: Foot | None = None
@@ -86,14 +88,15 @@ class PlanSampler:
         t3 = t2 * t
         values = np.array((1.0, t, t2, t3, t3 * t, t3 * t2)) @ self._table
         com, velocity, acceleration = values[0:3], values[7:10], values[14:17]
-        omega, ground, load = values[23:].tolist()
-        stiffness = (GRAVITY + float(values[16])) / (float(values[2]) - ground)
+        omega, stiffness, load = values[25:].tolist()
+        pendulum_zmp = values[0:2] - values[14:16] / stiffness
         return PlanSample(
             time,
             com,
             velocity,
             acceleration,
-            values[0:2] - values[14:16] / stiffness,
+            pendulum_zmp + values[23:25],
+            pendulum_zmp,
             values[21:23],
             values[0:2] + values[7:9] / omega,
             omega,
@@ -108,10 +111,10 @@ class PlanSampler:
         )
 
     def _enter(self, i: int) -> None:
-        """Prepare an interval: 7 polynomials, their two derivatives, and 5 linear functions as columns."""
+        """Prepare an interval: 7 polynomials, their two derivatives, and 7 linear functions as columns."""
         plan, t = self.plan, self.plan.sample_time
         self._interval, self._start = i, plan.time + i * t
-        table = np.zeros((6, 26))
+        table = np.zeros((6, _COLUMNS))
         table[0, :2], table[1, :2] = plan.com[i, :2], plan.com_velocity[i, :2]
         table[2, :2], table[3, :2] = 0.5 * plan.com_acceleration[i, :2], plan.jerk[i] / 6.0
         heights = np.stack(
@@ -125,12 +128,12 @@ class PlanSampler:
             table[:, 3:7] = plan.swing.coefficients(self._start)
         table[:5, 7:14] = _DERIVATIVE * table[1:, :7]
         table[:4, 14:21] = _DERIVATIVE[:4] * table[1:5, 7:14]
-        table[0, 21:23], table[0, 23] = plan.zmp_reference[i], plan.omega[i]
-        table[0, 24], table[0, 25] = plan.zmp_height[i], plan.load_left[i]
-        table[1, 21:23], table[1, 23] = plan.zmp_reference[i + 1], plan.omega[i + 1]
-        table[1, 24], table[1, 25] = plan.zmp_height[i + 1], plan.load_left[i + 1]
+        for row, k in enumerate((i, i + 1)):
+            table[row, 21:23], table[row, 23:25] = plan.zmp_reference[k], plan.zmp_offset[k]
+            table[row, 25:] = plan.omega[k], plan.stiffness[k], plan.load_left[k]
         table[1, 21:] = (table[1, 21:] - table[0, 21:]) / t
-        self._table, self._load_rate = table, float(table[1, 25])
+        self._table, self._load_rate = table, float(table[1, 27])
 
 
+_COLUMNS = 28
 _DERIVATIVE = np.arange(1.0, 6.0)[:, None]

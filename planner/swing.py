@@ -104,6 +104,13 @@ class SwingTrajectory:
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 
 
+def swing_times(start: float, samples: int, parameters: PlannerParameters) -> tuple[float, float, float]:
+    """Lift-off, apex and touchdown [s] of a swing in a single support of so many samples that begins at `start`."""
+    t = parameters.sample_time
+    lead = min(parameters.touchdown_lead, 0.25 * samples * t)
+    return start, start + samples // 2 * t, start + samples * t - lead
+
+
 def start_swing(
     foot: Foot,
     pose: Array,

@@ -20,6 +20,7 @@ from sim.pushes import Push
 from sim.world import World
 from wbc.controller import Sole, WbcParameters, WholeBodyController
 from wbc.ik import PostureIk, PostureTarget
+from wbc.leg_mass import leg_mass_ratio
 from wbc.limits import JointLimits
 from wbc.model import BodyFrames
 
@@ -60,24 +61,26 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
     q = disturbed(posture, scenario, model, frames)
     world = World(robot, terrain, scenario.rates.physics, pushes(scenario, robot))
     world.reset(q)
+    leg_joints = np.array([any(part in name for part in _LEG_JOINTS) for name in robot.joint_names])
     controller = WholeBodyController(
         model=model,
         frames=frames,
         sole=Sole(0.5 * robot.sole_length, 0.5 * robot.sole_width, max(terrain.friction, LEAST_BELIEVED_FRICTION)),
         limits=limits,
         posture=posture[7:],
-        leg_joints=np.array([any(part in name for part in _LEG_JOINTS) for name in robot.joint_names]),
+        leg_joints=leg_joints,
         control_period=1.0 / scenario.rates.control,
         parameters=WbcParameters(),
     )
-    return Rig(world, controller, walking_planner(scenario, robot, terrain, feet_at(model, frames, q)))
+    parameters = planner_parameters(scenario, leg_mass_ratio(model, frames, posture, leg_joints))
+    return Rig(world, controller, walking_planner(scenario, robot, terrain, feet_at(model, frames, q), parameters))
 
 
-def walking_planner(scenario: Scenario, robot: RobotDescription, terrain: Terrain, feet: FeetState) -> WalkingPlanner:
+def walking_planner(
+    scenario: Scenario, robot: RobotDescription, terrain: Terrain, feet: FeetState, parameters: PlannerParameters
+) -> WalkingPlanner:
     """The planner of a scenario for start feet."""
-    return WalkingPlanner(
-        gait_parameters(scenario), feet, robot.sole_length, robot.sole_width, terrain, planner_parameters(scenario)
-    )
+    return WalkingPlanner(gait_parameters(scenario), feet, robot.sole_length, robot.sole_width, terrain, parameters)
 
 
 def gait_parameters(scenario: Scenario) -> GaitParameters:
@@ -99,14 +102,15 @@ def gait_parameters(scenario: Scenario) -> GaitParameters:
     )
 
 
-def planner_parameters(scenario: Scenario) -> PlannerParameters:
-    """The scenario's planner settings in the planner's terms."""
+def planner_parameters(scenario: Scenario, leg_mass_ratio: float) -> PlannerParameters:
+    """The scenario's planner settings in the planner's terms; the pendulum has no legs, a ratio of 0."""
     settings = scenario.planner
     return PlannerParameters(
         sample_time=settings.sample_time,
         horizon=settings.horizon,
         jerk_limit=settings.jerk_limit,
         jerk_rate_limit=math.inf if settings.jerk_rate_limit is None else settings.jerk_rate_limit,
+        leg_mass_ratio=leg_mass_ratio,
         step_adaptation=StepAdaptation(settings.step_adaptation),
     )
 

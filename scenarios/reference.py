@@ -24,7 +24,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         com=sample.com,
         com_velocity=sample.com_velocity,
         com_acceleration=sample.com_acceleration,
-        zmp=sample.zmp,
+        zmp=sample.pendulum_zmp,
         omega=sample.omega,
         stiffness=sample.stiffness,
         heading=0.5 * (yaw[0] + yaw[1]),

@@ -37,7 +37,7 @@ class GaitParameters:
 
     steps: int = 5
     step_length: float = 0.2
-    step_width: float = 0.25
+    step_width: float = 0.2
     lateral_step: float = 0.0
     turn: float = 0.0
     single_support: float = 1.5

@@ -5,10 +5,10 @@ momentum over at up to tens of N·m, which moves the ZMP by centimetres. With th
 r_k, the angular momentum about the CoM is L = Σ μ m (r_k - c) x (r_k' - c'), and the moment balance about the ZMP,
 (c - p) x m (c'' + g e_z) + L' = 0, gives per horizontal axis (with h = c_z - p_z, λ = (g + z'') / h, the other sole at rest)
 
-    p = c - (1 + 2 μ) c'' / λ + o,      o = (μ / λ) [ a + (r - p_ref) a_z / h ],
+    p = c - (1 + 2 μ) c'' / λ + o,      o = (μ / λ) [ a + (r + ℓ - p_ref) a_z / h ],
 
-where r and a are position and acceleration of the swing sole. Terms in z'' times μ are left out, and the CoM stands over
-p_ref in the small last term. So the motion is again a pendulum c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the
+where r and a are position and acceleration of the swing sole, and ℓ, ahead of the sole, stands for the knee, which moves
+forward when the sole moves up. Terms in z'' times μ are left out, and the CoM stands over p_ref in the small last term. So the motion is again a pendulum c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the
 ZMP less the known offset o. (Multi-mass ZMP models: Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 """
 
@@ -18,15 +18,15 @@ import numpy as np
 
 from planner.footsteps import FootstepPlan
 from planner.gait import GaitParameters
-from planner.parameters import PlannerParameters
+from planner.parameters import LegInertia, PlannerParameters
 from planner.schedule import Schedule
 from planner.swing import SwingTrajectory, start_swing, swing_times
 from planner.types import Array, Foot, PhaseKind
 
 
-def softening(leg_mass_ratio: float) -> float:
+def softening(leg: LegInertia) -> float:
     """Factor λ'/λ = 1 / (1 + 2 μ) by which the legs' masses soften the pendulum."""
-    return 1.0 / (1.0 + 2.0 * leg_mass_ratio)
+    return 1.0 / (1.0 + 2.0 * leg.mass_ratio)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ def zmp_offset(
     reference: Array,
     stiffness: Array,
     height: Array,
-    leg_mass_ratio: float,
+    leg: LegInertia,
 ) -> Array:
     """Offset o of the module's equation over a window, with nominal footsteps, in the plan frame.
 
@@ -81,7 +81,7 @@ def zmp_offset(
         reference: ZMP reference, shape (n, 2) [m].
         stiffness: λ of the point-mass pendulum, shape (n,) [1/s^2].
         height: CoM height over the ZMP, shape (n,) [m].
-        leg_mass_ratio: μ [-].
+        leg: the reduced leg.
 
     Returns:
         Shape (n, 2) [m].
@@ -92,9 +92,10 @@ def zmp_offset(
     lift = points.take(np.maximum(row - 1, 0), axis=0)
     step = points.take(np.minimum(row + 1, len(points) - 1), axis=0) - lift
     sole = lift + shape.progress[window, None] * step
-    lever = (shape.vertical[window] / height)[:, None]
-    moving = shape.acceleration[window, None] * step + lever * (sole - reference)
-    return np.asarray((leg_mass_ratio / stiffness)[:, None] * moving)
+    sole[:, 0] += leg.lever
+    lift_rate = (shape.vertical[window] / height)[:, None]
+    moving = shape.acceleration[window, None] * step + lift_rate * (sole - reference)
+    return np.asarray((leg.mass_ratio / stiffness)[:, None] * moving)
 
 
 def _unit_swing(gait: GaitParameters, samples: int, parameters: PlannerParameters) -> Array:

@@ -15,6 +15,29 @@ class StepAdaptation(Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class LegInertia:
+    """A leg reduced to a point mass at its sole (see `planner.leg_inertia`).
+
+    Attributes:
+        mass_ratio: μ, mass of one reduced leg over the total mass [-].
+        lever: ℓ, how far ahead of the sole it seems to be when the sole moves vertically [m].
+
+    Raises:
+        ValueError: the mass is negative or no number, or both legs would outweigh the body.
+    """
+
+    mass_ratio: float = 0.0
+    lever: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (0.0 <= self.mass_ratio < 0.5 and math.isfinite(self.lever)):
+            raise ValueError(
+                f"planner.leg has mass ratio {self.mass_ratio:g} and lever {self.lever:g} m, but the ratio must be within"
+                " 0 to 0.5 and the lever finite."
+            )
+
+
+@dataclass(frozen=True, slots=True)
 class PlannerParameters:
     """Parameters of the walking planner; the defaults are the measured robust formulation.
 
@@ -33,13 +56,15 @@ class PlannerParameters:
         terminal_slack: quadratic and linear cost of leaving the terminal DCM bound [-, m].
         foot_margin: share of the foot in which the ZMP must stay (the paper's 90 %) [-].
         terminal_margin: share of the box's half size that bounds the terminal DCM [-].
-        leg_mass_ratio: mass of one leg, reduced to its sole, over the total mass; 0 is the paper's point mass [-].
+        leg: inertia of the legs; the default is the paper's point mass without any.
         step_adaptation: what a disturbance may change about the footsteps.
         reach_length: largest distance of a footstep ahead of or behind the stance foot [m].
         reach_width: smallest and largest lateral distance of a footstep from the stance foot [m].
         swing_speed: fastest mean speed of the swing foot to a shifted footstep [m/s].
         freeze_time: time before touchdown from which the footstep is fixed [s].
         late_touchdown: longest wait of the phase clock for a touchdown [s].
+        apex_share: share of single support after which the swing sole is highest; a late apex keeps the sole high while
+            the leg is stretched furthest, shortly before touchdown [-].
         touchdown_lead: the swing ends this long before single support does, so that the foot is felt in time [s].
         touchdown_speed: downward speed of the swing foot at the planned touchdown [m/s].
         search_speed: greatest downward speed of the swing foot after it, while it feels no ground [m/s].
@@ -63,15 +88,16 @@ class PlannerParameters:
     terminal_slack: tuple[float, float] = (1e3, 10.0)
     foot_margin: float = 0.9
     terminal_margin: float = 0.8
-    leg_mass_ratio: float = 0.0
+    leg: LegInertia = LegInertia()
     step_adaptation: StepAdaptation = StepAdaptation.LOCATION
     reach_length: float = 0.4
     reach_width: tuple[float, float] = (0.08, 0.4)
     swing_speed: float = 3.0
     freeze_time: float = 0.08
     late_touchdown: float = 0.2
-    touchdown_lead: float = 0.02
-    touchdown_speed: float = 0.01
+    apex_share: float = 0.5
+    touchdown_lead: float = 0.03
+    touchdown_speed: float = 0.005
     search_speed: float = 0.1
     search_acceleration: float = 0.5
     solvers: tuple[str, str] = ("daqp", "quadprog")
@@ -88,7 +114,6 @@ class PlannerParameters:
                 "touchdown_speed",
                 "search_speed",
                 "terminal_weight",
-                "leg_mass_ratio",
             )
             if not (value > 0 or (may_be_zero and value == 0)):
                 raise ValueError(f"planner.{field.name} is {value:g}, but it must be greater than 0.")

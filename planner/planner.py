@@ -126,7 +126,7 @@ class WalkingPlanner:
         height = preview_height(self._shape, *window, support.heights, reference.height)
         offset = self._leg_offset(support, window, reference, height)
         driving = replace(reference, point=reference.point - offset)
-        stiffness = softening(p.leg_mass_ratio) * height.stiffness
+        stiffness = softening(p.leg) * height.stiffness
         omega = natural_frequency(stiffness, p.sample_time)
         steps = self._step_context(support, feet)
         self.problem = build_problem(
@@ -149,7 +149,7 @@ class WalkingPlanner:
     def _leg_offset(
         self, support: Support, window: tuple[int, int], reference: ZmpReference, height: HeightPreview
     ) -> Array:
-        if self.parameters.leg_mass_ratio == 0.0:
+        if self.parameters.leg.mass_ratio == 0.0:
             return np.zeros_like(reference.point)
         return zmp_offset(
             self._swing_shape,
@@ -159,7 +159,7 @@ class WalkingPlanner:
             reference.point,
             height.stiffness,
             height.height[0] - reference.height,
-            self.parameters.leg_mass_ratio,
+            self.parameters.leg,
         )
 
     def _world_plan(

@@ -108,7 +108,7 @@ def swing_times(start: float, samples: int, parameters: PlannerParameters) -> tu
     """Lift-off, apex and touchdown [s] of a swing in a single support of so many samples that begins at `start`."""
     t = parameters.sample_time
     lead = min(parameters.touchdown_lead, 0.25 * samples * t)
-    return start, start + samples // 2 * t, start + samples * t - lead
+    return start, start + round(parameters.apex_share * samples) * t, start + samples * t - lead
 
 
 def start_swing(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from models.pinocchio import pinocchio_model
 from models.types import RobotDescription
 from planner.gait import GaitParameters
-from planner.parameters import PlannerParameters, StepAdaptation
+from planner.parameters import LegInertia, PlannerParameters, StepAdaptation
 from planner.planner import WalkingPlanner
 from planner.terrain import Terrain, flat
 from planner.types import FeetState
@@ -20,7 +20,7 @@ from sim.pushes import Push
 from sim.world import World
 from wbc.controller import Sole, WbcParameters, WholeBodyController
 from wbc.ik import PostureIk, PostureTarget
-from wbc.leg_mass import leg_mass_ratio
+from wbc.leg_mass import leg_mass
 from wbc.limits import JointLimits
 from wbc.model import BodyFrames
 
@@ -58,7 +58,7 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
     limits = JointLimits(robot.torque_limit, robot.velocity_limit, robot.position_lower, robot.position_upper)
     terrain = flat(scenario.terrain.friction)
     posture = start_posture(scenario, robot, model, frames, limits)
-    q = disturbed(posture, scenario, model, frames)
+    q = disturbed(posture, scenario, robot, model, frames, limits)
     world = World(robot, terrain, scenario.rates.physics, pushes(scenario, robot))
     world.reset(q)
     leg_joints = np.array([any(part in name for part in _LEG_JOINTS) for name in robot.joint_names])
@@ -72,7 +72,7 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
         control_period=1.0 / scenario.rates.control,
         parameters=WbcParameters(),
     )
-    parameters = planner_parameters(scenario, leg_mass_ratio(model, frames, posture, leg_joints))
+    parameters = planner_parameters(scenario, leg_inertia(model, frames, posture, leg_joints))
     return Rig(world, controller, walking_planner(scenario, robot, terrain, feet_at(model, frames, q), parameters))
 
 
@@ -102,17 +102,23 @@ def gait_parameters(scenario: Scenario) -> GaitParameters:
     )
 
 
-def planner_parameters(scenario: Scenario, leg_mass_ratio: float) -> PlannerParameters:
-    """The scenario's planner settings in the planner's terms; the pendulum has no legs, a ratio of 0."""
+def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters:
+    """The scenario's planner settings in the planner's terms; a pendulum has legs without inertia."""
     settings = scenario.planner
     return PlannerParameters(
         sample_time=settings.sample_time,
         horizon=settings.horizon,
         jerk_limit=settings.jerk_limit,
         jerk_rate_limit=math.inf if settings.jerk_rate_limit is None else settings.jerk_rate_limit,
-        leg_mass_ratio=leg_mass_ratio,
+        leg=leg,
         step_adaptation=StepAdaptation(settings.step_adaptation),
     )
+
+
+def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: Array) -> LegInertia:
+    """The robot's legs as the planner sees them, from its start posture q, shape (nq,)."""
+    leg = leg_mass(model, frames, q, leg_joints)
+    return LegInertia(leg.ratio, leg.lever)
 
 
 def pushes(scenario: Scenario, robot: RobotDescription) -> tuple[Push, ...]:
@@ -154,8 +160,16 @@ def start_posture(
     return result.q
 
 
-def disturbed(q: Array, scenario: Scenario, model: pin.Model, frames: BodyFrames) -> Array:
-    """The posture, shape (nq,), with the start noises; no sole corner is left below the ground it stood on."""
+def disturbed(
+    q: Array, scenario: Scenario, robot: RobotDescription, model: pin.Model, frames: BodyFrames, limits: JointLimits
+) -> Array:
+    """The posture, shape (nq,), with the start noises on base position, base attitude and every joint.
+
+    The legs then give way until both soles, wherever the noise has put and turned them, lie flat on the ground.
+
+    Raises:
+        ValueError: if they cannot.
+    """
     start = scenario.start
     if start.position_noise == 0.0 and start.angle_noise == 0.0:
         return q
@@ -164,8 +178,15 @@ def disturbed(q: Array, scenario: Scenario, model: pin.Model, frames: BodyFrames
     offset[:3] = rng.uniform(-start.position_noise, start.position_noise, 3)
     offset[3:] = rng.uniform(-start.angle_noise, start.angle_noise, model.nv - 3)
     q = pin.integrate(model, q, offset)
-    q[2] -= min(0.0, float(_sole_placements(model, frames, q)[0][:, 2].min()))
-    return q
+    feet = feet_at(model, frames, q)
+    soles = feet.position * np.array([1.0, 1.0, 0.0])
+    result = PostureIk(model, frames, limits, q[7:]).solve(PostureTarget(soles, feet.yaw), q)
+    if not result.reached:
+        raise ValueError(
+            f"robot '{robot.name}' cannot stand with start.angle_noise {start.angle_noise:g} rad and "
+            f"start.position_noise {start.position_noise:g} m: {result.error:.3f} m or rad are missing; reduce them"
+        )
+    return result.q
 
 
 def feet_at(model: pin.Model, frames: BodyFrames, q: Array) -> FeetState:

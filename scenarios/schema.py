@@ -59,7 +59,7 @@ class Gait(Group):
 
     steps: Annotated[int, Field(ge=0, le=100_000)] = Field(default=5, description="footsteps to take [-]")
     step_length: Finite = Field(default=0.2, description="forward distance between successive footsteps [m]")
-    step_width: Positive = Field(default=0.25, description="lateral distance between the feet's centres [m]")
+    step_width: Positive = Field(default=0.2, description="lateral distance between the feet's centres [m]")
     lateral_step: Finite = Field(default=0.0, description="lateral progress of each footstep, left positive [m]")
     turn: Angle = Field(default=0.0, description="heading change of each footstep, left positive [rad]")
     single_support: Positive = Field(default=1.5, description="duration of a single support [s]")
@@ -112,8 +112,8 @@ class Start(Group):
     x: Finite = Field(default=0.0, description="world position forward [m]")
     y: Finite = Field(default=0.0, description="world position left [m]")
     yaw: Angle = Field(default=0.0, description="heading about the world's z axis [rad]")
-    position_noise: NonNegative = Field(default=0.0, description="random offset of the base position [m]")
-    angle_noise: NonNegative = Field(default=0.0, description="random offset of base attitude and joint angles [rad]")
+    position_noise: NonNegative = Field(default=0.0, description="random offset of the base position; the soles stay flat on the ground [m]")
+    angle_noise: NonNegative = Field(default=0.0, description="random offset of base attitude and joints; the soles stay flat on the ground [rad]")
 
 
 class BeliefErrors(Group):

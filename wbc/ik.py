@@ -18,14 +18,14 @@ class PostureTarget:
     Attributes:
         sole_position: sole centres, shape (2, 3) [m].
         sole_yaw: headings of the flat soles, shape (2,) [rad].
-        com: CoM, shape (3,) [m].
-        heading: yaw of the upright pelvis and torso [rad].
+        com: CoM, shape (3,) [m]; None leaves it free.
+        heading: yaw of the upright pelvis and torso [rad]; None leaves both free.
     """
 
     sole_position: Array
     sole_yaw: Array
-    com: Array
-    heading: float
+    com: Array | None = None
+    heading: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,16 +102,23 @@ class PostureIk:
         model, data = self._model, self._data
         pin.computeJointJacobians(model, data, q)
         pin.updateFramePlacements(model, data)
-        jacobians, errors = [], []
+        jacobians: list[Array] = []
+        errors: list[Array] = []
         for k, frame in enumerate(self._soles):
             desired = pin.SE3(pin.utils.rotate("z", float(target.sole_yaw[k])), target.sole_position[k])
             errors.append(pin.log6(data.oMf[frame].actInv(desired)).vector)
             jacobians.append(pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL))
-        upright = pin.utils.rotate("z", float(target.heading))
+        if target.heading is not None:
+            self._append_trunk(jacobians, errors, target.heading)
+        if target.com is not None:
+            jacobians.append(pin.jacobianCenterOfMass(model, data, q))
+            errors.append(target.com - data.com[0])
+        return np.vstack(jacobians), np.concatenate(errors)
+
+    def _append_trunk(self, jacobians: list[Array], errors: list[Array], heading: float) -> None:
+        model, data = self._model, self._data
+        upright = pin.utils.rotate("z", float(heading))
         errors.append(pin.log3(data.oMi[1].rotation.T @ upright))
         jacobians.append(np.hstack([np.zeros((3, 3)), np.eye(3), np.zeros((3, model.nv - 6))]))
         errors.append(pin.log3(data.oMf[self._torso].rotation.T @ upright))
         jacobians.append(pin.getFrameJacobian(model, data, self._torso, pin.ReferenceFrame.LOCAL)[3:])
-        jacobians.append(pin.jacobianCenterOfMass(model, data, q))
-        errors.append(target.com - data.com[0])
-        return np.vstack(jacobians), np.concatenate(errors)

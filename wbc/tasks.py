@@ -28,10 +28,10 @@ class TaskWeights:
     """
 
     com_horizontal: float = 10.0
-    com_vertical: float = 5.0
+    com_vertical: float = 2.5
     angular_momentum: float = 2.0
-    orientation: float = 4.0
-    swing: float = 50.0
+    orientation: float = 1.0
+    swing: float = 10.0
     upper_posture: float = 0.5
     leg_posture: float = 1e-3
     acceleration: float = 1e-4

@@ -9,7 +9,7 @@ from planner.planner import WalkingPlanner
 from planner.types import FeetState
 
 
-def stand(width: float = 0.25, origin: tuple[float, float] = (0.0, 0.0), yaw: float = 0.0) -> FeetState:
+def stand(width: float = 0.2, origin: tuple[float, float] = (0.0, 0.0), yaw: float = 0.0) -> FeetState:
     side = 0.5 * width * np.array([-np.sin(yaw), np.cos(yaw)])
     position = np.zeros((2, 3))
     position[0, :2], position[1, :2] = origin + side, origin - side

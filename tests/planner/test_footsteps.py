@@ -11,14 +11,14 @@ pytestmark = pytest.mark.unit
 
 def test_diagonal_walk_advances_by_length_and_lateral_step_and_ends_square(stand):
     steps = plan_footsteps(GaitParameters(steps=5, step_length=0.2, lateral_step=0.1), stand(), flat())
-    path = steps.position[2:, :2] - [[0.0, 0.125 if foot is Foot.LEFT else -0.125] for foot in steps.feet[2:]]
+    path = steps.position[2:, :2] - [[0.0, 0.1 if foot is Foot.LEFT else -0.1] for foot in steps.feet[2:]]
     np.testing.assert_allclose(path, np.minimum(np.arange(1, 6), 4)[:, None] * [0.2, 0.1], atol=1e-12)
-    np.testing.assert_allclose(np.abs(steps.position[-1] - steps.position[-2]), [0.0, 0.25, 0.0], atol=1e-12)
+    np.testing.assert_allclose(np.abs(steps.position[-1] - steps.position[-2]), [0.0, 0.2, 0.0], atol=1e-12)
 
 
 def test_turning_in_place_keeps_the_centre_and_the_width(stand):
     steps = plan_footsteps(GaitParameters(steps=9, step_length=0.0, turn=0.3), stand(), flat())
-    np.testing.assert_allclose(np.hypot(*steps.position[:, :2].T), 0.125, atol=1e-12)
+    np.testing.assert_allclose(np.hypot(*steps.position[:, :2].T), 0.1, atol=1e-12)
     np.testing.assert_allclose(np.diff(steps.yaw[1:-1]), 0.3)
 
 

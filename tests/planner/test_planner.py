@@ -144,7 +144,8 @@ def test_late_touchdown_holds_the_clock_up_to_its_limit(stand):
     never = drive(WalkingPlanner(gait, stand(), *HUMAN), stand(), lambda t: False, 62)
     landed = next(k for k, plan in enumerate(never) if plan.phase.step == 1 and plan.phase.kind is PhaseKind.DOUBLE)
     assert landed == 50 + 10
-    assert never[58].swing.evaluate(1.16)[0, 2] == pytest.approx(-0.016)
+    searched = never[58].swing.evaluate(1.16)[0, 2]
+    assert -0.02 < searched < -0.002
 
 
 def test_early_touchdown_fixes_the_footstep_and_never_moves_the_clock(stand):

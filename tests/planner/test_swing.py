@@ -22,7 +22,7 @@ def test_swing_leaves_rest_clears_both_heights_and_touches_down_softly(height):
     start, end = trajectory.evaluate(2.0), trajectory.evaluate(2.8 - 1e-9 - 1e-10)
     np.testing.assert_allclose(start, [START, np.zeros(4), np.zeros(4)], atol=1e-12)
     np.testing.assert_allclose(end[0], TARGET + np.array([0.0, 0.0, height, 0.0]), atol=1e-8)
-    np.testing.assert_allclose(end[1], [0.0, 0.0, -0.05, 0.0], atol=1e-6)
+    np.testing.assert_allclose(end[1], [0.0, 0.0, -PlannerParameters().touchdown_speed, 0.0], atol=1e-6)
     z = np.array([trajectory.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.8, 801)])
     assert z.max() == pytest.approx(max(0.0, height) + 0.05, abs=1e-6)
     assert np.all(np.diff(z[:400]) >= -1e-12)
@@ -54,7 +54,11 @@ def test_new_target_is_reached_without_a_jump(time):
     np.testing.assert_allclose(moved.evaluate(2.8 - 2e-9)[0], target, atol=1e-6)
 
 
-def test_without_ground_the_sole_searches_downwards():
-    motion = swing().evaluate(2.9)
-    np.testing.assert_allclose(motion[0], TARGET - [0.0, 0.0, 0.01, 0.0], atol=1e-12)
-    np.testing.assert_allclose(motion[1], [0.0, 0.0, -0.1, 0.0])
+def test_without_ground_the_sole_searches_downwards_without_a_jump_in_speed():
+    parameters, step = PlannerParameters(), 1e-3
+    motion = np.array([swing().evaluate(t) for t in 2.8 + step * np.arange(1000)])
+    np.testing.assert_array_equal(motion[:, 0, [0, 1, 3]], np.tile(TARGET[[0, 1, 3]], (1000, 1)))
+    np.testing.assert_allclose(np.gradient(motion[:, 0, 2], step)[1:-1], motion[1:-1, 1, 2], atol=1e-6 + step)
+    assert motion[0, 1, 2] == pytest.approx(-parameters.touchdown_speed, abs=1e-6)
+    assert motion[-1, 1, 2] == pytest.approx(-parameters.search_speed)
+    assert np.abs(np.diff(motion[:, 1, 2])).max() <= parameters.search_acceleration * step + 1e-9

@@ -23,11 +23,15 @@ from wbc.ik import PostureIk, PostureTarget
 from wbc.leg_mass import leg_mass
 from wbc.limits import JointLimits
 from wbc.model import BodyFrames
+from wbc.statics import standing_torque
 
 Array = NDArray[np.float64]
 
 LEAST_BELIEVED_FRICTION = 0.05
 """The controller counts on at least this friction, so that its wrench cones keep an inside."""
+
+SOLE_SINKAGE = 5e-5
+"""How far the soles sink into the simulated ground under the robot's weight [m]."""
 
 _LEG_JOINTS = ("hip", "knee", "ankle")
 
@@ -58,9 +62,9 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
     limits = JointLimits(robot.torque_limit, robot.velocity_limit, robot.position_lower, robot.position_upper)
     terrain = flat(scenario.terrain.friction)
     posture = start_posture(scenario, robot, model, frames, limits)
-    q = disturbed(posture, scenario, robot, model, frames, limits)
+    q = pressed(disturbed(posture, scenario, robot, model, frames, limits))
     world = World(robot, terrain, scenario.rates.physics, pushes(scenario, robot))
-    world.reset(q)
+    world.reset(q, torque=standing_torque(model, frames, q))
     leg_joints = np.array([any(part in name for part in _LEG_JOINTS) for name in robot.joint_names])
     controller = WholeBodyController(
         model=model,
@@ -187,6 +191,13 @@ def disturbed(
             f"start.position_noise {start.position_noise:g} m: {result.error:.3f} m or rad are missing; reduce them"
         )
     return result.q
+
+
+def pressed(q: Array) -> Array:
+    """The configuration, shape (nq,), sunk in so far that the ground carries it from the first instant."""
+    sunk = q.copy()
+    sunk[2] -= SOLE_SINKAGE
+    return sunk
 
 
 def feet_at(model: pin.Model, frames: BodyFrames, q: Array) -> FeetState:

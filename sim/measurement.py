@@ -15,7 +15,7 @@ class Measurement:
     The arrays are buffers of the world, overwritten by its next `measure()`: copy what must live longer.
 
     Joint state, gyro and true state are those of `time`; torques, accelerometer, wrenches and external force are those
-    of the physics step that ended at `time` (after a reset: those of a robot without torques).
+    of the physics step that ended at `time` (after a reset: those of the torques that it was given).
 
     Attributes:
         time: instant [s].

@@ -69,17 +69,20 @@ class World:
         """The whole world as one MJCF text, exactly what is simulated."""
         return self._mjcf
 
-    def reset(self, q: Array, v: Array | None = None) -> None:
+    def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
         """Start at tick 0 from a state in Pinocchio's convention.
 
         Args:
             q: configuration, shape (7 + nj,).
             v: velocity, shape (6 + nj,); rest if None.
+            torque: joint torques that the first measured contact forces belong to, shape (nj,) [N m]; none if None.
         """
         mujoco.mj_resetData(self.model, self.data)
         pinocchio_to_mujoco(q, np.zeros(self.model.nv) if v is None else v, self._qpos, self._qvel)
         self._pushes.rewind(self._xfrc)
         self.tick = 0
+        if torque is not None:
+            self._ctrl[:] = torque
         mujoco.mj_forward(self.model, self.data)
 
     def measure(self) -> Measurement:

@@ -50,9 +50,9 @@ class TaskGains:
         angular_momentum: decay of the angular momentum [1/s].
     """
 
-    orientation: tuple[float, float] = (100.0, 20.0)
+    orientation: tuple[float, float] = (40.0, 13.0)
     swing: tuple[float, float] = (400.0, 40.0)
-    posture: tuple[float, float] = (50.0, 10.0)
+    posture: tuple[float, float] = (20.0, 9.0)
     angular_momentum: float = 3.0
 
 

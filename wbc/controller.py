@@ -91,7 +91,7 @@ class WholeBodyController:
         share = sole.cop_share
         cone = wrench_cone(share * sole.half_length, share * sole.half_width, sole.friction / np.sqrt(2.0))
         self._hard = HardConstraints(self.qp, self.layout, cone, limits, parameters.contact)
-        self._tasks = TaskStack(self.layout, parameters.weights, parameters.gains, posture, leg_joints)
+        self._tasks = TaskStack(self.qp, self.layout, parameters.weights, parameters.gains, posture, leg_joints)
         self._contacts = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[bool, bool] | None = None
@@ -100,7 +100,7 @@ class WholeBodyController:
         self._limits = limits
         self._period = control_period
         self._state = RobotState(pin.neutral(model), np.zeros(model.nv))
-        self._torque = np.zeros(self.layout.joints)
+        self._torque, self._torque_rows = np.zeros(self.layout.joints), self.qp.A[self.layout.torque_rows]
         self._acceleration = np.zeros(self.layout.nv)
         self._wrench = np.zeros((2, 6))
         self._task_error = np.zeros(18)
@@ -123,8 +123,11 @@ class WholeBodyController:
         contacts = self._contacts.update(reference, sensing)
         self._assemble(state, reference, contacts)
         built = time.perf_counter()
-        status, solution = self._solve(fail_solvers)
-        violation = self._apply(solution, state.v)
+        status, solution, violation = self._solve(fail_solvers)
+        if solution is not None:
+            self._apply(solution)
+        else:
+            self._hold(state.v)
         solved = time.perf_counter()
         return WbcReport(
             torque=self._torque,
@@ -147,33 +150,35 @@ class WholeBodyController:
             self._region.rebuild(terms.sole_position, terms.sole_rotation, contacts.active)
             self._region_contacts = contacts.active
         acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
-        self._tasks.write(self.qp, terms, state.q, state.v, acceleration, reference)
-        self._hard.write(self.qp, terms, state.q, state.v, contacts)
+        self._tasks.write(terms, state.q, state.v, acceleration, reference)
+        self._hard.write(terms, state.q, state.v, contacts)
 
-    def _solve(self, fail_solvers: bool) -> tuple[SolveStatus, QpSolution | None]:
+    def _solve(self, fail_solvers: bool) -> tuple[SolveStatus, QpSolution | None, float]:
+        """Where the answer came from, the answer, and its violation of the QP's rows."""
         if not fail_solvers:
             for status, solver in zip((SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER), self._solvers, strict=True):
                 solution = solver.solve(self.qp)
-                if solution is not None and self.qp.violation(solution.x) <= ACCEPTED_VIOLATION:
-                    return status, solution
+                if solution is not None:
+                    violation = self.qp.violation(solution.x)
+                    if violation <= ACCEPTED_VIOLATION:
+                        return status, solution, violation
         x = equalities_only(self.qp)
         if x is not None:
-            return SolveStatus.EQUALITIES_ONLY, QpSolution(x, 0, float("nan"))
-        return SolveStatus.HELD, None
+            return SolveStatus.EQUALITIES_ONLY, QpSolution(x, 0, float("nan")), self.qp.violation(x)
+        return SolveStatus.HELD, None, float("inf")
 
-    def _apply(self, solution: QpSolution | None, v: Array) -> float:
-        """Interpret the solution into torque, acceleration and wrenches; returns the violation of the QP's rows."""
-        limit = self._limits.torque
-        if solution is None:
-            # Fade the last torque out within about 50 ms while damping the joints.
-            self._torque += self._period / 0.05 * (-0.02 * limit * v[6:] - self._torque)
-            np.clip(self._torque, -limit, limit, out=self._torque)
-            return float("inf")
-        x, nv = solution.x, self.layout.nv
-        np.matmul(self.qp.A[self.layout.torque_rows], x, out=self._torque)
+    def _apply(self, solution: QpSolution) -> None:
+        """Interpret the solution into torque, acceleration and wrenches."""
+        x, nv, limit = solution.x, self.layout.nv, self._limits.torque
+        np.matmul(self._torque_rows, x, out=self._torque)
         self._torque += self.terms.bias[6:]
         np.clip(self._torque, -limit, limit, out=self._torque)
         self._acceleration[:] = x[:nv]
-        self._wrench[:] = x[nv:].reshape(2, 6)
+        np.multiply(x[nv:], self.layout.wrench_unit, out=self._wrench.reshape(-1))
         self._task_error[:] = self._tasks.residual(x)
-        return self.qp.violation(x)
+
+    def _hold(self, v: Array) -> None:
+        """Fade the last torque out within about 50 ms while damping the joints."""
+        limit = self._limits.torque
+        self._torque += self._period / 0.05 * (-0.02 * limit * v[6:] - self._torque)
+        np.clip(self._torque, -limit, limit, out=self._torque)

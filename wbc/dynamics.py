@@ -77,15 +77,18 @@ class HardConstraints:
         np.multiply(terms.sole_velocity, -self._gains.damping, out=target)
         target -= terms.sole_bias
         # Rotation vector, in the sole frame, that turns the sole's normal to the vertical.
-        target[:, 3] -= levelling * terms.sole_rotation[:, 2, 1]
-        target[:, 4] += levelling * terms.sole_rotation[:, 2, 0]
+        R = terms.sole_rotation
+        target[0, 3] -= levelling * R[0, 2, 1]
+        target[0, 4] += levelling * R[0, 2, 0]
+        target[1, 3] -= levelling * R[1, 2, 1]
+        target[1, 4] += levelling * R[1, 2, 0]
         self._follow(0, terms, contacts.active[0])
         self._follow(1, terms, contacts.active[1])
         self._active = contacts.active
         self._contact_lower[:] = target
         self._contact_upper[:] = target
-        self._force_caps[:] = contacts.force_cap
-        self._force_caps /= self._unit
+        left, right = contacts.force_cap
+        self._force_caps[:] = (left / self._unit, right / self._unit)
 
     def _follow(self, k: int, terms: RobotTerms, active: bool) -> None:
         if active:

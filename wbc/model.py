@@ -50,7 +50,9 @@ class RobotTerms:
             ValueError: if a frame does not exist or the model's gravity is not ``GRAVITY`` downwards.
         """
         if not np.allclose(model.gravity.linear, [0.0, 0.0, -GRAVITY], atol=1e-12):
-            raise ValueError(f"gravity of model '{model.name}' is {model.gravity.linear}; it must be [0, 0, -{GRAVITY}]")
+            raise ValueError(
+                f"gravity of model '{model.name}' is {model.gravity.linear}; it must be [0, 0, -{GRAVITY}]"
+            )
         self.model = model
         self.data = data = model.createData()
         self._soles = tuple(_frame_id(model, name) for name in frames.soles)

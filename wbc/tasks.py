@@ -72,13 +72,21 @@ class TaskStack:
     """
 
     def __init__(
-        self, qp: QpData, layout: QpLayout, weights: TaskWeights, gains: TaskGains, posture: Array, leg_joints: Array
+        self,
+        qp: QpData,
+        layout: QpLayout,
+        mass: float,
+        weights: TaskWeights,
+        gains: TaskGains,
+        posture: Array,
+        leg_joints: Array,
     ) -> None:
         """Prepare what never changes.
 
         Args:
             qp: whose H and g this writes.
             layout: of the QP.
+            mass: of the robot [kg].
             weights: of the tasks.
             gains: of the tasks.
             posture: joint positions to return to, shape (nj,) [rad].
@@ -90,7 +98,9 @@ class TaskStack:
         self._orientation_scale, self._swing_scale = float(scale[9]), float(scale[12])
         self._rows, self._target = np.zeros((TASK_ROWS, layout.variables)), np.zeros(TASK_ROWS)
         self._rows[PELVIS, 3:6] = np.diag(scale[PELVIS])
-        self._from_origin, self._upright, self._turned = np.eye(6), np.eye(3), np.eye(3)
+        self._upright, self._turned = np.eye(3), np.eye(3)
+        self._from_origin = np.diag(scale[:6] * (self._unit / mass))
+        self._moment_scale = float(self._from_origin[5, 5])
         posture_weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
         self._diagonal, self._linear = _diagonal(layout, weights, posture_weight), np.zeros(layout.variables)
         self._stiffness, self._damping = gains.posture[0] * posture_weight, gains.posture[1] * posture_weight
@@ -103,7 +113,7 @@ class TaskStack:
         self._momentum_rows, self._torso_rows, self._swing_rows = rows[:6, nv:], rows[TORSO, :nv], rows[SWING, :nv]
         self._joint_linear, self._loads = self._linear[6:nv], self._linear[nv + 2 :: 6]
         self._H, self._g, self._H_diagonal = qp.H, qp.g, qp.H.reshape(-1)[:: layout.variables + 1]
-        self._force_scale = self._scale[:6, None] * self._unit
+        self._lever = self._from_origin[3:, :3]
 
     def write(self, terms: RobotTerms, q: Array, v: Array, com_acceleration: Vector, reference: WbcReference) -> None:
         """Write H and g of the QP for this state and reference; q (nq,), v (nv,), com_acceleration [m/s^2]."""
@@ -127,10 +137,11 @@ class TaskStack:
 
     def _momentum(self, terms: RobotTerms, com_acceleration: Vector) -> tuple[float, ...]:
         """Rows of force and moment about the CoM, M - c x F from the moment M about the origin; returns their targets."""
+        scale = self._moment_scale
         x, y, z = terms.com.tolist()
-        self._from_origin[3:, :3] = ((0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0))
+        x, y, z = scale * x, scale * y, scale * z
+        self._lever[:] = ((0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0))
         np.matmul(self._from_origin, terms.sole_wrench_map, out=self._momentum_rows)
-        self._momentum_rows *= self._force_scale / terms.mass
         decay = -self._gains.angular_momentum / terms.mass
         lx, ly, lz = terms.angular_momentum.tolist()
         ax, ay, az = com_acceleration
@@ -177,7 +188,9 @@ class TaskStack:
         self._loads[:] = (weight * reference.load_share[0], weight * reference.load_share[1])
 
 
-def _angular(gains: tuple[float, float], R: Array, velocity: Array, desired: Array, turn: tuple[float, float]) -> Vector:
+def _angular(
+    gains: tuple[float, float], R: Array, velocity: Array, desired: Array, turn: tuple[float, float]
+) -> Vector:
     """Angular acceleration, in the frame of R, towards ``desired`` turning about the vertical at (rate, acceleration)."""
     stiffness, damping = gains
     ex, ey, ez = pin.log3(R.T @ desired).tolist()

@@ -75,8 +75,9 @@ def com_acceleration(
     """CoM acceleration that tracks the reference.
 
     Horizontal: with ξ = c + c'/ω and e = ξ - ξ_ref, the commanded ZMP is p = p_ref + k e, projected on the support
-    region, and c'' = λ (c - p). On the reference this returns the reference's own acceleration. Since ξ' = (λ/ω)(ξ - p) for
-    ω' = ω² - λ (Hopkins, Hong and Leonessa, Humanoids 2014, eq. 10), the error obeys e' = -(λ/ω)(k - 1) e.
+    region, and c'' = λ (c - p). On the reference this returns the reference's own acceleration. Since
+    ξ' = (λ/ω)(ξ - p) for ω' = ω² - λ (Hopkins, Hong and Leonessa, Humanoids 2014, eq. 10), the error obeys
+    e' = -(λ/ω)(k - 1) e.
     Vertical: c_z'' = z_ref'' + k_z (z_ref - z) + d_z (z_ref' - z').
 
     Args:
@@ -89,7 +90,7 @@ def com_acceleration(
     Returns:
         x, y, z [m/s^2].
     """
-    x, y, z = com.tolist()
+    x, y, _ = com.tolist()
     dx, dy, dz = (com - reference.com).tolist()
     vx, vy, vz = (com_velocity - reference.com_velocity).tolist()
     zmp_x, zmp_y = reference.zmp.tolist()

@@ -60,7 +60,8 @@ class WholeBodyController:
     """Weighted inverse-dynamics QP, solved once per control tick.
 
     Herzog et al., "Momentum control with hierarchical inverse dynamics", Autonomous Robots 2016, in its weighted form,
-    with the CoM law of ``wbc.balance``. A tick that no solver answers degrades as ``SolveStatus`` says; it never raises.
+    with the CoM law of ``wbc.balance``. A tick that no solver answers degrades as ``SolveStatus`` says; it never
+    raises.
     """
 
     def __init__(

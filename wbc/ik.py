@@ -48,8 +48,8 @@ class PostureResult:
 class PostureIk:
     """Gauss-Newton on the manifold of configurations; each step is a QP within the joint limits.
 
-    Minimises ||J dq - e||² + μ ||dq_joints - (posture - q)||² + ν ||dq||² with J and e of all tasks in local frames. Tasks are
-    consistent wherever the legs can reach, so the small μ only chooses among the solutions.
+    Minimises ||J dq - e||² + μ ||dq_joints - (posture - q)||² + ν ||dq||² with J and e of all tasks in local frames.
+    Tasks are consistent wherever the legs can reach, so the small μ only chooses among the solutions.
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits, posture: Array) -> None:

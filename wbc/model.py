@@ -26,9 +26,10 @@ class BodyFrames:
 class RobotTerms:
     """Dynamics, centroidal quantities and frame kinematics of the current state.
 
-    The pelvis is the floating base. Frame Jacobians, velocities and bias accelerations are local to their frame and classical
-    (what an accelerometer at the frame would add to gravity), so that one sole Jacobian serves the contact constraint,
-    the swing task and the map from sole wrenches to generalised forces. Every array is a buffer that ``update`` overwrites.
+    The pelvis is the floating base. Frame Jacobians, velocities and bias accelerations are local to their frame and
+    classical (what an accelerometer at the frame would add to gravity), so that one sole Jacobian serves the contact
+    constraint, the swing task and the map from sole wrenches to generalised forces. Every array is a buffer that
+    ``update`` overwrites.
 
     Attributes:
         mass: total mass [kg].
@@ -38,7 +39,8 @@ class RobotTerms:
         base_rotation, torso_rotation: orientation in the world, shape (3, 3).
         base_angular_velocity: in the base frame, shape (3,).
         sole_position: shape (2, 3); sole_rotation: shape (2, 3, 3); sole_pose: x y z qx qy qz qw, shape (2, 7).
-        sole_jacobian: shape (2, 6, nv); contact_jacobian: the same memory, shape (12, nv); sole_velocity, sole_bias: shape (2, 6).
+        sole_jacobian: shape (2, 6, nv); contact_jacobian: the same memory, shape (12, nv).
+        sole_velocity, sole_bias: shape (2, 6).
         sole_wrench_map: from both sole wrenches to their force and moment about the world's origin, shape (6, 12).
         torso_jacobian: angular rows, shape (3, nv); torso_velocity, torso_bias: shape (3,).
     """

@@ -61,7 +61,8 @@ class ProxQp:
         n, eq = qp.g.shape[0], EQUALITY_ROWS
         split = n + eq
         data = (
-            qp.H, qp.g, qp.A[:eq], qp.bounds_lower[n:split], qp.A[eq:], qp.bounds_lower[split:], qp.bounds_upper[split:],
+            qp.H, qp.g, qp.A[:eq], qp.bounds_lower[n:split],
+            qp.A[eq:], qp.bounds_lower[split:], qp.bounds_upper[split:],
             qp.bounds_lower[:n], qp.bounds_upper[:n],
         )  # fmt: skip
         if self._solver is None:

@@ -63,10 +63,10 @@ class TaskStack:
     """All tasks as one weighted least-squares cost.
 
     Rows (before weighting) and their sources:
-    CoM from the sole forces, c'' = Σ R_k f_k / m - g; angular momentum over mass, L'/m = Σ [(p_k - c) x R_k f_k + R_k τ_k] / m
-    (Newton-Euler of the whole body, e.g. Orin, Goswami and Lee, Autonomous Robots 2013); pelvis and torso angular
-    acceleration; swing foot acceleration; then diagonal terms for posture and regularisation. The two momentum tasks act
-    on forces, which the floating-base rows tie to the accelerations.
+    CoM from the sole forces, c'' = Σ R_k f_k / m - g; angular momentum over mass,
+    L'/m = Σ [(p_k - c) x R_k f_k + R_k τ_k] / m (Newton-Euler of the whole body, e.g. Orin, Goswami and Lee, Autonomous
+    Robots 2013); pelvis and torso angular acceleration; swing foot acceleration; then diagonal terms for posture and
+    regularisation. The two momentum tasks act on forces, which the floating-base rows tie to the accelerations.
 
     With weighted rows T and targets t, a diagonal D and its linear term d: H = TᵀT + D and g = -(Tᵀt + d).
     """
@@ -136,7 +136,7 @@ class TaskStack:
         return residual
 
     def _momentum(self, terms: RobotTerms, com_acceleration: Vector) -> tuple[float, ...]:
-        """Rows of force and moment about the CoM, M - c x F from the moment M about the origin; returns their targets."""
+        """Rows of force F and moment M - c x F about the CoM, M being about the origin; returns their targets."""
         scale = self._moment_scale
         x, y, z = terms.com.tolist()
         x, y, z = scale * x, scale * y, scale * z

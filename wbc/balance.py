@@ -1,5 +1,6 @@
 """CoM law: time-varying DCM feedback through the ZMP, and a spring-damper for the height."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,46 +29,55 @@ class BalanceGains:
 class SupportRegion:
     """The area where the commanded ZMP may lie: convex hull of the active soles, shrunk towards each sole's centre.
 
-    Held as half-planes and vertices in the horizontal plane, rebuilt only when the contacts change.
+    Held as its edges in the horizontal plane, rebuilt only when the contacts change. Plain floats, since arrays of two
+    numbers cost more than their arithmetic.
     """
 
     def __init__(self, half_length: float, half_width: float, share: float) -> None:
         """Soles of the given half sizes [m], of which ``share`` is used."""
         corners = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
         self._corners = corners * (share * np.array([half_length, half_width]))
-        self._normals = np.zeros((0, 2))
-        self._offsets = np.zeros(0)
-        self._vertices = np.zeros((0, 2))
+        self._edges: list[_Edge] = []
 
     def rebuild(self, positions: Array, rotations: Array, active: tuple[bool, bool]) -> None:
         """Hull of the active soles; positions (2, 3), rotations (2, 3, 3) in the world frame."""
         soles = [positions[k, :2] + self._corners @ rotations[k, :2, :2].T for k in (0, 1) if active[k]]
         points = np.concatenate(soles)
-        self._vertices = points[ConvexHull(points).vertices]
-        edges = np.roll(self._vertices, -1, axis=0) - self._vertices
-        lengths = np.linalg.norm(edges, axis=1)
-        self._normals = np.column_stack([edges[:, 1], -edges[:, 0]]) / lengths[:, None]
-        self._offsets = np.einsum("ij,ij->i", self._normals, self._vertices)
+        vertices = points[ConvexHull(points).vertices].tolist()
+        self._edges = [_edge(*start, *end) for start, end in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
 
-    def project(self, point: Array) -> Array:
-        """The point of the region nearest to ``point``, shape (2,)."""
-        if (self._normals @ point <= self._offsets).all():
-            return point
-        start = self._vertices
-        edge = np.roll(start, -1, axis=0) - start
-        along = np.einsum("ij,ij->i", point - start, edge) / np.einsum("ij,ij->i", edge, edge)
-        nearest = start + np.clip(along, 0.0, 1.0)[:, None] * edge
-        return nearest[np.argmin(np.einsum("ij,ij->i", nearest - point, nearest - point))]
+    def project(self, x: float, y: float) -> tuple[float, float]:
+        """The point of the region nearest to (x, y)."""
+        if all((x - ex) * uy - (y - ey) * ux <= 0.0 for ex, ey, ux, uy, _ in self._edges):
+            return x, y
+        nearest, least = (x, y), math.inf
+        for ex, ey, ux, uy, length in self._edges:
+            along = min(max((x - ex) * ux + (y - ey) * uy, 0.0), length)
+            px, py = ex + along * ux, ey + along * uy
+            distance = (x - px) ** 2 + (y - py) ** 2
+            if distance < least:
+                nearest, least = (px, py), distance
+        return nearest
+
+
+_Edge = tuple[float, float, float, float, float]
+"""Start point, unit direction and length of an edge of a counter-clockwise polygon."""
+
+
+def _edge(start_x: float, start_y: float, end_x: float, end_y: float) -> _Edge:
+    length = math.hypot(end_x - start_x, end_y - start_y)
+    return start_x, start_y, (end_x - start_x) / length, (end_y - start_y) / length, length
 
 
 def com_acceleration(
     reference: WbcReference, com: Array, com_velocity: Array, region: SupportRegion, gains: BalanceGains
-) -> Array:
+) -> tuple[float, float, float]:
     """CoM acceleration that tracks the reference.
 
     Horizontal: with ξ = c + c'/ω and e = ξ - ξ_ref, the commanded ZMP is p = p_ref + k e, projected on the support
-    region, and c'' = λ (c - p). On the reference this returns the reference's own acceleration. Since ξ' = (λ/ω)(ξ - p) for
-    ω' = ω² - λ (Hopkins, Hong and Leonessa, Humanoids 2014, eq. 10), the error obeys e' = -(λ/ω)(k - 1) e.
+    region, and c'' = λ (c - p). On the reference this returns the reference's own acceleration. Since
+    ξ' = (λ/ω)(ξ - p) for ω' = ω² - λ (Hopkins, Hong and Leonessa, Humanoids 2014, eq. 10), the error obeys
+    e' = -(λ/ω)(k - 1) e.
     Vertical: c_z'' = z_ref'' + k_z (z_ref - z) + d_z (z_ref' - z').
 
     Args:
@@ -78,17 +88,18 @@ def com_acceleration(
         gains: of the law.
 
     Returns:
-        Shape (3,) [m/s^2].
+        x, y, z [m/s^2].
     """
-    position_error = com - reference.com
-    velocity_error = com_velocity - reference.com_velocity
-    dcm_error = position_error[:2] + velocity_error[:2] / reference.omega
-    zmp = region.project(reference.zmp + gains.dcm * dcm_error)
-    acceleration = np.empty(3)
-    acceleration[:2] = reference.stiffness * (com[:2] - zmp)
-    acceleration[2] = (
-        reference.com_acceleration[2]
-        - gains.height_stiffness * position_error[2]
-        - gains.height_damping * velocity_error[2]
+    x, y, _ = com.tolist()
+    dx, dy, dz = (com - reference.com).tolist()
+    vx, vy, vz = (com_velocity - reference.com_velocity).tolist()
+    zmp_x, zmp_y = reference.zmp.tolist()
+    px, py = region.project(
+        zmp_x + gains.dcm * (dx + vx / reference.omega), zmp_y + gains.dcm * (dy + vy / reference.omega)
     )
-    return acceleration
+    planned = float(reference.com_acceleration[2])
+    return (
+        reference.stiffness * (x - px),
+        reference.stiffness * (y - py),
+        planned - gains.height_stiffness * dz - gains.height_damping * vz,
+    )

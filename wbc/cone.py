@@ -11,8 +11,8 @@ def wrench_cone(half_length: float, half_width: float, friction: float) -> Array
     """Rows ``C`` of the cone ``C w <= 0`` of wrenches that a rectangular sole can transmit without slip or tilt.
 
     Caron, Pham and Nakamura, "Stability of surface contacts for humanoid robots: closed-form formulae of the contact
-    wrench cone for rectangular support areas", ICRA 2015, eqs. (8) to (12): Coulomb friction (inner pyramid), CoP inside the
-    sole and the yaw moment that friction can hold at that CoP. Together the rows imply fz >= 0.
+    wrench cone for rectangular support areas", ICRA 2015, eqs. (8) to (12): Coulomb friction (inner pyramid), CoP
+    inside the sole and the yaw moment that friction can hold at that CoP. Together the rows imply fz >= 0.
 
     Args:
         half_length: half of the sole along its x axis [m].
@@ -27,7 +27,8 @@ def wrench_cone(half_length: float, half_width: float, friction: float) -> Array
     """
     if min(half_length, half_width, friction) <= 0.0:
         raise ValueError(
-            f"wrench cone of a sole {half_length} m x {half_width} m with friction {friction}: all three must be positive"
+            f"wrench cone of a sole {half_length} m x {half_width} m with friction {friction}: "
+            "all three must be positive"
         )
     X, Y, mu = half_length, half_width, friction
     rows = [[sx, 0, -mu, 0, 0, 0] for sx in (1, -1)]

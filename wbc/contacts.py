@@ -52,7 +52,8 @@ class ContactSchedule:
     - A swing foot that feels the ground after ``early_progress`` becomes active at once, with a small load until its
       planned touchdown. The plan's clock does not move.
     - A foot is released when the plan lifts it, unless it would be the last contact.
-    - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in force.
+    - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in
+      force.
     """
 
     def __init__(self, parameters: ContactParameters, weight: float, control_period: float) -> None:

@@ -1,5 +1,6 @@
 """The whole-body controller: reference and measurement in, joint torques out."""
 
+import math
 import time
 from dataclasses import dataclass, field
 
@@ -51,7 +52,7 @@ class WbcParameters:
     balance: BalanceGains = field(default_factory=BalanceGains)
     contact: ContactGains = field(default_factory=ContactGains)
     schedule: ContactParameters = field(default_factory=ContactParameters)
-    solver: str = "daqp"
+    solver: str = "equality-first"
     second_solver: str = "proxqp"
 
 
@@ -59,7 +60,8 @@ class WholeBodyController:
     """Weighted inverse-dynamics QP, solved once per control tick.
 
     Herzog et al., "Momentum control with hierarchical inverse dynamics", Autonomous Robots 2016, in its weighted form,
-    with the CoM law of ``wbc.balance``. A tick that no solver answers degrades as ``SolveStatus`` says; it never raises.
+    with the CoM law of ``wbc.balance``. A tick that no solver answers degrades as ``SolveStatus`` says; it never
+    raises.
     """
 
     def __init__(
@@ -91,7 +93,9 @@ class WholeBodyController:
         share = sole.cop_share
         cone = wrench_cone(share * sole.half_length, share * sole.half_width, sole.friction / np.sqrt(2.0))
         self._hard = HardConstraints(self.qp, self.layout, cone, limits, parameters.contact)
-        self._tasks = TaskStack(self.layout, parameters.weights, parameters.gains, posture, leg_joints)
+        self._tasks = TaskStack(
+            self.qp, self.layout, self.terms.mass, parameters.weights, parameters.gains, posture, leg_joints
+        )
         self._contacts = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[bool, bool] | None = None
@@ -100,9 +104,10 @@ class WholeBodyController:
         self._limits = limits
         self._period = control_period
         self._state = RobotState(pin.neutral(model), np.zeros(model.nv))
-        self._torque = np.zeros(self.layout.joints)
+        self._torque, self._torque_rows = np.zeros(self.layout.joints), self.qp.A[self.layout.torque_rows]
         self._acceleration = np.zeros(self.layout.nv)
-        self._wrench = np.zeros((2, 6))
+        self._wrench_flat = np.zeros(12)
+        self._wrench = self._wrench_flat.reshape(2, 6)
         self._task_error = np.zeros(18)
 
     def observe(self, state: RobotState) -> RobotTerms:
@@ -124,14 +129,17 @@ class WholeBodyController:
         self._assemble(state, reference, contacts)
         built = time.perf_counter()
         status, solution = self._solve(fail_solvers)
-        violation = self._apply(solution, state.v)
+        if solution is not None:
+            self._apply(solution)
+        else:
+            self._hold(state.v)
         solved = time.perf_counter()
         return WbcReport(
             torque=self._torque,
             status=status,
             iterations=solution.iterations if solution else 0,
-            primal_residual=violation,
-            dual_residual=solution.dual_residual if solution else float("nan"),
+            primal_residual=solution.violation if solution else math.inf,
+            dual_residual=solution.dual_residual if solution else math.nan,
             acceleration=self._acceleration,
             wrench=self._wrench,
             active=contacts.active,
@@ -147,33 +155,34 @@ class WholeBodyController:
             self._region.rebuild(terms.sole_position, terms.sole_rotation, contacts.active)
             self._region_contacts = contacts.active
         acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
-        self._tasks.write(self.qp, terms, state.q, state.v, acceleration, reference)
-        self._hard.write(self.qp, terms, state.q, state.v, contacts)
+        self._tasks.write(terms, state.q, state.v, acceleration, reference)
+        self._hard.write(terms, state.q, state.v, contacts)
 
     def _solve(self, fail_solvers: bool) -> tuple[SolveStatus, QpSolution | None]:
         if not fail_solvers:
             for status, solver in zip((SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER), self._solvers, strict=True):
                 solution = solver.solve(self.qp)
-                if solution is not None and self.qp.violation(solution.x) <= ACCEPTED_VIOLATION:
+                if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
                     return status, solution
-        x = equalities_only(self.qp)
-        if x is not None:
-            return SolveStatus.EQUALITIES_ONLY, QpSolution(x, 0, float("nan"))
-        return SolveStatus.HELD, None
+        solution = equalities_only(self.qp)
+        return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution
 
-    def _apply(self, solution: QpSolution | None, v: Array) -> float:
-        """Interpret the solution into torque, acceleration and wrenches; returns the violation of the QP's rows."""
-        limit = self._limits.torque
-        if solution is None:
-            # Fade the last torque out within about 50 ms while damping the joints.
-            self._torque += self._period / 0.05 * (-0.02 * limit * v[6:] - self._torque)
-            np.clip(self._torque, -limit, limit, out=self._torque)
-            return float("inf")
+    def _apply(self, solution: QpSolution) -> None:
+        """Interpret the solution into torque, acceleration and wrenches."""
         x, nv = solution.x, self.layout.nv
-        np.matmul(self.qp.A[self.layout.torque_rows], x, out=self._torque)
+        np.matmul(self._torque_rows, x, out=self._torque)
         self._torque += self.terms.bias[6:]
-        np.clip(self._torque, -limit, limit, out=self._torque)
+        self._clip()
         self._acceleration[:] = x[:nv]
-        self._wrench[:] = x[nv:].reshape(2, 6)
+        np.multiply(x[nv:], self.layout.wrench_unit, out=self._wrench_flat)
         self._task_error[:] = self._tasks.residual(x)
-        return self.qp.violation(x)
+
+    def _clip(self) -> None:
+        np.minimum(self._torque, self._limits.torque, out=self._torque)
+        np.maximum(self._torque, -self._limits.torque, out=self._torque)
+
+    def _hold(self, v: Array) -> None:
+        """Fade the last torque out within about 50 ms while damping the joints."""
+        limit = self._limits.torque
+        self._torque += self._period / 0.05 * (-0.02 * limit * v[6:] - self._torque)
+        self._clip()

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from wbc.contacts import ContactState
-from wbc.limits import JointLimits
+from wbc.limits import AccelerationBounds, JointLimits
 from wbc.model import RobotTerms
-from wbc.qp import EQUALITY_ROWS, QpData, QpLayout
+from wbc.qp import FOOT_ROWS, QpData, QpLayout
 from wbc.types import Array
 
 
@@ -27,64 +27,80 @@ class ContactGains:
 class HardConstraints:
     """Writes all rows and bounds of the QP.
 
-    Floating base: M_b q̈ + h_b = Σ J_kᵀ w_k (first six rows of the equations of motion).
-    Active contact: J q̈ + J' v = -d J v + levelling; inactive contact: w = 0. Six rows each, so that the QP keeps its shape.
+    Active contact: J q̈ + J' v = -d J v + levelling; inactive contact: w = 0. Six rows each, so that the QP keeps its
+    shape.
+    Floating base: M_b q̈ + h_b = Σ J_bᵀ w (first six rows of the equations of motion).
     Torque: τ = M_a q̈ + h_a - Σ J_aᵀ w within the limits, with the torque itself eliminated.
     """
 
     def __init__(self, qp: QpData, layout: QpLayout, cone: Array, limits: JointLimits, gains: ContactGains) -> None:
         """Write the rows that never change: the cones, shape (rows, 6), in the sole frames."""
-        self._layout, self._limits, self._gains = layout, limits, gains
-        self._identity = np.eye(6)
-        n = layout.variables
-        first = EQUALITY_ROWS + layout.joints
+        self._gains, self._unit = gains, layout.wrench_unit
+        self._joints = AccelerationBounds(limits)
+        self._torque_span = np.concatenate([np.zeros(6), limits.torque])
+        self._target, self._active = np.zeros((2, 6)), (False, False)
+        n, first = layout.variables, layout.torque_rows.stop
         for k in (0, 1):
             rows = slice(first + k * layout.cone_rows, first + (k + 1) * layout.cone_rows)
             qp.A[rows, layout.wrench(k)] = cone
             qp.bounds_upper[n + rows.start : n + rows.stop] = 0.0
+        self._bind(qp, layout)
+        self._release(0)
+        self._release(1)
 
-    def write(self, qp: QpData, terms: RobotTerms, q: Array, v: Array, contacts: ContactState) -> None:
+    def _bind(self, qp: QpData, layout: QpLayout) -> None:
+        # A view costs as much to make as to use, so the parts of rows and bounds get their names once.
+        n, nv, lower, upper = layout.variables, layout.nv, qp.bounds_lower, qp.bounds_upper
+        motion, contact = layout.motion_rows, slice(n, n + 2 * FOOT_ROWS)
+        self._mass, self._forces = qp.A[motion, :nv], qp.A[motion, nv:]
+        self._motion_lower, self._motion_upper = (b[n + motion.start : n + motion.stop] for b in (lower, upper))
+        self._contact_lower, self._contact_upper = (b[contact].reshape(2, FOOT_ROWS) for b in (lower, upper))
+        self._contact_rows = [qp.A[layout.contact_rows(k), :nv] for k in (0, 1)]
+        self._no_wrench_rows = [qp.A[layout.contact_rows(k), layout.wrench(k)] for k in (0, 1)]
+        self._joint_lower, self._joint_upper = lower[6:nv], upper[6:nv]
+        self._force_caps = upper[nv + 2 : n : 6]
+
+    def write(self, terms: RobotTerms, q: Array, v: Array, contacts: ContactState) -> None:
         """Write the rows and bounds of this state; q (nq,), v (nv,)."""
-        self._dynamics(qp, terms)
-        for k in (0, 1):
-            self._contact(qp, terms, contacts, k)
-        self._limit_bounds(qp, terms, q, v)
+        self._motion(terms)
+        self._contacts(terms, contacts)
+        self._joints.write(q[7:], v[6:], self._joint_lower, self._joint_upper)
 
-    def _dynamics(self, qp: QpData, terms: RobotTerms) -> None:
-        nv, n = self._layout.nv, self._layout.variables
-        torque = self._layout.torque_rows
-        transposed = terms.sole_jacobian.reshape(12, nv).T
-        qp.A[:6, :nv] = terms.mass_matrix[:6]
-        np.negative(transposed[:6], out=qp.A[:6, nv:])
-        np.negative(terms.bias[:6], out=qp.bounds_lower[n : n + 6])
-        qp.bounds_upper[n : n + 6] = qp.bounds_lower[n : n + 6]
-        qp.A[torque, :nv] = terms.mass_matrix[6:]
-        np.negative(transposed[6:], out=qp.A[torque, nv:])
+    def _motion(self, terms: RobotTerms) -> None:
+        self._mass[:] = terms.mass_matrix
+        np.multiply(terms.contact_jacobian.T, -self._unit, out=self._forces)
+        np.negative(terms.bias, out=self._motion_lower)
+        np.add(self._motion_lower, self._torque_span, out=self._motion_upper)
+        self._motion_lower -= self._torque_span
 
-    def _contact(self, qp: QpData, terms: RobotTerms, contacts: ContactState, k: int) -> None:
-        layout, n = self._layout, self._layout.variables
-        rows, wrench = layout.contact_rows(k), layout.wrench(k)
-        bounds = slice(n + rows.start, n + rows.stop)
-        if contacts.active[k]:
-            qp.A[rows, : layout.nv] = terms.sole_jacobian[k]
-            qp.A[rows, wrench] = 0.0
-            target = -terms.sole_bias[k] - self._gains.damping * terms.sole_velocity[k]
-            # Rotation vector, in the sole frame, that turns the sole's normal to the vertical.
-            target[3] -= self._gains.levelling * terms.sole_rotation[k, 2, 1]
-            target[4] += self._gains.levelling * terms.sole_rotation[k, 2, 0]
-        else:
-            qp.A[rows, : layout.nv] = 0.0
-            qp.A[rows, wrench] = self._identity
-            target = np.zeros(6)
-        qp.bounds_lower[bounds] = target
-        qp.bounds_upper[bounds] = target
-        qp.bounds_upper[wrench.start + 2] = contacts.force_cap[k]
+    def _contacts(self, terms: RobotTerms, contacts: ContactState) -> None:
+        target, levelling = self._target, self._gains.levelling
+        np.multiply(terms.sole_velocity, -self._gains.damping, out=target)
+        target -= terms.sole_bias
+        # Rotation vector, in the sole frame, that turns the sole's normal to the vertical.
+        R = terms.sole_rotation
+        target[0, 3] -= levelling * R[0, 2, 1]
+        target[0, 4] += levelling * R[0, 2, 0]
+        target[1, 3] -= levelling * R[1, 2, 1]
+        target[1, 4] += levelling * R[1, 2, 0]
+        self._follow(0, terms, contacts.active[0])
+        self._follow(1, terms, contacts.active[1])
+        self._active = contacts.active
+        self._contact_lower[:] = target
+        self._contact_upper[:] = target
+        left, right = contacts.force_cap
+        self._force_caps[:] = (left / self._unit, right / self._unit)
 
-    def _limit_bounds(self, qp: QpData, terms: RobotTerms, q: Array, v: Array) -> None:
-        nv, n = self._layout.nv, self._layout.variables
-        lower, upper = self._limits.acceleration_bounds(q[7:], v[6:])
-        qp.bounds_lower[6:nv] = lower
-        qp.bounds_upper[6:nv] = upper
-        torque = slice(n + self._layout.torque_rows.start, n + self._layout.torque_rows.stop)
-        np.subtract(-self._limits.torque, terms.bias[6:], out=qp.bounds_lower[torque])
-        np.subtract(self._limits.torque, terms.bias[6:], out=qp.bounds_upper[torque])
+    def _follow(self, k: int, terms: RobotTerms, active: bool) -> None:
+        if active:
+            if not self._active[k]:
+                self._no_wrench_rows[k][:] = 0.0
+            self._contact_rows[k][:] = terms.sole_jacobian[k]
+            return
+        if self._active[k]:
+            self._release(k)
+        self._target[k] = 0.0
+
+    def _release(self, k: int) -> None:
+        self._contact_rows[k][:] = 0.0
+        self._no_wrench_rows[k][:] = np.eye(6)

@@ -48,8 +48,8 @@ class PostureResult:
 class PostureIk:
     """Gauss-Newton on the manifold of configurations; each step is a QP within the joint limits.
 
-    Minimises ||J dq - e||² + μ ||dq_joints - (posture - q)||² + ν ||dq||² with J and e of all tasks in local frames. Tasks are
-    consistent wherever the legs can reach, so the small μ only chooses among the solutions.
+    Minimises ||J dq - e||² + μ ||dq_joints - (posture - q)||² + ν ||dq||² with J and e of all tasks in local frames.
+    Tasks are consistent wherever the legs can reach, so the small μ only chooses among the solutions.
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits, posture: Array) -> None:
@@ -95,7 +95,9 @@ class PostureIk:
         upper[6:] = np.maximum(np.minimum(upper[6:], self._limits.upper - q[7:]), lower[6:])
         step = qpsolvers.solve_qp(H, g, lb=lower, ub=upper, solver="daqp")
         if step is None:
-            raise ArithmeticError(f"posture step of robot '{self._model.name}' has no solution: joint positions {q[7:]}")
+            raise ArithmeticError(
+                f"posture step of robot '{self._model.name}' has no solution: joint positions {q[7:]}"
+            )
         return np.asarray(step, dtype=np.float64)
 
     def _tasks(self, q: Array, target: PostureTarget) -> tuple[Array, Array]:

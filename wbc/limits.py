@@ -26,17 +26,34 @@ class JointLimits:
     position_horizon: float = 0.06
     velocity_horizon: float = 0.02
 
-    def acceleration_bounds(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Bounds on q̈, shape (nj,) each, that keep position and velocity inside their limits.
 
-        From q + T v + T² q̈ / 2 >= q_min and its mirror image; the velocity bound from v + T_v q̈. Where the two conflict the
-        position bound wins, so that lower <= upper always. Near-straight knees hyperextend without this.
-        """
-        T, Tv = self.position_horizon, self.velocity_horizon
-        scale = 2.0 / (T * T)
-        reach = position + T * velocity
-        position_lower = scale * (self.lower - reach)
-        position_upper = scale * (self.upper - reach)
-        lower = np.maximum(position_lower, (-self.velocity - velocity) / Tv)
-        upper = np.minimum(position_upper, (self.velocity - velocity) / Tv)
-        return np.minimum(lower, position_upper), np.maximum(upper, position_lower)
+class AccelerationBounds:
+    """Bounds on q̈ that keep position and velocity of the joints inside their limits.
+
+    From q + T v + T² q̈ / 2 >= q_min and its mirror image; the velocity bound from v + T_v q̈. Where the two conflict the
+    position bound wins, so that lower <= upper always. Near-straight knees hyperextend without this.
+    """
+
+    def __init__(self, limits: JointLimits) -> None:
+        """Allocate buffers for the joints of ``limits``."""
+        self._reach_time = limits.position_horizon
+        self._position_rate = 2.0 / limits.position_horizon**2
+        self._velocity_rate = 1.0 / limits.velocity_horizon
+        self._positions = np.stack([limits.lower, limits.upper])
+        self._velocities = np.stack([-limits.velocity, limits.velocity])
+        self._reach = np.zeros_like(limits.lower)
+        self._by_position, self._by_velocity = np.zeros_like(self._positions), np.zeros_like(self._velocities)
+
+    def write(self, position: Array, velocity: Array, lower: Array, upper: Array) -> None:
+        """Write the bounds of a state into ``lower`` and ``upper``; shape (nj,) each."""
+        np.multiply(velocity, self._reach_time, out=self._reach)
+        self._reach += position
+        by_position, by_velocity = self._by_position, self._by_velocity
+        np.subtract(self._positions, self._reach, out=by_position)
+        by_position *= self._position_rate
+        np.subtract(self._velocities, velocity, out=by_velocity)
+        by_velocity *= self._velocity_rate
+        np.maximum(by_position[0], by_velocity[0], out=lower)
+        np.minimum(by_position[1], by_velocity[1], out=upper)
+        np.minimum(lower, by_position[1], out=lower)
+        np.maximum(upper, by_position[0], out=upper)

@@ -7,6 +7,8 @@ import pinocchio as pin
 
 from wbc.types import GRAVITY, Array
 
+_LOCAL = pin.ReferenceFrame.LOCAL
+
 
 @dataclass(frozen=True, slots=True)
 class BodyFrames:
@@ -24,9 +26,10 @@ class BodyFrames:
 class RobotTerms:
     """Dynamics, centroidal quantities and frame kinematics of the current state.
 
-    The pelvis is the floating base. Frame Jacobians, velocities and bias accelerations are local to their frame and classical
-    (what an accelerometer at the frame would add to gravity), so that one sole Jacobian serves the contact constraint,
-    the swing task and the map from sole wrenches to generalised forces.
+    The pelvis is the floating base. Frame Jacobians, velocities and bias accelerations are local to their frame and
+    classical (what an accelerometer at the frame would add to gravity), so that one sole Jacobian serves the contact
+    constraint, the swing task and the map from sole wrenches to generalised forces. Every array is a buffer that
+    ``update`` overwrites.
 
     Attributes:
         mass: total mass [kg].
@@ -34,8 +37,11 @@ class RobotTerms:
         bias: Coriolis, centrifugal and gravity terms h, shape (nv,).
         com, com_velocity, angular_momentum: centroidal state in the world frame, shape (3,) each.
         base_rotation, torso_rotation: orientation in the world, shape (3, 3).
+        base_angular_velocity: in the base frame, shape (3,).
         sole_position: shape (2, 3); sole_rotation: shape (2, 3, 3); sole_pose: x y z qx qy qz qw, shape (2, 7).
-        sole_jacobian: shape (2, 6, nv); sole_velocity, sole_bias: shape (2, 6).
+        sole_jacobian: shape (2, 6, nv); contact_jacobian: the same memory, shape (12, nv).
+        sole_velocity, sole_bias: shape (2, 6).
+        sole_wrench_map: from both sole wrenches to their force and moment about the world's origin, shape (6, 12).
         torso_jacobian: angular rows, shape (3, nv); torso_velocity, torso_bias: shape (3,).
     """
 
@@ -46,60 +52,62 @@ class RobotTerms:
             ValueError: if a frame does not exist or the model's gravity is not ``GRAVITY`` downwards.
         """
         if not np.allclose(model.gravity.linear, [0.0, 0.0, -GRAVITY], atol=1e-12):
-            raise ValueError(f"gravity of model '{model.name}' is {model.gravity.linear}; it must be [0, 0, -{GRAVITY}]")
+            raise ValueError(
+                f"gravity of model '{model.name}' is {model.gravity.linear}; it must be [0, 0, -{GRAVITY}]"
+            )
         self.model = model
-        self.data = model.createData()
+        self.data = data = model.createData()
         self._soles = tuple(_frame_id(model, name) for name in frames.soles)
         self._torso = _frame_id(model, frames.torso)
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
-        nv = model.nv
-        self.mass_matrix = np.zeros((nv, nv))
-        self.bias = np.zeros(nv)
-        self.com, self.com_velocity, self.angular_momentum = np.zeros(3), np.zeros(3), np.zeros(3)
-        self.base_rotation, self.torso_rotation = np.eye(3), np.eye(3)
-        self.base_angular_velocity = np.zeros(3)
+        # Views of Pinocchio's own memory need no copy. M is symmetric and column-major: its transpose is contiguous.
+        self.mass_matrix: Array = data.M.T
+        self.bias: Array = data.nle
+        self.com: Array = data.com[0]
+        self.angular_momentum: Array = data.hg.angular
+        self._linear_momentum: Array = data.hg.linear
+        self.base_rotation: Array = data.oMi[1].rotation
+        self.torso_rotation: Array = data.oMf[self._torso].rotation
+        self._allocate(model.nv)
+
+    def _allocate(self, nv: int) -> None:
+        self.com_velocity, self.base_angular_velocity = np.zeros(3), np.zeros(3)
         self.sole_position, self.sole_rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
         self.sole_pose = np.zeros((2, 7))
-        self.sole_jacobian = np.zeros((2, 6, nv))
+        self.contact_jacobian = np.zeros((12, nv))
+        self.sole_jacobian = self.contact_jacobian.reshape(2, 6, nv)
         self.sole_velocity, self.sole_bias = np.zeros((2, 6)), np.zeros((2, 6))
+        self.sole_wrench_map = np.zeros((6, 12))
         self.torso_jacobian = np.zeros((3, nv))
         self.torso_velocity, self.torso_bias = np.zeros(3), np.zeros(3)
 
     def update(self, q: Array, v: Array) -> None:
         """Compute every term at configuration q, shape (nq,), and velocity v, shape (nv,)."""
-        model, data = self.model, self.data
         # Leaves in data.a the velocity-product accelerations, those of zero generalised acceleration.
-        pin.computeAllTerms(model, data, q, v)
-        self.mass_matrix[:] = data.M
-        self.bias[:] = data.nle
-        self.com[:] = data.com[0]
-        momentum = data.hg.vector
-        np.divide(momentum[:3], self.mass, out=self.com_velocity)
-        self.angular_momentum[:] = momentum[3:]
-        self._update_soles()
-        self._update_trunk(v)
-
-    def _update_soles(self) -> None:
-        model, data = self.model, self.data
-        for k, frame in enumerate(self._soles):
-            placement = pin.updateFramePlacement(model, data, frame)
-            self.sole_position[k] = placement.translation
-            self.sole_rotation[k] = placement.rotation
-            self.sole_pose[k] = pin.SE3ToXYZQUAT(placement)
-            self.sole_jacobian[k] = pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL)
-            self.sole_velocity[k] = pin.getFrameVelocity(model, data, frame, pin.ReferenceFrame.LOCAL).vector
-            self.sole_bias[k] = pin.getFrameClassicalAcceleration(
-                model, data, frame, pin.ReferenceFrame.LOCAL
-            ).vector
-
-    def _update_trunk(self, v: Array) -> None:
-        model, data, frame = self.model, self.data, self._torso
-        self.base_rotation[:] = data.oMi[1].rotation
+        pin.computeAllTerms(self.model, self.data, q, v)
+        np.divide(self._linear_momentum, self.mass, out=self.com_velocity)
         self.base_angular_velocity[:] = v[3:6]
-        self.torso_rotation[:] = pin.updateFramePlacement(model, data, frame).rotation
-        self.torso_jacobian[:] = pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL)[3:]
-        self.torso_velocity[:] = pin.getFrameVelocity(model, data, frame, pin.ReferenceFrame.LOCAL).angular
-        self.torso_bias[:] = pin.getFrameAcceleration(model, data, frame, pin.ReferenceFrame.LOCAL).angular
+        self._update_sole(0)
+        self._update_sole(1)
+        self._update_torso()
+
+    def _update_sole(self, k: int) -> None:
+        model, data, frame = self.model, self.data, self._soles[k]
+        placement = pin.updateFramePlacement(model, data, frame)
+        self.sole_position[k] = placement.translation
+        self.sole_rotation[k] = placement.rotation
+        self.sole_pose[k] = pin.SE3ToXYZQUAT(placement)
+        self.sole_wrench_map[:, 6 * k : 6 * k + 6] = placement.toDualActionMatrix()
+        self.sole_jacobian[k] = pin.getFrameJacobian(model, data, frame, _LOCAL)
+        self.sole_velocity[k] = pin.getFrameVelocity(model, data, frame, _LOCAL).vector
+        self.sole_bias[k] = pin.getFrameClassicalAcceleration(model, data, frame, _LOCAL).vector
+
+    def _update_torso(self) -> None:
+        model, data, frame = self.model, self.data, self._torso
+        pin.updateFramePlacement(model, data, frame)
+        self.torso_jacobian[:] = pin.getFrameJacobian(model, data, frame, _LOCAL)[3:]
+        self.torso_velocity[:] = pin.getFrameVelocity(model, data, frame, _LOCAL).angular
+        self.torso_bias[:] = pin.getFrameAcceleration(model, data, frame, _LOCAL).angular
 
 
 def _frame_id(model: pin.Model, name: str) -> int:

@@ -7,7 +7,7 @@ import numpy as np
 from wbc.types import Array
 
 FOOT_ROWS = 6
-EQUALITY_ROWS = 6 + 2 * FOOT_ROWS
+EQUALITY_ROWS = 2 * FOOT_ROWS + 6
 UNBOUNDED = 1e9
 """Stands for an absent bound: far beyond any physical value, yet finite for every solver."""
 
@@ -16,16 +16,20 @@ UNBOUNDED = 1e9
 class QpLayout:
     """Where everything is in the QP.
 
-    Variables ``x = [q̈ (nv), w_left (6), w_right (6)]`` with sole wrenches in the sole frames; rows: floating-base dynamics (6),
-    contact of the left and of the right foot (6 each), joint torques (nj), wrench cones (2 x cone_rows).
+    Variables ``x = [q̈ (nv), w_left (6), w_right (6)]`` with sole wrenches in the sole frames; rows: contact of the left
+    and of the right foot (6 each), equations of motion (6 of the floating base, then nj joint torques), wrench cones
+    (2 x cone_rows).
 
     Attributes:
         nv: size of the generalised acceleration.
         cone_rows: rows of one wrench cone.
+        wrench_unit: unit of the wrench variables [N, N·m]. With forces in units near their size over that of the
+            accelerations, H has a condition number of about 1e5; in newtons it had 1e8.
     """
 
     nv: int
     cone_rows: int
+    wrench_unit: float = 100.0
 
     @property
     def joints(self) -> int:
@@ -43,6 +47,11 @@ class QpLayout:
         return EQUALITY_ROWS + self.joints + 2 * self.cone_rows
 
     @property
+    def motion_rows(self) -> slice:
+        """Rows of the equations of motion: equalities of the floating base, then the joint torques."""
+        return slice(2 * FOOT_ROWS, 2 * FOOT_ROWS + self.nv)
+
+    @property
     def torque_rows(self) -> slice:
         """Rows of the joint torques."""
         return slice(EQUALITY_ROWS, EQUALITY_ROWS + self.joints)
@@ -53,7 +62,7 @@ class QpLayout:
 
     def contact_rows(self, foot: int) -> slice:
         """Equality rows of one foot."""
-        return slice(6 + FOOT_ROWS * foot, 6 + FOOT_ROWS * (foot + 1))
+        return slice(FOOT_ROWS * foot, FOOT_ROWS * (foot + 1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,18 +89,10 @@ class QpData:
         return QpData(self.H.copy(), self.g.copy(), self.A.copy(), self.bounds_lower.copy(), self.bounds_upper.copy())
 
     def violation(self, x: Array) -> float:
-        """Largest violation of any bound or row at x, shape (n,); 0 when feasible."""
-        n = x.shape[0]
-        rows = self.A @ x
-        return float(
-            max(
-                (self.bounds_lower[:n] - x).max(),
-                (x - self.bounds_upper[:n]).max(),
-                (self.bounds_lower[n:] - rows).max(),
-                (rows - self.bounds_upper[n:]).max(),
-                0.0,
-            )
-        )
+        """Largest violation of any bound or row at x, shape (n,); 0 when feasible, NaN when x is not a number."""
+        values = np.concatenate((x, self.A @ x))
+        excess = float(np.maximum(self.bounds_lower - values, values - self.bounds_upper).max())
+        return excess if not excess < 0.0 else 0.0
 
 
 def allocate(layout: QpLayout) -> QpData:

@@ -1,5 +1,7 @@
 """QP solvers behind one verb. Each checks its own status; the caller checks the residual as well."""
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -7,6 +9,7 @@ import daqp
 import numpy as np
 import quadprog
 from proxsuite import proxqp
+from scipy.linalg import lapack
 
 from wbc.qp import EQUALITY_ROWS, UNBOUNDED, QpData
 from wbc.types import Array
@@ -18,13 +21,15 @@ class QpSolution:
 
     Attributes:
         x: the minimiser, shape (n,).
+        violation: largest violation of the QP's bounds and rows at x.
         iterations: of the solver.
         dual_residual: of stationarity, NaN where the solver does not tell.
     """
 
     x: Array
+    violation: float
     iterations: int
-    dual_residual: float
+    dual_residual: float = float("nan")
 
 
 class QpSolver(Protocol):
@@ -56,7 +61,8 @@ class ProxQp:
         n, eq = qp.g.shape[0], EQUALITY_ROWS
         split = n + eq
         data = (
-            qp.H, qp.g, qp.A[:eq], qp.bounds_lower[n:split], qp.A[eq:], qp.bounds_lower[split:], qp.bounds_upper[split:],
+            qp.H, qp.g, qp.A[:eq], qp.bounds_lower[n:split],
+            qp.A[eq:], qp.bounds_lower[split:], qp.bounds_upper[split:],
             qp.bounds_lower[:n], qp.bounds_upper[:n],
         )  # fmt: skip
         if self._solver is None:
@@ -73,7 +79,8 @@ class ProxQp:
         self._warm = info.status == proxqp.QPSolverOutput.PROXQP_SOLVED
         if not self._warm:
             return None
-        return QpSolution(np.array(self._solver.results.x), int(info.iter), float(info.dua_res))
+        x = np.array(self._solver.results.x)
+        return QpSolution(x, qp.violation(x), int(info.iter), float(info.dua_res))
 
     def _create(self, n: int, inequalities: int) -> proxqp.dense.QP:
         solver = proxqp.dense.QP(n, EQUALITY_ROWS, inequalities, True, proxqp.dense.HessianType.Dense,
@@ -89,8 +96,9 @@ class Daqp:
 
     name = "daqp"
 
-    def __init__(self) -> None:
-        """No settings: the method is exact."""
+    def __init__(self, accuracy: float = 1e-9) -> None:
+        """``accuracy``: largest violation of a normalised row that counts as none [-]."""
+        self._accuracy = accuracy
         self._sense = np.zeros(0, dtype=np.intc)
 
     def solve(self, qp: QpData) -> QpSolution | None:
@@ -99,10 +107,12 @@ class Daqp:
         if self._sense.shape[0] != total:
             self._sense = np.zeros(total, dtype=np.intc)
             self._sense[n : n + EQUALITY_ROWS] = 5
-        x, _, flag, info = daqp.solve(qp.H, qp.g, qp.A, qp.bounds_upper, qp.bounds_lower, self._sense)
+        x, _, flag, info = daqp.solve(
+            qp.H, qp.g, qp.A, qp.bounds_upper, qp.bounds_lower, self._sense, primal_tol=self._accuracy
+        )
         if flag != 1:
             return None
-        return QpSolution(x, int(info["iterations"]), float("nan"))
+        return QpSolution(x, qp.violation(x), int(info["iterations"]))
 
 
 class Quadprog:
@@ -123,21 +133,50 @@ class Quadprog:
             x, _, _, iterations, _, _ = quadprog.solve_qp(qp.H, -qp.g, G.T.copy(), b, meq=eq)
         except ValueError:  # quadprog's word for an infeasible or indefinite problem
             return None
-        return QpSolution(x, int(iterations[0]), float("nan"))
+        return QpSolution(x, qp.violation(x), int(iterations[0]))
 
 
-def equalities_only(qp: QpData) -> Array | None:
-    """Minimiser under the equalities alone, shape (n,), from the KKT system; None if that is singular."""
+class EqualityFirst:
+    """The minimiser under the equalities alone where it breaks no inequality, which makes it the minimiser; else DAQP.
+
+    A robot that walks within its limits rarely touches an inequality, and the equalities cost half of the full problem.
+    """
+
+    name = "equality-first"
+
+    def __init__(self, accuracy: float = 1e-9) -> None:
+        """``accuracy``: largest violation that counts as none."""
+        self._accuracy = accuracy
+        self._full = Daqp(accuracy)
+
+    def solve(self, qp: QpData) -> QpSolution | None:
+        """See ``QpSolver.solve``."""
+        solution = equalities_only(qp)
+        if solution is not None and solution.violation <= self._accuracy:
+            return solution
+        return self._full.solve(qp)
+
+
+def equalities_only(qp: QpData) -> QpSolution | None:
+    """Minimiser under the equalities alone; None if H is not positive definite or the equalities contradict each other.
+
+    By the Schur complement (Boyd and Vandenberghe, Convex Optimization, 2004, section 10.4.2): with H = L Lᵀ,
+    Y = L⁻¹ Eᵀ and w = L⁻¹ g, the multipliers solve YᵀY λ = e + Yᵀ w, and x = L⁻ᵀ (Y λ - w).
+    """
     n, eq = qp.g.shape[0], EQUALITY_ROWS
-    kkt = np.zeros((n + eq, n + eq))
-    kkt[:n, :n] = qp.H
-    kkt[n:, :n] = qp.A[:eq]
-    kkt[:n, n:] = qp.A[:eq].T
-    try:
-        solution = np.linalg.solve(kkt, np.concatenate([-qp.g, qp.bounds_lower[n : n + eq]]))
-    except np.linalg.LinAlgError:
+    L, failed = lapack.dpotrf(qp.H.T, lower=1, clean=0)
+    if failed:
         return None
-    return solution[:n] if np.isfinite(solution).all() else None
+    Y, _ = lapack.dtrtrs(L, np.vstack((qp.A[:eq], qp.g)).T, lower=1, overwrite_b=1)
+    S = Y.T @ Y
+    _, multipliers, failed = lapack.dposv(S[:eq, :eq], qp.bounds_lower[n : n + eq] + S[:eq, eq])
+    if failed:
+        return None
+    y = Y[:, :eq] @ multipliers
+    y -= Y[:, eq]
+    x, _ = lapack.dtrtrs(L, y, lower=1, trans=1, overwrite_b=1)
+    violation = qp.violation(x)
+    return QpSolution(x, violation, 0) if math.isfinite(violation) else None
 
 
 def make_solver(name: str) -> QpSolver:
@@ -146,8 +185,8 @@ def make_solver(name: str) -> QpSolver:
     Raises:
         ValueError: for an unknown name.
     """
-    solvers: dict[str, type[ProxQp] | type[Daqp] | type[Quadprog]] = {
-        ProxQp.name: ProxQp, Daqp.name: Daqp, Quadprog.name: Quadprog,
+    solvers: dict[str, Callable[[], QpSolver]] = {
+        EqualityFirst.name: EqualityFirst, Daqp.name: Daqp, ProxQp.name: ProxQp, Quadprog.name: Quadprog,
     }  # fmt: skip
     if name not in solvers:
         raise ValueError(f"unknown QP solver '{name}'; choose one of {', '.join(sorted(solvers))}")

@@ -1,5 +1,6 @@
 """Tasks of the whole-body QP: each gives the acceleration it wants and the rows that produce it."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,8 @@ from wbc.types import GRAVITY, Array, WbcReference
 
 LINEAR, ANGULAR, PELVIS, TORSO, SWING = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 18)
 TASK_ROWS = 18
+
+Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,114 +63,159 @@ class TaskStack:
     """All tasks as one weighted least-squares cost.
 
     Rows (before weighting) and their sources:
-    CoM from the sole forces, c'' = Σ R_k f_k / m - g; angular momentum over mass, L'/m = Σ [(p_k - c) x R_k f_k + R_k τ_k] / m
-    (Newton-Euler of the whole body, e.g. Orin, Goswami and Lee, Autonomous Robots 2013); pelvis and torso angular
-    acceleration; swing foot acceleration; then diagonal terms for posture and regularisation. The two momentum tasks act
-    on forces, which the floating-base rows tie to the accelerations.
+    CoM from the sole forces, c'' = Σ R_k f_k / m - g; angular momentum over mass,
+    L'/m = Σ [(p_k - c) x R_k f_k + R_k τ_k] / m (Newton-Euler of the whole body, e.g. Orin, Goswami and Lee, Autonomous
+    Robots 2013); pelvis and torso angular acceleration; swing foot acceleration; then diagonal terms for posture and
+    regularisation. The two momentum tasks act on forces, which the floating-base rows tie to the accelerations.
+
+    With weighted rows T and targets t, a diagonal D and its linear term d: H = TᵀT + D and g = -(Tᵀt + d).
     """
 
     def __init__(
-        self, layout: QpLayout, weights: TaskWeights, gains: TaskGains, posture: Array, leg_joints: Array
+        self,
+        qp: QpData,
+        layout: QpLayout,
+        mass: float,
+        weights: TaskWeights,
+        gains: TaskGains,
+        posture: Array,
+        leg_joints: Array,
     ) -> None:
-        """Prepare constant rows.
+        """Prepare what never changes.
 
         Args:
+            qp: whose H and g this writes.
             layout: of the QP.
+            mass: of the robot [kg].
             weights: of the tasks.
             gains: of the tasks.
             posture: joint positions to return to, shape (nj,) [rad].
             leg_joints: which joints are leg joints, bool, shape (nj,).
         """
-        n, nv = layout.variables, layout.nv
-        self._layout, self._weights, self._gains = layout, weights, gains
-        self._posture = posture
-        self._rows = np.zeros((TASK_ROWS, n))
-        self._target = np.zeros(TASK_ROWS)
-        self._scale = np.sqrt(_row_weights(weights))
-        self._rows[PELVIS, 3:6] = self._scale[PELVIS, None] * np.eye(3)
-        self._diagonal = np.zeros(n)
-        self._diagonal_target = np.zeros(n)
-        self._posture_weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
-        self._diagonal[:nv] = weights.acceleration
-        self._diagonal[6:nv] += self._posture_weight
-        self._diagonal[nv:] = np.tile([weights.force] * 3 + [weights.moment] * 3, 2)
-        self._skew = np.zeros((2, 3, 3))
+        self._gains, self._unit, self._force_weight = gains, layout.wrench_unit, weights.force
+        scale = self._scale = np.sqrt(_row_weights(weights))
+        self._unscale = np.divide(1.0, scale, out=np.zeros(TASK_ROWS), where=scale > 0.0)
+        self._orientation_scale, self._swing_scale = float(scale[9]), float(scale[12])
+        self._rows, self._target = np.zeros((TASK_ROWS, layout.variables)), np.zeros(TASK_ROWS)
+        self._rows[PELVIS, 3:6] = np.diag(scale[PELVIS])
+        self._upright, self._turned = np.eye(3), np.eye(3)
+        self._from_origin = np.diag(scale[:6] * (self._unit / mass))
+        self._moment_scale = float(self._from_origin[5, 5])
+        posture_weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
+        self._diagonal, self._linear = _diagonal(layout, weights, posture_weight), np.zeros(layout.variables)
+        self._stiffness, self._damping = gains.posture[0] * posture_weight, gains.posture[1] * posture_weight
+        self._pull = self._stiffness * posture
+        self._bind(qp, layout)
 
-    def write(
-        self, qp: QpData, terms: RobotTerms, q: Array, v: Array, com_acceleration: Array, reference: WbcReference
-    ) -> None:
-        """Write H and g of the QP for this state and reference; q (nq,), v (nv,), com_acceleration (3,) [m/s^2]."""
-        self._momentum(terms, com_acceleration)
-        self._trunk(terms, reference)
-        self._swing(terms, reference)
+    def _bind(self, qp: QpData, layout: QpLayout) -> None:
+        # A view costs as much to make as to use, so the parts of rows and cost get their names once.
+        nv, rows = layout.nv, self._rows
+        self._momentum_rows, self._torso_rows, self._swing_rows = rows[:6, nv:], rows[TORSO, :nv], rows[SWING, :nv]
+        self._joint_linear, self._loads = self._linear[6:nv], self._linear[nv + 2 :: 6]
+        self._H, self._g, self._H_diagonal = qp.H, qp.g, qp.H.reshape(-1)[:: layout.variables + 1]
+        self._lever = self._from_origin[3:, :3]
+
+    def write(self, terms: RobotTerms, q: Array, v: Array, com_acceleration: Vector, reference: WbcReference) -> None:
+        """Write H and g of the QP for this state and reference; q (nq,), v (nv,), com_acceleration [m/s^2]."""
+        momentum = self._momentum(terms, com_acceleration)
+        trunk = self._trunk(terms, reference)
+        self._target[:] = momentum + trunk + self._swing(terms, reference)
+        self._target *= self._scale
         self._regularisation(terms, q, v, reference)
-        H, g = qp.H, qp.g
-        np.matmul(self._rows.T, self._rows, out=H)
-        H.reshape(-1)[:: H.shape[0] + 1] += self._diagonal
-        np.matmul(self._target, self._rows, out=g)
-        g += self._diagonal * self._diagonal_target
-        np.negative(g, out=g)
+        np.matmul(self._rows.T, self._rows, out=self._H)
+        self._H_diagonal += self._diagonal
+        np.matmul(self._target, self._rows, out=self._g)
+        self._g += self._linear
+        np.negative(self._g, out=self._g)
 
     def residual(self, x: Array) -> Array:
         """Unweighted residuals of the tasks at the solution x, shape (18,); rows of absent tasks are zero."""
-        return (self._rows @ x - self._target) / self._scale
+        residual: Array = self._rows @ x
+        residual -= self._target
+        residual *= self._unscale
+        return residual
 
-    def _momentum(self, terms: RobotTerms, com_acceleration: Array) -> None:
-        nv, rows = self._layout.nv, self._rows
-        R = terms.sole_rotation / terms.mass
-        _skew_into(self._skew, terms.sole_position - terms.com)
-        moment = self._skew @ R
-        linear, angular = self._scale[LINEAR, None], self._scale[ANGULAR, None]
-        for k in (0, 1):
-            force = nv + 6 * k
-            rows[LINEAR, force : force + 3] = linear * R[k]
-            rows[ANGULAR, force : force + 3] = angular * moment[k]
-            rows[ANGULAR, force + 3 : force + 6] = angular * R[k]
-        self._target[LINEAR] = com_acceleration
-        self._target[2] += GRAVITY
-        self._target[LINEAR] *= self._scale[LINEAR]
+    def _momentum(self, terms: RobotTerms, com_acceleration: Vector) -> tuple[float, ...]:
+        """Rows of force F and moment M - c x F about the CoM, M being about the origin; returns their targets."""
+        scale = self._moment_scale
+        x, y, z = terms.com.tolist()
+        x, y, z = scale * x, scale * y, scale * z
+        self._lever[:] = ((0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0))
+        np.matmul(self._from_origin, terms.sole_wrench_map, out=self._momentum_rows)
         decay = -self._gains.angular_momentum / terms.mass
-        self._target[ANGULAR] = (decay * self._scale[ANGULAR]) * terms.angular_momentum
+        lx, ly, lz = terms.angular_momentum.tolist()
+        ax, ay, az = com_acceleration
+        return ax, ay, az + GRAVITY, decay * lx, decay * ly, decay * lz
 
-    def _trunk(self, terms: RobotTerms, reference: WbcReference) -> None:
-        upright = _rotation_z(reference.heading)
-        pelvis = self._angular_acceleration(terms.base_rotation, terms.base_angular_velocity, upright, reference)
-        torso = self._angular_acceleration(terms.torso_rotation, terms.torso_velocity, upright, reference)
-        self._target[PELVIS] = self._scale[PELVIS] * pelvis
-        self._target[TORSO] = self._scale[TORSO] * (torso - terms.torso_bias)
-        self._rows[TORSO, : self._layout.nv] = self._scale[TORSO, None] * terms.torso_jacobian
+    def _trunk(self, terms: RobotTerms, reference: WbcReference) -> tuple[float, ...]:
+        """Rows of the torso; returns the targets of pelvis and torso."""
+        np.multiply(terms.torso_jacobian, self._orientation_scale, out=self._torso_rows)
+        _turn(self._upright, reference.heading)
+        gains, turn = self._gains.orientation, (reference.heading_rate, 0.0)
+        pelvis = _angular(gains, terms.base_rotation, terms.base_angular_velocity, self._upright, turn)
+        x, y, z = _angular(gains, terms.torso_rotation, terms.torso_velocity, self._upright, turn)
+        bx, by, bz = terms.torso_bias.tolist()
+        return (*pelvis, x - bx, y - by, z - bz)
 
-    def _angular_acceleration(self, R: Array, omega: Array, desired: Array, reference: WbcReference) -> Array:
-        stiffness, damping = self._gains.orientation
-        rate: Array = R[2] * reference.heading_rate
-        acceleration: Array = stiffness * pin.log3(R.T @ desired) + damping * (rate - omega)
-        return acceleration
-
-    def _swing(self, terms: RobotTerms, reference: WbcReference) -> None:
-        nv, k = self._layout.nv, reference.swing_foot
+    def _swing(self, terms: RobotTerms, reference: WbcReference) -> tuple[float, ...]:
+        """Rows of the swing foot; returns its targets."""
+        k = reference.swing_foot
         if k < 0:
-            self._rows[SWING] = 0.0
-            self._target[SWING] = 0.0
-            return
-        stiffness, damping = self._gains.swing
-        R, velocity = terms.sole_rotation[k], terms.sole_velocity[k]
-        yaw, yaw_rate, yaw_acceleration = reference.swing_yaw
-        linear = reference.swing_acceleration + stiffness * (reference.swing_position - terms.sole_position[k])
-        desired = np.empty(6)
-        desired[:3] = (linear + damping * reference.swing_velocity) @ R - damping * velocity[:3]
-        desired[3:] = stiffness * pin.log3(R.T @ _rotation_z(yaw)) - damping * velocity[3:]
-        desired[3:] += R[2] * (yaw_acceleration + damping * yaw_rate)
-        self._rows[SWING, :nv] = self._scale[SWING, None] * terms.sole_jacobian[k]
-        self._target[SWING] = self._scale[SWING] * (desired - terms.sole_bias[k])
+            self._swing_rows[:] = 0.0
+            return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        np.multiply(terms.sole_jacobian[k], self._swing_scale, out=self._swing_rows)
+        (stiffness, damping), R, velocity = self._gains.swing, terms.sole_rotation[k], terms.sole_velocity[k]
+        wanted = reference.swing_position - terms.sole_position[k]
+        wanted *= stiffness
+        wanted += damping * reference.swing_velocity
+        wanted += reference.swing_acceleration
+        x, y, z = (wanted @ R).tolist()
+        yaw, *turn = reference.swing_yaw
+        _turn(self._turned, yaw)
+        ax, ay, az = _angular(self._gains.swing, R, velocity[3:], self._turned, (turn[0], turn[1]))
+        vx, vy, vz = velocity[:3].tolist()
+        bx, by, bz, px, py, pz = terms.sole_bias[k].tolist()
+        linear = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
+        return (*linear, ax - px, ay - py, az - pz)
 
     def _regularisation(self, terms: RobotTerms, q: Array, v: Array, reference: WbcReference) -> None:
-        nv = self._layout.nv
-        stiffness, damping = self._gains.posture
-        share = self._posture_weight / self._diagonal[6:nv]
-        self._diagonal_target[6:nv] = share * (stiffness * (self._posture - q[7:]) - damping * v[6:])
-        weight = terms.mass * GRAVITY
-        self._diagonal_target[nv + 2] = weight * reference.load_share[0]
-        self._diagonal_target[nv + 8] = weight * reference.load_share[1]
+        linear = self._joint_linear
+        np.multiply(self._stiffness, q[7:], out=linear)
+        np.subtract(self._pull, linear, out=linear)
+        linear -= self._damping * v[6:]
+        # The diagonal weighs forces in wrench units, their targets are shares of the weight.
+        weight = self._force_weight * self._unit * terms.mass * GRAVITY
+        self._loads[:] = (weight * reference.load_share[0], weight * reference.load_share[1])
+
+
+def _angular(
+    gains: tuple[float, float], R: Array, velocity: Array, desired: Array, turn: tuple[float, float]
+) -> Vector:
+    """Angular acceleration, in the frame of R, towards ``desired`` turning about the vertical at (rate, acceleration)."""
+    stiffness, damping = gains
+    ex, ey, ez = pin.log3(R.T @ desired).tolist()
+    wx, wy, wz = velocity.tolist()
+    ux, uy, uz = R[2].tolist()
+    about = turn[1] + damping * turn[0]
+    return (
+        stiffness * ex - damping * wx + about * ux,
+        stiffness * ey - damping * wy + about * uy,
+        stiffness * ez - damping * wz + about * uz,
+    )
+
+
+def _turn(rotation: Array, yaw: float) -> None:
+    """Make ``rotation`` a turn about the vertical."""
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    rotation[:2, :2] = ((cosine, -sine), (sine, cosine))
+
+
+def _diagonal(layout: QpLayout, weights: TaskWeights, posture_weight: Array) -> Array:
+    nv = layout.nv
+    diagonal = np.full(layout.variables, weights.acceleration)
+    diagonal[6:nv] += posture_weight
+    diagonal[nv:] = np.tile([weights.force] * 3 + [weights.moment] * 3, 2) * layout.wrench_unit**2
+    return diagonal
 
 
 def _row_weights(weights: TaskWeights) -> Array:
@@ -175,13 +223,3 @@ def _row_weights(weights: TaskWeights) -> Array:
     linear = [horizontal, horizontal, vertical]
     trunk = [weights.orientation] * 6
     return np.array([*linear, *[weights.angular_momentum] * 3, *trunk, *[weights.swing] * 6])
-
-
-def _rotation_z(yaw: float) -> Array:
-    c, s = np.cos(yaw), np.sin(yaw)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _skew_into(out: Array, vectors: Array) -> None:
-    out[:, 0, 1], out[:, 0, 2], out[:, 1, 2] = -vectors[:, 2], vectors[:, 1], -vectors[:, 0]
-    out[:, 1, 0], out[:, 2, 0], out[:, 2, 1] = vectors[:, 2], -vectors[:, 1], vectors[:, 0]

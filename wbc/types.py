@@ -113,8 +113,8 @@ class WbcReport:
         wrench: planned contact wrenches, shape (2, 6) [N, N·m].
         active: contacts held by the QP, (left, right).
         felt: contacts felt by the feet, (left, right).
-        task_error: weighted-task residuals before weighting, shape (18,): CoM acceleration 3, angular momentum rate over
-            mass 3, pelvis 3, torso 3, swing foot 6.
+        task_error: weighted-task residuals before weighting, shape (18,): CoM acceleration 3, angular momentum rate
+            over mass 3, pelvis 3, torso 3, swing foot 6.
         build_time: wall-clock time of terms and assembly [s].
         solve_time: wall-clock time of the solve [s].
     """

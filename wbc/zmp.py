@@ -19,8 +19,8 @@ def centre_of_pressure(wrench: Array) -> tuple[float, float]:
 def measured_zmp(wrench: Array, sole_position: Array, sole_rotation: Array) -> tuple[float, float, float]:
     """ZMP of all contact forces in the world frame.
 
-    The point of the horizontal plane, at the soles' load-weighted height, about which the contact forces have no horizontal
-    moment (Vukobratović and Borovac, 2004). With F the force and M the moment about the plane's origin:
+    The point of the horizontal plane, at the soles' load-weighted height, about which the contact forces have no
+    horizontal moment (Vukobratović and Borovac, 2004). With F the force and M the moment about the plane's origin:
     p_x = -M_y / F_z, p_y = M_x / F_z.
 
     Args:

@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from models.pinocchio import pinocchio_model
 from models.types import RobotDescription
-from planner.gait import GaitParameters
-from planner.parameters import PlannerParameters, StepAdaptation
 from planner.planner import WalkingPlanner
-from planner.terrain import Terrain, flat
+from planner.terrain import flat
 from planner.types import FeetState
+from scenarios.planner_setup import planner_parameters, square_stance, walking_planner
 from scenarios.schema import Scenario
 from scenarios.timeline import push_time
 from sim.pushes import Push
@@ -76,59 +75,12 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
     return Rig(world, controller, walking_planner(scenario, robot, terrain, feet_at(model, frames, q), parameters))
 
 
-def walking_planner(
-    scenario: Scenario, robot: RobotDescription, terrain: Terrain, feet: FeetState, parameters: PlannerParameters
-) -> WalkingPlanner:
-    """The planner of a scenario for start feet."""
-    return WalkingPlanner(gait_parameters(scenario), feet, robot.sole_length, robot.sole_width, terrain, parameters)
-
-
-def gait_parameters(scenario: Scenario) -> GaitParameters:
-    """The scenario's gait in the planner's terms."""
-    gait = scenario.gait
-    return GaitParameters(
-        steps=gait.steps,
-        step_length=gait.step_length,
-        step_width=gait.step_width,
-        lateral_step=gait.lateral_step,
-        turn=gait.turn,
-        single_support=gait.single_support,
-        double_support=gait.double_support,
-        swing_height=gait.swing_height,
-        com_height=gait.com_height,
-        initial_stand=gait.initial_stand,
-        apex_ss=gait.apex_single,
-        apex_ds=gait.apex_double,
-    )
-
-
-def planner_parameters(scenario: Scenario, leg_mass_ratio: float) -> PlannerParameters:
-    """The scenario's planner settings in the planner's terms; the pendulum has no legs, a ratio of 0."""
-    settings = scenario.planner
-    return PlannerParameters(
-        sample_time=settings.sample_time,
-        horizon=settings.horizon,
-        jerk_limit=settings.jerk_limit,
-        jerk_rate_limit=math.inf if settings.jerk_rate_limit is None else settings.jerk_rate_limit,
-        leg_mass_ratio=leg_mass_ratio,
-        step_adaptation=StepAdaptation(settings.step_adaptation),
-    )
-
-
 def pushes(scenario: Scenario, robot: RobotDescription) -> tuple[Push, ...]:
     """The scenario's pushes with their times and bodies resolved; a push without a body acts on the torso."""
     return tuple(
         Push(push_time(scenario.gait, p), p.duration, np.array(p.force), p.body or robot.torso_body)
         for p in scenario.pushes
     )
-
-
-def square_stance(scenario: Scenario) -> FeetState:
-    """Where the feet stand at the start: side by side at the start position and heading."""
-    start = scenario.start
-    left = 0.5 * scenario.gait.step_width * np.array([-math.sin(start.yaw), math.cos(start.yaw), 0.0])
-    origin = np.array([start.x, start.y, 0.0])
-    return FeetState(np.array([origin + left, origin - left]), np.full(2, start.yaw), (True, True))
 
 
 def start_posture(

@@ -20,7 +20,7 @@ def surefoot(monkeypatch, capsys, robot, robots, motion):
     def command(*arguments, loop=None):
         monkeypatch.setattr(sys, "argv", ["surefoot", *map(str, arguments)])
         monkeypatch.setattr(run, "describe", lambda scenario: robot)
-        monkeypatch.setattr(run, "closed_loop", lambda: loop or motion())
+        monkeypatch.setattr(run, "closed_loop", lambda fidelity: loop or motion())
         monkeypatch.setattr(RegisteredRobots, "names", lambda self: robots.names())
         monkeypatch.setattr(RegisteredRobots, "facts", lambda self, scenario: robots.facts(scenario))
         with pytest.raises(SystemExit) as ended:

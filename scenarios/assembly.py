@@ -101,7 +101,8 @@ def start_posture(
     if not result.reached:
         raise ValueError(
             f"robot '{robot.name}' cannot stand with gait.com_height {height:g} m and gait.step_width "
-            f"{scenario.gait.step_width:g} m: {result.error:.3f} m are missing; lower the CoM or narrow the stance"
+            f"{scenario.gait.step_width:g} m, {result.error:.3f} m are missing; "
+            f"use for example {robot.com_height:g} m and {robot.hip_width:g} m"
         )
     return result.q
 

@@ -8,6 +8,7 @@ from scenarios.errors import Problem, nearest
 from scenarios.reach import longest_step
 from scenarios.robots import RobotFacts, Robots
 from scenarios.schema import Gait, PushSettings, Scenario
+from scenarios.walk_checks import footstep_problems, walk_problems
 
 
 def check(scenario: Scenario, robots: Robots) -> list[Problem]:
@@ -17,6 +18,7 @@ def check(scenario: Scenario, robots: Robots) -> list[Problem]:
         *_durations(scenario),
         *_pushes(scenario),
         *_criteria(scenario),
+        *walk_problems(scenario),
         *_robot(scenario, robots),
     ]
 
@@ -95,7 +97,8 @@ def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
     for key, body in (*bodies, (("robot_options", "payload_body"), scenario.robot_options.payload_body)):
         if body is not None and body not in facts.bodies:
             yield Problem(key, f"unknown body '{body}' of {scenario.robot}", nearest(body, facts.bodies))
-    yield from _reach(scenario.gait, facts)
+    reach = list(_reach(scenario.gait, facts))
+    yield from reach or footstep_problems(scenario, facts)
 
 
 def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:

@@ -7,7 +7,7 @@ from models.types import RobotDescription
 from planner.types import CentroidalState, FeetState, PhaseInfo
 from scenarios.assembly import Rig, assemble
 from scenarios.faults import FaultSchedule
-from scenarios.log import LogWriter
+from scenarios.log import AttachedFile, LogWriter
 from scenarios.log.channels import Sizes
 from scenarios.metrics.walking import FALLEN_HEIGHT, FALLEN_TILT
 from scenarios.planning import Planning
@@ -22,6 +22,9 @@ from sim.errors import SimulationDiverged
 from sim.measurement import Measurement
 from wbc.model import RobotTerms
 from wbc.types import FootSensing, RobotState
+
+WORLD_FILE = "world.xml"
+"""Attachment that holds the simulated world as MJCF, the robot in it."""
 
 
 def simulate(scenario: Scenario, robot: RobotDescription, writer: LogWriter, on_progress: OnProgress) -> End:
@@ -54,6 +57,7 @@ class ClosedLoop:
         self._rig: Rig = assemble(scenario, robot)
         layout, nq = self._rig.controller.layout, len(robot.joint_names) + 7
         sizes = Sizes(nj=layout.joints, nq=nq, nv=layout.nv, horizon=scenario.planner.horizon)
+        writer.attach(AttachedFile(WORLD_FILE, "application/xml", self._rig.world.mjcf().encode()))
         self._recorder = Recorder(writer, sizes, robot.torque_limit)
         self._walk_recorder = WalkRecorder(writer, sizes)
         self._faults = FaultSchedule(scenario.faults, rates.control)

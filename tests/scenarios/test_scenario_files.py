@@ -62,7 +62,7 @@ CASES = {
     "gait: {step_width: 3.0}": "f.yaml:1:20: gait.step_width 3.0 m is out of reach",
     "gait: {lateral_step: 0.3}": "f.yaml:1:22: footstep 1 would land 0.550 m beside its stance foot; it must be 0.08",
     "gait: {step_length: 0.45, com_height: 0.8}": "f.yaml:1:21: footstep 1 would land 0.450 m ahead of its stance foot",
-    "gait: {turn: 2.0}": "f.yaml:1:14: footstep 2 would land -0.149 m beside its stance foot",
+    "gait: {turn: 2.0}": "f.yaml:1:14: footstep 2 would land -0.095 m beside its stance foot",
     "gait: {step_width: 0.07}": "f.yaml:1:20: gait.step_width 0.07 m lets feet 0.075 m wide touch; use more than",
     "gait: {lateral_step: 0.12}\nrobot_options: {foot_width: 0.14}": "m beside its stance foot and touch it; keep the",
     "gait: {single_support: 0.06, apex_single: 0}": "f.yaml:1:24: gait.single_support 0.06 s is too short to swing",

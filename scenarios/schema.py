@@ -19,7 +19,7 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 FootSize = Annotated[float, Field(ge=0.01, le=0.5)]
 Angle = Annotated[float, Field(ge=-6.3, le=6.3, allow_inf_nan=False)]
 Place = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
-Noise = Annotated[float, Field(ge=0, le=0.5, allow_inf_nan=False)]
+Noise = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000)]
 

@@ -65,7 +65,7 @@ CASES = {
     "gait: {turn: 2.0}": "f.yaml:1:14: footstep 2 would land -0.095 m beside its stance foot",
     "gait: {step_width: 0.07}": "f.yaml:1:20: gait.step_width 0.07 m lets feet 0.075 m wide touch; use more than",
     "gait: {lateral_step: 0.12}\nrobot_options: {foot_width: 0.14}": "m beside its stance foot and touch it; keep the",
-    "gait: {single_support: 0.06, apex_single: 0}": "f.yaml:1:24: gait.single_support 0.06 s is too short to swing",
+    "gait: {single_support: 0.06, apex_single: 0}": "f.yaml:1:24: gait.single_support 0.06 s is too short for a",
     "gait: {apex_single: 0.7}": "f.yaml:1:21: gait.apex_single 0.7 m within 1.5 s asks the CoM to fall faster than",
     "gait: {steps: 100000}": "f.yaml:1:15: a gait of 200002 s; it may last 20000 s; use fewer or faster steps",
     "planner: {horizon: 10}": "f.yaml:1:20: planner.horizon 10 is shorter than the planner's blocks of moves; use at",

@@ -8,6 +8,7 @@ from scenarios.errors import Problem, nearest
 from scenarios.reach import longest_step
 from scenarios.robots import RobotFacts, Robots
 from scenarios.schema import Gait, PushSettings, Scenario
+from scenarios.walk_checks import FEWEST_SWING_SAMPLES, footstep_problems, swing_too_short, walk_problems
 
 
 def check(scenario: Scenario, robots: Robots) -> list[Problem]:
@@ -17,6 +18,7 @@ def check(scenario: Scenario, robots: Robots) -> list[Problem]:
         *_durations(scenario),
         *_pushes(scenario),
         *_criteria(scenario),
+        *walk_problems(scenario),
         *_robot(scenario, robots),
     ]
 
@@ -44,7 +46,10 @@ def _durations(scenario: Scenario) -> Iterator[Problem]:
     sample_time = scenario.planner.sample_time
     for name in ("single_support", "double_support", "initial_stand"):
         value = getattr(scenario.gait, name)
-        if not is_multiple(value, sample_time):
+        if name == "single_support" and swing_too_short(scenario):
+            what = f"gait.{name} {value} s is too short for a swing of the foot"
+            yield Problem(("gait", name), what, f"use at least {FEWEST_SWING_SAMPLES * sample_time:g} s")
+        elif not is_multiple(value, sample_time):
             near = max(1, round(value / sample_time)) * sample_time
             what = f"gait.{name} {value} s is not a multiple of planner.sample_time {sample_time} s"
             yield Problem(("gait", name), what, f"use for example {near:.6g} s")
@@ -95,7 +100,8 @@ def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
     for key, body in (*bodies, (("robot_options", "payload_body"), scenario.robot_options.payload_body)):
         if body is not None and body not in facts.bodies:
             yield Problem(key, f"unknown body '{body}' of {scenario.robot}", nearest(body, facts.bodies))
-    yield from _reach(scenario.gait, facts)
+    reach = list(_reach(scenario.gait, facts))
+    yield from reach or footstep_problems(scenario, facts)
 
 
 def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from scenarios.errors import LogError, ScenarioError
+from scenarios.errors import LogError, ScenarioError, SetupError
 
 app = typer.Typer(
     name="surefoot",
@@ -46,13 +46,16 @@ def run(
 ) -> None:
     """Run a scenario, write its log and judge it."""
     from scenarios.console import ProgressLine, print_result
-    from scenarios.load import load_scenario
+    from scenarios.load import load_scenario, locate
     from scenarios.run import run_scenario
 
     overrides = [*(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
     loaded = load_scenario(scenario, overrides)
     with ProgressLine(loaded.name) as progress:
-        result = run_scenario(loaded, out, progress)
+        try:
+            result = run_scenario(loaded, out, progress)
+        except SetupError as refusal:
+            raise locate(scenario, overrides, refusal) from None
     if as_json:
         typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
     else:

@@ -18,6 +18,7 @@ class RunConstants:
 
     Attributes:
         scenario: its name.
+        fidelity: full or pendulum.
         seed: its seed.
         steps_planned: footsteps asked for.
         mass: of the robot [kg].
@@ -34,6 +35,7 @@ class RunConstants:
     """
 
     scenario: str
+    fidelity: str
     seed: int
     steps_planned: int
     mass: float

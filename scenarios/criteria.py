@@ -36,6 +36,20 @@ METRIC_NAMES = (
 )
 """Names of the metrics that a log gives, in the order in which they are shown."""
 
+BODY_METRICS = (
+    "footstep_error_max",
+    "foot_slip_max",
+    "torque_ratio_max",
+    "joint_limit_margin_min",
+    "knee_angle_mean",
+    "cost_of_transport",
+    "estimation_error_rms",
+    "wbc_time",
+    "qp_failures",
+    "wbc_fallbacks",
+)
+"""Metrics of joints, sensors and real feet, which a pendulum has not got."""
+
 TIMED = ("planner_time", "wbc_time")
 """Metrics that are a median and a 99th percentile."""
 

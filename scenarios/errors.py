@@ -40,6 +40,10 @@ class ScenarioError(Exception):
         super().__init__("\n".join(self.problems))
 
 
+class SetupError(Exception):
+    """A scenario that passed every check, but that a part of the stack refuses; one sentence says why."""
+
+
 class LogError(Exception):
     """A log that cannot be written or read; the message says what, where and what would be right."""
 

@@ -1,5 +1,6 @@
 """From a scenario's name or file to a checked scenario: every fault of a file is reported at once."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ from pydantic import ValidationError
 from scenarios import catalogue
 from scenarios.checks import check
 from scenarios.criteria import Bound
-from scenarios.errors import Key, Problem, ScenarioError, nearest
+from scenarios.errors import Key, Problem, ScenarioError, SetupError, nearest
 from scenarios.override import apply_override
 from scenarios.robots import RegisteredRobots, Robots
 from scenarios.schema import Scenario
@@ -34,6 +35,32 @@ def load_scenario(reference: str, overrides: Sequence[str] = (), robots: Robots 
     """
     text, name, stem = _text(reference)
     return read_scenario(text, name, stem, overrides, robots or RegisteredRobots())
+
+
+def locate(reference: str, overrides: Sequence[str], refusal: SetupError) -> ScenarioError:
+    """Say where the cause of a refusal stands: at the first key that its sentence names, else at the scenario's begin.
+
+    Args:
+        reference: as given to `load_scenario`, as are the overrides.
+        overrides: ``key=value``.
+        refusal: of a part of the stack.
+    """
+    text, name, _ = _text(reference)
+    source = parse(text, name)
+    for override in overrides:
+        apply_override(source, override)
+    what, _, right = str(refusal).rstrip(".").partition("; ")
+    problem = Problem(_named_key(what), what, right or "change the scenario so that it fits")
+    return ScenarioError([source.describe(problem)])
+
+
+def _named_key(sentence: str) -> Key:
+    """The first scenario key that a sentence names, such as gait.com_height; () when it names none."""
+    for group, name in re.findall(r"\b([a-z_]+)\.([a-z_]+)\b", sentence):
+        fields = getattr(Scenario.model_fields.get(group), "annotation", None)
+        if name in getattr(fields, "model_fields", {}):
+            return (group, name)
+    return ()
 
 
 def read_scenario(text: str, name: str, stem: str, overrides: Sequence[str], robots: Robots) -> Scenario:

@@ -18,12 +18,16 @@ class RobotFacts:
         leg_length: hip centre to sole with the knee straight [m].
         hip_width: distance between the hip centres [m].
         com_above_hip: CoM height over the hip centres, standing straight [m].
+        foot_length: of the soles [m].
+        foot_width: of the soles [m].
     """
 
     bodies: tuple[str, ...]
     leg_length: float
     hip_width: float
     com_above_hip: float
+    foot_length: float
+    foot_width: float
 
 
 class Robots(Protocol):
@@ -60,6 +64,8 @@ class RegisteredRobots:
             leg_length=description.leg_length,
             hip_width=description.hip_width,
             com_above_hip=_straight_com_height(description) - description.leg_length,
+            foot_length=description.sole_length,
+            foot_width=description.sole_width,
         )
 
 

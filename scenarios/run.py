@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import yaml
 
 from scenarios.constants import RECORD, RunConstants
-from scenarios.errors import LogError, ScenarioError
+from scenarios.errors import LogError, ScenarioError, SetupError
 from scenarios.log import AttachedFile, LogWriter, read
 from scenarios.progress import End, OnProgress, Progress
 from scenarios.provenance import versions
@@ -55,14 +55,14 @@ def run_scenario(
         scenario: what to run.
         out: directory that gets ``<scenario>-<seed>/log.mcap`` and ``verdict.json``.
         on_progress: is told where the run is.
-        simulate: the closed loop; that of ``scenarios.loop`` by default.
+        simulate: the closed loop; that of the scenario's fidelity by default.
         robot: its robot; described from the scenario by default.
 
     Raises:
         LogError: the log or the verdict cannot be written.
-        ScenarioError: the loop cannot be set up as the scenario asks; no log is left.
+        SetupError: the loop cannot be set up as the scenario asks; no log is left.
     """
-    simulate = simulate or closed_loop()
+    simulate = simulate or closed_loop(scenario.fidelity)
     robot = robot or describe(scenario)
     folder = _folder(out / f"{scenario.name}-{scenario.seed}")
     with LogWriter(folder / LOG_NAME, _metadata(scenario, robot), _attachments(scenario, robot)) as writer:
@@ -73,11 +73,15 @@ def run_scenario(
     return Result(verdict, folder / LOG_NAME, end.kind == "interrupted")
 
 
-def closed_loop() -> Simulate:
-    """The closed loop in full physics, imported only when it is needed."""
-    from scenarios.loop import simulate
+def closed_loop(fidelity: str) -> Simulate:
+    """The closed loop of a fidelity, imported only when it is needed."""
+    if fidelity == "pendulum":
+        from scenarios import pendulum_loop
 
-    return simulate
+        return pendulum_loop.simulate
+    from scenarios import loop
+
+    return loop.simulate
 
 
 def scenario_yaml(scenario: Scenario) -> str:
@@ -89,6 +93,7 @@ def run_constants(scenario: Scenario, robot: "RobotDescription") -> RunConstants
     """Collect what the metrics need of a scenario and its robot."""
     return RunConstants(
         scenario=scenario.name,
+        fidelity=scenario.fidelity,
         seed=scenario.seed,
         steps_planned=scenario.gait.steps,
         mass=float(robot.mass),
@@ -123,7 +128,7 @@ def _watched(
         end = End("interrupted", last.time, "interrupted by the user")
     except LogError:
         raise
-    except ScenarioError:
+    except (ScenarioError, SetupError):
         writer.discard()
         raise
     except Exception as error:

@@ -10,11 +10,16 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from scenarios.criteria import Bound, standing_walk
 
+LONGEST_RUN = 86_400.0
+"""Bound on the simulated time [s]."""
+
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 FootSize = Annotated[float, Field(ge=0.01, le=0.5)]
 Angle = Annotated[float, Field(ge=-6.3, le=6.3, allow_inf_nan=False)]
+Place = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
+Noise = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000)]
 
@@ -37,7 +42,9 @@ class RobotSettings(Group):
 
     foot_length: FootSize | None = Field(default=None, description="sole length, null: the robot's own [m]")
     foot_width: FootSize | None = Field(default=None, description="sole width, null: the robot's own [m]")
-    payload_mass: NonNegative = Field(default=0.0, description="mass carried [kg]")
+    payload_mass: Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False)] = Field(
+        default=0.0, description="mass carried [kg]"
+    )
     payload_body: str | None = Field(default=None, description="body that carries it, null: the torso")
 
 
@@ -51,7 +58,9 @@ class TerrainSettings(Group):
     direction: Literal["up", "down", "up_down"] = Field(default="up", description="which way the stairs go")
     height_noise: NonNegative = Field(default=0.0, description="half range of the block heights [m]")
     angle: Angle = Field(default=0.0, description="inclination of a slope [rad]")
-    friction: NonNegative = Field(default=0.8, description="Coulomb coefficient of every surface [-]")
+    friction: Annotated[float, Field(ge=0, le=10, allow_inf_nan=False)] = Field(
+        default=0.8, description="Coulomb coefficient of every surface [-]"
+    )
 
 
 class Gait(Group):
@@ -64,7 +73,9 @@ class Gait(Group):
     turn: Angle = Field(default=0.0, description="heading change of each footstep, left positive [rad]")
     single_support: Positive = Field(default=1.5, description="duration of a single support [s]")
     double_support: Positive = Field(default=0.5, description="duration of a double support [s]")
-    swing_height: Positive = Field(default=0.05, description="apex of the swing foot above the ground [m]")
+    swing_height: Annotated[float, Field(gt=0, le=0.5, allow_inf_nan=False)] = Field(
+        default=0.05, description="apex of the swing foot above the ground [m]"
+    )
     com_height: Positive = Field(default=1.0, description="CoM height above the soles [m]")
     initial_stand: NonNegative = Field(default=1.0, description="standing before the first weight shift [s]")
     apex_single: NonNegative = Field(
@@ -109,11 +120,11 @@ class Sensing(Group):
 class Start(Group):
     """Where the robot starts; noises are half ranges drawn from the seed."""
 
-    x: Finite = Field(default=0.0, description="world position forward [m]")
-    y: Finite = Field(default=0.0, description="world position left [m]")
+    x: Place = Field(default=0.0, description="world position forward [m]")
+    y: Place = Field(default=0.0, description="world position left [m]")
     yaw: Angle = Field(default=0.0, description="heading about the world's z axis [rad]")
-    position_noise: NonNegative = Field(default=0.0, description="random offset of the base position; the soles stay flat on the ground [m]")
-    angle_noise: NonNegative = Field(default=0.0, description="random offset of base attitude and joints; the soles stay flat on the ground [rad]")
+    position_noise: Noise = Field(default=0.0, description="random offset of the base, soles flat on the ground [m]")
+    angle_noise: Noise = Field(default=0.0, description="random offset of base and joint angles, soles flat [rad]")
 
 
 class BeliefErrors(Group):
@@ -169,7 +180,9 @@ class Scenario(Group):
         default="full", description="whole body in MuJoCo, or the pendulum alone"
     )
     seed: Annotated[int, Field(ge=0, lt=2**32)] = Field(default=0, description="seed of everything random [-]")
-    duration: Positive | None = Field(default=None, description="simulated time, null: until the gait has ended [s]")
+    duration: Annotated[float, Field(gt=0, le=LONGEST_RUN, allow_inf_nan=False)] | None = Field(
+        default=None, description="simulated time, null: until the gait has ended [s]"
+    )
     robot_options: RobotSettings = Field(default=RobotSettings(), description="changes to the robot")
     terrain: TerrainSettings = Field(default=TerrainSettings(), description="the ground")
     gait: Gait = Field(default=Gait(), description="the walk")

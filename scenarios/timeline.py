@@ -37,11 +37,11 @@ def push_time(gait: Gait, push: PushSettings) -> float:
     )
 
 
+def gait_duration(gait: Gait) -> float:
+    """Time from the start to the end of the last double support [s]."""
+    return gait.initial_stand if gait.steps == 0 else phase_start(gait, gait.steps + 1, "single")
+
+
 def run_duration(scenario: Scenario) -> float:
-    """Simulated time [s]: as given, or the gait and two seconds of standing."""
-    if scenario.duration is not None:
-        return scenario.duration
-    gait = scenario.gait
-    if gait.steps == 0:
-        return gait.initial_stand + FINAL_STAND
-    return phase_start(gait, gait.steps + 1, "single") + FINAL_STAND
+    """Simulated time [s]: as given, or the gait and a while of standing."""
+    return gait_duration(scenario.gait) + FINAL_STAND if scenario.duration is None else scenario.duration

@@ -9,10 +9,12 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from scenarios.criteria import Bound, standing_walk
+from scenarios.criteria import Bound
 from scenarios.errors import LogError
 from scenarios.log import Log
 from scenarios.metrics import compute
+from scenarios.notes import asked, notes
+from scenarios.schema import Scenario
 
 SCENARIO_FILE = "scenario.yaml"
 """Attachment that holds the scenario as run."""
@@ -30,16 +32,19 @@ class Verdict:
     Attributes:
         passed: all criteria met, and the run came to its end.
         reasons: why not, one sentence each.
+        notes: what else is to be known, one sentence each; they do not bear on the verdict.
         metrics: values by name.
     """
 
     passed: bool
     reasons: tuple[str, ...]
+    notes: tuple[str, ...]
     metrics: Mapping[str, Any]
 
     def to_json(self) -> dict[str, Any]:
         """Write as one JSON object with the names of the public contract."""
-        return {"verdict": "pass" if self.passed else "fail", "reasons": list(self.reasons), **self.metrics}
+        judgement = {"verdict": "pass" if self.passed else "fail", "reasons": list(self.reasons)}
+        return {**judgement, "notes": list(self.notes), **self.metrics}
 
     def write(self, path: Path) -> None:
         """Write as a JSON file.
@@ -60,22 +65,20 @@ def judge(log: Log) -> Verdict:
     Raises:
         LogError: the log does not describe a run.
     """
-    metrics = compute(log)
-    reasons = [*_unfinished(log), *missed(metrics, criteria_of(log))]
-    return Verdict(not reasons, tuple(reasons), metrics)
+    metrics, scenario = compute(log), scenario_of(log)
+    reasons = (*_unfinished(log), *missed(metrics, asked(scenario.criteria, scenario.fidelity)))
+    return Verdict(not reasons, reasons, notes(scenario, metrics), metrics)
 
 
-def criteria_of(log: Log) -> dict[str, Bound]:
-    """The criteria of the scenario that a log carries.
+def scenario_of(log: Log) -> Scenario:
+    """The scenario that a log carries.
 
     Raises:
         LogError: it carries none that can be read.
     """
     try:
-        scenario = yaml.safe_load(log.attachments[SCENARIO_FILE])
-        bounds = scenario.get("criteria")
-        return standing_walk() if bounds is None else {n: Bound.model_validate(b) for n, b in bounds.items()}
-    except (KeyError, AttributeError, ValidationError, yaml.YAMLError, ValueError, RecursionError):
+        return Scenario.model_validate(yaml.safe_load(log.attachments[SCENARIO_FILE]))
+    except (KeyError, ValidationError, yaml.YAMLError, ValueError, RecursionError):
         raise LogError(f"{log.path}: holds no readable scenario; its criteria are unknown") from None
 
 

@@ -71,6 +71,18 @@ def truth(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/truth", "Truth", fields, truth.__doc__ or "")
 
 
+def point_truth(_: Sizes) -> ChannelSpec:
+    """The pendulum's state, every control tick."""
+    fields = (
+        _real("com", 3, "m", "world", "CoM"),
+        _real("com_velocity", 3, "m/s", "world", "CoM velocity"),
+        _real("left_sole", 7, "m, -", "world", "pose of the sole centre"),
+        _real("right_sole", 7, "m, -", "world", "pose of the sole centre"),
+        _real("external_force", 3, "N", "world", "sum of pushes, mean until the next tick"),
+    )
+    return ChannelSpec("/truth", "PointTruth", fields, point_truth.__doc__ or "")
+
+
 def estimate(_: Sizes) -> ChannelSpec:
     """The state that planner and controller were given, every control tick."""
     fields = (

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.criteria import METRIC_NAMES
+from scenarios.criteria import BODY_METRICS, METRIC_NAMES
 from scenarios.log import Log
 from scenarios.metrics import balance, effort, walking
 from scenarios.metrics.view import RunView
@@ -66,7 +66,7 @@ def compute(log: Log) -> dict[str, Any]:
 
 
 def _metric(run: RunView, name: str) -> Any:
-    if name not in _METRICS:
+    if name not in _METRICS or (run.constants.fidelity == "pendulum" and name in BODY_METRICS):
         return None
     topics, function = _METRICS[name]
     return _plain(function(run)) if run.has(*topics) else None

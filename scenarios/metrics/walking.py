@@ -10,17 +10,20 @@ FALLEN_HEIGHT = 0.6
 FALLEN_TILT = np.deg2rad(60.0)
 """Torso tilt beyond which a robot has fallen [rad]."""
 
+LOST_DISTANCE = 1.0
+"""Distance of a pendulum's DCM from its ZMP beyond which no foot could catch it: it has fallen [m]."""
+
 STILL_SPEED = 0.02
 """CoM speed of a robot that stands still [m/s]."""
 
 
 def fall_time(run: RunView) -> float | None:
-    """First time at which the CoM is low over the lower foot, the torso lies, or more than feet touches [s]."""
-    height = run.field("/truth", "com")[:, 2] - run.soles[:, :, 2].min(axis=1)
-    low = height < FALLEN_HEIGHT * run.constants.com_height
-    lying = run.field("/truth", "torso_tilt") > FALLEN_TILT
-    touching = run.field("/truth", "nonfoot_contact") != 0
-    fallen = np.flatnonzero(low | lying | touching)
+    """First time at which the robot has fallen [s].
+
+    A body: its CoM is low over the lower foot, its torso lies, or more than its feet touches. A pendulum: its DCM is
+    out of reach of any foot.
+    """
+    fallen = np.flatnonzero(_lost(run) if run.constants.fidelity == "pendulum" else _lying(run))
     return float(run.time[fallen[0]]) if len(fallen) else None
 
 
@@ -94,6 +97,22 @@ def speed_mean(run: RunView) -> float | None:
 def com_height_range(run: RunView) -> float:
     """Highest minus lowest CoM [m]."""
     return float(np.ptp(run.field("/truth", "com")[:, 2]))
+
+
+def _lying(run: RunView) -> Mask:
+    height = run.field("/truth", "com")[:, 2] - run.soles[:, :, 2].min(axis=1)
+    low = height < FALLEN_HEIGHT * run.constants.com_height
+    lying = run.field("/truth", "torso_tilt") > FALLEN_TILT
+    touching = run.field("/truth", "nonfoot_contact") != 0
+    return np.asarray(low | lying | touching)
+
+
+def _lost(run: RunView) -> Mask:
+    if not run.has("/contact", "/reference"):
+        return np.zeros(run.ticks, dtype=np.bool_)
+    omega = run.field("/reference", "omega")[:, None]
+    dcm = run.field("/truth", "com")[:, :2] + run.field("/truth", "com_velocity")[:, :2] / omega
+    return np.asarray(np.linalg.norm(dcm - run.field("/contact", "zmp")[:, :2], axis=1) > LOST_DISTANCE)
 
 
 def _runs(mask: Mask) -> list[tuple[int, int]]:

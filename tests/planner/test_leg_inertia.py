@@ -55,7 +55,9 @@ def test_zmp_of_the_plan_is_that_of_three_masses(stand):
 
 
 def test_without_the_offset_the_zmp_would_be_wrong(stand):
-    errors = [np.abs(plan.zmp[0] - plan.zmp_offset[0] - zmp_of_three_masses(plan, LEG)).max() for plan in plans(stand, LEG)]
+    errors = [
+        np.abs(plan.zmp[0] - plan.zmp_offset[0] - zmp_of_three_masses(plan, LEG)).max() for plan in plans(stand, LEG)
+    ]
     assert max(errors) > 0.01
 
 
@@ -78,7 +80,9 @@ def test_offset_is_there_in_single_support_only(stand):
             assert not plan.zmp_offset[0].any()
 
 
-@pytest.mark.parametrize("leg", [{"mass_ratio": -0.1}, {"mass_ratio": 0.5}, {"mass_ratio": float("nan")}, {"lever": float("inf")}])
+@pytest.mark.parametrize(
+    "leg", [{"mass_ratio": -0.1}, {"mass_ratio": 0.5}, {"mass_ratio": float("nan")}, {"lever": float("inf")}]
+)
 def test_impossible_legs_are_refused(leg):
     with pytest.raises(ValueError, match="ratio must be within"):
         LegInertia(**leg)

@@ -27,7 +27,11 @@ class FakeRobots:
         return ("humanoid100", "talos")
 
     def facts(self, scenario: Scenario) -> RobotFacts:
-        return RobotFacts(bodies=("pelvis", "torso"), leg_length=0.92, hip_width=0.2, com_above_hip=0.114)
+        width = scenario.robot_options.foot_width or FOOT
+        return RobotFacts(
+            bodies=("pelvis", "torso"), leg_length=0.92, hip_width=0.2, com_above_hip=0.114,
+            foot_length=scenario.robot_options.foot_length or FOOT, foot_width=width,
+        )  # fmt: skip
 
 
 @dataclass

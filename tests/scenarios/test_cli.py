@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from scenarios import cli, run
+from scenarios.errors import SetupError
 from scenarios.log import read
 from scenarios.robots import RegisteredRobots
 
@@ -20,7 +21,7 @@ def surefoot(monkeypatch, capsys, robot, robots, motion):
     def command(*arguments, loop=None):
         monkeypatch.setattr(sys, "argv", ["surefoot", *map(str, arguments)])
         monkeypatch.setattr(run, "describe", lambda scenario: robot)
-        monkeypatch.setattr(run, "closed_loop", lambda: loop or motion())
+        monkeypatch.setattr(run, "closed_loop", lambda fidelity: loop or motion())
         monkeypatch.setattr(RegisteredRobots, "names", lambda self: robots.names())
         monkeypatch.setattr(RegisteredRobots, "facts", lambda self, scenario: robots.facts(scenario))
         with pytest.raises(SystemExit) as ended:
@@ -87,6 +88,24 @@ def test_a_defect_is_no_verdict(surefoot, scenario, tmp_path, motion):
     assert code == 70
     assert out == ""
     assert "ZeroDivisionError: x" in err
+
+
+@pytest.mark.parametrize(
+    ("refusal", "message"),
+    [
+        (
+            "no stance with gait.steps 2 and x.y; use 3.",
+            "two-steps.yaml:1:15: no stance with gait.steps 2 and x.y; use 3",
+        ),
+        ("The legs are too short.", "two-steps.yaml:1:1: The legs are too short; change the scenario so that it fits"),
+    ],
+)
+def test_what_a_part_refuses_is_bad_input_at_the_key_it_names(surefoot, scenario, tmp_path, motion, refusal, message):
+    code, out, err = surefoot("run", scenario, "--out", tmp_path, loop=motion(raises=SetupError(refusal)))
+    assert code == 2
+    assert out == ""
+    assert err.strip().endswith(message)
+    assert not list((tmp_path / "two-steps-0").iterdir())
 
 
 def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):

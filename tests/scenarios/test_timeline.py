@@ -2,7 +2,7 @@ import pytest
 
 from planner.schedule import schedule
 from planner.types import PhaseKind
-from scenarios.assembly import gait_parameters
+from scenarios.planner_setup import gait_parameters
 from scenarios.schema import Gait, Scenario
 from scenarios.timeline import FINAL_STAND, phase_duration, phase_start, run_duration
 

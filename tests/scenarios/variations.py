@@ -1,6 +1,6 @@
 """Variations of `diagonal-walk` that must pass with nothing else changed; run as a script for a table of all.
 
-    python tests/scenarios/variations.py [--jobs N] [--only TEXT]
+python tests/scenarios/variations.py [--jobs N] [--only TEXT]
 """
 
 import argparse
@@ -67,8 +67,9 @@ def main() -> None:
     parser.add_argument("--only", default="")
     options = parser.parse_args()
     chosen = [v for v in VARIATIONS if options.only in v.name]
-    print("| variation | verdict | steps | inside | CoP p99 | CoM error [mm] | ZMP error [mm] | torque | real time | why |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    columns = ("variation", "verdict", "steps", "inside", "CoP p99", "CoM error [mm]", "ZMP error [mm]", "torque")
+    print("| " + " | ".join((*columns, "real time", "why")) + " |")
+    print("|" + 10 * "---|")
     with ProcessPoolExecutor(options.jobs) as pool:
         for variation, metrics in zip(chosen, pool.map(run, chosen), strict=True):
             print(_row(variation, metrics), flush=True)

@@ -1,0 +1,59 @@
+"""What to know beside a verdict: criteria that could not be asked, keys without effect, fallbacks."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from scenarios.criteria import BODY_METRICS, Bound
+from scenarios.schema import Scenario
+from scenarios.timeline import gait_duration
+
+_NO_CONTACT = (("terrain", "friction"), ("start", "angle_noise"))
+"""Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
+
+
+def asked(criteria: Mapping[str, Bound], fidelity: str) -> dict[str, Bound]:
+    """The criteria on metrics that a fidelity has; the others are in the notes."""
+    return {name: bound for name, bound in criteria.items() if not _bodiless(name, fidelity)}
+
+
+def notes(scenario: Scenario, metrics: Mapping[str, Any]) -> tuple[str, ...]:
+    """List them, one sentence each.
+
+    Args:
+        scenario: as run.
+        metrics: of its log.
+    """
+    return (*_skipped(scenario), *_without_effect(scenario), *_cut_short(scenario), *_degraded(metrics))
+
+
+def _bodiless(criterion: str, fidelity: str) -> bool:
+    return fidelity == "pendulum" and criterion.partition(".")[0] in BODY_METRICS
+
+
+def _skipped(scenario: Scenario) -> Iterator[str]:
+    for name in scenario.criteria:
+        if _bodiless(name, scenario.fidelity):
+            yield f"criterion {name} is not asked: a pendulum has no such metric"
+
+
+def _without_effect(scenario: Scenario) -> Iterator[str]:
+    if scenario.fidelity != "pendulum":
+        return
+    for group, name in _NO_CONTACT:
+        settings = getattr(scenario, group)
+        if getattr(settings, name) != type(settings).model_fields[name].default:
+            yield f"{group}.{name} has no effect on a pendulum"
+
+
+def _cut_short(scenario: Scenario) -> Iterator[str]:
+    whole = gait_duration(scenario.gait)
+    if scenario.duration is not None and scenario.duration < whole:
+        yield f"duration {scenario.duration:g} s ends before the gait does, which takes {whole:g} s"
+
+
+def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
+    failures, fallbacks = metrics.get("qp_failures"), metrics.get("wbc_fallbacks")
+    if fallbacks:
+        yield f"the whole-body QP had no solution at {fallbacks} ticks, which used the fallback torque"
+    elif failures:
+        yield f"the whole-body QP needed its second solver at {failures} ticks"

@@ -1,0 +1,152 @@
+"""The closed loop of fidelity pendulum: the same planner on the true variable-height pendulum with ideal feet."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.parameters import LegInertia
+from planner.pendulum import Pendulum, PointPush
+from planner.pendulum_walk import IdealFeet
+from planner.polygon import convex_hull, sole_corners
+from planner.sampling import PlanSample
+from planner.terrain import flat
+from planner.types import CentroidalState, Foot, Footstep, PhaseInfo
+from scenarios.faults import FaultSchedule
+from scenarios.log import LogWriter
+from scenarios.log.channels import Sizes
+from scenarios.metrics.walking import LOST_DISTANCE
+from scenarios.pendulum_recorder import PendulumRecorder
+from scenarios.planner_setup import planner_parameters, square_stance, walking_planner
+from scenarios.planning import Planning
+from scenarios.progress import End, OnProgress
+from scenarios.schema import Scenario
+from scenarios.ticks import RunFault, Watch, refusing, run_ticks
+from scenarios.timeline import push_time, run_duration
+from scenarios.walk_recorder import TickTiming, WalkRecorder
+
+if TYPE_CHECKING:
+    from models.types import RobotDescription
+
+Array = NDArray[np.float64]
+
+FEEDBACK = 3.0
+"""Gain of the ZMP command on the DCM error, the stand-in of the whole-body controller's balance task [-]."""
+
+
+def simulate(scenario: Scenario, robot: "RobotDescription", writer: LogWriter, on_progress: OnProgress) -> End:
+    """Run a scenario on the pendulum; arguments and errors as of the loop in full physics."""
+    with refusing():
+        loop = PendulumLoop(scenario, robot, writer)
+    return run_ticks(loop, scenario.rates.control, run_duration(scenario), on_progress)
+
+
+class PendulumLoop:
+    """Pendulum, planner and recorders of one run.
+
+    The mass is driven by p = p_ref + k (ξ - ξ_ref), clipped to the hull of the soles in contact; the feet do what the
+    plan says.
+
+    Raises:
+        ValueError: the planner refuses the gait.
+    """
+
+    def __init__(self, scenario: Scenario, robot: "RobotDescription", writer: LogWriter) -> None:
+        rates, feet = scenario.rates, square_stance(scenario)
+        self._rate, self._mass = rates.control, robot.mass
+        self._half_size = 0.5 * np.array([robot.sole_length, robot.sole_width])
+        sizes = Sizes(nj=0, nq=0, nv=0, horizon=scenario.planner.horizon)
+        planner = walking_planner(scenario, robot, flat(), feet, planner_parameters(scenario, LegInertia()))
+        self._recorder = PendulumRecorder(writer, sizes, robot.mass)
+        self._walk_recorder = WalkRecorder(writer, sizes)
+        self._faults = FaultSchedule(scenario.faults, rates.control)
+        self._planning = Planning(planner, self._walk_recorder, self._faults, rates)
+        self._pushes = tuple(
+            PointPush(push_time(scenario.gait, push), push.duration, np.array(push.force[:2]))
+            for push in scenario.pushes
+        )
+        self._feet = IdealFeet(feet)
+        self._pendulum = Pendulum(robot.mass, start_position(scenario), np.zeros(2))
+        self._height, self._climb = scenario.gait.com_height, 0.0
+        self._contacts, self._support = (False, False), np.zeros((0, 2))
+
+    @property
+    def phase(self) -> PhaseInfo:
+        """Where the gait stands."""
+        return self._planning.phase
+
+    def tick(self, tick: int) -> bool:
+        """One control tick; returns whether no foot could catch the mass any more.
+
+        Raises:
+            RunFault: the measured state is not finite.
+        """
+        watch = Watch.start()
+        begin = watch.last
+        now, now_ns, period = tick / self._rate, tick * 1_000_000_000 // self._rate, 1.0 / self._rate
+        state = self._sense(now, tick)
+        planning = self._planning
+        state_time = watch.lap()
+        if planning.due(tick):
+            planning.update(now_ns, state, self._feet.state)
+        sample = planning.sampler.sample(now)
+        planner_time = watch.lap()
+        force = mean_force(self._pushes, now, period)
+        support = self._support_of(sample.contacts)
+        self._recorder.state(now_ns, state, self._feet.state, force)
+        self._recorder.contact(now_ns, self._pendulum.zmp, sample, self._feet.state)
+        self._walk_recorder.reference(now_ns, planning.plan, sample)
+        log_time = watch.lap()
+        lost = self._lost(state, sample.omega)
+        self._advance(now, period, sample, support, force)
+        parts = (state_time, 0.0, 0.0, planner_time, watch.lap(), log_time)
+        self._walk_recorder.timing(now_ns, TickTiming(*parts, watch.last - begin))
+        return lost
+
+    def _sense(self, now: float, tick: int) -> CentroidalState:
+        position = np.append(self._pendulum.position, self._height)
+        velocity = np.append(self._pendulum.velocity, self._climb)
+        if self._faults.active("state_nan", tick) or not math.isfinite(float(position.sum() + velocity.sum())):
+            raise RunFault(f"the measured state is not finite at {now:.3f} s")
+        return CentroidalState(now, position, velocity)
+
+    def _advance(self, now: float, period: float, sample: PlanSample, support: Array, force: Array) -> None:
+        """Drive the mass by the middle of the tick, then move feet and height to its end."""
+        pendulum, sampler = self._pendulum, self._planning.sampler
+        middle = sampler.sample(now + 0.5 * period)
+        error = pendulum.position + pendulum.velocity / sample.omega - sample.dcm
+        pendulum.advance(period, middle.pendulum_zmp + FEEDBACK * error, support, middle.stiffness, force)
+        end = sampler.sample(now + period)
+        self._height, self._climb = float(end.com[2]), float(end.com_velocity[2])
+        self._feet.follow(sampler, now + period)
+
+    def _support_of(self, contacts: tuple[bool, bool]) -> Array:
+        """Hull of the soles in contact, shape (v, 2); they rest, so it changes with the contacts only."""
+        if contacts != self._contacts:
+            feet = self._feet.state
+            soles = [Footstep(foot, feet.position[foot], float(feet.yaw[foot])) for foot in Foot if contacts[foot]]
+            self._support = convex_hull(np.concatenate([sole_corners(sole, self._half_size) for sole in soles]))
+            self._contacts = contacts
+        return self._support
+
+    def _lost(self, state: CentroidalState, omega: float) -> bool:
+        dcm = state.com[:2] + state.com_velocity[:2] / omega
+        return bool(np.hypot(*(dcm - self._pendulum.zmp)) > LOST_DISTANCE)
+
+
+def start_position(scenario: Scenario) -> Array:
+    """Where the mass rests at the start: over the middle of the feet, with the start noise, shape (2,) [m]."""
+    start = scenario.start
+    noise = np.random.default_rng(scenario.seed).uniform(-start.position_noise, start.position_noise, 2)
+    return np.array([start.x, start.y]) + noise
+
+
+def mean_force(pushes: tuple[PointPush, ...], time: float, period: float) -> Array:
+    """Mean of the pushes from an instant on for a period, so that their impulses are exact, shape (2,) [N]."""
+    total = np.zeros(2)
+    for push in pushes:
+        overlap = min(time + period, push.time + push.duration) - max(time, push.time)
+        if overlap > 0.0:
+            total += overlap / period * push.force
+    return total

@@ -1,0 +1,105 @@
+"""Checks of the walk that a scenario asks for: footsteps in reach and apart, times and heights that can be planned."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+from planner.constraints import reach_box
+from planner.footsteps import plan_footsteps
+from planner.frames import frame_rotation
+from planner.moves import BLOCK_STARTS
+from planner.parameters import PlannerParameters
+from planner.terrain import flat
+from planner.types import GRAVITY, Foot
+from scenarios.errors import Problem
+from scenarios.planner_setup import gait_parameters, square_stance
+from scenarios.robots import RobotFacts
+from scenarios.schema import Gait, Scenario
+from scenarios.timeline import gait_duration
+
+MOST_SAMPLES = 1_000_000
+"""Planner samples of a gait, which are laid out in memory before it starts."""
+
+FEWEST_SWING_SAMPLES = 4
+"""Planner samples of a single support: lift-off, apex, descent and touchdown."""
+
+STEEPEST_FALL = 0.8 * GRAVITY
+"""Downward CoM acceleration that a gait may ask for [m/s^2]."""
+
+_PERIOD = 4
+"""Footsteps after which a gait on flat ground only repeats itself: the first, one of each foot, the last."""
+
+
+def swing_too_short(scenario: Scenario) -> bool:
+    """Whether a single support leaves no time for a swing of the foot."""
+    return scenario.gait.single_support < (FEWEST_SWING_SAMPLES - 0.5) * scenario.planner.sample_time
+
+
+def walk_problems(scenario: Scenario) -> Iterator[Problem]:
+    """List what cannot be planned whatever the robot."""
+    gait, sample_time = scenario.gait, scenario.planner.sample_time
+    if scenario.planner.horizon <= BLOCK_STARTS[-1]:
+        what = f"planner.horizon {scenario.planner.horizon} is shorter than the planner's blocks of moves"
+        yield Problem(("planner", "horizon"), what, f"use at least {BLOCK_STARTS[-1] + 1}")
+    if gait_duration(gait) > MOST_SAMPLES * sample_time:
+        what = f"a gait of {gait_duration(gait):.6g} s"
+        yield Problem(
+            ("gait", "steps"), what, f"it may last {MOST_SAMPLES * sample_time:g} s; use fewer or faster steps"
+        )
+    if scenario.duration is not None and scenario.duration * scenario.rates.control < 1.0:
+        what = f"duration {scenario.duration} s is shorter than one control tick"
+        yield Problem(("duration",), what, f"use at least {1 / scenario.rates.control:g} s")
+    if not swing_too_short(scenario):
+        yield from _apexes(gait)
+
+
+def footstep_problems(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
+    """List footsteps out of reach of the planner, and feet that would touch each other."""
+    gait = scenario.gait
+    if gait.step_width < facts.foot_width:
+        what = f"gait.step_width {gait.step_width} m lets feet {facts.foot_width:g} m wide touch"
+        yield Problem(("gait", "step_width"), what, f"use more than {facts.foot_width:g} m")
+        return
+    found = (_footstep_problem(gait, facts, *step) for step in _displacements(scenario))
+    yield from [problem for problem in found if problem is not None][:1]
+
+
+def _displacements(scenario: Scenario) -> Iterator[tuple[int, Foot, float, float, float]]:
+    """Number and foot of footsteps, and their place and turn from the stance foot in its frame [m, m, rad]."""
+    gait = replace(gait_parameters(scenario), steps=min(scenario.gait.steps, _PERIOD))
+    footsteps = plan_footsteps(gait, square_stance(scenario), flat())
+    for row in range(2, footsteps.steps + 2):
+        x, y = footsteps.increment[row] @ frame_rotation(float(footsteps.yaw[row - 1]))
+        yield row - 1, footsteps.feet[row], float(x), float(y), float(footsteps.yaw[row] - footsteps.yaw[row - 1])
+
+
+def _footstep_problem(
+    gait: Gait, facts: RobotFacts, number: int, foot: Foot, ahead: float, left: float, turn: float
+) -> Problem | None:
+    low, high = reach_box(PlannerParameters(), 1.0)
+    beside = left if foot is Foot.LEFT else -left
+    if not low[0] - 1e-9 <= ahead <= high[0] + 1e-9:
+        what = f"footstep {number} would land {ahead:.3f} m ahead of its stance foot"
+        return Problem(
+            ("gait", "step_length"), what, f"it must be {low[0]:g} to {high[0]:g} m; change gait.step_length"
+        )
+    sideways = "lateral_step" if gait.lateral_step else "turn" if gait.turn else "step_width"
+    what = f"footstep {number} would land {beside:.3f} m beside its stance foot"
+    if not low[1] - 1e-9 <= beside <= high[1] + 1e-9:
+        return Problem(("gait", sideways), what, f"it must be {low[1]:g} to {high[1]:g} m; change gait.{sideways}")
+    swept = abs(facts.foot_length * math.sin(turn)) + abs(facts.foot_width * math.cos(turn))
+    apart = 0.5 * (facts.foot_width + swept)
+    if beside < apart:
+        return Problem(("gait", sideways), f"{what} and touch it", f"keep the feet {apart:.3f} m apart")
+    return None
+
+
+def _apexes(gait: Gait) -> Iterator[Problem]:
+    """A rise of A sin³ in a support phase of duration T falls with at most 3 A (π / T)² at its apex."""
+    for support in ("single", "double"):
+        duration, apex = getattr(gait, f"{support}_support"), getattr(gait, f"apex_{support}")
+        highest = STEEPEST_FALL / 3.0 * (duration / math.pi) ** 2
+        if apex > highest:
+            what = f"gait.apex_{support} {apex} m within {duration} s asks the CoM to fall faster than the feet allow"
+            right = f"use at most {highest:.2g} m, or a longer gait.{support}_support"
+            yield Problem(("gait", f"apex_{support}"), what, right)

@@ -1,0 +1,88 @@
+"""Writes what every walk has, whatever its fidelity: plan, footsteps, reference and timing."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.plan import WalkPlan
+from planner.sampling import PlanSample
+from planner.types import FeetState, Foot, Footstep, PlannedFootstep, SolverStatus
+from scenarios.log import LogWriter, channels
+from scenarios.log.channels import SUPPORT_VERTICES, Sizes
+
+Array = NDArray[np.float64]
+
+_NO_FOOTSTEP = np.full(4, np.nan)
+
+
+@dataclass(frozen=True, slots=True)
+class TickTiming:
+    """Wall-clock time of the parts of one control tick [s]."""
+
+    state: float
+    wbc_build: float
+    wbc_solve: float
+    planner: float
+    physics: float
+    log: float
+    tick: float
+
+
+class WalkRecorder:
+    """The channels of planner and clock."""
+
+    def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
+        self._reference = writer.channel(channels.reference(sizes))
+        self._plan = writer.channel(channels.plan(sizes))
+        self._footsteps = writer.channel(channels.footsteps(sizes))
+        self._footstep = writer.channel(channels.footstep(sizes))
+        self._timing = writer.channel(channels.timing(sizes))
+        self._support = np.zeros((SUPPORT_VERTICES, 2))
+
+    def plan(self, time_ns: int, plan: WalkPlan) -> None:
+        """A new plan with its horizon and footsteps."""
+        status = plan.status
+        self._plan.append(
+            time_ns, plan.com, plan.com_velocity, plan.zmp, plan.zmp_reference, plan.jerk, plan.omega,
+            status.solver, (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD,
+        )  # fmt: skip
+        ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
+        self._footsteps.append(
+            time_ns,
+            _pose(plan.footholds[Foot.LEFT]),
+            _pose(plan.footholds[Foot.RIGHT]),
+            [_NO_FOOTSTEP if step is None else _pose(step.footstep) for step in ahead],
+            [-1 if step is None else int(step.footstep.foot) for step in ahead],
+            [math.nan if step is None else step.touchdown_time for step in ahead],
+        )
+        vertices = plan.support_polygon
+        self._support[: len(vertices)] = vertices
+        self._support[len(vertices) :] = vertices[-1]
+
+    def touchdown(self, time_ns: int, planned: PlannedFootstep, feet: FeetState) -> None:
+        """A footstep taken: as last planned, and where the sole is."""
+        foot = planned.footstep.foot
+        actual = np.append(feet.position[foot], feet.yaw[foot])
+        self._footstep.append(time_ns, planned.step, int(foot), _pose(planned.footstep), actual)
+
+    def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
+        """The reference of a control tick and the gait's clock."""
+        phase = plan.phase
+        self._reference.append(
+            time_ns, sample.com, sample.com_velocity, sample.com_acceleration, sample.zmp, sample.dcm, sample.omega,
+            sample.zmp_reference, sample.swing[:3], sample.swing_velocity[:3],
+            int(phase.kind), -1 if phase.stance is None else int(phase.stance), phase.step,
+            phase.elapsed + sample.time - plan.time, phase.duration, self._support, len(plan.support_polygon),
+        )  # fmt: skip
+
+    def timing(self, time_ns: int, timing: TickTiming) -> None:
+        """Wall-clock times of the tick."""
+        t = timing
+        parts = (t.state, t.wbc_build, t.wbc_solve, t.planner, t.physics, t.log, t.tick)
+        self._timing.append(time_ns, *(1e6 * part for part in parts))
+
+
+def _pose(footstep: Footstep) -> Array:
+    return np.append(footstep.position, footstep.yaw)

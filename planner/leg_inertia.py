@@ -1,20 +1,23 @@
 """What the legs' own motion adds to the ZMP: the pendulum with two point masses at the soles.
 
 The paper's pendulum carries all mass in the CoM. A real leg weighs a sixth of the body, and swinging it turns angular
-momentum over at up to tens of N·m, which moves the ZMP by centimetres. With the mass μ m of each leg reduced to its sole
-r_k, the angular momentum about the CoM is L = Σ μ m (r_k - c) x (r_k' - c'), and the moment balance about the ZMP,
-(c - p) x m (c'' + g e_z) + L' = 0, gives per horizontal axis (with h = c_z - p_z, λ = (g + z'') / h, the other sole at rest)
+momentum over at up to tens of N·m, which moves the ZMP by centimetres. With the mass μ m of each leg reduced to its
+sole r_k, the angular momentum about the CoM is L = Σ μ m (r_k - c) x (r_k' - c'), and the moment balance about the ZMP,
+(c - p) x m (c'' + g e_z) + L' = 0, gives per horizontal axis (with h = c_z - p_z, λ = (g + z'') / h, the other sole at
+rest)
 
     p = c - (1 + 2 μ) c'' / λ + o,      o = (μ / λ) [ a + (r + ℓ - p_ref) a_z / h ],
 
-where r and a are position and acceleration of the swing sole, and ℓ, ahead of the sole, stands for the knee, which moves
-forward when the sole moves up. Terms in z'' times μ are left out, and the CoM stands over p_ref in the small last term. So the motion is again a pendulum c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the
-ZMP less the known offset o. (Multi-mass ZMP models: Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
+where r and a are position and acceleration of the swing sole, and ℓ, ahead of the sole, stands for the knee, which
+moves forward when the sole moves up. Terms in z'' times μ are left out, and the CoM stands over p_ref in the small last
+term. So the motion is again a pendulum c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP less the known
+offset o. (Multi-mass ZMP models: Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planner.footsteps import FootstepPlan
 from planner.gait import GaitParameters
@@ -40,7 +43,7 @@ class SwingShape:
         vertical: vertical acceleration of the swing sole on level ground, shape (K,) [m/s^2].
     """
 
-    row: Array
+    row: NDArray[np.intp]
     progress: Array
     acceleration: Array
     vertical: Array

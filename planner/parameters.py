@@ -32,8 +32,8 @@ class LegInertia:
     def __post_init__(self) -> None:
         if not (0.0 <= self.mass_ratio < 0.5 and math.isfinite(self.lever)):
             raise ValueError(
-                f"planner.leg has mass ratio {self.mass_ratio:g} and lever {self.lever:g} m, but the ratio must be within"
-                " 0 to 0.5 and the lever finite."
+                f"planner.leg has mass ratio {self.mass_ratio:g} and lever {self.lever:g} m, but the ratio must be"
+                " within 0 to 0.5 and the lever finite."
             )
 
 

@@ -56,8 +56,8 @@ class PlanSampler:
     """Evaluates a plan between its samples.
 
     The horizontal CoM is the exact cubic of the sample's jerk, its height the quintic through both samples' z, z', z'';
-    ω, λ, ZMP reference, ZMP offset and load are linear. Each interval's polynomials are prepared when it is entered. After the end of
-    the horizon the last sample is held.
+    ω, λ, ZMP reference, ZMP offset and load are linear. Each interval's polynomials are prepared when it is entered.
+    After the end of the horizon the last sample is held.
 
     Attributes:
         plan: the plan.

@@ -69,7 +69,7 @@ class SwingTrajectory:
         return result
 
     def _search(self, since: float) -> tuple[float, float, float]:
-        """Height [m], speed [m/s] and half the acceleration [m/s^2] of the search for ground, `since` the touchdown time."""
+        """Height [m], speed [m/s] and half the acceleration [m/s^2] of the search, `since` the touchdown time."""
         speed, bend = self.touchdown_speed, self.search_acceleration
         gaining = max(0.0, (self.search_speed - speed) / bend)
         height = float(self.target[2]) - speed * since - 0.5 * bend * min(since, gaining) ** 2

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import yaml
+from threadpoolctl import threadpool_limits
 
 from scenarios.constants import RECORD, RunConstants
 from scenarios.errors import LogError, ScenarioError, SetupError
@@ -65,7 +66,8 @@ def run_scenario(
     simulate = simulate or closed_loop(scenario.fidelity)
     robot = robot or describe(scenario)
     folder = _folder(out / f"{scenario.name}-{scenario.seed}")
-    with LogWriter(folder / LOG_NAME, _metadata(scenario, robot), _attachments(scenario, robot)) as writer:
+    one_thread = threadpool_limits(1)  # matrices of this size lose more in waiting than they gain in sharing
+    with one_thread, LogWriter(folder / LOG_NAME, _metadata(scenario, robot), _attachments(scenario, robot)) as writer:
         (folder / VERDICT_NAME).unlink(missing_ok=True)
         end = _watched(simulate, scenario, robot, writer, on_progress)
     verdict = judge(read(folder / LOG_NAME))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from wbc.balance import BalanceGains, SupportRegion, com_acceleration
 from wbc.cone import CONE_ROWS, wrench_cone
@@ -71,7 +72,7 @@ class WholeBodyController:
         sole: Sole,
         limits: JointLimits,
         posture: Array,
-        leg_joints: Array,
+        leg_joints: NDArray[np.bool_],
         control_period: float,
         parameters: WbcParameters,
     ) -> None:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from wbc.model import BodyFrames
 from wbc.types import Array
@@ -15,20 +16,20 @@ class LegMass:
 
     Attributes:
         ratio: μ, point mass at each sole over the total mass [-].
-        lever: distance by which the point mass seems further ahead when the sole moves up or down, because the knee then
-            moves forward or back [m].
+        lever: how much further ahead the point mass seems when the sole moves up or down, because the knee then moves
+            forward or back [m].
     """
 
     ratio: float
     lever: float
 
 
-def leg_mass(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: Array) -> LegMass:
+def leg_mass(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray[np.bool_]) -> LegMass:
     """Reduce the legs by the angular momentum about the CoM that a stepping sole brings with it.
 
-    One sole moves at 1 m/s forward, then upward, without turning, while the pelvis rests. Point masses μ m at both soles
-    r_k have the pitching momentum L = Σ μ m [(r_k - c)_z (r_k' - c')_x - (r_k - c)_x (r_k' - c')_z]: solved for μ in the
-    forward motion, and for the lever ahead of the sole in the upward one. Mean of both legs.
+    One sole moves at 1 m/s forward, then upward, without turning, while the pelvis rests. Point masses μ m at both
+    soles r_k have the pitching momentum L = Σ μ m [(r_k - c)_z (r_k' - c')_x - (r_k - c)_x (r_k' - c')_z]: solved for μ
+    in the forward motion, and for the lever ahead of the sole in the upward one. Mean of both legs.
 
     Args:
         model: the robot.
@@ -48,9 +49,9 @@ def leg_mass(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: Array) 
 
 
 def _step_momentum(
-    model: pin.Model, sole: str, q: Array, joints: Array, *, upward: bool
+    model: pin.Model, sole: str, q: Array, joints: NDArray[np.intp], *, upward: bool
 ) -> tuple[float, float, float, float]:
-    """Pitching momentum over mass [m^2/s] of one sole at 1 m/s, the CoM's forward speed [m/s], CoM height, sole ahead [m]."""
+    """Pitching momentum over mass [m^2/s] and CoM speed for one sole at 1 m/s; CoM over sole, sole ahead of CoM [m]."""
     data = model.createData()
     pin.computeJointJacobians(model, data, q)
     pin.updateFramePlacements(model, data)

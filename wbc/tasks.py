@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from wbc.model import RobotTerms
 from wbc.qp import QpData, QpLayout
@@ -79,7 +80,7 @@ class TaskStack:
         weights: TaskWeights,
         gains: TaskGains,
         posture: Array,
-        leg_joints: Array,
+        leg_joints: NDArray[np.bool_],
     ) -> None:
         """Prepare what never changes.
 
@@ -191,7 +192,7 @@ class TaskStack:
 def _angular(
     gains: tuple[float, float], R: Array, velocity: Array, desired: Array, turn: tuple[float, float]
 ) -> Vector:
-    """Angular acceleration, in the frame of R, towards ``desired`` turning about the vertical at (rate, acceleration)."""
+    """Angular acceleration, in the frame of R, towards ``desired`` turning at (rate, acceleration)."""
     stiffness, damping = gains
     ex, ey, ez = pin.log3(R.T @ desired).tolist()
     wx, wy, wz = velocity.tolist()

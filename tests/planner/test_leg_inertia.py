@@ -29,16 +29,16 @@ def plans(stand, leg, until=3.0):
 def zmp_of_three_masses(plan, leg):
     """ZMP at the plan's instant of a body with point masses at both soles, by the moment balance of its definition."""
     sample = PlanSampler(plan).sample(plan.time)
-    c, v, a = sample.com, sample.com_velocity, sample.com_acceleration
+    c, a = sample.com, sample.com_acceleration
     moment = np.zeros(3)
     for foot in Foot:
-        r, rv, ra = plan.footholds[foot].position, np.zeros(3), np.zeros(3)
+        r, ra = plan.footholds[foot].position, np.zeros(3)
         if sample.swing_foot is foot:
-            r, rv, ra = sample.swing[:3], sample.swing_velocity[:3], sample.swing_acceleration[:3]
+            r, ra = sample.swing[:3], sample.swing_acceleration[:3]
         lever = np.array([leg.lever if sample.swing_foot is foot else 0.0, 0.0, 0.0])
         # d/dt of (r + lever - c) x (r' - c'), the lever acting on the vertical motion alone.
         moment += leg.mass_ratio * (np.cross(r - c, ra - a) + np.cross(lever, [0.0, 0.0, ra[2]]))
-    force = a + [0.0, 0.0, GRAVITY]
+    force = a + np.array([0.0, 0.0, GRAVITY])
     x = c[0] - (c[2] * force[0] + moment[1]) / force[2]
     y = c[1] - (c[2] * force[1] - moment[0]) / force[2]
     return np.array([x, y])

@@ -23,7 +23,7 @@ def assert_fell(verdict, log, since):
     """The verdict says so, the log goes on for a while, and the robot's CoM is or goes down in it."""
     assert not verdict.passed
     assert verdict.metrics["fell"] is True
-    assert "fell is true, must be false" in verdict.reasons
+    assert f"fell is true at {verdict.metrics['fall_time']:.3f} s, must be false" in verdict.reasons
     assert since < verdict.metrics["fall_time"] < since + 4.0
     assert log.metadata["end"]["kind"] == "fall"
     assert float(log.metadata["end"]["time"]) == pytest.approx(verdict.metrics["fall_time"], abs=1e-9)

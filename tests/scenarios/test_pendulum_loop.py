@@ -67,7 +67,7 @@ def test_a_strong_push_fells_it_when_it_comes_and_a_weak_one_does_not(walk):
     felled = walk(push.format(2000)).verdict
     assert not felled.passed
     assert 1.3 < felled.metrics["fall_time"] < 2.5
-    assert "fell is true, must be false" in felled.reasons
+    assert felled.reasons[0] == f"fell is true at {felled.metrics['fall_time']:.3f} s, must be false"
 
 
 def test_a_frozen_plan_fells_it(walk):

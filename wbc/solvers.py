@@ -58,6 +58,8 @@ class ProxQp:
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
+        if not qp.is_finite():
+            return None
         n, eq = qp.g.shape[0], EQUALITY_ROWS
         split = n + eq
         data = (
@@ -103,6 +105,8 @@ class Daqp:
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
+        if not qp.is_finite():
+            return None
         n, total = qp.g.shape[0], qp.bounds_lower.shape[0]
         if self._sense.shape[0] != total:
             self._sense = np.zeros(total, dtype=np.intc)
@@ -122,6 +126,8 @@ class Quadprog:
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
+        if not qp.is_finite():
+            return None
         n, eq = qp.g.shape[0], EQUALITY_ROWS
         rows = np.vstack([np.eye(n), qp.A])
         upper, lower = qp.bounds_upper < UNBOUNDED, qp.bounds_lower > -UNBOUNDED

@@ -151,7 +151,7 @@ class WholeBodyController:
 
     def _assemble(self, state: RobotState, reference: WbcReference, contacts: ContactState) -> None:
         terms = self.terms
-        if contacts.active != self._region_contacts:
+        if contacts.active != self._region_contacts and np.isfinite(terms.sole_position).all():
             self._region.rebuild(terms.sole_position, terms.sole_rotation, contacts.active)
             self._region_contacts = contacts.active
         acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)

@@ -122,8 +122,8 @@ def problems(robot: Robot) -> list[QpData]:
     far = standing_reference(com=np.array([0.3, 0.2, 1.3])), swing_reference(swing_position=np.array([2.0, -0.5, 0.6]))
     for reference in (standing_reference(), swing_reference(), *far):
         controller = robot.controller()
-        for speed in (0.0, 0.3, 1.0):
-            controller.observe(robot.moved(rng, 0.03, speed))
+        for speed in (0.0, 0.1, 0.3):
+            controller.observe(robot.moved(rng, 0.003, speed))
             controller.update(reference, FootSensing((490.0, 490.0)))
             found.append(controller.qp.copy())
     return found

@@ -5,8 +5,8 @@ from wbc.limits import AccelerationBounds, JointLimits
 
 pytestmark = pytest.mark.unit
 
-OVERSHOOT = 3e-3
-"""The bounds are a spring with a damping ratio of 1/√2: what arrives at full speed passes the limit by so much [rad]."""
+OVERSHOOT = 0.03
+"""The bounds are a spring with a damping ratio of 1/√2: what arrives at full speed passes the limit by less than this [rad]."""
 
 
 def limits(**changes):

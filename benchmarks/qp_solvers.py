@@ -84,7 +84,7 @@ def solve_all(solver: QpSolver, problems: list[QpData]) -> Outcome:
 
 
 def kkt_residual(qp: QpData, x: np.ndarray) -> float:
-    """What no admissible multipliers of the active rows balance, relative to |g|, or the violation if that is larger."""
+    """Larger of the violation and what no admissible multipliers of the active rows balance, relative to |g|."""
     n = x.size
     values, rows = np.concatenate([x, qp.A @ x]), np.vstack([np.eye(n), qp.A])
     equal = np.zeros(values.size, dtype=bool)

@@ -182,7 +182,7 @@ class WholeBodyController:
         np.maximum(self._torque, -self._limits.torque, out=self._torque)
 
     def _hold(self, v: Array) -> None:
-        """Fade the last torque out within about 50 ms while damping the joints, as far as their velocities are known."""
+        """Fade the last torque out within about 50 ms while damping the joints whose velocity is known."""
         rate = np.where(np.isfinite(v[6:]), v[6:], 0.0)
         self._torque += self._period / 0.05 * (-0.02 * self._limits.torque * rate - self._torque)
         self._clip()

@@ -102,6 +102,8 @@ def test_a_large_error_leaves_the_zmp_on_the_border(references):
 
 def test_the_height_law_is_a_spring_and_a_damper(moving):
     gains = BalanceGains(height_stiffness=60.0, height_damping=15.0)
-    com, velocity = moving.com + [0, 0, 0.01], moving.com_velocity + [0, 0, -0.02]
+    com, velocity = moving.com.copy(), moving.com_velocity.copy()
+    com[2] += 0.01
+    velocity[2] -= 0.02
     found = com_acceleration(moving, com, velocity, region()[0], gains)
     assert found[2] == pytest.approx(moving.com_acceleration[2] - 60 * 0.01 + 15 * 0.02)

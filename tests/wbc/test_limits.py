@@ -6,7 +6,7 @@ from wbc.limits import AccelerationBounds, JointLimits
 pytestmark = pytest.mark.unit
 
 OVERSHOOT = 0.03
-"""The bounds are a spring with a damping ratio of 1/√2: what arrives at full speed passes the limit by less than this [rad]."""
+"""The bounds are a spring with a damping ratio of 1/√2: a fast joint passes its limit by less than this [rad]."""
 
 
 def limits(**changes):

@@ -49,9 +49,7 @@ def test_velocities_and_bias_accelerations_are_time_derivatives(robot, state):
         np.testing.assert_allclose(now.sole_bias[k, :3], acceleration, atol=1e-5)
         rate = (ahead.sole_velocity[k, 3:] - behind.sole_velocity[k, 3:]) / (2 * h)
         np.testing.assert_allclose(now.sole_bias[k, 3:], rate, atol=1e-5)
-    np.testing.assert_allclose(
-        now.torso_bias, (ahead.torso_velocity - behind.torso_velocity) / (2 * h), atol=1e-5
-    )
+    np.testing.assert_allclose(now.torso_bias, (ahead.torso_velocity - behind.torso_velocity) / (2 * h), atol=1e-5)
     np.testing.assert_allclose(now.com_velocity, (ahead.com - behind.com) / (2 * h), atol=1e-7)
 
 

@@ -7,7 +7,7 @@ pytestmark = pytest.mark.unit
 
 
 def sole_wrench(points, forces):
-    """Wrench at the sole centre of forces, shape (n, 3), at points of the sole, shape (n, 3), both in the sole frame."""
+    """Wrench at the sole centre of forces (n, 3) at points of the sole (n, 3), both in the sole frame."""
     return np.concatenate([forces.sum(0), np.cross(points, forces).sum(0)])
 
 

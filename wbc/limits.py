@@ -31,7 +31,9 @@ class AccelerationBounds:
     """Bounds on q̈ that keep position and velocity of the joints inside their limits.
 
     From q + T v + T² q̈ / 2 >= q_min and its mirror image; the velocity bound from v + T_v q̈. Where the two conflict the
-    position bound wins, so that lower <= upper always. Near-straight knees hyperextend without this.
+    position bound wins, so that lower <= upper always. Near-straight knees hyperextend without this. A joint that rides
+    on its bound moves like a spring with a damping ratio of 1/√2; one that arrives fast passes its limit, by 0.025 rad
+    at 6 rad/s.
     """
 
     def __init__(self, limits: JointLimits) -> None:

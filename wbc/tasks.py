@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
 from wbc.model import RobotTerms
 from wbc.qp import QpData, QpLayout
@@ -32,10 +31,10 @@ class TaskWeights:
     """
 
     com_horizontal: float = 10.0
-    com_vertical: float = 2.5
+    com_vertical: float = 5.0
     angular_momentum: float = 2.0
-    orientation: float = 1.0
-    swing: float = 10.0
+    orientation: float = 4.0
+    swing: float = 50.0
     upper_posture: float = 0.5
     leg_posture: float = 1e-3
     acceleration: float = 1e-4
@@ -54,9 +53,9 @@ class TaskGains:
         angular_momentum: decay of the angular momentum [1/s].
     """
 
-    orientation: tuple[float, float] = (40.0, 13.0)
+    orientation: tuple[float, float] = (100.0, 20.0)
     swing: tuple[float, float] = (400.0, 40.0)
-    posture: tuple[float, float] = (20.0, 9.0)
+    posture: tuple[float, float] = (50.0, 10.0)
     angular_momentum: float = 3.0
 
 
@@ -80,7 +79,7 @@ class TaskStack:
         weights: TaskWeights,
         gains: TaskGains,
         posture: Array,
-        leg_joints: NDArray[np.bool_],
+        leg_joints: Array,
     ) -> None:
         """Prepare what never changes.
 
@@ -192,7 +191,7 @@ class TaskStack:
 def _angular(
     gains: tuple[float, float], R: Array, velocity: Array, desired: Array, turn: tuple[float, float]
 ) -> Vector:
-    """Angular acceleration, in the frame of R, towards ``desired`` turning at (rate, acceleration)."""
+    """Angular acceleration, in the frame of R, towards ``desired``, which turns upright at (rate, acceleration)."""
     stiffness, damping = gains
     ex, ey, ez = pin.log3(R.T @ desired).tolist()
     wx, wy, wz = velocity.tolist()

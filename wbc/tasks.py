@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from wbc.model import RobotTerms
 from wbc.qp import QpData, QpLayout
@@ -31,10 +32,10 @@ class TaskWeights:
     """
 
     com_horizontal: float = 10.0
-    com_vertical: float = 5.0
+    com_vertical: float = 2.5
     angular_momentum: float = 2.0
-    orientation: float = 4.0
-    swing: float = 50.0
+    orientation: float = 1.0
+    swing: float = 10.0
     upper_posture: float = 0.5
     leg_posture: float = 1e-3
     acceleration: float = 1e-4
@@ -53,9 +54,9 @@ class TaskGains:
         angular_momentum: decay of the angular momentum [1/s].
     """
 
-    orientation: tuple[float, float] = (100.0, 20.0)
+    orientation: tuple[float, float] = (40.0, 13.0)
     swing: tuple[float, float] = (400.0, 40.0)
-    posture: tuple[float, float] = (50.0, 10.0)
+    posture: tuple[float, float] = (20.0, 9.0)
     angular_momentum: float = 3.0
 
 
@@ -79,7 +80,7 @@ class TaskStack:
         weights: TaskWeights,
         gains: TaskGains,
         posture: Array,
-        leg_joints: Array,
+        leg_joints: NDArray[np.bool_],
     ) -> None:
         """Prepare what never changes.
 

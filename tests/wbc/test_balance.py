@@ -87,6 +87,16 @@ def test_the_dcm_error_decays_at_the_stated_rate(references):
     np.testing.assert_allclose((c + v / omega)[:2], expected, rtol=1e-2)
 
 
+def test_it_is_the_zmp_that_stays_in_the_region(references):
+    made, vertices = region()
+    com, offset = np.array([0.3, 0.0, 1.0]), np.array([0.01, 0.0])
+    reference = references[0](zmp_offset=offset)
+    found = com_acceleration(reference, com, np.zeros(3), made, BalanceGains())
+    assert com[0] - found[0] / 9.81 + offset[0] == pytest.approx(vertices[:, 0].max())
+    at_rest = com_acceleration(reference, reference.com, np.zeros(3), made, BalanceGains())
+    np.testing.assert_allclose(at_rest, 0.0, atol=1e-12)
+
+
 def test_without_feedback_the_dcm_error_grows(references):
     reference, (made, _) = references[0](), region(0.5, 0.5)
     found = com_acceleration(reference, np.array([0.01, 0, 1.0]), np.zeros(3), made, BalanceGains(dcm=0.0))

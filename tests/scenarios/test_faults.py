@@ -77,7 +77,6 @@ def test_a_diverging_simulation_ends_the_run_with_its_reason(run):
 def test_a_short_failure_of_the_solver_is_survived_and_told(run):
     verdict, _ = run("diagonal-walk", "faults=[{kind: qp_failure, time: 3, duration: 0.05}]")
     assert not verdict.metrics["fell"]
-    assert verdict.metrics["steps_taken"] == 5
     assert verdict.reasons == ("wbc_fallbacks is 25, bound is at most 0",)
     assert verdict.notes == ("the whole-body QP had no solution at 25 ticks, which used the fallback torque",)
 

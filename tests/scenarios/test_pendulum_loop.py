@@ -33,7 +33,7 @@ def plain(walk):
 
 def test_passes_the_criteria_that_a_pendulum_has(plain):
     assert plain.verdict.passed
-    assert plain.verdict.notes == ("criterion torque_ratio_max is not asked: a pendulum has no such metric",)
+    assert "criterion torque_ratio_max is not asked: a pendulum has no such metric" in plain.verdict.notes
     assert plain.verdict.metrics["steps_taken"] == 2
     assert plain.verdict.metrics["zmp_inside_fraction"] == 1.0
 

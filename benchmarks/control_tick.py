@@ -35,11 +35,10 @@ def print_parts(scenario: str, overrides: list[str], folder: Path) -> None:
     walk = BareWalk(scenario, tuple(overrides))
     count = sum(1 for _ in walk.ticks(folder / "bare.mcap"))
     print(f"{'part':<20} {'median us':>9} {'p90 us':>9} {'mean per tick':>13}")
-    for name, seconds in walk.laps.parts.items():
+    for name, seconds in walk.laps.items():
         print(row(name, np.array(seconds), count / len(seconds)))
-    total = sum(sum(seconds) for seconds in walk.laps.parts.values()) / count
-    rate = walk.scenario.rates.control
-    print(f"{'sum':<20} {'':>9} {'':>9} {1e6 * total:>13.1f}   of {1e6 / rate:.0f} at {rate} Hz")
+    total = sum(sum(seconds) for seconds in walk.laps.values()) / count
+    print(f"{'sum':<20} {'':>9} {'':>9} {1e6 * total:>13.1f}   of {1e6 / walk.rate:.0f} at {walk.rate} Hz")
 
 
 def print_run(scenario: str, overrides: list[str], folder: Path) -> None:

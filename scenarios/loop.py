@@ -48,20 +48,23 @@ def simulate(scenario: Scenario, robot: RobotDescription, writer: LogWriter, on_
 class ClosedLoop:
     """World, planner, controller and recorders of one run.
 
+    Attributes:
+        rig: world, controller and planner, to be looked at between ticks.
+
     Raises:
         ValueError: robot and gait do not fit together.
     """
 
     def __init__(self, scenario: Scenario, robot: RobotDescription, writer: LogWriter) -> None:
         rates = scenario.rates
-        self._rig: Rig = assemble(scenario, robot)
-        layout, nq = self._rig.controller.layout, len(robot.joint_names) + 7
+        self.rig: Rig = assemble(scenario, robot)
+        layout, nq = self.rig.controller.layout, len(robot.joint_names) + 7
         sizes = Sizes(nj=layout.joints, nq=nq, nv=layout.nv, horizon=scenario.planner.horizon)
-        writer.attach(AttachedFile(WORLD_FILE, "application/xml", self._rig.world.mjcf().encode()))
+        writer.attach(AttachedFile(WORLD_FILE, "application/xml", self.rig.world.mjcf().encode()))
         self._recorder = Recorder(writer, sizes, robot.torque_limit)
         self._walk_recorder = WalkRecorder(writer, sizes)
         self._faults = FaultSchedule(scenario.faults, rates.control)
-        self._planning = Planning(self._rig.planner, self._walk_recorder, self._faults, rates)
+        self._planning = Planning(self.rig.planner, self._walk_recorder, self._faults, rates)
         self._rate = rates.control
         self._steps = rates.physics // rates.control
         self._fallen_height = FALLEN_HEIGHT * scenario.gait.com_height
@@ -82,7 +85,7 @@ class ClosedLoop:
         watch = Watch.start()
         begin = watch.last
         now, now_ns = tick / self._rate, tick * 1_000_000_000 // self._rate
-        world, controller, recorder, planning = self._rig.world, self._rig.controller, self._recorder, self._planning
+        world, controller, recorder, planning = self.rig.world, self.rig.controller, self._recorder, self._planning
         measurement = world.measure()
         state = self._sense(measurement, tick)
         terms = controller.observe(state)
@@ -125,7 +128,7 @@ class ClosedLoop:
 
     def _advance(self, torque: NDArray[np.float64]) -> None:
         try:
-            self._rig.world.advance(torque, self._steps)
+            self.rig.world.advance(torque, self._steps)
         except SimulationDiverged as fault:
             raise RunFault(str(fault)) from None
 

@@ -24,7 +24,7 @@ _STRETCHES = 150
 
 def draw(area: Area, view: LogView, background: Background) -> None:
     """Draw iterations, what went wrong and when, and the time of each part."""
-    iterations, events, timing = axes = time_axes(area, view, TITLE, (0.7, 0.7, 1.7))
+    iterations, events, timing = axes = time_axes(area, view, TITLE, (0.7, 0.9, 1.6))
     background.shade(axes)
     iterations.set_ylabel("iterations [-]")
     timing.set_ylabel("time per tick [µs]")
@@ -58,7 +58,7 @@ def _events(axes: Axes, view: LogView) -> None:
             axes.plot(times, np.full(len(times), row), "|", color=VERMILLION, markersize=7)
         except MissingError:
             names.append(f"{label}: not logged")
-    axes.set_yticks(range(len(_EVENTS)), names)
+    axes.set_yticks(range(len(_EVENTS)), names, fontsize=6.5)
     axes.axhspan(-0.5, len(_EVENTS) - 0.5, facecolor="none", edgecolor=GREY, linewidth=0.4)
 
 

@@ -99,9 +99,12 @@ def _footprints(axes: Axes, view: LogView) -> list[Artist]:
 
 
 def _first_feet(view: LogView) -> list[tuple[int, Array, str]]:
+    """Soles on the ground when the window begins; a foot in the air leaves no print."""
     feet = []
     for foot, name in enumerate(FOOT_NAMES):
         try:
+            if not view.field("/contact", "felt", 2)[0, foot]:
+                continue
             pose = view.field("/truth", f"{name}_sole", 7)[0]
         except MissingError:
             continue

@@ -1,12 +1,12 @@
 """A stretch of a log as figures see it: whatever cannot be shown is named, never a surprise."""
 
-from functools import cached_property
+import json
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.constants import RunConstants
+from scenarios.constants import RECORD
 from scenarios.errors import LogError
 from scenarios.log import ChannelData, Log
 
@@ -53,17 +53,23 @@ class LogView:
             window = _window(start, end)
             raise LogError(f"{log.path}: holds nothing {window}; choose --from and --to within {first:g} to {last:g} s")
 
-    @cached_property
-    def constants(self) -> RunConstants:
-        """Constants of the run.
+    def constant(self, name: str) -> Any:
+        """A constant of the run by its name in `RunConstants`; read one by one, for logs of other versions.
 
         Raises:
-            MissingError: the log does not carry them.
+            MissingError: the log does not carry it.
         """
         try:
-            return RunConstants.from_metadata(self.log.metadata, str(self.log.path))
-        except LogError:
-            raise MissingError("the run's constants") from None
+            return json.loads(self.log.metadata[RECORD][name])
+        except (KeyError, ValueError, RecursionError):
+            raise MissingError(f"{name} of the {RECORD}") from None
+
+    def number(self, name: str) -> float:
+        """A constant that is a positive number; errors as of `constant`."""
+        value = self.constant(name)
+        if not isinstance(value, int | float) or not 0.0 < value < _GREATEST:
+            raise MissingError(f"{name} of the {RECORD}")
+        return float(value)
 
     def time(self, topic: str) -> Array:
         """Times of a topic's messages in the window, shape (n,) [s].

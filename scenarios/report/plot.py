@@ -63,8 +63,8 @@ def _header(view: LogView) -> str:
     """Two lines: which run and its verdict; the stretch of time and what made it."""
     log = view.log
     try:
-        run = view.constants
-        name = f"{run.scenario}, seed {run.seed}, fidelity {run.fidelity}"
+        scenario, seed, fidelity = (view.constant(name) for name in ("scenario", "seed", "fidelity"))
+        name = f"{scenario}, seed {seed}, fidelity {fidelity}"
     except MissingError:
         name = log.path.name
     versions = log.metadata.get("versions", {})

@@ -1,6 +1,7 @@
 """Figures of logs: what they are drawn from is right, and whatever is missing is said."""
 
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -74,7 +75,9 @@ def test_each_figure_alone(pendulum, name):
 
 def test_a_page_lies_beside_its_log_by_default(pendulum):
     start = time.perf_counter()
-    drawn = plot(pendulum)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        drawn = plot(pendulum)
     assert drawn.path == pendulum.with_name("figures.png")
     assert drawn.notes == ()
     assert time.perf_counter() - start < 10.0
@@ -139,6 +142,9 @@ def test_a_strip_of_a_walk_gets_a_row_of_its_own(pendulum, tmp_path, robot, moti
     assert not is_wide(LogView(read(pendulum)))
     long = run_scenario(two_steps, tmp_path, None, motion(speed=2.0, duration=2.0), robot).log
     assert is_wide(LogView(read(long)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # matplotlib warns where figures do not fit their row
+        plot(long, tmp_path / "wide.png")
 
 
 def test_absurd_values_are_gaps(pendulum, tmp_path, robot, motion, two_steps):
@@ -180,7 +186,20 @@ def test_files_that_cannot_be_written(pendulum, tmp_path, name):
         plot(pendulum, tmp_path / name, "height")
 
 
-def test_a_log_without_messages_or_constants(tmp_path, body):
+def test_constants_of_another_version_are_read_one_by_one(body):
+    log = read(body)
+    log.metadata["run"] = {"mass": "100", "foot_length": "0", "seed": "{", "joint_names": "[1]", "torque_limit": "7"}
+    view = LogView(log)
+    assert view.number("mass") == 100.0
+    for name in ("foot_length", "foot_width", "seed"):
+        with pytest.raises(MissingError, match=f"{name} of the run"):
+            view.number(name)
+    words = texts(page(view, "header"))
+    assert "weight 981 N" in words
+    assert words.count("not in this log: a torque limit for each joint") == 3
+
+
+def test_a_log_without_messages(tmp_path):
     with LogWriter(tmp_path / "empty.mcap", {}):
         pass
     with pytest.raises(LogError, match="holds no messages to draw"):

@@ -51,7 +51,7 @@ def _swing_reference(axes: Axes, view: LogView) -> None:
 
 def _weight(axes: Axes, view: LogView) -> None:
     try:
-        weight = view.constants.mass * GRAVITY
+        weight = view.number("mass") * GRAVITY
     except MissingError:
         return
     axes.axhline(weight, color=GREY, linewidth=0.8, linestyle="--", label=f"weight {weight:.0f} N")

@@ -58,10 +58,11 @@ _COMPACT = (
     Row(3.3, ("solver",)),
 )
 _WIDE = (
-    Row(5.1, ("balance",)),
-    Row(2.7, ("top-view",)),
-    Row(3.6, ("height", "feet")),
-    Row(4.5, ("torques", "solver")),
+    Row(4.5, ("balance",)),
+    Row(2.0, ("top-view",)),
+    Row(3.1, ("height", "feet")),
+    Row(3.1, ("torques",)),
+    Row(3.1, ("solver",)),
 )
 
 

@@ -88,7 +88,7 @@ def _timing(axes: Axes, view: LogView) -> None:
         if part == "tick":
             axes.plot(middle, greatest, ".", color=GREY, markersize=2.5, label="tick: greatest of each stretch")
     try:
-        period = 1e6 / view.constants.control_rate
-    except (MissingError, ZeroDivisionError):
+        period = 1e6 / view.number("control_rate")
+    except MissingError:
         return
     axes.axhline(period, color=BLACK, linestyle="--", linewidth=0.9, label=f"control period {period:.0f} µs")

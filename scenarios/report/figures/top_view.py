@@ -81,7 +81,7 @@ def _supports(axes: Axes, view: LogView) -> list[Artist]:
 def _footprints(axes: Axes, view: LogView) -> list[Artist]:
     """Where the soles stood at the window's begin and landed since, and where they were last planned to land."""
     try:
-        length, width = view.constants.foot_length, view.constants.foot_width
+        length, width = view.number("foot_length"), view.number("foot_width")
     except MissingError:
         return []
     entries: list[Artist] = []

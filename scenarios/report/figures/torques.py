@@ -51,12 +51,13 @@ def groups(names: tuple[str, ...]) -> dict[str, dict[str, list[int]]]:
 
 
 def _percent(view: LogView) -> tuple[tuple[str, ...], NDArray[np.float64]]:
-    names, limit = view.constants.joint_names, np.array(view.constants.torque_limit)
     torque = view.field("/torque", "command", -1)
-    if not len(names) == len(limit) == torque.shape[1]:
+    names, limit = (view.constant(name) for name in ("joint_names", "torque_limit"))
+    sound = isinstance(names, list) and isinstance(limit, list) and len(names) == len(limit) == torque.shape[1]
+    if not sound or not all(isinstance(value, int | float) for value in limit):
         raise MissingError("a torque limit for each joint")
     with np.errstate(divide="ignore", invalid="ignore"):
-        return names, 100.0 * torque / limit
+        return tuple(map(str, names)), 100.0 * torque / np.array(limit, float)
 
 
 def _group(

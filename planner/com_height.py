@@ -13,6 +13,9 @@ from planner.types import GRAVITY, Array, PhaseKind
 _FALL_LIMIT = 0.8
 """Downward CoM acceleration that a plan may ask for, as a share of gravity: beyond it the feet hardly press [-]."""
 
+_LEAST_HEIGHT = 0.1
+"""Height over the ZMP that the pendulum never goes below [m]."""
+
 
 @dataclass(frozen=True, slots=True)
 class HeightShape:
@@ -101,7 +104,8 @@ def preview_height(
 ) -> HeightPreview:
     """CoM height and pendulum stiffness of a window.
 
-    λ counts the height above the ZMP, z - p_z; the paper's equation leaves p_z out, which is wrong on stairs.
+    λ counts the height above the ZMP, z - p_z; the paper's equation leaves p_z out, which is wrong on stairs. Measured
+    footholds of a falling robot may lie anywhere: λ stays finite and positive.
 
     Args:
         shape: height of the walk.
@@ -115,7 +119,8 @@ def preview_height(
     step = np.append(np.diff(support_height), 0.0)[index]
     height = shape.bump[:, window] + shape.rise[:, window] * step
     height[0] += support_height[index]
-    return HeightPreview(height, (GRAVITY + height[2]) / (height[0] - zmp_height))
+    pressing = np.maximum(GRAVITY + height[2], (1.0 - _FALL_LIMIT) * GRAVITY)
+    return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT))
 
 
 def check_height(shape: HeightShape, schedule: Schedule, support_height: Array) -> None:

@@ -94,12 +94,12 @@ class PlannerParameters:
     reach_width: tuple[float, float] = (0.08, 0.4)
     swing_speed: float = 3.0
     freeze_time: float = 0.08
-    late_touchdown: float = 0.2
+    late_touchdown: float = 0.3
     apex_share: float = 0.5
     touchdown_lead: float = 0.03
     touchdown_speed: float = 0.005
-    search_speed: float = 0.1
-    search_acceleration: float = 0.5
+    search_speed: float = 0.15
+    search_acceleration: float = 1.0
     solvers: tuple[str, str] = ("daqp", "quadprog")
 
     def __post_init__(self) -> None:

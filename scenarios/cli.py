@@ -61,7 +61,7 @@ def run(
     if as_json:
         typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
     else:
-        print_result(result.verdict, result.log)
+        print_result(loaded.name, result.verdict, result.log)
     if result.interrupted:
         typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
         raise typer.Exit(INTERRUPTED)

@@ -10,7 +10,10 @@ from rich.console import Console
 from rich.progress import BarColumn, TextColumn
 from rich.progress import Progress as RichProgress
 from rich.table import Table
+from rich.text import Text
 
+from scenarios import display
+from scenarios.display import bound_text, value_text
 from scenarios.inspection import Inspection
 from scenarios.progress import Progress
 from scenarios.verdict import Verdict
@@ -29,14 +32,6 @@ FIRST_METRICS = (
 )
 """The ten metrics that a walking engineer asks for first."""
 
-_UNITS = {
-    **dict.fromkeys(("zmp_error_rms", "com_error_rms", "dcm_error_rms", "footstep_error_max", "foot_slip_max"), "m"),
-    **dict.fromkeys(("com_height_range", "stair_edge_margin_min", "estimation_error_rms"), "m"),
-    **dict.fromkeys(("fall_time", "duration", "standing_time_final", "planner_time", "wbc_time"), "s"),
-    **dict.fromkeys(("joint_limit_margin_min", "knee_angle_mean"), "rad"),
-    "speed_mean": "m/s",
-    "log_bytes": "B",
-}
 _REFRESH = 0.1
 
 
@@ -56,7 +51,8 @@ class ProgressLine:
         if self._bar.disable or now < self._due:
             return
         self._due = now + _REFRESH
-        state = f"{progress.time:6.2f} of {progress.duration:.2f} s  {progress.phase}  x{progress.real_time_factor:.1f}"
+        speed = f"{progress.real_time_factor:.1f} x real time"
+        state = f"{progress.time:6.2f} of {progress.duration:.2f} s  {progress.phase}  {speed}"
         self._bar.update(self._task, completed=progress.time / max(progress.duration, 1e-9), state=state)
 
     def __enter__(self) -> Self:
@@ -69,12 +65,12 @@ class ProgressLine:
         self._bar.stop()
 
 
-def print_result(verdict: Verdict, log: Path) -> None:
+def print_result(name: str, verdict: Verdict, log: Path) -> None:
     """Print verdict, reasons, the first metrics and the path of the log."""
     console = plain_console()
-    _print_verdict(console, verdict)
-    console.print(_metric_table(verdict.metrics, FIRST_METRICS))
-    console.print(str(log))
+    _print_verdict(console, name, verdict)
+    console.print(_metric_table(verdict, FIRST_METRICS))
+    console.print(f"log: {log}")
 
 
 def print_inspection(found: Inspection) -> None:
@@ -82,9 +78,9 @@ def print_inspection(found: Inspection) -> None:
     console = plain_console()
     console.print(f"{found.log}: {found.start:.3f} s to {found.end:.3f} s")
     for line in found.health:
-        console.print(f"health: {line}")
-    _print_verdict(console, found.verdict)
-    console.print(_metric_table(found.verdict.metrics, tuple(found.verdict.metrics)))
+        console.print(f"health: {line}", style="yellow")
+    _print_verdict(console, found.scenario, found.verdict)
+    console.print(_metric_table(found.verdict, tuple(found.verdict.metrics)))
     topics = plain_table("topic", "messages", "rate [Hz]")
     for topic in found.topics:
         topics.add_row(topic.topic, str(topic.messages), f"{topic.rate:.1f}")
@@ -101,19 +97,26 @@ def print_topic(topic: str, fields: Mapping[str, Mapping[str, Any]]) -> None:
     plain_console().print(table)
 
 
-def _print_verdict(console: Console, verdict: Verdict) -> None:
-    console.print("verdict: pass" if verdict.passed else "verdict: fail")
+def _print_verdict(console: Console, name: str, verdict: Verdict) -> None:
+    console.print(Text(f"{name}: "), end="")
+    console.print(
+        f"verdict {'pass' if verdict.passed else 'fail'}", style="bold green" if verdict.passed else "bold red"
+    )
     for reason in verdict.reasons:
-        console.print(f"  {reason}")
+        console.print(f"  - {reason}")
+    for note in verdict.notes:
+        console.print(f"  note: {note}", style="yellow")
 
 
-def _metric_table(metrics: Mapping[str, Any], names: tuple[str, ...]) -> Table:
-    table = plain_table("metric", "value", "unit")
+def _metric_table(verdict: Verdict, names: tuple[str, ...]) -> Table:
+    table = plain_table("metric", "value", "unit", "criterion")
+    missed = {reason.partition(" ")[0].partition("[")[0] for reason in verdict.reasons}
     for name in names:
-        value = number(metrics.get(name))
+        value, unit = value_text(name, verdict.metrics.get(name)), display.unit(name)
         if name == "steps_taken":
-            value = f"{value} of {number(metrics.get('steps_planned'))}"
-        table.add_row(name, value, _UNITS.get(name, ""))
+            value = f"{value} of {value_text(name, verdict.metrics.get('steps_planned'))}"
+        bounds = [bound_text(name, bound) for key, bound in verdict.criteria.items() if key.partition(".")[0] == name]
+        table.add_row(name, value, unit, ", ".join(bounds), style="red" if name in missed else None)
     return table
 
 

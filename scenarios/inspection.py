@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.log import Log
-from scenarios.verdict import Verdict, judge
+from scenarios.verdict import Verdict, judge, scenario_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +30,7 @@ class Inspection:
 
     Attributes:
         log: its path.
+        scenario: name of the scenario that was run.
         verdict: its verdict with all metrics.
         truncated: whether the end of the file is missing.
         start: first time [s].
@@ -40,6 +41,7 @@ class Inspection:
     """
 
     log: str
+    scenario: str
     verdict: Verdict
     truncated: bool
     start: float
@@ -72,6 +74,7 @@ def inspect(log: Log) -> Inspection:
     topics = ((topic, log.count(topic)) for topic in log.topics)
     return Inspection(
         log=str(log.path),
+        scenario=scenario_of(log).name,
         verdict=verdict,
         truncated=log.truncated,
         start=start,

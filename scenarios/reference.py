@@ -25,6 +25,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         com_velocity=sample.com_velocity,
         com_acceleration=sample.com_acceleration,
         zmp=sample.pendulum_zmp,
+        zmp_offset=sample.zmp - sample.pendulum_zmp,
         omega=sample.omega,
         stiffness=sample.stiffness,
         heading=0.5 * (yaw[0] + yaw[1]),

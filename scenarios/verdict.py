@@ -34,12 +34,14 @@ class Verdict:
         reasons: why not, one sentence each.
         notes: what else is to be known, one sentence each; they do not bear on the verdict.
         metrics: values by name.
+        criteria: that were asked, by metric.
     """
 
     passed: bool
     reasons: tuple[str, ...]
     notes: tuple[str, ...]
     metrics: Mapping[str, Any]
+    criteria: Mapping[str, Bound]
 
     def to_json(self) -> dict[str, Any]:
         """Write as one JSON object with the names of the public contract."""
@@ -66,8 +68,9 @@ def judge(log: Log) -> Verdict:
         LogError: the log does not describe a run.
     """
     metrics, scenario = compute(log), scenario_of(log)
-    reasons = (*_unfinished(log), *missed(metrics, asked(scenario.criteria, scenario.fidelity)))
-    return Verdict(not reasons, reasons, notes(scenario, metrics), metrics)
+    criteria = asked(scenario.criteria, scenario.fidelity)
+    reasons = (*_unfinished(log), *missed(metrics, criteria))
+    return Verdict(not reasons, reasons, notes(scenario, metrics), metrics, criteria)
 
 
 def scenario_of(log: Log) -> Scenario:
@@ -92,7 +95,8 @@ def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str
     if bound.equals is not None:
         expected = metrics.get(bound.equals, bound.equals) if isinstance(bound.equals, str) else bound.equals
         if value != expected:
-            yield f"{name} is {_text(value)}, must be {_text(expected)}"
+            fall = f" at {metrics['fall_time']:.3f} s" if name == "fell" and value is True else ""
+            yield f"{name} is {_text(value)}{fall}, must be {_text(expected)}"
     if bound.min is None and bound.max is None:
         return
     if value is None:

@@ -74,10 +74,10 @@ def com_acceleration(
 ) -> tuple[float, float, float]:
     """CoM acceleration that tracks the reference.
 
-    Horizontal: with ξ = c + c'/ω and e = ξ - ξ_ref, the commanded ZMP is p = p_ref + k e, projected on the support
-    region, and c'' = λ (c - p). On the reference this returns the reference's own acceleration. Since
-    ξ' = (λ/ω)(ξ - p) for ω' = ω² - λ (Hopkins, Hong and Leonessa, Humanoids 2014, eq. 10), the error obeys
-    e' = -(λ/ω)(k - 1) e.
+    Horizontal: with ξ = c + c'/ω and e = ξ - ξ_ref, the pendulum's commanded point is p = p_ref + k e, moved so that
+    the ZMP p + o with the reference's offset o lies in the support region, and c'' = λ (c - p). On the reference this
+    returns the reference's own acceleration. Since ξ' = (λ/ω)(ξ - p) for ω' = ω² - λ (Hopkins, Hong and Leonessa,
+    Humanoids 2014, eq. 10), the error obeys e' = -(λ/ω)(k - 1) e.
     Vertical: c_z'' = z_ref'' + k_z (z_ref - z) + d_z (z_ref' - z').
 
     Args:
@@ -93,13 +93,14 @@ def com_acceleration(
     x, y, _ = com.tolist()
     dx, dy, dz = (com - reference.com).tolist()
     vx, vy, vz = (com_velocity - reference.com_velocity).tolist()
-    zmp_x, zmp_y = reference.zmp.tolist()
-    px, py = region.project(
-        zmp_x + gains.dcm * (dx + vx / reference.omega), zmp_y + gains.dcm * (dy + vy / reference.omega)
+    px, py = reference.zmp.tolist()
+    offset_x, offset_y = reference.zmp_offset.tolist()
+    zmp_x, zmp_y = region.project(
+        px + offset_x + gains.dcm * (dx + vx / reference.omega), py + offset_y + gains.dcm * (dy + vy / reference.omega)
     )
     planned = float(reference.com_acceleration[2])
     return (
-        reference.stiffness * (x - px),
-        reference.stiffness * (y - py),
+        reference.stiffness * (x - zmp_x + offset_x),
+        reference.stiffness * (y - zmp_y + offset_y),
         planned - gains.height_stiffness * dz - gains.height_damping * vz,
     )

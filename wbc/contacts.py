@@ -14,7 +14,6 @@ class ContactParameters:
         felt_ticks: for so many consecutive control ticks [-].
         early_progress: a swing foot may land from this share of its swing on [-].
         early_cap: load allowed on a foot that landed before its time [N].
-        release_ticks: such a foot swings on when it has felt nothing for so many control ticks [-].
         loading_time: time in which a landed foot's allowed load grows to the full weight [s].
         unloading_time: time before lift-off in which a foot's allowed load shrinks to its planned share [s].
         share_margin: allowed load above the planned share at the start of unloading [-].
@@ -24,7 +23,6 @@ class ContactParameters:
     felt_ticks: int = 2
     early_progress: float = 0.6
     early_cap: float = 50.0
-    release_ticks: int = 50
     loading_time: float = 0.05
     unloading_time: float = 0.1
     share_margin: float = 0.5
@@ -49,8 +47,9 @@ class ContactSchedule:
     """Follows the plan, but never against the feet.
 
     - A planned contact becomes active when the foot feels the ground: a late foot goes on searching downwards.
-    - A swing foot that feels the ground after ``early_progress`` becomes active at once, with a small load until its
-      planned touchdown. The plan's clock does not move.
+    - A swing foot that feels the ground after ``early_progress`` becomes active at once and stays so, with a small load
+      until its planned touchdown, whether or not it feels it: lifting and landing again would only shake the ZMP. The
+      plan's clock does not move.
     - A foot is released when the plan lifts it, unless it would be the last contact.
     - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in
       force.
@@ -64,7 +63,6 @@ class ContactSchedule:
         self._period = control_period
         self._active = [True, True]
         self._ticks_felt = [parameters.felt_ticks, parameters.felt_ticks]
-        self._ticks_unfelt = [0, 0]
         self._loading = [1.0, 1.0]
 
     def update(self, reference: WbcReference, sensing: FootSensing) -> ContactState:
@@ -77,7 +75,7 @@ class ContactSchedule:
                 if felt[k] and (planned[k] or early):
                     self._active[k] = True
                     self._loading[k] = 0.0
-            elif not planned[k] and not (early and self._holds(k)) and self._active[1 - k]:
+            elif not planned[k] and not early and self._active[1 - k]:
                 self._active[k] = False
         active = (self._active[0], self._active[1])
         return ContactState(active, felt, (self._cap(0, reference), self._cap(1, reference)))
@@ -85,12 +83,7 @@ class ContactSchedule:
     def _feel(self, k: int, normal_force: float) -> bool:
         touches = normal_force > self._parameters.felt_force
         self._ticks_felt[k] = self._ticks_felt[k] + 1 if touches else 0
-        self._ticks_unfelt[k] = 0 if touches else self._ticks_unfelt[k] + 1
         return self._ticks_felt[k] >= self._parameters.felt_ticks
-
-    def _holds(self, k: int) -> bool:
-        # An early foot carries next to nothing until its time: a moment without load is no lift-off.
-        return self._ticks_unfelt[k] < self._parameters.release_ticks
 
     def _cap(self, k: int, reference: WbcReference) -> float:
         parameters = self._parameters

@@ -152,7 +152,7 @@ class WholeBodyController:
 
     def _assemble(self, state: RobotState, reference: WbcReference, contacts: ContactState) -> None:
         terms = self.terms
-        if contacts.active != self._region_contacts:
+        if contacts.active != self._region_contacts and np.isfinite(terms.sole_position).all():
             self._region.rebuild(terms.sole_position, terms.sole_rotation, contacts.active)
             self._region_contacts = contacts.active
         acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
@@ -183,7 +183,7 @@ class WholeBodyController:
         np.maximum(self._torque, -self._limits.torque, out=self._torque)
 
     def _hold(self, v: Array) -> None:
-        """Fade the last torque out within about 50 ms while damping the joints."""
-        limit = self._limits.torque
-        self._torque += self._period / 0.05 * (-0.02 * limit * v[6:] - self._torque)
+        """Fade the last torque out within about 50 ms while damping the joints whose velocity is known."""
+        rate = np.where(np.isfinite(v[6:]), v[6:], 0.0)
+        self._torque += self._period / 0.05 * (-0.02 * self._limits.torque * rate - self._torque)
         self._clip()

@@ -15,7 +15,7 @@ class JointLimits:
         torque: largest absolute torque [N·m].
         velocity: largest absolute velocity [rad/s].
         lower, upper: position range [rad].
-        position_horizon: time in which the position limit must be met at constant deceleration [s].
+        position_horizon: time constant with which a joint may approach its position limit [s].
         velocity_horizon: time in which the velocity limit must be met [s].
     """
 
@@ -23,21 +23,22 @@ class JointLimits:
     velocity: Array
     lower: Array
     upper: Array
-    position_horizon: float = 0.06
+    position_horizon: float = 0.04
     velocity_horizon: float = 0.02
 
 
 class AccelerationBounds:
     """Bounds on q̈ that keep position and velocity of the joints inside their limits.
 
-    From q + T v + T² q̈ / 2 >= q_min and its mirror image; the velocity bound from v + T_v q̈. Where the two conflict the
-    position bound wins, so that lower <= upper always. Near-straight knees hyperextend without this.
+    Position: T² q̈ + 2 T q' + q >= q_min and its mirror image, a critically damped approach: a joint with
+    q' >= -(q - q_min) / T keeps that property and never passes its limit. Near-straight knees hyperextend without this.
+    Velocity: v + T_v q̈ within its limits. Where the two conflict the position bound wins, so lower <= upper always.
     """
 
     def __init__(self, limits: JointLimits) -> None:
         """Allocate buffers for the joints of ``limits``."""
-        self._reach_time = limits.position_horizon
-        self._position_rate = 2.0 / limits.position_horizon**2
+        self._reach_time = 2.0 * limits.position_horizon
+        self._position_rate = 1.0 / limits.position_horizon**2
         self._velocity_rate = 1.0 / limits.velocity_horizon
         self._positions = np.stack([limits.lower, limits.upper])
         self._velocities = np.stack([-limits.velocity, limits.velocity])

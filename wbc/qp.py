@@ -1,5 +1,6 @@
 """The whole-body QP: its layout, its data and its residuals. Building, solving and interpreting are apart."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,6 +88,11 @@ class QpData:
     def copy(self) -> "QpData":
         """A snapshot that later assemblies do not overwrite."""
         return QpData(self.H.copy(), self.g.copy(), self.A.copy(), self.bounds_lower.copy(), self.bounds_upper.copy())
+
+    def is_finite(self) -> bool:
+        """Whether every entry is a number; some solvers loop on what is not."""
+        parts = (self.H, self.g, self.A, self.bounds_lower, self.bounds_upper)
+        return math.isfinite(sum(float(part.sum()) for part in parts))
 
     def violation(self, x: Array) -> float:
         """Largest violation of any bound or row at x, shape (n,); 0 when feasible, NaN when x is not a number."""

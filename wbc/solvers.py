@@ -42,22 +42,24 @@ class QpSolver(Protocol):
 
 
 class ProxQp:
-    """proxsuite's dense ProxQP, warm-started with the previous solution.
+    """proxsuite's dense ProxQP, started from the equality-constrained minimiser or from the previous solution.
 
-    A failed solve poisons the next warm start (the iterates diverge), so after a failure the next solve starts from the
-    equality-constrained minimiser.
+    As a second solver it meets single problems whose predecessors it has not seen: no warm start then. A failed solve
+    poisons the next warm start (the iterates diverge), so after a failure it starts anew in any case.
     """
 
     name = "proxqp"
 
-    def __init__(self, accuracy: float = 1e-7, max_iterations: int = 200) -> None:
-        """Absolute accuracy of primal and dual residuals [-]; bound on outer iterations."""
-        self._accuracy, self._max_iterations = accuracy, max_iterations
+    def __init__(self, accuracy: float = 1e-7, max_iterations: int = 200, warm_start: bool = False) -> None:
+        """Absolute accuracy of primal and dual residuals [-]; bound on outer iterations; where to start."""
+        self._accuracy, self._max_iterations, self._warm_start = accuracy, max_iterations, warm_start
         self._solver: proxqp.dense.QP | None = None
         self._warm = False
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
+        if not qp.is_finite():
+            return None
         n, eq = qp.g.shape[0], EQUALITY_ROWS
         split = n + eq
         data = (
@@ -76,8 +78,9 @@ class ProxQp:
         )
         self._solver.solve()
         info = self._solver.results.info
-        self._warm = info.status == proxqp.QPSolverOutput.PROXQP_SOLVED
-        if not self._warm:
+        solved = info.status == proxqp.QPSolverOutput.PROXQP_SOLVED
+        self._warm = self._warm_start and solved
+        if not solved:
             return None
         x = np.array(self._solver.results.x)
         return QpSolution(x, qp.violation(x), int(info.iter), float(info.dua_res))
@@ -103,6 +106,8 @@ class Daqp:
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
+        if not qp.is_finite():
+            return None
         n, total = qp.g.shape[0], qp.bounds_lower.shape[0]
         if self._sense.shape[0] != total:
             self._sense = np.zeros(total, dtype=np.intc)
@@ -122,6 +127,8 @@ class Quadprog:
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
+        if not qp.is_finite():
+            return None
         n, eq = qp.g.shape[0], EQUALITY_ROWS
         rows = np.vstack([np.eye(n), qp.A])
         upper, lower = qp.bounds_upper < UNBOUNDED, qp.bounds_lower > -UNBOUNDED

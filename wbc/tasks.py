@@ -192,7 +192,7 @@ class TaskStack:
 def _angular(
     gains: tuple[float, float], R: Array, velocity: Array, desired: Array, turn: tuple[float, float]
 ) -> Vector:
-    """Angular acceleration, in the frame of R, towards ``desired`` turning at (rate, acceleration)."""
+    """Angular acceleration, in the frame of R, towards ``desired``, which turns upright at (rate, acceleration)."""
     stiffness, damping = gains
     ex, ey, ez = pin.log3(R.T @ desired).tolist()
     wx, wy, wz = velocity.tolist()

@@ -62,7 +62,8 @@ class WbcReference:
         com: CoM position, shape (3,) [m].
         com_velocity: CoM velocity, shape (3,) [m/s].
         com_acceleration: CoM acceleration, shape (3,) [m/s^2].
-        zmp: ZMP in the horizontal plane, shape (2,) [m].
+        zmp: the point p that drives the pendulum, c'' = λ (c - p), in the horizontal plane, shape (2,) [m].
+        zmp_offset: the ZMP less that point, what the swing leg's inertia adds, shape (2,) [m].
         omega: natural frequency of the time-varying DCM [1/s].
         stiffness: pendulum stiffness λ = (g + z'') / (z - p_z) [1/s^2].
         heading: yaw of pelvis and torso [rad].
@@ -83,6 +84,7 @@ class WbcReference:
     com_velocity: Array
     com_acceleration: Array
     zmp: Array
+    zmp_offset: Array
     omega: float
     stiffness: float
     heading: float

@@ -84,3 +84,10 @@ def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _plain(element) for key, element in value.items()}
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def describe_metric(name: str) -> str:
+    """What a metric is, in a sentence: the first line of its function's documentation."""
+    if name not in _METRICS:
+        return "Least distance of a foothold from the edge of its stair [m]; not available in this version."
+    return (_METRICS[name][1].__doc__ or "").split("\n", 1)[0]

@@ -41,13 +41,13 @@ def cop_ratios(run: RunView) -> Array:
 
 
 def cop_ratio_p99(run: RunView) -> float | None:
-    """99th percentile of `cop_ratios`."""
+    """Centre of pressure of the stance foot over its half size in single support: 99th percentile [-]."""
     ratios = cop_ratios(run)
     return float(np.percentile(ratios, 99)) if len(ratios) else None
 
 
 def cop_ratio_max(run: RunView) -> float | None:
-    """Largest of `cop_ratios`."""
+    """The same: largest [-]."""
     ratios = cop_ratios(run)
     return float(ratios.max()) if len(ratios) else None
 

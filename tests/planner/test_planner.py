@@ -136,16 +136,17 @@ def drive(planner, feet, contact_of_swing, ticks):
 
 def test_late_touchdown_holds_the_clock_up_to_its_limit(stand):
     gait = GaitParameters(initial_stand=0.0, single_support=0.6, double_support=0.2)
-    plans = drive(WalkingPlanner(gait, stand(), *HUMAN), stand(), lambda t: t > 1.0 + 0.11, 62)
+    limit = round(PlannerParameters().late_touchdown / 0.02)
+    plans = drive(WalkingPlanner(gait, stand(), *HUMAN), stand(), lambda t: t > 1.0 + 0.11, 70)
     waiting = [plan.status.late_touchdown for plan in plans]
     assert max(waiting) == 6
     landed = next(k for k, plan in enumerate(plans) if plan.phase.step == 1 and plan.phase.kind is PhaseKind.DOUBLE)
     assert landed == 50 + 6
-    never = drive(WalkingPlanner(gait, stand(), *HUMAN), stand(), lambda t: False, 62)
+    never = drive(WalkingPlanner(gait, stand(), *HUMAN), stand(), lambda t: False, 70)
     landed = next(k for k, plan in enumerate(never) if plan.phase.step == 1 and plan.phase.kind is PhaseKind.DOUBLE)
-    assert landed == 50 + 10
-    searched = never[58].swing.evaluate(1.16)[0, 2]
-    assert -0.02 < searched < -0.002
+    assert landed == 50 + limit
+    searched = never[50 + limit - 2].swing.evaluate(1.0 + 0.02 * limit - 0.02)[0, 2]
+    assert -0.05 < searched < -0.005
 
 
 def test_early_touchdown_fixes_the_footstep_and_never_moves_the_clock(stand):

@@ -55,7 +55,7 @@ def test_schema_is_json(surefoot):
 def test_run_passes(surefoot, scenario, tmp_path):
     code, out, err = surefoot("run", scenario, "--out", tmp_path / "out")
     assert code == 0
-    assert out.startswith("verdict: pass")
+    assert out.startswith("two-steps: verdict pass")
     assert "2 of 2" in out
     assert out.rstrip().endswith(str(tmp_path / "out" / "two-steps-0" / "log.mcap"))
     assert err == ""
@@ -64,7 +64,7 @@ def test_run_passes(surefoot, scenario, tmp_path):
 def test_run_fails_with_1(surefoot, scenario, tmp_path, motion):
     code, out, _ = surefoot("run", scenario, "--out", tmp_path, loop=motion(fall_at=1.0))
     assert code == 1
-    assert "fell is true, must be false" in out
+    assert "fell is true at 1.000 s, must be false" in out
 
 
 def test_run_json_is_one_object(surefoot, scenario, tmp_path):

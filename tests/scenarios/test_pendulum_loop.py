@@ -33,7 +33,7 @@ def plain(walk):
 
 def test_passes_the_criteria_that_a_pendulum_has(plain):
     assert plain.verdict.passed
-    assert plain.verdict.notes == ("criterion torque_ratio_max is not asked: a pendulum has no such metric",)
+    assert "criterion torque_ratio_max is not asked: a pendulum has no such metric" in plain.verdict.notes
     assert plain.verdict.metrics["steps_taken"] == 2
     assert plain.verdict.metrics["zmp_inside_fraction"] == 1.0
 
@@ -67,7 +67,7 @@ def test_a_strong_push_fells_it_when_it_comes_and_a_weak_one_does_not(walk):
     felled = walk(push.format(2000)).verdict
     assert not felled.passed
     assert 1.3 < felled.metrics["fall_time"] < 2.5
-    assert "fell is true, must be false" in felled.reasons
+    assert felled.reasons[0] == f"fell is true at {felled.metrics['fall_time']:.3f} s, must be false"
 
 
 def test_a_frozen_plan_fells_it(walk):

@@ -57,7 +57,7 @@ def test_every_missed_criterion_is_a_reason(tmp_path, robot, motion):
 def test_a_fall_fails(tmp_path, robot, motion):
     verdict = judged(tmp_path, robot, motion(fall_at=1.2, end=End("fall", 1.2, "the robot fell")))
     assert not verdict.passed
-    assert "fell is true, must be false" in verdict.reasons
+    assert "fell is true at 1.200 s, must be false" in verdict.reasons
 
 
 def test_a_fall_that_is_asked_for_passes(tmp_path, robot, motion):

@@ -14,11 +14,11 @@ WEIGHT, PERIOD = 981.0, 0.002
 def reference(**changes) -> WbcReference:
     zero = np.zeros(3)
     standing = WbcReference(
-        com=np.array([0, 0, 1.0]), com_velocity=zero, com_acceleration=zero, zmp=np.zeros(2), omega=3.13,
-        stiffness=9.81, heading=0.0, heading_rate=0.0,
-        planned_contact=(True, True), load_share=(0.5, 0.5), time_to_switch=np.inf,
-        lifting_foot=-1, swing_foot=-1, swing_progress=0.0, swing_position=zero, swing_velocity=zero,
-        swing_acceleration=zero, swing_yaw=(0.0, 0.0, 0.0),
+        com=np.array([0, 0, 1.0]), com_velocity=zero, com_acceleration=zero, zmp=np.zeros(2),
+        zmp_offset=np.zeros(2), omega=3.13, stiffness=9.81, heading=0.0, heading_rate=0.0,
+        planned_contact=(True, True), load_share=(0.5, 0.5),
+        time_to_switch=np.inf, lifting_foot=-1, swing_foot=-1, swing_progress=0.0, swing_position=zero,
+        swing_velocity=zero, swing_acceleration=zero, swing_yaw=(0.0, 0.0, 0.0),
     )  # fmt: skip
     return replace(standing, **changes)
 

@@ -1,0 +1,126 @@
+"""Compares QP solvers on the whole-body QPs of a real walk; its table decides ``WbcParameters.solver``.
+
+    python benchmarks/qp_solvers.py [--scenario NAME] [--set KEY=VALUE ...] [--every N]
+
+Run it with OMP_NUM_THREADS=1 on an idle core.
+"""
+
+import argparse
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import daqp
+import numpy as np
+from bare_walk import BareWalk
+from scipy.optimize import nnls
+
+from wbc.qp import EQUALITY_ROWS, QpData
+from wbc.solvers import Daqp, EqualityFirst, ProxQp, QpSolution, QpSolver, Quadprog
+
+
+class DaqpModel:
+    """DAQP with a workspace that is set up once; optionally the active set of the last solve is kept."""
+
+    name = "daqp workspace"
+
+    def __init__(self, warm_start: bool) -> None:
+        self._model, self._warm = daqp.Model(), warm_start
+        self._sense = np.zeros(0, dtype=np.intc)
+
+    def solve(self, qp: QpData) -> QpSolution | None:
+        data = (qp.H, qp.g, qp.A, qp.bounds_upper, qp.bounds_lower)
+        if not self._sense.size:
+            self._sense = np.zeros(qp.bounds_lower.size, dtype=np.intc)
+            self._sense[qp.g.size : qp.g.size + EQUALITY_ROWS] = 5
+            self._model.setup(*data, self._sense)
+            self._model.settings = {**self._model.settings, "primal_tol": 1e-9}
+        elif self._warm:
+            self._model.update(*data)
+        else:
+            self._model.update(*data, sense=self._sense)
+        x, _, flag, info = self._model.solve()
+        return QpSolution(np.array(x), qp.violation(x), int(info["iterations"])) if flag == 1 else None
+
+
+SOLVERS: dict[str, Callable[[], QpSolver]] = {
+    "equality-first": EqualityFirst,
+    "daqp": Daqp,
+    "daqp workspace": lambda: DaqpModel(warm_start=False),
+    "daqp workspace, warm": lambda: DaqpModel(warm_start=True),
+    "proxqp": ProxQp,
+    "proxqp, warm": lambda: ProxQp(warm_start=True),
+    "quadprog": Quadprog,
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Times [s] of all solves and the answers, None where the solver failed."""
+
+    seconds: np.ndarray
+    answers: list[np.ndarray | None]
+
+
+def recorded(scenario: str, overrides: list[str], every: int) -> list[QpData]:
+    walk, problems = BareWalk(scenario, tuple(overrides)), []
+    with tempfile.TemporaryDirectory() as folder:
+        for i, _ in enumerate(walk.ticks(Path(folder) / "walk.mcap")):
+            if i % every == 0:
+                problems.append(walk.rig.controller.qp.copy())
+    return problems
+
+
+def solve_all(solver: QpSolver, problems: list[QpData]) -> Outcome:
+    seconds, answers = np.zeros(len(problems)), []
+    for i, qp in enumerate(problems):
+        start = time.perf_counter()
+        solution = solver.solve(qp)
+        seconds[i] = time.perf_counter() - start
+        answers.append(None if solution is None else solution.x)
+    return Outcome(seconds, answers)
+
+
+def kkt_residual(qp: QpData, x: np.ndarray) -> float:
+    """Larger of the violation and what no admissible multipliers of the active rows balance, relative to |g|."""
+    n = x.size
+    values, rows = np.concatenate([x, qp.A @ x]), np.vstack([np.eye(n), qp.A])
+    equal = np.zeros(values.size, dtype=bool)
+    equal[n : n + EQUALITY_ROWS] = True
+    low = ~equal & (values < qp.bounds_lower + 1e-5)
+    high = ~equal & (values > qp.bounds_upper - 1e-5)
+    columns = np.vstack([rows[equal], -rows[equal], -rows[low], rows[high]]).T
+    left = nnls(columns / np.linalg.norm(columns, axis=0), -(qp.H @ x + qp.g))[1]
+    return max(float(left / np.linalg.norm(qp.g)), qp.violation(x))
+
+
+def row(name: str, outcome: Outcome, problems: list[QpData], best: Outcome, unit: float) -> str:
+    solved = [i for i, x in enumerate(outcome.answers) if x is not None and best.answers[i] is not None]
+    if not solved:
+        return f"{name:<22} no answers"
+    away = max(float(np.abs(outcome.answers[i] - best.answers[i]).max()) for i in solved)
+    kkt = max(kkt_residual(problems[i], outcome.answers[i]) for i in solved[:: max(1, len(solved) // 100)])
+    median, p99 = np.percentile(outcome.seconds, (50, 99)) * 1e6
+    failed = sum(x is None for x in outcome.answers)
+    return f"{name:<22} {median:>8.1f} {p99:>8.1f} {median / unit:>6.2f} {failed:>9} {kkt:>9.1e} {away:>11.1e}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Compare QP solvers on the whole-body QPs of a walk.")
+    parser.add_argument("--scenario", default="diagonal-walk", help="catalogue name or path of a scenario file")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="set a key; repeatable")
+    parser.add_argument("--every", type=int, default=10, metavar="N", help="use every N-th control tick")
+    options = parser.parse_args()
+    problems = recorded(options.scenario, options.set, options.every)
+    outcomes = {name: solve_all(make(), problems) for name, make in SOLVERS.items()}
+    best, unit = outcomes["daqp"], float(np.median(outcomes["daqp"].seconds)) * 1e6
+    print(f"{len(problems)} whole-body QPs of {options.scenario}; 'ratio' is to daqp, 'from daqp' is max |x - x_daqp|")
+    print(f"{'solver':<22} {'median':>8} {'p99 us':>8} {'ratio':>6} {'failures':>9} {'KKT':>9} {'from daqp':>11}")
+    for name, outcome in outcomes.items():
+        print(row(name, outcome, problems, best, unit))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,107 @@
+"""Write the tables of docs/scenarios.md and docs/log.md that follow from the code.
+
+    python docs/reference.py
+
+Each table stands between two comment lines, `<!-- table: name -->` and `<!-- end -->`.
+"""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from scenarios.criteria import BODY_METRICS, METRIC_NAMES
+from scenarios.display import unit
+from scenarios.log import channels
+from scenarios.log.channels import Sizes
+from scenarios.log.spec import ChannelSpec
+from scenarios.metrics import describe_metric
+from scenarios.schema import Fault, PushSettings, Scenario
+
+FOLDER = Path(__file__).parent
+CHANNELS = (
+    *(channels.measurement, channels.truth, channels.point_truth, channels.estimate, channels.contact),
+    *(channels.reference, channels.plan, channels.footsteps, channels.footstep, channels.wbc, channels.torque),
+    channels.timing,
+)
+SIZES = Sizes(nj=1009, nq=1013, nv=1019, horizon=1031)
+_SYMBOLS = {1009: "nj", 1013: "nq", 1019: "nv", 1031: "N", 1032: "N+1"}
+_LISTS = {"pushes": PushSettings, "faults": Fault}
+
+
+def keys_table() -> str:
+    """Every key of a scenario with its default and meaning."""
+    lines = ["| key | default | meaning |", "|---|---|---|"]
+    for name, field in Scenario.model_fields.items():
+        inner = _LISTS.get(name) or field.annotation
+        if isinstance(inner, type) and issubclass(inner, BaseModel):
+            prefix = f"{name}[]." if name in _LISTS else f"{name}."
+            lines += [_key_row(prefix + key, sub) for key, sub in inner.model_fields.items()]
+        else:
+            lines.append(_key_row(name, field))
+    return "\n".join(lines)
+
+
+def channels_table() -> str:
+    """Every channel with its fields, shapes, units and frames."""
+    return "\n\n".join(_channel(make(SIZES)) for make in CHANNELS)
+
+
+def metrics_table() -> str:
+    """Every metric with its meaning."""
+    rows = [
+        f"| `{name}` | {unit(name)} | {'' if name in BODY_METRICS else 'yes'} | {describe_metric(name)} |"
+        for name in METRIC_NAMES
+    ]
+    return "\n".join(["| metric | shown in | pendulum | meaning |", "|---|---|---|---|", *rows])
+
+
+TABLES: dict[str, tuple[str, Callable[[], str]]] = {
+    "keys": ("scenarios.md", keys_table),
+    "metrics": ("scenarios.md", metrics_table),
+    "channels": ("log.md", channels_table),
+}
+
+
+def updated(text: str, name: str, table: str) -> str:
+    """The text of a page with one of its tables written anew."""
+    begin, end = f"<!-- table: {name} -->\n", "<!-- end -->"
+    return re.sub(f"(?s){re.escape(begin)}.*?{re.escape(end)}", lambda _: f"{begin}{table}\n{end}", text)
+
+
+def main() -> None:
+    """Update all tables."""
+    for name, (page, table) in TABLES.items():
+        path = FOLDER / page
+        path.write_text(updated(path.read_text(encoding="utf-8"), name, table()), encoding="utf-8")
+
+
+def _key_row(name: str, field: FieldInfo) -> str:
+    default = "required" if field.is_required() else _default(field.get_default(call_default_factory=True))
+    return f"| `{name}` | {default} | {(field.description or '').replace('|', '/')} |"
+
+
+def _default(value: Any) -> str:
+    if isinstance(value, dict):
+        return "no fall, every step, 1 s of standing"
+    if value is None:
+        return "`null`"
+    if isinstance(value, tuple):
+        return f"`{list(value)}`"
+    return f"`{str(value).lower() if isinstance(value, bool) else value}`"
+
+
+def _channel(spec: ChannelSpec) -> str:
+    lines = [f"### `{spec.topic}` ({spec.message})", "", spec.doc, "", "| field | shape | unit | frame | meaning |"]
+    lines.append("|---|---|---|---|---|")
+    for field in spec.fields:
+        shape = " x ".join(str(_SYMBOLS.get(size, size)) for size in field.shape) or "1"
+        lines.append(f"| `{field.name}` | {shape} | {field.unit} | {field.frame} | {field.doc} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,44 @@
+"""The tables of the documentation follow from the code."""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+from scenarios.load import read_scenario
+from scenarios.robots import RegisteredRobots
+
+pytestmark = pytest.mark.unit
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def reference():
+    spec = importlib.util.spec_from_file_location("reference", ROOT / "docs" / "reference.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("name", ["keys", "metrics", "channels"])
+def test_tables_are_up_to_date(reference, name):
+    page, table = reference.TABLES[name]
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    assert text == reference.updated(text, name, table()), "run python docs/reference.py"
+    assert table() in text
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/scenarios.md"])
+def test_scenarios_of_the_documentation_load(page):
+    examples = re.findall(r"(?s)```yaml\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"))
+    assert examples
+    for text in examples:
+        read_scenario(text, "example.yaml", "example", (), RegisteredRobots())
+
+
+def test_links_lead_somewhere():
+    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+        for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8")):
+            assert (page.parent / target).exists(), f"{page.name}: {target}"

@@ -1,0 +1,100 @@
+"""What the controller does when solvers fail or its input is no number."""
+
+import numpy as np
+import pytest
+
+from wbc.qp import EQUALITY_ROWS
+from wbc.types import RobotState, SolveStatus
+
+pytestmark = pytest.mark.unit
+
+
+class Failing:
+    name = "failing"
+
+    def solve(self, qp):
+        return None
+
+
+@pytest.fixture
+def controller(robot, rng):
+    made = robot.controller()
+    made.observe(robot.moved(rng, 0.02, 0.2))
+    return made
+
+
+def break_first(controller, solver):
+    controller._solvers = (solver, controller._solvers[1])
+
+
+def test_the_second_solver_answers_for_the_first(controller, reference, loaded):
+    good = controller.update(reference, loaded).torque.copy()
+    break_first(controller, Failing())
+    report = controller.update(reference, loaded)
+    assert report.status is SolveStatus.SECOND_SOLVER
+    np.testing.assert_allclose(report.torque, good, atol=1e-3)
+
+
+def test_a_solver_that_lies_is_not_believed(controller, reference, loaded):
+    class Lying:
+        name = "lying"
+
+        def __init__(self, inner):
+            self.inner = inner
+
+        def solve(self, qp):
+            solution = self.inner.solve(qp)
+            wrong = solution.x + 0.1
+            return type(solution)(wrong, qp.violation(wrong), solution.iterations)
+
+    break_first(controller, Lying(controller._solvers[0]))
+    assert controller.update(reference, loaded).status is SolveStatus.SECOND_SOLVER
+
+
+def test_without_solvers_the_equalities_hold_and_the_torque_is_clipped(robot, controller, references, loaded):
+    far = references[1](swing_position=np.array([9.0, 0.0, 5.0]))
+    report = controller.update(far, loaded, fail_solvers=True)
+    assert report.status is SolveStatus.EQUALITIES_ONLY
+    assert (np.abs(report.torque) <= robot.limits.torque).all()
+    assert np.abs(report.torque / robot.limits.torque).max() == 1.0
+    qp, n = controller.qp, controller.layout.variables
+    x = np.concatenate([report.acceleration, report.wrench.reshape(12) / controller.layout.wrench_unit])
+    np.testing.assert_allclose(qp.A[:EQUALITY_ROWS] @ x, qp.bounds_lower[n : n + EQUALITY_ROWS], atol=1e-6)
+
+
+def test_within_the_limits_the_fallback_is_the_answer(robot, controller, references, loaded):
+    controller.observe(RobotState(robot.standing, np.zeros(robot.nv)))
+    still = references[0]()
+    good = controller.update(still, loaded).torque.copy()
+    np.testing.assert_allclose(controller.update(still, loaded, fail_solvers=True).torque, good, atol=1e-6)
+
+
+@pytest.mark.parametrize("part", ["configuration", "velocity", "reference"])
+def test_what_is_no_number_holds_the_last_torque_and_says_so(robot, controller, references, loaded, part):
+    q, v, reference = robot.standing.copy(), np.zeros(robot.nv), references[0]()
+    last = controller.update(reference, loaded).torque.copy()
+    if part == "reference":
+        reference = references[0](com=np.full(3, np.nan))
+    else:
+        (q if part == "configuration" else v)[9] = np.nan
+    controller.observe(RobotState(q, v))
+    report = controller.update(reference, loaded)
+    assert report.status is SolveStatus.HELD
+    assert report.primal_residual == np.inf
+    assert np.isfinite(report.torque).all()
+    assert np.abs(report.torque).sum() < np.abs(last).sum()
+    for _ in range(500):
+        report = controller.update(reference, loaded)
+    np.testing.assert_allclose(report.torque, 0.0, atol=1e-3)
+
+
+def test_after_a_held_tick_the_controller_recovers(robot, controller, references, loaded):
+    controller.observe(RobotState(np.full(robot.model.nq, np.nan), np.zeros(robot.nv)))
+    assert controller.update(references[0](), loaded).status is SolveStatus.HELD
+    state = RobotState(robot.standing, np.zeros(robot.nv))
+    controller.observe(state)
+    report = controller.update(references[0](), loaded)
+    fresh = robot.controller()
+    fresh.observe(state)
+    assert report.status is SolveStatus.SOLVED
+    np.testing.assert_array_equal(report.torque, fresh.update(references[0](), loaded).torque)

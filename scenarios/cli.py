@@ -38,22 +38,24 @@ def list_() -> None:
 
 @app.command()
 def run(
-    scenario: Annotated[str, typer.Argument(help="Catalogue name or path of a scenario file.")],
+    scenario: Annotated[str, typer.Argument(help="Catalogue name, scenario file, or a log to run again.")],
     set_: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed, over that of the scenario.")] = None,
-    out: Annotated[Path, typer.Option(help="Directory for the log and the verdict.")] = Path("runs"),
+    out: Annotated[Path | None, typer.Option(help="Directory for the log and the verdict; runs by default.")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Run a scenario, write its log and judge it."""
     from scenarios.console import ProgressLine, print_result
     from scenarios.load import load_scenario, locate
+    from scenarios.rerun import output_folder
     from scenarios.run import run_scenario
 
     overrides = [*(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
     loaded = load_scenario(scenario, overrides)
+    folder = output_folder(scenario, loaded, out)
     with ProgressLine(loaded.name) as progress:
         try:
-            result = run_scenario(loaded, out, progress)
+            result = run_scenario(loaded, folder, progress)
         except SetupError as refusal:
             raise locate(scenario, overrides, refusal) from None
     if as_json:
@@ -91,6 +93,45 @@ def inspect(
     else:
         print_inspection(found)
     raise typer.Exit(0 if found.verdict.passed else MISSED)
+
+
+@app.command()
+def plot(
+    log: Annotated[Path, typer.Argument(help="A log, also a truncated one.")],
+    out: Annotated[Path | None, typer.Option(help="PNG, SVG or PDF; figures.png beside the log by default.")] = None,
+    what: Annotated[str | None, typer.Option(metavar="NAME", help="One figure instead of the page of all.")] = None,
+    start: Annotated[float | None, typer.Option("--from", metavar="T", help="Begin of the window [s].")] = None,
+    end: Annotated[float | None, typer.Option("--to", metavar="T", help="End of the window [s].")] = None,
+) -> None:
+    """Draw the figures that a walking engineer looks at."""
+    from scenarios.report.plot import plot as plot_log
+
+    drawn = plot_log(log, out, what, start, end)
+    for note in drawn.notes:
+        typer.echo(f"note: {note}", err=True)
+    typer.echo(str(drawn.path))
+
+
+@app.command()
+def compare(
+    a: Annotated[Path, typer.Argument(metavar="A", help="A log.")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="Another log.")],
+    out: Annotated[Path | None, typer.Option(help="Draw both over each other: PNG, SVG or PDF.")] = None,
+    tolerance: Annotated[float, typer.Option(help="Relative, and absolute below 1.")] = 1e-6,
+    as_json: AsJson = False,
+) -> None:
+    """Show two logs side by side, and where their channels part."""
+    from scenarios.report.compare import compare as compare_logs
+    from scenarios.report.compare import draw
+    from scenarios.report.comparison_tables import print_comparison
+
+    found, first, second = compare_logs(a, b, tolerance)
+    if out is not None:
+        draw(found, first, second, out)
+    if as_json:
+        typer.echo(json.dumps(found.to_json(), allow_nan=False))
+    else:
+        print_comparison(found)
 
 
 @app.command()

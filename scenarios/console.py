@@ -67,7 +67,7 @@ class ProgressLine:
 
 def print_result(name: str, verdict: Verdict, log: Path) -> None:
     """Print verdict, reasons, the first metrics and the path of the log."""
-    console = _console()
+    console = plain_console()
     _print_verdict(console, name, verdict)
     console.print(_metric_table(verdict, FIRST_METRICS))
     console.print(f"log: {log}")
@@ -75,13 +75,13 @@ def print_result(name: str, verdict: Verdict, log: Path) -> None:
 
 def print_inspection(found: Inspection) -> None:
     """Print everything that an inspection found."""
-    console = _console()
+    console = plain_console()
     console.print(f"{found.log}: {found.start:.3f} s to {found.end:.3f} s")
     for line in found.health:
         console.print(f"health: {line}", style="yellow")
     _print_verdict(console, found.scenario, found.verdict)
     console.print(_metric_table(found.verdict, tuple(found.verdict.metrics)))
-    topics = _table("topic", "messages", "rate [Hz]")
+    topics = plain_table("topic", "messages", "rate [Hz]")
     for topic in found.topics:
         topics.add_row(topic.topic, str(topic.messages), f"{topic.rate:.1f}")
     console.print(topics)
@@ -89,12 +89,12 @@ def print_inspection(found: Inspection) -> None:
 
 def print_topic(topic: str, fields: Mapping[str, Mapping[str, Any]]) -> None:
     """Print the summary of a topic's fields."""
-    table = _table(topic, "shape", "messages", "not finite", "min", "mean", "max")
+    table = plain_table(topic, "shape", "messages", "not finite", "min", "mean", "max")
     for name, row in fields.items():
         shape = "x".join(str(n) for n in row["shape"]) or "scalar"
-        spread = [_number(row[key]) for key in ("min", "mean", "max")]
+        spread = [number(row[key]) for key in ("min", "mean", "max")]
         table.add_row(name, shape, str(row["messages"]), str(row["not_finite"]), *spread)
-    _console().print(table)
+    plain_console().print(table)
 
 
 def _print_verdict(console: Console, name: str, verdict: Verdict) -> None:
@@ -109,7 +109,7 @@ def _print_verdict(console: Console, name: str, verdict: Verdict) -> None:
 
 
 def _metric_table(verdict: Verdict, names: tuple[str, ...]) -> Table:
-    table = _table("metric", "value", "unit", "criterion")
+    table = plain_table("metric", "value", "unit", "criterion")
     missed = {reason.partition(" ")[0].partition("[")[0] for reason in verdict.reasons}
     for name in names:
         value, unit = value_text(name, verdict.metrics.get(name)), display.unit(name)
@@ -120,23 +120,25 @@ def _metric_table(verdict: Verdict, names: tuple[str, ...]) -> Table:
     return table
 
 
-def _number(value: Any) -> str:
+def number(value: Any) -> str:
+    """A value of a metric or a setting, short."""
     if isinstance(value, list):
-        return "  ".join(_number(element) for element in value)
+        return "  ".join(number(element) for element in value)
     if isinstance(value, dict):
-        return "  ".join(f"{key} {_number(element)}" for key, element in value.items())
+        return "  ".join(f"{key} {number(element)}" for key, element in value.items())
     if value is None:
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value).lower()
 
 
-def _table(*columns: str) -> Table:
+def plain_table(*columns: str) -> Table:
+    """A table without lines, whose cells are not wrapped."""
     table = Table(box=None, pad_edge=False)
     for column in columns:
         table.add_column(column, no_wrap=True)
     return table
 
 
-def _console() -> Console:
+def plain_console() -> Console:
     """Standard output; lines are never wrapped, so that paths and names can be copied."""
     return Console(soft_wrap=True, markup=False, highlight=False)

@@ -12,6 +12,7 @@ from scenarios.checks import check
 from scenarios.criteria import Bound
 from scenarios.errors import Key, Problem, ScenarioError, SetupError, nearest
 from scenarios.override import apply_override
+from scenarios.rerun import attached_scenario, is_log
 from scenarios.robots import RegisteredRobots, Robots
 from scenarios.schema import Scenario
 from scenarios.source import MAX_BYTES, parse
@@ -23,7 +24,7 @@ def load_scenario(reference: str, overrides: Sequence[str] = (), robots: Robots 
     """Load a scenario.
 
     Args:
-        reference: a catalogue name or the path of a YAML file.
+        reference: a catalogue name, the path of a YAML file, or that of a log to run again.
         overrides: ``key=value`` with dotted keys and YAML values, applied in order.
         robots: the robots it may name; those of ``models`` by default.
 
@@ -90,6 +91,8 @@ def _text(reference: str) -> tuple[str, str, str]:
     """Text, name for messages, and stem of a scenario."""
     if reference in catalogue.names():
         return catalogue.text(reference), f"catalogue/{reference}.yaml", reference
+    if is_log(reference):
+        return *attached_scenario(reference), Path(reference).stem
     path = Path(reference)
     try:
         with path.open("rb") as file:

@@ -6,6 +6,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "quadprog", "numpy", "scipy", "mcap")
+ABSENT = "not installed"
+"""Version of a package that is not there, as of a source tree that was never installed."""
 
 
 def versions() -> dict[str, str]:
@@ -22,7 +24,7 @@ def _version(package: str) -> str:
     try:
         return version(package)
     except PackageNotFoundError:
-        return "not installed"
+        return ABSENT
 
 
 def _git_revision() -> str:

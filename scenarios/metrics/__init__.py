@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.criteria import BODY_METRICS, METRIC_NAMES
+from scenarios.errors import LogError
 from scenarios.log import Log
 from scenarios.metrics import balance, effort, walking
 from scenarios.metrics.view import RunView
@@ -53,7 +54,8 @@ def compute(log: Log) -> dict[str, Any]:
         log: a log of a run, whole or truncated.
 
     Returns:
-        values by metric name, None where a metric does not apply or its channels are missing; plain JSON values.
+        values by metric name, None where a metric does not apply or its channels or fields are missing; plain JSON
+        values.
 
     Raises:
         LogError: the log does not describe a run.
@@ -69,7 +71,10 @@ def _metric(run: RunView, name: str) -> Any:
     if name not in _METRICS or (run.constants.fidelity == "pendulum" and name in BODY_METRICS):
         return None
     topics, function = _METRICS[name]
-    return _plain(function(run)) if run.has(*topics) else None
+    try:
+        return _plain(function(run)) if run.has(*topics) else None
+    except LogError:  # the log of another version lacks a field
+        return None
 
 
 def _plain(value: Any) -> Any:

@@ -1,0 +1,1 @@
+"""Logs for the eyes: figures, and one run beside another."""

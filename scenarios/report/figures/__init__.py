@@ -1,0 +1,1 @@
+"""Figures of a log, one file per family, and the page that gathers them."""

@@ -90,10 +90,11 @@ class ClosedLoop:
         state = self._sense(measurement, tick)
         terms = controller.observe(state)
         state_time = watch.lap()
+        planner_time = 0.0
         if planning.due(tick):
             self._replan(now, now_ns, terms)
+            planner_time = watch.lap()
         sample = planning.sampler.sample(now)
-        planner_time = watch.lap()
         reference = whole_body_reference(planning.plan, sample)
         sensing = FootSensing((float(measurement.wrench[0, 2]), float(measurement.wrench[1, 2])))
         report = controller.update(reference, sensing, self._faults.active("qp_failure", tick))

@@ -17,6 +17,7 @@ from scenarios.reference import whole_body_reference
 from scenarios.schema import Scenario
 from scenarios.ticks import RunFault, Watch, refusing, run_ticks
 from scenarios.timeline import run_duration
+from scenarios.viewer.recorder import BodyView
 from scenarios.walk_recorder import TickTiming, WalkRecorder
 from sim.errors import SimulationDiverged
 from sim.measurement import Measurement
@@ -60,6 +61,7 @@ class ClosedLoop:
         writer.attach(AttachedFile(WORLD_FILE, "application/xml", self._rig.world.mjcf().encode()))
         self._recorder = Recorder(writer, sizes, robot.torque_limit)
         self._walk_recorder = WalkRecorder(writer, sizes)
+        self._view = BodyView(writer, self._rig.world, robot, rates.control)
         self._faults = FaultSchedule(scenario.faults, rates.control)
         self._planning = Planning(self._rig.planner, self._walk_recorder, self._faults, rates)
         self._rate = rates.control
@@ -102,8 +104,10 @@ class ClosedLoop:
         recorder.contact(now_ns, measurement, terms, reference, report)
         self._walk_recorder.reference(now_ns, planning.plan, sample)
         recorder.control(now_ns, report, torque)
-        log_time = watch.lap()
         fallen = self._fallen(terms, measurement)
+        self._view.events(now_ns, measurement, report, planning.plan, fallen)
+        self._view.picture(tick, now_ns, measurement, terms, planning.plan, sample)
+        log_time = watch.lap()
         self._advance(torque)
         physics_time = watch.lap()
         parts = (state_time, report.build_time, report.solve_time, planner_time, physics_time, log_time)

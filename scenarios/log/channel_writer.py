@@ -11,7 +11,6 @@ from scenarios.log.layout import blank_records
 from scenarios.log.spec import ChannelSpec
 
 _INDEX_HEADER = struct.Struct("<BQHI")
-_INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
 
 
 class Clock:
@@ -42,7 +41,6 @@ class ChannelWriter:
         "_capacity",
         "_clock",
         "_flush",
-        "_index",
         "_offsets",
         "_records",
         "_stamps",
@@ -64,7 +62,6 @@ class ChannelWriter:
         self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[field.name] for field in spec.fields)
         self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
         self._stamps = np.zeros(capacity, np.uint64)
-        self._index = np.zeros(capacity, _INDEX_ENTRY)
         self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._records.dtype.itemsize)
         self._capacity = capacity
         self._clock = clock
@@ -107,11 +104,16 @@ class ChannelWriter:
         records, stamps = self._records[:n], self._stamps[:n]
         records["_log_time"] = records["_publish_time"] = records["_stamp"] = stamps
         records["_sequence"] = np.arange(self.total, self.total + n, dtype=np.uint32)
-        index = self._index[:n]
-        index["time"] = stamps
-        index["offset"] = self._offsets[:n] + np.uint64(offset)
-        entries = index.tobytes()
-        header = _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(entries) + 6, self.channel_id, len(entries))
         self.count = 0
         self.total += n
-        return self._bytes[:n].data.cast("B"), header + entries
+        index = message_index(self.channel_id, stamps, self._offsets[:n] + np.uint64(offset))
+        return self._bytes[:n].data.cast("B"), index
+
+
+def message_index(channel_id: int, times_ns: ArrayLike, offsets: ArrayLike) -> bytes:
+    """MessageIndex record of a channel's messages in a chunk: times [ns] and byte offsets, shape (n,) each."""
+    times = np.asarray(times_ns, "<u8")
+    index = np.empty((len(times), 2), "<u8")
+    index[:, 0], index[:, 1] = times, offsets
+    entries = index.tobytes()
+    return _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(entries) + 6, channel_id, len(entries)) + entries

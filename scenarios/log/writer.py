@@ -13,9 +13,11 @@ from scenarios.log.channel_writer import ChannelWriter, Clock
 from scenarios.log.compression import compress
 from scenarios.log.encode import MAGIC, encoded
 from scenarios.log.layout import PACKAGE, file_descriptor_set
+from scenarios.log.message_writer import MessageWriter, TemplateWriter
 from scenarios.log.output import Output
 from scenarios.log.spec import ChannelSpec
 from scenarios.log.summary import Summary
+from scenarios.log.template import Template
 
 Compression = Literal["lz4", "zstd", ""]
 CHUNK_PERIOD_NS = 40_000_000
@@ -32,6 +34,19 @@ class AttachedFile:
     name: str
     media_type: str
     data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedSchema:
+    """A protobuf message type.
+
+    Attributes:
+        name: full name.
+        descriptors: serialized ``FileDescriptorSet`` with everything that it refers to.
+    """
+
+    name: str
+    descriptors: bytes
 
 
 class LogWriter:
@@ -65,7 +80,7 @@ class LogWriter:
         self.path = path
         self._compression = compression
         self._summary = Summary()
-        self._channels: list[ChannelWriter] = []
+        self._channels: list[ChannelWriter | TemplateWriter | MessageWriter] = []
         self._clock = Clock(CHUNK_PERIOD_NS)
         beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
         for name, values in metadata.items():
@@ -77,14 +92,33 @@ class LogWriter:
 
     def channel(self, spec: ChannelSpec) -> ChannelWriter:
         """Add a channel, before or between messages."""
-        number = len(self._channels) + 1
-        schema = Schema(number, file_descriptor_set(spec), "protobuf", f"{PACKAGE}.{spec.message}")
-        channel = Channel(number, spec.topic, "protobuf", spec.metadata(), number)
-        self._output.write(encoded(schema) + encoded(channel))
-        self._summary.add_channel(schema, channel)
+        schema = PublishedSchema(f"{PACKAGE}.{spec.message}", file_descriptor_set(spec))
+        number = self._define(spec.topic, schema, spec.metadata())
         writer = ChannelWriter(spec, number, _CAPACITY, self._clock, self._flush)
         self._channels.append(writer)
         return writer
+
+    def template_channel(self, topic: str, schema: PublishedSchema, template: Template, doc: str) -> TemplateWriter:
+        """Add a channel of a published schema whose messages come from one template."""
+        number = self._define(topic, schema, {"doc": doc})
+        writer = TemplateWriter(template, number, _CAPACITY, self._clock, self._flush)
+        self._channels.append(writer)
+        return writer
+
+    def message_channel(self, topic: str, schema: PublishedSchema, doc: str) -> MessageWriter:
+        """Add a channel of a published schema whose messages come encoded."""
+        writer = MessageWriter(self._define(topic, schema, {"doc": doc}), self._clock, self._flush)
+        self._channels.append(writer)
+        return writer
+
+    def _define(self, topic: str, schema: PublishedSchema, metadata: dict[str, str]) -> int:
+        """Write the schema and the channel; gives the channel's number."""
+        number = len(self._channels) + 1
+        record = Schema(number, schema.descriptors, "protobuf", schema.name)
+        channel = Channel(number, topic, "protobuf", metadata, number)
+        self._output.write(encoded(record) + encoded(channel))
+        self._summary.add_channel(record, channel)
+        return number
 
     def attach(self, file: AttachedFile) -> None:
         """Write an attachment after everything appended so far."""

@@ -1,0 +1,71 @@
+"""Values of what is drawn: forces as arrows, soles and polygons as outlines."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.plan import WalkPlan
+from planner.polygon import sole_corners
+from planner.types import Footstep
+from scenarios.viewer.templates import LOOPS
+
+Array = NDArray[np.float64]
+
+METRES_PER_NEWTON = 1e-3
+"""Length of a force's arrow over the force."""
+
+LIFT = 0.002
+"""Outlines are drawn this far above the ground, so that they are not hidden by it [m]."""
+
+NOWHERE = (0.0, 0.0, -1000.0)
+"""Where a point is drawn that does not exist now, such as the ZMP of a robot in flight; out of sight [m]."""
+
+
+def force_arrow(origin: Array, force: Array) -> tuple[float, ...]:
+    """Values of an arrow: x y z [m], qx qy qz qw of the rotation that takes x to the force, length [m].
+
+    Args:
+        origin: where the force acts, world frame, shape (3,) [m].
+        force: world frame, shape (3,) [N].
+    """
+    x, y, z = force.tolist()
+    size = math.sqrt(x * x + y * y + z * z)
+    if not size > 0.0:
+        return (*origin.tolist(), 0.0, 0.0, 0.0, 1.0, 0.0)
+    # Half-way rotation from x to the unit force d: q ~ (x cross d, 1 + x . d); straight back turns about z.
+    w = 1.0 + x / size
+    turn = (0.0, 0.0, 1.0, 0.0) if w < 1e-9 else (0.0, -z / size, y / size, w)
+    norm = math.sqrt(sum(part * part for part in turn))
+    return (*origin.tolist(), *(part / norm for part in turn), METRES_PER_NEWTON * size)
+
+
+class Outlines:
+    """The support polygon and the footsteps to come, as the values of their template.
+
+    Attributes:
+        values: x y z of every vertex of `LOOPS`, flat [m]; overwritten by `update`.
+    """
+
+    def __init__(self, half_size: Array) -> None:
+        """For soles of this half size, shape (2,) [m]."""
+        self._half_size = half_size
+        counts = [vertices for _, vertices, _ in LOOPS]
+        vertices = np.zeros((sum(counts), 3))
+        self.values: Array = vertices.reshape(-1)
+        self._support, *self._footsteps = np.split(vertices, np.cumsum(counts)[:-1])
+
+    def update(self, plan: WalkPlan) -> None:
+        """Take over a plan; a footstep that is not there shrinks to a point of the last one."""
+        polygon = plan.support_polygon
+        self._support[: len(polygon), :2] = polygon
+        self._support[len(polygon) :, :2] = polygon[-1]
+        self._support[:, 2] = LIFT + min(foot.position[2] for foot in plan.footholds)
+        last: Footstep = plan.footholds[0]
+        for k, vertices in enumerate(self._footsteps):
+            if k < len(plan.footsteps):
+                last = plan.footsteps[k].footstep
+                vertices[:, :2] = sole_corners(last, self._half_size)
+            else:
+                vertices[:, :2] = last.position[:2]
+            vertices[:, 2] = LIFT + last.position[2]

@@ -1,0 +1,136 @@
+"""Writes what viewers draw: a picture fifty times a second, an event when it happens, the scene now and then."""
+
+import numpy as np
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from numpy.typing import NDArray
+
+from models.types import RobotDescription
+from planner.plan import WalkPlan
+from planner.sampling import PlanSample
+from planner.types import SolverStatus
+from scenarios.log import LogWriter
+from scenarios.viewer import templates
+from scenarios.viewer.drawing import NOWHERE, Outlines, force_arrow
+from scenarios.viewer.events import EventLog
+from scenarios.viewer.scene import world_scene
+from scenarios.viewer.schemas import published
+from sim.bodies import BodyPoses
+from sim.measurement import Measurement
+from sim.world import World
+from wbc.model import RobotTerms
+from wbc.types import SolveStatus, WbcReport
+from wbc.zmp import centre_of_pressure, measured_zmp
+
+Array = NDArray[np.float64]
+
+RATE = 50
+"""Pictures per simulated second [Hz]."""
+
+SCENE_PERIOD = 10
+"""The unchanging scene is repeated, for viewers that join late or see a part of the log [s]."""
+
+
+class WalkView:
+    """The channels that every fidelity can fill: points and outlines."""
+
+    def __init__(self, writer: LogWriter, half_size: Array) -> None:
+        """Open them; half size of the soles, shape (2,) [m]."""
+        update = published(SceneUpdate)
+        self._points = writer.template_channel(
+            "/scene/points", update, templates.points(), "CoM, ZMP and DCM, true and planned"
+        )
+        self._outlines = writer.template_channel(
+            "/scene/support", update, templates.outlines(), "support polygon and the next footsteps as planned"
+        )
+        self._shape = Outlines(half_size)
+        self._values = np.zeros((len(templates.BALLS), 3))
+        self._flat = self._values.reshape(-1)
+        self._plan: WalkPlan | None = None
+
+    def update(self, time_ns: int, com: Array, com_velocity: Array, zmp: Array, plan: WalkPlan, s: PlanSample) -> None:
+        """Draw an instant.
+
+        Args:
+            time_ns: simulated time [ns].
+            com: true CoM, shape (3,) [m].
+            com_velocity: shape (3,) [m/s].
+            zmp: true ZMP, shape (3,) [m]; NaN in flight.
+            plan: the plan that is followed.
+            s: its references now.
+        """
+        if plan is not self._plan:
+            self._shape.update(plan)
+            self._plan = plan
+        values, ground = self._values, self._flat[-1] if zmp[2] != zmp[2] else zmp[2]
+        values[0], values[1] = com, s.com
+        values[2] = NOWHERE if zmp[0] != zmp[0] else zmp
+        values[3, :2], values[4, :2], values[5, :2] = s.zmp, com[:2] + com_velocity[:2] / s.omega, s.dcm
+        values[3:, 2] = ground
+        self._points.append(time_ns, self._flat)
+        self._outlines.append(time_ns, self._shape.values)
+
+
+class BodyView:
+    """Everything that is drawn of a run in full physics.
+
+    Attributes:
+        every: control ticks from picture to picture.
+    """
+
+    def __init__(self, writer: LogWriter, world: World, robot: RobotDescription, control_rate: int) -> None:
+        self.every = max(control_rate // RATE, 1)
+        self._scene_every = control_rate * SCENE_PERIOD
+        update = published(SceneUpdate)
+        self._poses = BodyPoses(world.model)
+        self._torso = self._poses.names.index(robot.torso_body)
+        self._tf = writer.template_channel(
+            "/tf", published(FrameTransforms), templates.transforms(self._poses.names), "all bodies in the world"
+        )
+        self._joints = writer.template_channel(
+            "/joint_states", published(JointStates), templates.joint_states(robot.joint_names), "joints"
+        )
+        self._forces = writer.template_channel(
+            "/scene/forces", update, templates.forces(), "contact forces at the centres of pressure, and pushes"
+        )
+        self._scene = writer.message_channel("/scene/world", update, "robot and terrain, each body in its frame")
+        self._scene_data = world_scene(world.mjcf()).SerializeToString(deterministic=True)
+        self._walk = WalkView(writer, 0.5 * np.array([robot.sole_length, robot.sole_width]))
+        self._events = EventLog(writer)
+        self._pose_values = np.zeros(7 * len(self._poses.names))
+        self._joint_values = np.zeros(3 * len(robot.joint_names))
+
+    def events(
+        self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool
+    ) -> None:
+        """Say what has changed since the last control tick."""
+        fallback = report.status >= SolveStatus.EQUALITIES_ONLY or plan.status.solver is SolverStatus.HELD
+        self._events.update(time_ns, report.active, bool(measurement.external_force.any()), fallback, fallen)
+
+    def picture(
+        self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
+    ) -> None:
+        """Draw a control tick, if it is one that is drawn; ``terms`` are those of the true state."""
+        if tick % self.every:
+            return
+        if tick % self._scene_every == 0:
+            self._scene.append(time_ns, self._scene_data)
+        m, poses = measurement, self._poses
+        poses.update(m.q)
+        np.concatenate((poses.position.ravel(), poses.quaternion.ravel()), out=self._pose_values)
+        self._tf.append(time_ns, self._pose_values)
+        np.concatenate((m.joint_position, m.joint_velocity, m.joint_torque), out=self._joint_values)
+        self._joints.append(time_ns, self._joint_values)
+        self._forces.append(time_ns, self._arrows(m, terms))
+        zmp = measured_zmp(m.wrench, terms.sole_position, terms.sole_rotation)
+        self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)
+
+    def _arrows(self, m: Measurement, terms: RobotTerms) -> tuple[float, ...]:
+        values: tuple[float, ...] = ()
+        for wrench, position, R in zip(m.wrench, terms.sole_position, terms.sole_rotation, strict=True):
+            x, y = centre_of_pressure(wrench)
+            loaded = x == x
+            origin = position + x * R[:, 0] + y * R[:, 1] if loaded else position
+            values += force_arrow(origin, R @ wrench[:3])
+        return values + force_arrow(self._poses.position[self._torso], m.external_force)

@@ -34,6 +34,7 @@ class ChannelWriter:
         channel_id: its number in the file.
         count: messages waiting.
         total: messages handed over to chunks so far.
+        times: simulated time of the messages waiting [ns].
     """
 
     __slots__ = (
@@ -41,13 +42,17 @@ class ChannelWriter:
         "_capacity",
         "_clock",
         "_flush",
+        "_log_time",
         "_offsets",
+        "_publish_time",
         "_records",
-        "_stamps",
+        "_sequence",
+        "_stamp",
         "_views",
         "channel_id",
         "count",
         "spec",
+        "times",
         "total",
     )
 
@@ -61,7 +66,9 @@ class ChannelWriter:
         self._records = blank_records(spec.fields, channel_id, capacity)
         self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[field.name] for field in spec.fields)
         self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
-        self._stamps = np.zeros(capacity, np.uint64)
+        self.times: list[int] = []
+        self._stamp, self._sequence = self._records["_stamp"], self._records["_sequence"]
+        self._log_time, self._publish_time = self._records["_log_time"], self._records["_publish_time"]
         self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._records.dtype.itemsize)
         self._capacity = capacity
         self._clock = clock
@@ -79,17 +86,12 @@ class ChannelWriter:
             LogError: the chunk that this message completes cannot be written.
         """
         n = self.count
-        self._stamps[n] = time_ns
+        self.times.append(time_ns)
         for view, value in zip(self._views, values, strict=True):
             view[n] = value
         self.count = n = n + 1
         if time_ns >= self._clock.due or n == self._capacity:
             self._flush(time_ns)
-
-    def time_range(self) -> tuple[int, int]:
-        """Least and greatest stamp waiting [ns]."""
-        stamps = self._stamps[: self.count]
-        return int(stamps.min()), int(stamps.max())
 
     def take(self, offset: int) -> tuple[memoryview, bytes]:
         """Hand over what waits.
@@ -101,9 +103,10 @@ class ChannelWriter:
             the message records, valid until the next `append`, and their MessageIndex record.
         """
         n = self.count
-        records, stamps = self._records[:n], self._stamps[:n]
-        records["_log_time"] = records["_publish_time"] = records["_stamp"] = stamps
-        records["_sequence"] = np.arange(self.total, self.total + n, dtype=np.uint32)
+        stamps = np.array(self.times, np.uint64)
+        self._stamp[:n] = self._log_time[:n] = self._publish_time[:n] = stamps
+        self._sequence[:n] = np.arange(self.total, self.total + n)
+        self.times.clear()
         self.count = 0
         self.total += n
         index = message_index(self.channel_id, stamps, self._offsets[:n] + np.uint64(offset))

@@ -13,11 +13,10 @@ from scenarios.log.channel_writer import ChannelWriter, Clock
 from scenarios.log.compression import compress
 from scenarios.log.encode import MAGIC, encoded
 from scenarios.log.layout import PACKAGE, file_descriptor_set
-from scenarios.log.message_writer import MessageWriter, TemplateWriter
+from scenarios.log.message_writer import MessageWriter
 from scenarios.log.output import Output
 from scenarios.log.spec import ChannelSpec
 from scenarios.log.summary import Summary
-from scenarios.log.template import Template
 
 Compression = Literal["lz4", "zstd", ""]
 CHUNK_PERIOD_NS = 40_000_000
@@ -80,7 +79,7 @@ class LogWriter:
         self.path = path
         self._compression = compression
         self._summary = Summary()
-        self._channels: list[ChannelWriter | TemplateWriter | MessageWriter] = []
+        self._channels: list[ChannelWriter | MessageWriter] = []
         self._clock = Clock(CHUNK_PERIOD_NS)
         beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
         for name, values in metadata.items():
@@ -95,13 +94,6 @@ class LogWriter:
         schema = PublishedSchema(f"{PACKAGE}.{spec.message}", file_descriptor_set(spec))
         number = self._define(spec.topic, schema, spec.metadata())
         writer = ChannelWriter(spec, number, _CAPACITY, self._clock, self._flush)
-        self._channels.append(writer)
-        return writer
-
-    def template_channel(self, topic: str, schema: PublishedSchema, template: Template, doc: str) -> TemplateWriter:
-        """Add a channel of a published schema whose messages come from one template."""
-        number = self._define(topic, schema, {"doc": doc})
-        writer = TemplateWriter(template, number, _CAPACITY, self._clock, self._flush)
         self._channels.append(writer)
         return writer
 
@@ -136,8 +128,7 @@ class LogWriter:
         waiting = [channel for channel in self._channels if channel.count]
         if not waiting:
             return
-        ranges = [channel.time_range() for channel in waiting]
-        start, end = min(first for first, _ in ranges), max(last for _, last in ranges)
+        start, end = min(min(c.times) for c in waiting), max(max(c.times) for c in waiting)
         blocks, indexes, offset = [], [], 0
         for channel in waiting:
             block, index = channel.take(offset)

@@ -44,7 +44,7 @@ class Outlines:
     """The support polygon and the footsteps to come, as the values of their template.
 
     Attributes:
-        values: x y z of every vertex of `LOOPS`, flat [m]; overwritten by `update`.
+        values: x y z of every vertex of `LOOPS`, flat [m].
     """
 
     def __init__(self, half_size: Array) -> None:
@@ -52,7 +52,8 @@ class Outlines:
         self._half_size = half_size
         counts = [vertices for _, vertices, _ in LOOPS]
         vertices = np.zeros((sum(counts), 3))
-        self.values: Array = vertices.reshape(-1)
+        self.values: list[float] = []
+        self._vertices = vertices
         self._support, *self._footsteps = np.split(vertices, np.cumsum(counts)[:-1])
 
     def update(self, plan: WalkPlan) -> None:
@@ -69,3 +70,4 @@ class Outlines:
             else:
                 vertices[:, :2] = last.position[:2]
             vertices[:, 2] = LIFT + last.position[2]
+        self.values = self._vertices.ravel().tolist()

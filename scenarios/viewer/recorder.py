@@ -1,9 +1,12 @@
-"""Writes what viewers draw: a picture fifty times a second, an event when it happens, the scene now and then."""
+"""Writes what viewers draw: a picture thirty times a second, an event when it happens, the scene now and then."""
+
+from collections.abc import Sequence
 
 import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from google.protobuf.message import Message as ProtobufMessage
 from numpy.typing import NDArray
 
 from models.types import RobotDescription
@@ -11,6 +14,7 @@ from planner.plan import WalkPlan
 from planner.sampling import PlanSample
 from planner.types import SolverStatus
 from scenarios.log import LogWriter
+from scenarios.log.template import Template
 from scenarios.viewer import templates
 from scenarios.viewer.drawing import NOWHERE, Outlines, force_arrow
 from scenarios.viewer.events import EventLog
@@ -25,11 +29,28 @@ from wbc.zmp import centre_of_pressure, measured_zmp
 
 Array = NDArray[np.float64]
 
-RATE = 50
+RATE = 30
 """Pictures per simulated second [Hz]."""
 
 SCENE_PERIOD = 10
 """The unchanging scene is repeated, for viewers that join late or see a part of the log [s]."""
+
+
+_FALLBACK, _HELD = SolveStatus.EQUALITIES_ONLY, SolverStatus.HELD
+
+
+class Drawn:
+    """A channel whose messages come from one template."""
+
+    def __init__(
+        self, writer: LogWriter, topic: str, schema: type[ProtobufMessage], template: Template, doc: str
+    ) -> None:
+        self._channel = writer.message_channel(topic, published(schema), doc)
+        self._template = template
+
+    def append(self, time_ns: int, values: Sequence[float]) -> None:
+        """Write a message with the template's values."""
+        self._channel.append(time_ns, self._template.encode(time_ns, values))
 
 
 class WalkView:
@@ -37,13 +58,9 @@ class WalkView:
 
     def __init__(self, writer: LogWriter, half_size: Array) -> None:
         """Open them; half size of the soles, shape (2,) [m]."""
-        update = published(SceneUpdate)
-        self._points = writer.template_channel(
-            "/scene/points", update, templates.points(), "CoM, ZMP and DCM, true and planned"
-        )
-        self._outlines = writer.template_channel(
-            "/scene/support", update, templates.outlines(), "support polygon and the next footsteps as planned"
-        )
+        self._points = Drawn(writer, "/scene/points", SceneUpdate, templates.points(), "CoM, ZMP, DCM, true and planned")
+        support = "support polygon and the next footsteps as planned"
+        self._outlines = Drawn(writer, "/scene/support", SceneUpdate, templates.outlines(), support)
         self._shape = Outlines(half_size)
         self._values = np.zeros((len(templates.BALLS), 3))
         self._flat = self._values.reshape(-1)
@@ -68,7 +85,7 @@ class WalkView:
         values[2] = NOWHERE if zmp[0] != zmp[0] else zmp
         values[3, :2], values[4, :2], values[5, :2] = s.zmp, com[:2] + com_velocity[:2] / s.omega, s.dcm
         values[3:, 2] = ground
-        self._points.append(time_ns, self._flat)
+        self._points.append(time_ns, self._flat.tolist())
         self._outlines.append(time_ns, self._shape.values)
 
 
@@ -82,31 +99,25 @@ class BodyView:
     def __init__(self, writer: LogWriter, world: World, robot: RobotDescription, control_rate: int) -> None:
         self.every = max(control_rate // RATE, 1)
         self._scene_every = control_rate * SCENE_PERIOD
-        update = published(SceneUpdate)
         self._poses = BodyPoses(world.model)
         self._torso = self._poses.names.index(robot.torso_body)
-        self._tf = writer.template_channel(
-            "/tf", published(FrameTransforms), templates.transforms(self._poses.names), "all bodies in the world"
-        )
-        self._joints = writer.template_channel(
-            "/joint_states", published(JointStates), templates.joint_states(robot.joint_names), "joints"
-        )
-        self._forces = writer.template_channel(
-            "/scene/forces", update, templates.forces(), "contact forces at the centres of pressure, and pushes"
-        )
-        self._scene = writer.message_channel("/scene/world", update, "robot and terrain, each body in its frame")
+        poses, joints = templates.transforms(self._poses.names), templates.joint_states(robot.joint_names)
+        self._tf = Drawn(writer, "/tf", FrameTransforms, poses, "all bodies in the world")
+        self._joints = Drawn(writer, "/joint_states", JointStates, joints, "positions, velocities and torques")
+        forces = "contact forces at the centres of pressure, and pushes"
+        self._forces = Drawn(writer, "/scene/forces", SceneUpdate, templates.forces(), forces)
+        self._scene = writer.message_channel("/scene/world", published(SceneUpdate), "robot and terrain, each body in its frame")
         self._scene_data = world_scene(world.mjcf()).SerializeToString(deterministic=True)
         self._walk = WalkView(writer, 0.5 * np.array([robot.sole_length, robot.sole_width]))
         self._events = EventLog(writer)
-        self._pose_values = np.zeros(7 * len(self._poses.names))
-        self._joint_values = np.zeros(3 * len(robot.joint_names))
 
     def events(
         self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool
     ) -> None:
         """Say what has changed since the last control tick."""
-        fallback = report.status >= SolveStatus.EQUALITIES_ONLY or plan.status.solver is SolverStatus.HELD
-        self._events.update(time_ns, report.active, bool(measurement.external_force.any()), fallback, fallen)
+        force = measurement.external_force
+        fallback = report.status >= _FALLBACK or plan.status.solver is _HELD
+        self._events.update(time_ns, report.active, bool(np.dot(force, force)), fallback, fallen)
 
     def picture(
         self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
@@ -118,10 +129,8 @@ class BodyView:
             self._scene.append(time_ns, self._scene_data)
         m, poses = measurement, self._poses
         poses.update(m.q)
-        np.concatenate((poses.position.ravel(), poses.quaternion.ravel()), out=self._pose_values)
-        self._tf.append(time_ns, self._pose_values)
-        np.concatenate((m.joint_position, m.joint_velocity, m.joint_torque), out=self._joint_values)
-        self._joints.append(time_ns, self._joint_values)
+        self._tf.append(time_ns, poses.position.ravel().tolist() + poses.quaternion.ravel().tolist())
+        self._joints.append(time_ns, np.concatenate((m.joint_position, m.joint_velocity, m.joint_torque)).tolist())
         self._forces.append(time_ns, self._arrows(m, terms))
         zmp = measured_zmp(m.wrench, terms.sole_position, terms.sole_rotation)
         self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)

@@ -49,7 +49,7 @@ def transforms(frames: Sequence[str]) -> Template:
             rotation=Quaternion(w=slot(q), x=slot(q + 1), y=slot(q + 2), z=slot(q + 3)),
         )  # fmt: skip
 
-    return Template.of(FrameTransforms(transforms=[one(i, name) for i, name in enumerate(frames)]), 7 * n)
+    return Template(FrameTransforms(transforms=[one(i, name) for i, name in enumerate(frames)]), 7 * n)
 
 
 def joint_states(names: Sequence[str]) -> Template:
@@ -59,7 +59,7 @@ def joint_states(names: Sequence[str]) -> Template:
         JointState(name=name, position=slot(i), velocity=slot(n + i), effort=slot(2 * n + i))
         for i, name in enumerate(names)
     ]
-    return Template.of(JointStates(timestamp=stamp(), joints=joints), 3 * n)
+    return Template(JointStates(timestamp=stamp(), joints=joints), 3 * n)
 
 
 def points() -> Template:
@@ -68,7 +68,7 @@ def points() -> Template:
         SceneEntity(timestamp=stamp(), frame_id=WORLD, id=name, spheres=[sphere(_slots(3 * i, 3), diameter, rgba)])
         for i, (name, diameter, rgba) in enumerate(BALLS)
     ]
-    return Template.of(scene(*entities), 3 * len(BALLS))
+    return Template(scene(*entities), 3 * len(BALLS))
 
 
 def forces() -> Template:
@@ -78,7 +78,7 @@ def forces() -> Template:
         *place, length = _slots(8 * i, 8)
         drawn = arrow(place[:3], place[3:], length, rgba)
         entities.append(SceneEntity(timestamp=stamp(), frame_id=WORLD, id=name, arrows=[drawn]))
-    return Template.of(scene(*entities), 8 * len(ARROWS))
+    return Template(scene(*entities), 8 * len(ARROWS))
 
 
 def outlines() -> Template:
@@ -88,7 +88,7 @@ def outlines() -> Template:
         line = loop([_slots(first + 3 * k, 3) for k in range(vertices)], rgba)
         entities.append(SceneEntity(timestamp=stamp(), frame_id=WORLD, id=name, lines=[line]))
         first += 3 * vertices
-    return Template.of(scene(*entities), first)
+    return Template(scene(*entities), first)
 
 
 def _slots(first: int, count: int) -> list[float]:

@@ -1,21 +1,24 @@
-"""Logging as a share of the loop: the same walk with every channel and with none, in processor time.
+"""Logging as a share of the loop: the same walk with every channel and with none, side by side in short turns.
 
-Usage: python benchmarks/logging_share.py [SIMULATED_SECONDS] [REPETITIONS]
+Usage: python benchmarks/logging_share.py [SIMULATED_SECONDS]
 """
 
-import gc
 import sys
 import tempfile
 import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from scenarios.load import load_scenario
 from scenarios.log import LogWriter
 from scenarios.loop import ClosedLoop
 from scenarios.robots import describe
+
+TURN = 80
+"""Ticks of a turn: a whole number of chunks, plans and pictures."""
 
 
 class Nothing:
@@ -25,31 +28,30 @@ class Nothing:
         return lambda *values: None
 
 
-def spent(path: Path, seconds: float, logged: bool) -> float:
-    """Processor time of the loop [s]."""
+def walk(writer: LogWriter, logged: bool) -> ClosedLoop:
     scenario = load_scenario("diagonal-walk", [])
-    with LogWriter(path, {}) as writer:
-        loop = ClosedLoop(scenario, describe(scenario), writer)
-        if not logged:
-            loop._recorder = loop._walk_recorder = loop._view = loop._planning._recorder = Nothing()
-        ticks = range(round(seconds * scenario.rates.control))
-        gc.collect()
-        start = time.process_time()
-        for tick in ticks:
-            loop.tick(tick)
-        return time.process_time() - start
+    loop = ClosedLoop(scenario, describe(scenario), writer)
+    if not logged:
+        loop._recorder = loop._walk_recorder = loop._view = loop._planning._recorder = Nothing()
+    return loop
+
+
+def spent(loop: ClosedLoop, start: int) -> float:
+    begin = time.perf_counter()
+    for tick in range(start, start + TURN):
+        loop.tick(tick)
+    return time.perf_counter() - begin
 
 
 def main() -> None:
-    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 4.0
-    repetitions = int(sys.argv[2]) if len(sys.argv) > 2 else 5
+    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 12.0
     with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
-        path = Path(folder) / "log.mcap"
-        spent(path, 0.5, True)
-        pairs = [(spent(path, seconds, True), spent(path, seconds, False)) for _ in range(repetitions)]
-    on, off = (min(column) for column in zip(*pairs, strict=True))
-    print(f"with all channels {on / seconds:.3f} s per simulated second, with none {off / seconds:.3f}")
-    print(f"logging takes {100 * (on - off) / on:.1f} % of the loop")
+        with LogWriter(Path(folder) / "on.mcap", {}) as on, LogWriter(Path(folder) / "off.mcap", {}) as off:
+            loops = walk(on, True), walk(off, False)
+            turns = [[spent(loop, start) for loop in loops] for start in range(0, round(500 * seconds), TURN)]
+    logged, bare = np.array(turns).T
+    print(f"median tick with all channels {1e6 * np.median(logged) / TURN:.0f} us, with none {1e6 * np.median(bare) / TURN:.0f} us")
+    print(f"logging takes {100 * np.median(1 - bare / logged):.1f} % of the loop (median of {len(turns)} turns)")
 
 
 if __name__ == "__main__":

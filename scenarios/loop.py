@@ -99,11 +99,8 @@ class ClosedLoop:
         self._landed = report.active
         torque = self._zero_torque if self._faults.active("torque_loss", tick) else report.torque
         watch.lap()
-        recorder.body(now_ns, measurement, terms)
-        recorder.estimate(now_ns, terms, state.q, state.v, sample.omega)
-        recorder.contact(now_ns, measurement, terms, reference, report)
+        recorder.tick(now_ns, measurement, terms, state, reference, report, torque)
         self._walk_recorder.reference(now_ns, planning.plan, sample)
-        recorder.control(now_ns, report, torque)
         fallen = self._fallen(terms, measurement)
         self._view.events(now_ns, measurement, report, planning.plan, fallen)
         self._view.picture(tick, now_ns, measurement, terms, planning.plan, sample)

@@ -1,7 +1,7 @@
 """The hot end of the log: copies values into preallocated message records."""
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from mcap.opcode import Opcode
@@ -92,6 +92,15 @@ class ChannelWriter:
         self.count = n = n + 1
         if time_ns >= self._clock.due or n == self._capacity:
             self._flush(time_ns)
+
+    def view(self, name: str) -> NDArray[np.generic]:
+        """Where the values of a field wait, shape (capacity, *field shape)."""
+        return self._views[[field.name for field in self.spec.fields].index(name)]
+
+    def fill(self, times_ns: Sequence[int]) -> None:
+        """Take over messages whose values were written into the views, while none waits."""
+        self.times.extend(times_ns)
+        self.count = len(times_ns)
 
     def take(self, offset: int) -> tuple[memoryview, bytes]:
         """Hand over what waits.

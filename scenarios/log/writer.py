@@ -11,10 +11,11 @@ from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
 
 from scenarios.log.channel_writer import ChannelWriter, Clock
 from scenarios.log.compression import compress
-from scenarios.log.encode import MAGIC, encoded
+from scenarios.log.encode import MAGIC, chunk_head, encoded
 from scenarios.log.layout import PACKAGE, file_descriptor_set
 from scenarios.log.message_writer import MessageWriter
 from scenarios.log.output import Output
+from scenarios.log.row_writer import Columns, RowWriter
 from scenarios.log.spec import ChannelSpec
 from scenarios.log.summary import Summary
 
@@ -80,6 +81,7 @@ class LogWriter:
         self._compression = compression
         self._summary = Summary()
         self._channels: list[ChannelWriter | MessageWriter] = []
+        self._rows: list[RowWriter] = []
         self._clock = Clock(CHUNK_PERIOD_NS)
         beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
         for name, values in metadata.items():
@@ -96,6 +98,12 @@ class LogWriter:
         writer = ChannelWriter(spec, number, _CAPACITY, self._clock, self._flush)
         self._channels.append(writer)
         return writer
+
+    def rows(self, columns: Columns) -> RowWriter:
+        """Fill channels of one rate together: their fields in the order in which a row has them."""
+        rows = RowWriter(columns, _CAPACITY, self._clock, self._flush)
+        self._rows.append(rows)
+        return rows
 
     def message_channel(self, topic: str, schema: PublishedSchema, doc: str) -> MessageWriter:
         """Add a channel of a published schema whose messages come encoded."""
@@ -125,6 +133,8 @@ class LogWriter:
 
     def flush(self) -> None:
         """Write what waits as one chunk, if anything waits."""
+        for rows in self._rows:
+            rows.spread()
         waiting = [channel for channel in self._channels if channel.count]
         if not waiting:
             return
@@ -137,9 +147,9 @@ class LogWriter:
             offset += len(block)
         data = b"".join(blocks)
         chunk = Chunk(self._compression, compress(data, self._compression), end, start, zlib.crc32(data), len(data))
-        record = encoded(chunk)
-        self._summary.add_chunk(chunk, self._output.position, len(record), indexes)
-        self._output.write(b"".join((record, *(index for _, index in indexes))))
+        head = chunk_head(chunk)
+        self._summary.add_chunk(chunk, self._output.position, len(head) + len(chunk.data), indexes)
+        self._output.write(b"".join((head, chunk.data, *(index for _, index in indexes))))
 
     def close(self) -> None:
         """Write what waits and the index, and close the file; a second call does nothing."""

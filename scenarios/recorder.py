@@ -1,20 +1,20 @@
 """Writes what the robot's body and its controller exchange in one run into the log's channels."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from scenarios.derived import contact_points
 from scenarios.log import LogWriter, channels
 from scenarios.log.channels import Sizes
 from sim.measurement import Measurement
 from wbc.model import RobotTerms
 from wbc.types import RobotState, SolveStatus, WbcReference, WbcReport
-from wbc.zmp import centre_of_pressure, measured_zmp
 
 Array = NDArray[np.float64]
 
 _SECOND, _FALLBACK = SolveStatus.SECOND_SOLVER, SolveStatus.EQUALITIES_ONLY
+_INPUTS = 44
+"""Numbers of a row that are not logged as they are, beside the torques: ω, cosine of the tilt, wrenches, soles, CoM."""
 
 
 class Recorder:
@@ -23,7 +23,6 @@ class Recorder:
     def __init__(self, writer: LogWriter, sizes: Sizes, torque_limit: Array) -> None:
         """Open its channels; ``torque_limit`` of the joints, shape (nj,) [N·m]."""
         self._inverse_limit = 1.0 / torque_limit
-        self._ratio = np.zeros_like(torque_limit)
         measurement = writer.channel(channels.measurement(sizes))
         truth = writer.channel(channels.truth(sizes))
         estimate = writer.channel(channels.estimate(sizes))
@@ -39,13 +38,20 @@ class Recorder:
             (torque, ("command",)),
         )
         numbers = (
-            (truth, ("torso_tilt", "nonfoot_contact")),
-            (estimate, ("dcm",)),
-            (contact, ("zmp", "normal_force", "planned", "active", "felt", "cop_left", "cop_right")),
-            (wbc, ("status", "solver", "iterations", "fallback", "primal_residual", "dual_residual")),
-            (torque, ("limit_ratio_max",)),
+            (truth, ("nonfoot_contact",)),
+            (contact, ("planned", "active", "felt")),
+            (wbc, ("status", "iterations", "primal_residual", "dual_residual")),
         )
-        self._row = writer.rows(vectors + numbers)
+        derived = (
+            (wbc, ("solver", "fallback")),
+            (truth, ("torso_tilt",)),
+            (estimate, ("dcm",)),
+            (torque, ("limit_ratio_max",)),
+            (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
+        )
+        raw = vectors + numbers
+        self._width = sum(field.size for writer, names in raw for field in writer.spec.fields if field.name in names)
+        self._row = writer.rows(raw + derived, self._width + _INPUTS + sizes.nj, self._derived)
 
     def tick(
         self, time_ns: int, measurement: Measurement, terms: RobotTerms, state: RobotState,
@@ -62,29 +68,29 @@ class Recorder:
             report: what it did.
             torque: the torque commanded, shape (nj,) [N·m].
         """
-        m, com, velocity, soles = measurement, terms.com, terms.com_velocity, terms.sole_pose
+        m, r, com, velocity, wrench = measurement, report, terms.com, terms.com_velocity, measurement.wrench.ravel()
+        numbers = (
+            m.nonfoot_contact, *reference.planned_contact, *r.active, *r.felt,
+            r.status, r.iterations, r.primal_residual, r.dual_residual, reference.omega, terms.torso_rotation[2, 2],
+        )  # fmt: skip
         self._row.append(
             time_ns,
-            m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer, m.wrench.ravel(),
-            m.external_force, m.q, m.v, com, velocity, terms.angular_momentum, soles.ravel(),
+            m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer, wrench, m.external_force,
+            m.q, m.v, com, velocity, terms.angular_momentum, terms.sole_pose.ravel(),
             com, velocity, state.q[:3], state.v[:6],
-            report.acceleration, report.wrench.ravel(), report.task_error, torque,
-            np.array(self._numbers(m, terms, reference, report, torque)),
+            r.acceleration, r.wrench.ravel(), r.task_error, torque, np.array(numbers),
+            wrench, terms.sole_position.ravel(), terms.sole_rotation.ravel(), com, velocity, torque,
         )  # fmt: skip
 
-    def _numbers(
-        self, m: Measurement, terms: RobotTerms, reference: WbcReference, report: WbcReport, torque: Array
-    ) -> tuple[float, ...]:
-        """Everything of a tick that is a number or two."""
-        x, y, _ = terms.com.tolist()
-        vx, vy, _ = terms.com_velocity.tolist()
-        omega, status, wrench = reference.omega, report.status, m.wrench
-        np.abs(np.multiply(torque, self._inverse_limit, out=self._ratio), out=self._ratio)
-        return (
-            math.acos(min(1.0, terms.torso_rotation[2, 2])), m.nonfoot_contact, x + vx / omega, y + vy / omega,
-            *measured_zmp(wrench, terms.sole_position, terms.sole_rotation), *wrench[:, 2].tolist(),
-            *reference.planned_contact, *report.active, *report.felt,
-            *centre_of_pressure(wrench[0]), *centre_of_pressure(wrench[1]),
-            status, status is _SECOND, report.iterations, status >= _FALLBACK,
-            report.primal_residual, report.dual_residual, np.maximum.reduce(self._ratio),
-        )  # fmt: skip
+    def _derived(self, rows: Array) -> Array:
+        """Complete rows by what follows from them: solver, tilt, DCM, largest torque ratio, ZMP and contact points."""
+        n, status = len(rows), rows[:, self._width - 4]
+        parts = np.split(rows[:, self._width :], np.cumsum((1, 1, 12, 6, 18, 3, 3)), axis=1)
+        omega, upright, wrench, position, rotation, com, velocity, torque = parts
+        wrenches = wrench.reshape(n, 2, 6)
+        zmp, cop = contact_points(wrenches, position.reshape(n, 2, 3), rotation.reshape(n, 2, 3, 3))
+        return np.column_stack((
+            rows[:, : self._width], status == _SECOND, status >= _FALLBACK, np.arccos(np.minimum(upright, 1.0)),
+            com[:, :2] + velocity[:, :2] / omega, np.abs(torque * self._inverse_limit).max(axis=1),
+            zmp, wrenches[:, :, 2], cop.reshape(n, 4),
+        ))  # fmt: skip

@@ -14,7 +14,7 @@ from scenarios.log.channels import SUPPORT_VERTICES, Sizes
 
 Array = NDArray[np.float64]
 
-_NO_FOOTSTEP = np.full(4, np.nan)
+_NO_FOOTSTEP = (math.nan,) * 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,5 +90,5 @@ class WalkRecorder:
         self._timing.append(time_ns, 1e6 * np.array(parts))
 
 
-def _pose(footstep: Footstep) -> Array:
-    return np.append(footstep.position, footstep.yaw)
+def _pose(footstep: Footstep) -> tuple[float, ...]:
+    return (*footstep.position.tolist(), footstep.yaw)

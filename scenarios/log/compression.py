@@ -5,8 +5,8 @@ import zstandard
 
 from scenarios.errors import LogError
 
-_LZ4_LEVEL = -1
-"""Half as fast again as the default, for 1 % more bytes of a log."""
+_LZ4_LEVEL = -3
+"""Twice as fast as the default, for 8 % more bytes of a log."""
 
 _GREATEST_RATIO = 100_000
 """No sound chunk is compressed more; a damaged size must not exhaust the memory."""

@@ -7,20 +7,37 @@ from numpy.typing import NDArray
 
 from scenarios.log.channel_writer import ChannelWriter, Clock
 
+Array = NDArray[np.float64]
 Columns = Sequence[tuple[ChannelWriter, Sequence[str]]]
 
 
 class RowWriter:
-    """Rows that wait for their chunk.
+    """Rows that wait for their chunk."""
 
-    Attributes:
-        width: numbers in a row.
-    """
+    __slots__ = ("_capacity", "_clock", "_columns", "_count", "_derive", "_flush", "_rows", "_times", "_writers")
 
-    __slots__ = ("_capacity", "_clock", "_columns", "_count", "_flush", "_rows", "_times", "_writers", "width")
+    def __init__(
+        self,
+        columns: Columns,
+        capacity: int,
+        clock: Clock,
+        flush: Callable[[int], None],
+        width: int = 0,
+        derive: Callable[[Array], Array] | None = None,
+    ) -> None:
+        """Rows made of fields of channels, in this order.
 
-    def __init__(self, columns: Columns, capacity: int, clock: Clock, flush: Callable[[int], None]) -> None:
-        """Rows made of fields of channels, in this order; every field of a channel must be there."""
+        Args:
+            columns: every field of every channel that takes part.
+            capacity: rows that may wait.
+            clock: says when a chunk is due.
+            flush: completes it.
+            width: numbers that are appended, where `derive` makes the row of them.
+            derive: from appended numbers, shape (n, width), to rows, for all that wait at once.
+
+        Raises:
+            ValueError: a field is missing or there twice.
+        """
         self._columns: list[tuple[NDArray[np.generic], int, int]] = []
         start = 0
         for writer, names in columns:
@@ -28,16 +45,16 @@ class RowWriter:
             for name in names:
                 self._columns.append((writer.view(name), start, start + sizes[name]))
                 start += sizes[name]
-        self.width = start
         self._writers = list({writer.channel_id: writer for writer, _ in columns}.values())
         if start != sum(field.size for writer in self._writers for field in writer.spec.fields):
             raise ValueError("a row must hold every field of its channels exactly once")
-        self._rows = np.zeros((capacity, start))
+        self._derive = derive
+        self._rows = np.zeros((capacity, width if derive else start))
         self._times: list[int] = []
         self._count = 0
         self._capacity, self._clock, self._flush = capacity, clock, flush
 
-    def append(self, time_ns: int, *parts: NDArray[np.float64]) -> None:
+    def append(self, time_ns: int, *parts: Array) -> None:
         """Add a message to each channel; the values are copied.
 
         Args:
@@ -60,9 +77,9 @@ class RowWriter:
         n = self._count
         if not n:
             return
-        rows = self._rows
+        rows = self._rows[:n] if self._derive is None else self._derive(self._rows[:n])
         for view, start, end in self._columns:
-            view[:n] = rows[:n, start:end].reshape(n, *view.shape[1:])
+            view[:n] = rows[:, start:end].reshape(n, *view.shape[1:])
         for writer in self._writers:
             writer.fill(self._times)
         self._times.clear()

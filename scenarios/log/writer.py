@@ -1,13 +1,15 @@
 """Writes a log: what the run was first, then a chunk of messages every few hundredths of a simulated second."""
 
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
 
+import numpy as np
 from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
+from numpy.typing import NDArray
 
 from scenarios.log.channel_writer import ChannelWriter, Clock
 from scenarios.log.compression import compress
@@ -20,10 +22,10 @@ from scenarios.log.spec import ChannelSpec
 from scenarios.log.summary import Summary
 
 Compression = Literal["lz4", "zstd", ""]
-CHUNK_PERIOD_NS = 40_000_000
+CHUNK_PERIOD_NS = 80_000_000
 """Simulated time in one chunk: what a killed process loses at most, and a tick [ns]."""
 
-_CAPACITY = 64
+_CAPACITY = 128
 _PROFILE, _LIBRARY = "", "surefoot"
 
 
@@ -99,9 +101,11 @@ class LogWriter:
         self._channels.append(writer)
         return writer
 
-    def rows(self, columns: Columns) -> RowWriter:
-        """Fill channels of one rate together: their fields in the order in which a row has them."""
-        rows = RowWriter(columns, _CAPACITY, self._clock, self._flush)
+    def rows(
+        self, columns: Columns, width: int = 0, derive: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None
+    ) -> RowWriter:
+        """Fill channels of one rate together; arguments as of `RowWriter`."""
+        rows = RowWriter(columns, _CAPACITY, self._clock, self._flush, width, derive)
         self._rows.append(rows)
         return rows
 

@@ -45,6 +45,7 @@ class Outlines:
 
     Attributes:
         values: x y z of every vertex of `LOOPS`, flat [m].
+        ground: height of the lower foothold [m].
     """
 
     def __init__(self, half_size: Array) -> None:
@@ -53,6 +54,7 @@ class Outlines:
         counts = [vertices for _, vertices, _ in LOOPS]
         vertices = np.zeros((sum(counts), 3))
         self.values: list[float] = []
+        self.ground = 0.0
         self._vertices = vertices
         self._support, *self._footsteps = np.split(vertices, np.cumsum(counts)[:-1])
 
@@ -61,7 +63,8 @@ class Outlines:
         polygon = plan.support_polygon
         self._support[: len(polygon), :2] = polygon
         self._support[len(polygon) :, :2] = polygon[-1]
-        self._support[:, 2] = LIFT + min(foot.position[2] for foot in plan.footholds)
+        self.ground = min(float(foot.position[2]) for foot in plan.footholds)
+        self._support[:, 2] = LIFT + self.ground
         last: Footstep = plan.footholds[0]
         for k, vertices in enumerate(self._footsteps):
             if k < len(plan.footsteps):

@@ -28,6 +28,7 @@ from wbc.types import SolveStatus, WbcReport
 from wbc.zmp import centre_of_pressure, measured_zmp
 
 Array = NDArray[np.float64]
+Triple = tuple[float, float, float]
 
 RATE = 30
 """Pictures per simulated second [Hz]."""
@@ -62,30 +63,29 @@ class WalkView:
         support = "support polygon and the next footsteps as planned"
         self._outlines = Drawn(writer, "/scene/support", SceneUpdate, templates.outlines(), support)
         self._shape = Outlines(half_size)
-        self._values = np.zeros((len(templates.BALLS), 3))
-        self._flat = self._values.reshape(-1)
         self._plan: WalkPlan | None = None
 
-    def update(self, time_ns: int, com: Array, com_velocity: Array, zmp: Array, plan: WalkPlan, s: PlanSample) -> None:
+    def update(self, time_ns: int, com: Array, com_velocity: Array, zmp: Triple, plan: WalkPlan, s: PlanSample) -> None:
         """Draw an instant.
 
         Args:
             time_ns: simulated time [ns].
             com: true CoM, shape (3,) [m].
             com_velocity: shape (3,) [m/s].
-            zmp: true ZMP, shape (3,) [m]; NaN in flight.
+            zmp: true ZMP, x y z [m]; NaN in flight.
             plan: the plan that is followed.
             s: its references now.
         """
         if plan is not self._plan:
             self._shape.update(plan)
             self._plan = plan
-        values, ground = self._values, self._flat[-1] if zmp[2] != zmp[2] else zmp[2]
-        values[0], values[1] = com, s.com
-        values[2] = NOWHERE if zmp[0] != zmp[0] else zmp
-        values[3, :2], values[4, :2], values[5, :2] = s.zmp, com[:2] + com_velocity[:2] / s.omega, s.dcm
-        values[3:, 2] = ground
-        self._points.append(time_ns, self._flat.tolist())
+        x, y, _ = centre = com.tolist()
+        vx, vy, _ = com_velocity.tolist()
+        in_flight = zmp[0] != zmp[0]
+        ground = self._shape.ground if in_flight else zmp[2]
+        true_dcm = (x + vx / s.omega, y + vy / s.omega, ground)
+        planned = (*s.zmp.tolist(), ground, *true_dcm, *s.dcm.tolist(), ground)
+        self._points.append(time_ns, (*centre, *s.com.tolist(), *(NOWHERE if in_flight else zmp), *planned))
         self._outlines.append(time_ns, self._shape.values)
 
 
@@ -139,7 +139,6 @@ class BodyView:
         values: tuple[float, ...] = ()
         for wrench, position, R in zip(m.wrench, terms.sole_position, terms.sole_rotation, strict=True):
             x, y = centre_of_pressure(wrench)
-            loaded = x == x
-            origin = position + x * R[:, 0] + y * R[:, 1] if loaded else position
+            origin = position if x != x else position + R[:, :2] @ (x, y)
             values += force_arrow(origin, R @ wrench[:3])
         return values + force_arrow(self._poses.position[self._torso], m.external_force)

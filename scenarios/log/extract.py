@@ -7,36 +7,32 @@ from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
 from scenarios.log.layout import PREFIX_BYTES
-from scenarios.log.scan import Buffer
 
 
-def records_of(
-    data: Buffer, index: NDArray[np.void], channel_id: int, dtype: np.dtype[Any]
-) -> tuple[NDArray[np.uint8], int]:
-    """Collect a channel's message records.
+def block_of(data: memoryview, index: NDArray[np.void], size: int) -> memoryview | bytes:
+    """Bytes of a channel's messages of `size` bytes, one after the other; those beyond the chunk are left out.
 
     Args:
         data: a decompressed chunk.
         index: times and offsets of the channel's messages in it.
-        channel_id: the channel.
-        dtype: type of a whole message record.
-
-    Returns:
-        bytes of the sound records, one after the other, and the number of others.
+        size: of a message record.
     """
-    offsets, size = index["offset"].astype(np.int64), dtype.itemsize
+    offsets = index["offset"].astype(np.int64)
+    if not len(offsets):
+        return b""
+    first, last = int(offsets[0]), int(offsets[-1])
+    if 0 <= first and last + size <= len(data) and (offsets[1:] - offsets[:-1] == size).all():
+        return data[first : last + size]
     inside = offsets[(offsets >= 0) & (offsets <= len(data) - size)]
-    contiguous = len(inside) and np.all(np.diff(inside) == size)
-    if contiguous:
-        block = np.frombuffer(data, np.uint8, len(inside) * size, inside[0])
-    else:
-        block = np.frombuffer(b"".join(data[start : start + size] for start in inside.tolist()), np.uint8)
+    return b"".join(data[start : start + size] for start in inside.tolist())
+
+
+def sound_records(block: NDArray[np.uint8], channel_id: int, dtype: np.dtype[Any]) -> NDArray[np.void]:
+    """Message records of one channel out of whole records one after the other; others are left out."""
     records = block.view(dtype)
     sound = (
         (records["_opcode"] == Opcode.MESSAGE)
-        & (records["_length"] == size - PREFIX_BYTES)
+        & (records["_length"] == dtype.itemsize - PREFIX_BYTES)
         & (records["_channel"] == channel_id)
     )
-    if not sound.all():
-        block = records[sound].view(np.uint8)
-    return block, len(offsets) - int(np.count_nonzero(sound))
+    return records if sound.all() else records[sound]

@@ -1,5 +1,6 @@
 """Walks the records of a log file, whole or not: what is there, where, and what could not be read."""
 
+import mmap
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -19,7 +20,10 @@ Buffer = Any
 """A read-only bytes-like object: bytes or a memory map."""
 
 INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
+Index = slice | NDArray[np.void]
 PREFIX = struct.Struct("<BQ")
+_INDEX_HEAD = struct.Struct("<HI")
+_RELEASE_BYTES = 1 << 25
 _CHUNK = struct.Struct("<QQQII")
 _MESSAGE = struct.Struct("<HIQQ")
 _PRIVATE = 0x80
@@ -39,7 +43,8 @@ class ChunkPlace:
         crc: of the uncompressed bytes, 0 for none.
         compression: method.
         data: where its compressed bytes begin and end.
-        index: times and offsets of the messages by channel id; empty when the index is missing.
+        index: by channel id, where in the file the times and offsets of its messages stand, or they themselves where
+            the file has no index.
     """
 
     position: int
@@ -50,7 +55,19 @@ class ChunkPlace:
     crc: int
     compression: str
     data: slice
-    index: dict[int, NDArray[np.void]] = field(default_factory=dict)
+    index: dict[int, Index] = field(default_factory=dict)
+
+    def count(self, channel_id: int) -> int:
+        """Messages of a channel."""
+        index = self.index.get(channel_id)
+        if isinstance(index, slice):
+            return int(index.stop - index.start) // INDEX_ENTRY.itemsize
+        return 0 if index is None else len(index)
+
+    def entries(self, channel_id: int, data: Buffer) -> NDArray[np.void]:
+        """Times and offsets of the messages of a channel that it has, out of the file's bytes."""
+        index = self.index[channel_id]
+        return np.frombuffer(data[index], INDEX_ENTRY) if isinstance(index, slice) else index
 
 
 @dataclass(slots=True)
@@ -81,8 +98,11 @@ class Contents:
 def scan(data: Buffer) -> Contents:
     """Walk a file that begins with the MCAP magic."""
     contents = Contents()
-    size, position = len(data), len(MAGIC)
+    size, position, released = len(data), len(MAGIC), 0
     while position < size and contents.truncated:
+        if position - released > _RELEASE_BYTES:
+            release(data, released, position)
+            released = position
         opcode, length = PREFIX.unpack_from(data, position) if position + PREFIX.size <= size else (0, size)
         body, end = position + PREFIX.size, position + PREFIX.size + length
         if end > size or not (0 < opcode <= Opcode.DATA_END or opcode >= _PRIVATE):
@@ -93,7 +113,16 @@ def scan(data: Buffer) -> Contents:
         except _UNREADABLE:
             contents.damage.append(f"the {_name(opcode)} record at byte {position} is damaged")
         position = end
+    release(data, released, size)
     return contents
+
+
+def release(data: Buffer, start: int, stop: int) -> None:
+    """Let go of the memory of a range of a memory map, which stays readable: a long log need not be held whole."""
+    if isinstance(data, mmap.mmap):
+        page = mmap.ALLOCATIONGRANULARITY
+        first = start - start % page
+        data.madvise(mmap.MADV_DONTNEED, first, min(stop, len(data)) - first)
 
 
 def records_in(data: Buffer) -> Iterator[tuple[int, int, slice]]:
@@ -143,9 +172,11 @@ def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Conte
     if opcode == Opcode.CHUNK:
         contents.chunks.append(_chunk(data, position, body))
     elif opcode == Opcode.MESSAGE_INDEX and contents.chunks:
-        channel_id, length = struct.unpack_from("<HI", data, body.start)
-        entries = np.frombuffer(data[body.start + 6 : min(body.start + 6 + length, body.stop)], INDEX_ENTRY)
-        contents.chunks[-1].index[channel_id] = entries
+        channel_id, length = _INDEX_HEAD.unpack_from(data, body.start)
+        if length % INDEX_ENTRY.itemsize or body.start + _INDEX_HEAD.size + length > body.stop:
+            raise ValueError("message index of no whole number of entries")
+        start = body.start + _INDEX_HEAD.size
+        contents.chunks[-1].index[channel_id] = slice(start, start + length)
     elif opcode == Opcode.MESSAGE:
         channel_id, time = _message_header(data, body.start)
         contents.loose.setdefault(channel_id, []).append((time, position))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenarios.metrics.view import Mask, RunView
+from scenarios.metrics.view import Array, Mask, RunView
 
 FALLEN_HEIGHT = 0.6
 """Share of the nominal CoM height above the feet below which a robot has fallen."""
@@ -78,11 +78,17 @@ def foot_slip_max(run: RunView) -> float | None:
     return float(max(slips)) if slips else None
 
 
+def knee_flexion(run: RunView) -> Array:
+    """Mean flexion of the knees at each tick, shape (n,) [rad]."""
+    knees = [i for i, name in enumerate(run.constants.joint_names) if "knee" in name]
+    return np.asarray(np.abs(run.field("/measurement", "joint_position")[:, knees]).mean(axis=1))
+
+
 def knee_angle_mean(run: RunView) -> float | None:
     """Mean flexion of both knees while walking, or over the whole run when no foot was lifted [rad]."""
-    knees = [i for i, name in enumerate(run.constants.joint_names) if "knee" in name]
-    ticks = run.walking if run.walking.stop else slice(None)
-    return float(np.mean(np.abs(run.field("/measurement", "joint_position")[ticks][:, knees]))) if knees else None
+    if not any("knee" in name for name in run.constants.joint_names):
+        return None
+    return float(np.mean(run.reduced(knee_flexion)[run.walking if run.walking.stop else slice(None)]))
 
 
 def speed_mean(run: RunView) -> float | None:

@@ -13,8 +13,8 @@ from wbc.types import RobotState, SolveStatus, WbcReference, WbcReport
 Array = NDArray[np.float64]
 
 _SECOND, _FALLBACK = SolveStatus.SECOND_SOLVER, SolveStatus.EQUALITIES_ONLY
-_INPUTS = 44
-"""Numbers of a row that are not logged as they are, beside the torques: ω, cosine of the tilt, wrenches, soles, CoM."""
+_INPUTS = 42
+"""Inputs of what is derived, beside the torques: both wrenches, sole positions, sole rotations, CoM, its velocity."""
 
 
 class Recorder:
@@ -49,9 +49,8 @@ class Recorder:
             (torque, ("limit_ratio_max",)),
             (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
         )
-        raw = vectors + numbers
-        self._width = sum(field.size for writer, names in raw for field in writer.spec.fields if field.name in names)
-        self._row = writer.rows(raw + derived, self._width + _INPUTS + sizes.nj, self._derived)
+        self._row = writer.rows(vectors, numbers, derived, self._derived, _INPUTS + sizes.nj)
+        self._inputs = -(_INPUTS + sizes.nj)
 
     def tick(
         self, time_ns: int, measurement: Measurement, terms: RobotTerms, state: RobotState,
@@ -74,23 +73,22 @@ class Recorder:
             r.status, r.iterations, r.primal_residual, r.dual_residual, reference.omega, terms.torso_rotation[2, 2],
         )  # fmt: skip
         self._row.append(
-            time_ns,
+            time_ns, numbers,
             m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer, wrench, m.external_force,
             m.q, m.v, com, velocity, terms.angular_momentum, terms.sole_pose.ravel(),
             com, velocity, state.q[:3], state.v[:6],
-            r.acceleration, r.wrench.ravel(), r.task_error, torque, np.array(numbers),
+            r.acceleration, r.wrench.ravel(), r.task_error, torque,
             wrench, terms.sole_position.ravel(), terms.sole_rotation.ravel(), com, velocity, torque,
         )  # fmt: skip
 
-    def _derived(self, rows: Array) -> Array:
-        """Complete rows by what follows from them: solver, tilt, DCM, largest torque ratio, ZMP and contact points."""
-        n, status = len(rows), rows[:, self._width - 4]
-        parts = np.split(rows[:, self._width :], np.cumsum((1, 1, 12, 6, 18, 3, 3)), axis=1)
-        omega, upright, wrench, position, rotation, com, velocity, torque = parts
-        wrenches = wrench.reshape(n, 2, 6)
-        zmp, cop = contact_points(wrenches, position.reshape(n, 2, 3), rotation.reshape(n, 2, 3, 3))
+    def _derived(self, vectors: Array, numbers: Array) -> Array:
+        """What follows from the rest: solver, fallback, tilt, DCM, largest torque ratio, ZMP and contact points."""
+        n, inputs = len(vectors), vectors[:, self._inputs :]
+        wrench = inputs[:, :12].reshape(n, 2, 6)
+        zmp, cop = contact_points(wrench, inputs[:, 12:18].reshape(n, 2, 3), inputs[:, 18:36].reshape(n, 2, 3, 3))
+        status, omega, upright = numbers[:, 7], numbers[:, 11:12], numbers[:, 12]
         return np.column_stack((
-            rows[:, : self._width], status == _SECOND, status >= _FALLBACK, np.arccos(np.minimum(upright, 1.0)),
-            com[:, :2] + velocity[:, :2] / omega, np.abs(torque * self._inverse_limit).max(axis=1),
-            zmp, wrenches[:, :, 2], cop.reshape(n, 4),
+            status == _SECOND, status >= _FALLBACK, np.arccos(np.minimum(upright, 1.0)),
+            inputs[:, 36:38] + inputs[:, 39:41] / omega, np.abs(inputs[:, _INPUTS:] * self._inverse_limit).max(axis=1),
+            zmp, wrench[:, :, 2], cop.reshape(n, 4),
         ))  # fmt: skip

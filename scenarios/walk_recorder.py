@@ -35,14 +35,17 @@ class WalkRecorder:
 
     def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
         reference = writer.channel(channels.reference(sizes))
-        vectors = ("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_reference", "swing_position")
+        vectors = (
+            *("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_reference"),
+            *("swing_position", "swing_velocity", "support"),
+        )
         numbers = ("omega", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
-        self._reference = writer.rows(((reference, (*vectors, "swing_velocity", "support", *numbers)),))
+        self._reference = writer.rows(((reference, vectors),), ((reference, numbers),))
         self._plan = writer.channel(channels.plan(sizes))
         self._footsteps = writer.channel(channels.footsteps(sizes))
         self._footstep = writer.channel(channels.footstep(sizes))
         timing = writer.channel(channels.timing(sizes))
-        self._timing = writer.rows(((timing, [field.name for field in timing.spec.fields]),))
+        self._timing = writer.rows((), ((timing, [field.name for field in timing.spec.fields]),))
         self._support = np.zeros((SUPPORT_VERTICES, 2))
 
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
@@ -79,15 +82,15 @@ class WalkRecorder:
             phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
         )  # fmt: skip
         self._reference.append(
-            time_ns, sample.com, sample.com_velocity, sample.com_acceleration, sample.zmp, sample.dcm,
-            sample.zmp_reference, sample.swing[:3], sample.swing_velocity[:3], self._support.ravel(), np.array(numbers),
+            time_ns, numbers, sample.com, sample.com_velocity, sample.com_acceleration, sample.zmp, sample.dcm,
+            sample.zmp_reference, sample.swing[:3], sample.swing_velocity[:3], self._support.ravel(),
         )  # fmt: skip
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick."""
         t = timing
         parts = (t.state, t.wbc_build, t.wbc_solve, t.planner, t.physics, t.log, t.tick)
-        self._timing.append(time_ns, 1e6 * np.array(parts))
+        self._timing.append(time_ns, tuple([1e6 * part for part in parts]))
 
 
 def _pose(footstep: Footstep) -> tuple[float, ...]:

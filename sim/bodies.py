@@ -5,6 +5,8 @@ import numpy as np
 
 from sim.measurement import Array
 
+_WXYZ = (6, 3, 4, 5)
+
 
 class BodyPoses:
     """Poses of all bodies at a configuration, apart from the simulation.
@@ -27,5 +29,5 @@ class BodyPoses:
     def update(self, q: Array) -> None:
         """Move the bodies to a configuration in Pinocchio's convention, shape (7 + nj,)."""
         self._qpos[:] = q
-        self._qpos[3:7] = q[np.array((6, 3, 4, 5))]
+        self._qpos[3:7] = q.take(_WXYZ)
         mujoco.mj_kinematics(self._model, self._data)

@@ -23,6 +23,7 @@ INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
 Index = slice | NDArray[np.void]
 PREFIX = struct.Struct("<BQ")
 _INDEX_HEAD = struct.Struct("<HI")
+_INDEX_RECORD = struct.Struct("<BQHI")
 _RELEASE_BYTES = 1 << 25
 _CHUNK = struct.Struct("<QQQII")
 _MESSAGE = struct.Struct("<HIQQ")
@@ -112,7 +113,7 @@ def scan(data: Buffer) -> Contents:
             _take(opcode, data, position, slice(body, end), contents)
         except _UNREADABLE:
             contents.damage.append(f"the {_name(opcode)} record at byte {position} is damaged")
-        position = end
+        position = _take_indexes(data, end, contents) if opcode == Opcode.CHUNK else end
     release(data, released, size)
     return contents
 
@@ -157,6 +158,25 @@ def index_chunk(data: bytes, contents: Contents) -> dict[int, NDArray[np.void]]:
         else:
             _take_definition(opcode, data[body], contents)
     return {number: np.array(found, INDEX_ENTRY) for number, found in entries.items()}
+
+
+def _take_indexes(data: Buffer, position: int, contents: Contents) -> int:
+    """Take the sound message indexes after a chunk in a tight loop, since they are most of a file's records.
+
+    Returns:
+        where the first other record begins.
+    """
+    unpack, size = _INDEX_RECORD.unpack_from, len(data) - _INDEX_RECORD.size
+    index = contents.chunks[-1].index if contents.chunks else {}
+    while position <= size:
+        opcode, length, channel_id, entries = unpack(data, position)
+        start = position + _INDEX_RECORD.size
+        end = start + entries
+        if opcode != Opcode.MESSAGE_INDEX or length != entries + 6 or entries % INDEX_ENTRY.itemsize or end > len(data):
+            break
+        index[channel_id] = slice(start, end)
+        position = end
+    return position
 
 
 def _message_header(data: Buffer, body: int) -> tuple[int, int]:

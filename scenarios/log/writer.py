@@ -1,15 +1,13 @@
 """Writes a log: what the run was first, then a chunk of messages every few hundredths of a simulated second."""
 
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
 
-import numpy as np
 from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
-from numpy.typing import NDArray
 
 from scenarios.log.channel_writer import ChannelWriter, Clock
 from scenarios.log.compression import compress
@@ -17,7 +15,7 @@ from scenarios.log.encode import MAGIC, chunk_head, encoded
 from scenarios.log.layout import PACKAGE, file_descriptor_set
 from scenarios.log.message_writer import MessageWriter
 from scenarios.log.output import Output
-from scenarios.log.row_writer import Columns, RowWriter
+from scenarios.log.row_writer import Columns, Derive, RowWriter
 from scenarios.log.spec import ChannelSpec
 from scenarios.log.summary import Summary
 
@@ -102,10 +100,10 @@ class LogWriter:
         return writer
 
     def rows(
-        self, columns: Columns, width: int = 0, derive: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None
+        self, vectors: Columns, numbers: Columns, derived: Columns = (), derive: Derive | None = None, inputs: int = 0
     ) -> RowWriter:
         """Fill channels of one rate together; arguments as of `RowWriter`."""
-        rows = RowWriter(columns, _CAPACITY, self._clock, self._flush, width, derive)
+        rows = RowWriter(vectors, numbers, _CAPACITY, self._clock, self._flush, derived, derive, inputs)
         self._rows.append(rows)
         return rows
 

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.plan import WalkPlan
-from planner.polygon import sole_corners
 from planner.types import Footstep
 from scenarios.viewer.templates import LOOPS
 
@@ -17,6 +16,8 @@ METRES_PER_NEWTON = 1e-3
 
 LIFT = 0.002
 """Outlines are drawn this far above the ground, so that they are not hidden by it [m]."""
+
+_VERTICES = sum(vertices for _, vertices, _ in LOOPS)
 
 NOWHERE = (0.0, 0.0, -1000.0)
 """Where a point is drawn that does not exist now, such as the ZMP of a robot in flight; out of sight [m]."""
@@ -48,29 +49,25 @@ class Outlines:
         ground: height of the lower foothold [m].
     """
 
-    def __init__(self, half_size: Array) -> None:
-        """For soles of this half size, shape (2,) [m]."""
-        self._half_size = half_size
-        counts = [vertices for _, vertices, _ in LOOPS]
-        vertices = np.zeros((sum(counts), 3))
+    def __init__(self, half_length: float, half_width: float) -> None:
+        """For soles of this half size [m]."""
+        self._corners = [(a * half_length, b * half_width) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
         self.values: list[float] = []
         self.ground = 0.0
-        self._vertices = vertices
-        self._support, *self._footsteps = np.split(vertices, np.cumsum(counts)[:-1])
 
     def update(self, plan: WalkPlan) -> None:
         """Take over a plan; a footstep that is not there shrinks to a point of the last one."""
-        polygon = plan.support_polygon
-        self._support[: len(polygon), :2] = polygon
-        self._support[len(polygon) :, :2] = polygon[-1]
         self.ground = min(float(foot.position[2]) for foot in plan.footholds)
-        self._support[:, 2] = LIFT + self.ground
-        last: Footstep = plan.footholds[0]
-        for k, vertices in enumerate(self._footsteps):
-            if k < len(plan.footsteps):
-                last = plan.footsteps[k].footstep
-                vertices[:, :2] = sole_corners(last, self._half_size)
-            else:
-                vertices[:, :2] = last.position[:2]
-            vertices[:, 2] = LIFT + last.position[2]
-        self.values = self._vertices.ravel().tolist()
+        height, polygon = self.ground + LIFT, plan.support_polygon.tolist()
+        vertices = [(x, y, height) for x, y in polygon]
+        vertices += vertices[-1:] * (LOOPS[0][1] - len(polygon))
+        for step in plan.footsteps:
+            vertices += self._outline(step.footstep)
+        vertices += vertices[-1:] * (_VERTICES - len(vertices))
+        self.values = [part for vertex in vertices for part in vertex]
+
+    def _outline(self, footstep: Footstep) -> list[tuple[float, float, float]]:
+        """Corners of a sole."""
+        x, y, z = footstep.position.tolist()
+        c, s = math.cos(footstep.yaw), math.sin(footstep.yaw)
+        return [(x + c * a - s * b, y + s * a + c * b, z + LIFT) for a, b in self._corners]

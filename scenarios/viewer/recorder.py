@@ -1,4 +1,4 @@
-"""Writes what viewers draw: a picture thirty times a second, an event when it happens, the scene now and then."""
+"""Writes what viewers draw: a picture every few hundredths of a second, an event when it happens, the scene now and then."""
 
 from collections.abc import Sequence
 
@@ -30,7 +30,7 @@ from wbc.zmp import centre_of_pressure, measured_zmp
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]
 
-RATE = 30
+RATE = 25
 """Pictures per simulated second [Hz]."""
 
 SCENE_PERIOD = 10
@@ -57,12 +57,12 @@ class Drawn:
 class WalkView:
     """The channels that every fidelity can fill: points and outlines."""
 
-    def __init__(self, writer: LogWriter, half_size: Array) -> None:
-        """Open them; half size of the soles, shape (2,) [m]."""
+    def __init__(self, writer: LogWriter, half_length: float, half_width: float) -> None:
+        """Open them; half size of the soles [m]."""
         self._points = Drawn(writer, "/scene/points", SceneUpdate, templates.points(), "CoM, ZMP, DCM, true and planned")
         support = "support polygon and the next footsteps as planned"
         self._outlines = Drawn(writer, "/scene/support", SceneUpdate, templates.outlines(), support)
-        self._shape = Outlines(half_size)
+        self._shape = Outlines(half_length, half_width)
         self._plan: WalkPlan | None = None
 
     def update(self, time_ns: int, com: Array, com_velocity: Array, zmp: Triple, plan: WalkPlan, s: PlanSample) -> None:
@@ -108,8 +108,9 @@ class BodyView:
         self._forces = Drawn(writer, "/scene/forces", SceneUpdate, templates.forces(), forces)
         self._scene = writer.message_channel("/scene/world", published(SceneUpdate), "robot and terrain, each body in its frame")
         self._scene_data = world_scene(world.mjcf()).SerializeToString(deterministic=True)
-        self._walk = WalkView(writer, 0.5 * np.array([robot.sole_length, robot.sole_width]))
+        self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
         self._events = EventLog(writer)
+        self._levers = np.zeros((2, 3, 2))
 
     def events(
         self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool
@@ -136,9 +137,13 @@ class BodyView:
         self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)
 
     def _arrows(self, m: Measurement, terms: RobotTerms) -> tuple[float, ...]:
-        values: tuple[float, ...] = ()
-        for wrench, position, R in zip(m.wrench, terms.sole_position, terms.sole_rotation, strict=True):
-            x, y = centre_of_pressure(wrench)
-            origin = position if x != x else position + R[:, :2] @ (x, y)
-            values += force_arrow(origin, R @ wrench[:3])
-        return values + force_arrow(self._poses.position[self._torso], m.external_force)
+        """Contact forces and push as arrows."""
+        levers = self._levers
+        levers[:, :, 0] = m.wrench[:, :3]
+        for foot in (0, 1):
+            x, y = centre_of_pressure(m.wrench[foot])
+            levers[foot, :2, 1] = (0.0, 0.0) if x != x else (x, y)
+        left, right = np.matmul(terms.sole_rotation, levers).transpose(0, 2, 1)
+        origins = terms.sole_position
+        push = force_arrow(self._poses.position[self._torso], m.external_force)
+        return (*force_arrow(origins[0] + left[1], left[0]), *force_arrow(origins[1] + right[1], right[0]), *push)

@@ -49,6 +49,7 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
 
 _REDUCTIONS: tuple[tuple[tuple[str, ...], Callable[[RunView], Any]], ...] = (
     (("/torque",), effort.torque_ratio),
+    (("/torque",), effort.strained_joint),
     (("/measurement",), effort.joint_limit_margin),
     (("/measurement",), effort.joint_power),
     (("/measurement",), walking.knee_flexion),

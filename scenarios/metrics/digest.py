@@ -12,13 +12,16 @@ from scenarios.log import Log
 
 KEPT: Mapping[str, tuple[str, ...]] = {
     "/measurement": ("external_force",),
-    "/truth": ("com", "com_velocity", "left_sole", "right_sole", "torso_tilt", "nonfoot_contact"),
+    "/truth": (
+        *("com", "com_velocity", "left_sole", "right_sole", "torso_tilt", "nonfoot_contact"),
+        "external_force",  # of the pendulum
+    ),
     "/estimate": ("com",),
     "/contact": ("zmp", "normal_force", "planned", "felt", "cop_left", "cop_right"),
-    "/reference": ("com_acceleration", "zmp_reference", "omega", "phase", "stance", "step"),
+    "/reference": ("com_acceleration", "zmp_reference", "omega", "phase", "phase_duration", "stance", "step"),
     "/wbc": ("status", "solver", "fallback"),
     "/torque": (),
-    "/timing": ("wbc_build", "wbc_solve", "planner", "tick"),
+    "/timing": ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick"),
     "/plan": ("held", "status"),
     "/footstep": ("index", "foot", "planned", "actual"),
 }

@@ -16,6 +16,12 @@ def torque_ratio(run: RunView) -> Array:
     return np.asarray(np.max(np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit), axis=1))
 
 
+def strained_joint(run: RunView) -> Array:
+    """Which joint is nearest to its torque limit at each tick, index, shape (n,)."""
+    ratio = np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit)
+    return np.asarray(np.argmax(ratio, axis=1).astype(np.uint8))
+
+
 def joint_limit_margin(run: RunView) -> Array:
     """Least distance of a joint from its limits at each tick, shape (n,) [rad]."""
     position = run.field("/measurement", "joint_position")

@@ -42,7 +42,8 @@ def forces_match_weight(run: RunView) -> Finding:
 
 def foot_slip(run: RunView) -> Finding:
     """How far a sole moves on the ground [m]."""
-    slips = [slip for slip in walking.stance_slips(run) if slip.start < _standing(run)]
+    end = _standing(run)
+    slips = [slip for slip in walking.stance_slips(run) if slip.start < end]
     if not slips:
         return judged("foot_slip", False, None, None, "")
     worst = max(slips, key=lambda slip: slip.distance)

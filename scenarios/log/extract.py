@@ -7,24 +7,32 @@ from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
 from scenarios.log.layout import PREFIX_BYTES
+from scenarios.log.scan import Buffer, ChunkPlace
 
 
-def block_of(data: memoryview, index: NDArray[np.void], size: int) -> memoryview | bytes:
+def block_of(data: memoryview, chunk: ChunkPlace, channel_id: int, size: int, file: Buffer) -> memoryview | bytes:
     """Bytes of a channel's messages of `size` bytes, one after the other; those beyond the chunk are left out.
 
+    Where the first and the last one are as far apart as their number says, they stand in a row; `sound_records` shows
+    whether they do.
+
     Args:
-        data: a decompressed chunk.
-        index: times and offsets of the channel's messages in it.
+        data: the decompressed chunk.
+        chunk: its place.
+        channel_id: the channel, which has messages in it.
         size: of a message record.
+        file: bytes of the file.
     """
-    offsets = index["offset"].astype(np.int64)
-    if not len(offsets):
-        return b""
-    first, last = int(offsets[0]), int(offsets[-1])
-    if 0 <= first and last + size <= len(data) and (offsets[1:] - offsets[:-1] == size).all():
+    first, last = chunk.extent(channel_id, file)
+    if last - first == (chunk.count(channel_id) - 1) * size and last + size <= len(data):
         return data[first : last + size]
-    inside = offsets[(offsets >= 0) & (offsets <= len(data) - size)]
-    return b"".join(data[start : start + size] for start in inside.tolist())
+    return gathered(data, chunk.entries(channel_id, file), size)
+
+
+def gathered(data: memoryview, index: NDArray[np.void], size: int) -> bytes:
+    """Bytes of messages that stand anywhere, one after the other; those beyond the data are left out."""
+    offsets = index["offset"][index["offset"] <= max(len(data) - size, 0)] if len(data) >= size else []
+    return b"".join(data[start : start + size] for start in map(int, offsets))
 
 
 def sound_records(block: NDArray[np.uint8], channel_id: int, dtype: np.dtype[Any]) -> NDArray[np.void]:

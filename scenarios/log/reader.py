@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scenarios.errors import LogError, nearest
 from scenarios.log.compression import decompress
 from scenarios.log.encode import MAGIC
-from scenarios.log.extract import block_of, sound_records
+from scenarios.log.extract import block_of, gathered, sound_records
 from scenarios.log.layout import record_dtype
 from scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
 from scenarios.log.spec import FieldSpec, layout_of
@@ -202,13 +202,14 @@ class Log:
             if data is not None:
                 view = memoryview(data)
                 for number in numbers:
-                    entries = chunk.entries(number, self.data)
-                    expected[number] += len(entries)
-                    blocks[number].append(block_of(view, entries, sizes[number]))
+                    count = chunk.count(number)
+                    expected[number] += count
+                    if count:
+                        blocks[number].append(block_of(view, chunk, number, sizes[number], self.data))
         for number in sizes.keys() & self.contents.loose.keys() if loose else ():
             entries = np.array(self.contents.loose[number], INDEX_ENTRY)
             expected[number] += len(entries)
-            blocks[number].append(block_of(memoryview(self.data), entries, sizes[number]))
+            blocks[number].append(gathered(memoryview(self.data), entries, sizes[number]))
         if chunks:
             release(self.data, chunks[0].position, chunks[-1].position + chunks[-1].length)
         return {topic: self._channel(topic, fields[topic], blocks[self._ids[topic]], expected[self._ids[topic]]) for topic in topics}

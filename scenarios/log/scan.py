@@ -23,6 +23,7 @@ INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
 Index = slice | NDArray[np.void]
 PREFIX = struct.Struct("<BQ")
 _INDEX_HEAD = struct.Struct("<HI")
+_OFFSET = struct.Struct("<Q")
 _INDEX_RECORD = struct.Struct("<BQHI")
 _RELEASE_BYTES = 1 << 25
 _CHUNK = struct.Struct("<QQQII")
@@ -69,6 +70,13 @@ class ChunkPlace:
         """Times and offsets of the messages of a channel that it has, out of the file's bytes."""
         index = self.index[channel_id]
         return np.frombuffer(data[index], INDEX_ENTRY) if isinstance(index, slice) else index
+
+    def extent(self, channel_id: int, data: Buffer) -> tuple[int, int]:
+        """Offsets of the first and the last message of a channel that has some, out of the file's bytes."""
+        index = self.index[channel_id]
+        if isinstance(index, slice):
+            return _OFFSET.unpack_from(data, index.start + 8)[0], _OFFSET.unpack_from(data, index.stop - 8)[0]
+        return int(index["offset"][0]), int(index["offset"][-1])
 
 
 @dataclass(slots=True)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.health import Finding, findings
-from scenarios.log import Log
+from scenarios.log import ChannelData, Log
 from scenarios.metrics import digest
 from scenarios.verdict import Verdict, judge
 
@@ -93,13 +93,8 @@ def _file_findings(log: Log, end: float) -> list[Finding]:
     return [Finding("file", "warning", end if log.truncated else None, None, cause) for cause in causes]
 
 
-def topic_summary(log: Log, topic: str) -> dict[str, dict[str, Any]]:
-    """Summarise every field of a topic: shape, count of values that are not finite, least, mean, greatest.
-
-    Raises:
-        LogError: there is no such topic, or its messages are not of a fixed layout.
-    """
-    channel = log[topic]
+def topic_summary(channel: ChannelData) -> dict[str, dict[str, Any]]:
+    """Summarise every field of a channel: shape, count of values that are not finite, least, mean, greatest."""
     summary: dict[str, dict[str, Any]] = {}
     for field in channel.fields:
         values = channel.field(field.name).astype(float)

@@ -64,10 +64,18 @@ class ChannelData:
         Raises:
             LogError: the channel has no such field.
         """
+        self._require(name)
+        return np.array(self._records[name])
+
+    def only(self, name: str) -> "ChannelData":
+        """The same messages with one field; errors as of `field`."""
+        self._require(name)
+        return ChannelData(self.topic, tuple(field for field in self.fields if field.name == name), self._records)
+
+    def _require(self, name: str) -> None:
         if all(field.name != name for field in self.fields):
             right = nearest(name, [field.name for field in self.fields])
             raise LogError(f"channel {self.topic} has no field '{name}'; {right}")
-        return np.array(self._records[name])
 
 
 class Log:

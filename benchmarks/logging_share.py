@@ -45,12 +45,18 @@ def spent(loop: ClosedLoop, start: int) -> float:
 
 def main() -> None:
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 12.0
-    with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
-        with LogWriter(Path(folder) / "on.mcap", {}) as on, LogWriter(Path(folder) / "off.mcap", {}) as off:
-            loops = walk(on, True), walk(off, False)
-            turns = [[spent(loop, start) for loop in loops] for start in range(0, round(500 * seconds), TURN)]
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        threadpool_limits(1),
+        LogWriter(Path(folder) / "on.mcap", {}) as on,
+        LogWriter(Path(folder) / "off.mcap", {}) as off,
+    ):
+        loops = walk(on, True), walk(off, False)
+        turns = [[spent(loop, start) for loop in loops] for start in range(0, round(500 * seconds), TURN)]
     logged, bare = np.array(turns).T
-    print(f"median tick with all channels {1e6 * np.median(logged) / TURN:.0f} us, with none {1e6 * np.median(bare) / TURN:.0f} us")
+    print(
+        f"median tick with all channels {1e6 * np.median(logged) / TURN:.0f} us, with none {1e6 * np.median(bare) / TURN:.0f} us"
+    )
     print(f"logging takes {100 * np.median(1 - bare / logged):.1f} % of the loop (median of {len(turns)} turns)")
 
 

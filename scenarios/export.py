@@ -67,7 +67,9 @@ def _csv(channel: ChannelData) -> bytes:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table)
     for first in range(0, len(channel), _ROWS_AT_ONCE):
-        writer.writerows(zip(*(column[first : first + _ROWS_AT_ONCE].tolist() for column in table.values()), strict=True))
+        writer.writerows(
+            zip(*(column[first : first + _ROWS_AT_ONCE].tolist() for column in table.values()), strict=True)
+        )
     return text.getvalue().encode()
 
 

@@ -17,7 +17,7 @@ from scenarios.reference import whole_body_reference
 from scenarios.schema import Scenario
 from scenarios.ticks import RunFault, Watch, refusing, run_ticks
 from scenarios.timeline import run_duration
-from scenarios.viewer.recorder import BodyView
+from scenarios.viewer.body_view import BodyView
 from scenarios.walk_recorder import TickTiming, WalkRecorder
 from sim.errors import SimulationDiverged
 from sim.measurement import Measurement

@@ -1,7 +1,6 @@
 """Where the bodies of a robot are, by MuJoCo's kinematics."""
 
 import mujoco
-import numpy as np
 
 from sim.measurement import Array
 

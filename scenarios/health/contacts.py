@@ -34,8 +34,8 @@ def forces_match_weight(run: RunView) -> Finding:
     worst = int(np.argmax(np.abs(error)))
     value = float(error[worst])
     cause = (
-        f"the feet carry {100 * value:+.0f} % of the weight too {'much' if value > 0 else 'little'} over half a second: "
-        "the robot is not as heavy as the log says, or something but the feet carries it, or contacts chatter between ticks"
+        f"over half a second the feet carry {100 * abs(value):.0f} % of the weight too {'much' if value > 0 else 'little'}: "
+        "the robot is not as heavy as the log says, something but the feet carries it, or contacts chatter between ticks"
     )
     return judged("contact_forces", abs(value) > FORCE_TOLERANCE, float(run.time[worst]), value, cause)
 
@@ -67,8 +67,8 @@ def late_touchdowns(run: RunView) -> Finding:
     worst = int(np.argmax(late))
     count = sum(value > LATE for value in late)
     cause = (
-        f"{count} of {len(late)} touchdowns are late, the worst by {1000 * late[worst]:.0f} ms: the ground is lower than "
-        "planned, the swing foot lags behind its reference, or its contact is felt too late"
+        f"{count} of {len(late)} touchdowns are late, the worst by {1000 * late[worst]:.0f} ms: the ground is lower "
+        "than planned, the swing foot lags behind its reference, or its contact is felt too late"
     )
     return judged("touchdowns", late[worst] > LATE, float(run.time[phases[worst][1]]), late[worst], cause)
 
@@ -81,7 +81,9 @@ def zmp_at_edge(run: RunView) -> Finding:
         return judged("zmp_margin", False, None, share, "")
     first = int(np.argmax(outside))
     pushed = bool(np.any(_push(run)[max(0, first - run.constants.control_rate) : first + 1]))
-    reason = "a push moves it" if pushed else "the plan asks for it, the CoM does not follow the plan, or a foot is tilted"
+    reason = (
+        "a push moves it" if pushed else "the plan asks for it, the CoM does not follow the plan, or a foot is tilted"
+    )
     cause = f"the ZMP is at the edge of the support in {100 * share:.1f} % of the ticks: {reason}"
     return judged("zmp_margin", share > OUTSIDE, float(run.time[first]), share, cause)
 
@@ -96,5 +98,3 @@ def _push(run: RunView) -> Array:
     """Sum of the pushes, shape (n, 3) [N]."""
     topic = "/measurement" if run.has("/measurement") else "/truth"
     return run.field(topic, "external_force")
-
-

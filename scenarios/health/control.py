@@ -34,7 +34,11 @@ def estimator_drift(run: RunView) -> Finding:
     worst = int(np.nanargmax(error))
     quarter = max(len(error) // 4, 1)
     grows = np.nanmean(error[-quarter:]) > 2 * np.nanmean(error[:quarter])
-    why = "it grows: the base drifts, as by foot slip" if grows else "it does not grow: noise, delay or a wrong mass model"
+    why = (
+        "it grows: the base drifts, as by foot slip"
+        if grows
+        else "it does not grow: noise, delay or a wrong mass model"
+    )
     cause = f"the estimated CoM is off by {1000 * error[worst]:.0f} mm, {why}"
     return judged("estimator", bool(error[worst] > DRIFT), float(run.time[worst]), float(error[worst]), cause)
 
@@ -45,8 +49,8 @@ def controller_fallbacks(run: RunView) -> Finding:
     count = int(np.count_nonzero(fallback))
     first = float(run.time[np.argmax(fallback)]) if count else None
     cause = (
-        f"the whole-body QP had no solution in {count} ticks and the fallback acted: its contacts, torque or joint limits "
-        "contradict each other, as at a lost contact or a joint at its stop"
+        f"the whole-body QP had no solution in {count} ticks and the fallback acted: its contacts, torque or joint "
+        "limits contradict each other, as at a lost contact or a joint at its stop"
     )
     return judged("controller_solver", count > 0, first, float(count), cause)
 
@@ -58,8 +62,8 @@ def planner_fallbacks(run: RunView) -> Finding:
     count = int(np.count_nonzero(held))
     first = float(plan.time[np.argmax(held)]) if count else None
     cause = (
-        f"{count} plans were held because the planner's QP had no solution: the state is out of reach of its bounds, as "
-        "after a push or with jerk limits that are too tight"
+        f"{count} plans were held because the planner's QP had no solution: the state is out of reach of its bounds, "
+        "as after a push or with jerk limits that are too tight"
     )
     return judged("planner_solver", count > 0, first, float(count), cause)
 
@@ -72,8 +76,8 @@ def overrun_ticks(run: RunView) -> Finding:
     parts = {part: float(run.field("/timing", part)[over].sum()) for part in _PARTS} if over.any() else {}
     blame = max(parts, key=lambda part: parts[part]) if sum(parts.values()) else "none"
     cause = (
-        f"{100 * share:.1f} % of the ticks take longer than their period, the worst {1000 * spent[worst]:.1f} ms, most of it "
-        f"in the part '{blame}': in real time they would be late; a busy machine does this too"
+        f"{100 * share:.1f} % of the ticks take longer than their period, the worst {1000 * spent[worst]:.1f} ms, most "
+        f"of it in the part '{blame}': in real time they would be late; a busy machine does this too"
     )
     return judged("overruns", share > OVERRUNS, float(run.time[worst]), share, cause)
 
@@ -92,7 +96,7 @@ def not_finite(run: RunView) -> Finding:
         return judged("finite_values", False, None, 0.0, "")
     topic = min(bad, key=lambda name: int(np.argmax(bad[name])) if bad[name].any() else run.ticks)
     cause = (
-        f"{count} values are not numbers, first in {topic}: what is upstream of it divided by zero or diverged; look at "
-        "the ticks before"
+        f"{count} values are not numbers, first in {topic}: what is upstream of it divided by zero or diverged; look "
+        "at the ticks before"
     )
     return judged("finite_values", True, float(run.time[np.argmax(bad[topic])]), float(count), cause)

@@ -31,8 +31,8 @@ def block_of(data: memoryview, chunk: ChunkPlace, channel_id: int, size: int, fi
 
 def gathered(data: memoryview, index: NDArray[np.void], size: int) -> bytes:
     """Bytes of messages that stand anywhere, one after the other; those beyond the data are left out."""
-    offsets = index["offset"][index["offset"] <= max(len(data) - size, 0)] if len(data) >= size else []
-    return b"".join(data[start : start + size] for start in map(int, offsets))
+    last = len(data) - size
+    return b"".join(data[start : start + size] for start in index["offset"].tolist() if start <= last)
 
 
 def sound_records(block: NDArray[np.uint8], channel_id: int, dtype: np.dtype[Any]) -> NDArray[np.void]:

@@ -17,7 +17,6 @@ from scenarios.log.layout import record_dtype
 from scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
 from scenarios.log.spec import FieldSpec, layout_of
 
-
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""
 
@@ -47,7 +46,7 @@ class ChannelData:
     @property
     def time(self) -> NDArray[np.float64]:
         """Simulated time of each message, shape (n,) [s]."""
-        return np.asarray(self.time_ns * 1e-9)
+        return np.asarray(self.time_ns / 1e9)
 
     def between(self, start_ns: int, end_ns: int) -> "ChannelData":
         """The messages from a time on and up to another one [ns]."""
@@ -220,7 +219,10 @@ class Log:
             blocks[number].append(gathered(memoryview(self.data), entries, sizes[number]))
         if chunks:
             release(self.data, chunks[0].position, chunks[-1].position + chunks[-1].length)
-        return {topic: self._channel(topic, fields[topic], blocks[self._ids[topic]], expected[self._ids[topic]]) for topic in topics}
+        return {
+            topic: self._channel(topic, fields[topic], blocks[self._ids[topic]], expected[self._ids[topic]])
+            for topic in topics
+        }
 
     def _channel(
         self, topic: str, fields: tuple[FieldSpec, ...], blocks: list[memoryview | bytes], expected: int
@@ -258,7 +260,7 @@ class Log:
             if not chunk.index or chunk.index.keys() - self.contents.channels.keys():
                 data = self._decompressed(chunk)
                 if data is not None:
-                    chunk.index = index_chunk(data, self.contents)
+                    chunk.index = dict(index_chunk(data, self.contents))
 
 
 def read(path: str | Path) -> Log:

@@ -2,7 +2,7 @@
 
 The message is built with the schema's own class, with recognisable numbers where values shall come. Their places in the
 encoded bytes make the message a template. Doubles take eight bytes anyway; the two varints of a
-``google.protobuf.Timestamp`` are written with leading zero groups, which every decoder accepts, so they keep their size.
+``google.protobuf.Timestamp`` are padded by zero groups, which every decoder accepts, so that they keep their size.
 """
 
 import struct
@@ -79,7 +79,9 @@ def _stamp(seconds: int, nanos: int) -> bytes:
 
 def _varint(value: int) -> bytes:
     """A varint of five bytes; the value is below 2^35."""
-    return bytes((value & 127 | 128, value >> 7 & 127 | 128, value >> 14 & 127 | 128, value >> 21 & 127 | 128, value >> 28))
+    return bytes(
+        (value & 127 | 128, value >> 7 & 127 | 128, value >> 14 & 127 | 128, value >> 21 & 127 | 128, value >> 28)
+    )
 
 
 def _all(data: bytes, part: bytes) -> list[int]:

@@ -63,7 +63,7 @@ def zmp_error_rms(run: RunView) -> list[float] | None:
 
 
 def predicted(run: RunView) -> Array:
-    """What each plan predicts for 0.2 s later: CoM x y z, CoM velocity x y, ω, shape (plans, 6); NaN beyond its horizon."""
+    """What each plan predicts for 0.2 s later, shape (plans, 6): CoM, its velocity x y, ω; NaN beyond its horizon."""
     plan, sample = run.log["/plan"], round(PREDICTION / run.constants.sample_time)
     com, velocity, omega = (plan.field(name) for name in ("com", "com_velocity", "omega"))
     if sample >= com.shape[1]:

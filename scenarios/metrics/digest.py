@@ -99,7 +99,7 @@ class KeptChannel:
     @property
     def time(self) -> NDArray[np.float64]:
         """Simulated time of each message, shape (n,) [s]."""
-        return np.asarray(self.time_ns * 1e-9)
+        return np.asarray(self.time_ns / 1e9)
 
     def field(self, name: str) -> NDArray[Any]:
         """Values of one field, shape (n, *field shape)."""

@@ -41,20 +41,20 @@ def _add(model: mujoco.MjModel, geom: int, entity: SceneEntity) -> None:
     """Add a geom to an entity; kinds that have no primitive are left out."""
     kind, size = int(model.geom_type[geom]), model.geom_size[geom]
     position, quaternion = model.geom_pos[geom], model.geom_quat[geom]
-    look = {"pose": pose(position, np.roll(quaternion, -1)), "color": color(_rgba(model, geom))}
+    place, tint = pose(position, np.roll(quaternion, -1)), color(_rgba(model, geom))
     if kind == _Geom.mjGEOM_BOX:
-        entity.cubes.append(CubePrimitive(size=_vector(2.0 * size), **look))
+        entity.cubes.append(CubePrimitive(size=_vector(2.0 * size), pose=place, color=tint))
     elif kind == _Geom.mjGEOM_SPHERE:
-        entity.spheres.append(SpherePrimitive(size=_vector(2.0 * size[[0, 0, 0]]), **look))
+        entity.spheres.append(SpherePrimitive(size=_vector(2.0 * size[[0, 0, 0]]), pose=place, color=tint))
     elif kind == _Geom.mjGEOM_ELLIPSOID:
-        entity.spheres.append(SpherePrimitive(size=_vector(2.0 * size), **look))
+        entity.spheres.append(SpherePrimitive(size=_vector(2.0 * size), pose=place, color=tint))
     elif kind in (_Geom.mjGEOM_CYLINDER, _Geom.mjGEOM_CAPSULE):
         shape = _vector(2.0 * size[[0, 0, 1]])
-        entity.cylinders.append(CylinderPrimitive(size=shape, bottom_scale=1.0, top_scale=1.0, **look))
+        entity.cylinders.append(CylinderPrimitive(size=shape, bottom_scale=1.0, top_scale=1.0, pose=place, color=tint))
     if kind == _Geom.mjGEOM_CAPSULE:
         for end in _ends(position, quaternion, size[1]):
             ball = pose(end, np.roll(quaternion, -1))
-            entity.spheres.append(SpherePrimitive(size=_vector(2.0 * size[[0, 0, 0]]), pose=ball, color=look["color"]))
+            entity.spheres.append(SpherePrimitive(size=_vector(2.0 * size[[0, 0, 0]]), pose=ball, color=tint))
 
 
 def _ends(
@@ -66,9 +66,9 @@ def _ends(
     return position - axis, position + axis
 
 
-def _rgba(model: mujoco.MjModel, geom: int) -> NDArray[np.float32]:
+def _rgba(model: mujoco.MjModel, geom: int) -> list[float]:
     material = int(model.geom_matid[geom])
-    rgba: NDArray[np.float32] = model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]
+    rgba: list[float] = (model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]).tolist()
     return rgba
 
 

@@ -1,5 +1,7 @@
 """Foxglove's published schemas, out of the package that publishes them."""
 
+from typing import cast
+
 from google.protobuf.descriptor import FileDescriptor
 from google.protobuf.descriptor_pb2 import FileDescriptorProto, FileDescriptorSet
 from google.protobuf.message import Message
@@ -10,7 +12,7 @@ from scenarios.log import PublishedSchema
 def published(message: type[Message]) -> PublishedSchema:
     """The schema of a message class, with every file that it imports."""
     files: dict[str, FileDescriptorProto] = {}
-    _collect(message.DESCRIPTOR.file, files)
+    _collect(cast(FileDescriptor, message.DESCRIPTOR.file), files)
     descriptors = FileDescriptorSet(file=files.values()).SerializeToString(deterministic=True)
     return PublishedSchema(message.DESCRIPTOR.full_name, descriptors)
 

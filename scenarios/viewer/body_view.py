@@ -1,12 +1,9 @@
-"""Writes what viewers draw: a picture every few hundredths of a second, an event when it happens, the scene now and then."""
-
-from collections.abc import Sequence
+"""What viewers draw of a run in full physics: bodies, joints, forces, scene, and everything of `walk_view`."""
 
 import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
-from google.protobuf.message import Message as ProtobufMessage
 from numpy.typing import NDArray
 
 from models.types import RobotDescription
@@ -14,12 +11,12 @@ from planner.plan import WalkPlan
 from planner.sampling import PlanSample
 from planner.types import SolverStatus
 from scenarios.log import LogWriter
-from scenarios.log.template import Template
 from scenarios.viewer import templates
-from scenarios.viewer.drawing import NOWHERE, Outlines, force_arrow
+from scenarios.viewer.drawing import force_arrow
 from scenarios.viewer.events import EventLog
 from scenarios.viewer.scene import world_scene
 from scenarios.viewer.schemas import published
+from scenarios.viewer.walk_view import RATE, Drawn, WalkView
 from sim.bodies import BodyPoses
 from sim.measurement import Measurement
 from sim.world import World
@@ -28,65 +25,12 @@ from wbc.types import SolveStatus, WbcReport
 from wbc.zmp import centre_of_pressure, measured_zmp
 
 Array = NDArray[np.float64]
-Triple = tuple[float, float, float]
-
-RATE = 25
-"""Pictures per simulated second [Hz]."""
 
 SCENE_PERIOD = 10
 """The unchanging scene is repeated, for viewers that join late or see a part of the log [s]."""
 
 
 _FALLBACK, _HELD = SolveStatus.EQUALITIES_ONLY, SolverStatus.HELD
-
-
-class Drawn:
-    """A channel whose messages come from one template."""
-
-    def __init__(
-        self, writer: LogWriter, topic: str, schema: type[ProtobufMessage], template: Template, doc: str
-    ) -> None:
-        self._channel = writer.message_channel(topic, published(schema), doc)
-        self._template = template
-
-    def append(self, time_ns: int, values: Sequence[float]) -> None:
-        """Write a message with the template's values."""
-        self._channel.append(time_ns, self._template.encode(time_ns, values))
-
-
-class WalkView:
-    """The channels that every fidelity can fill: points and outlines."""
-
-    def __init__(self, writer: LogWriter, half_length: float, half_width: float) -> None:
-        """Open them; half size of the soles [m]."""
-        self._points = Drawn(writer, "/scene/points", SceneUpdate, templates.points(), "CoM, ZMP, DCM, true and planned")
-        support = "support polygon and the next footsteps as planned"
-        self._outlines = Drawn(writer, "/scene/support", SceneUpdate, templates.outlines(), support)
-        self._shape = Outlines(half_length, half_width)
-        self._plan: WalkPlan | None = None
-
-    def update(self, time_ns: int, com: Array, com_velocity: Array, zmp: Triple, plan: WalkPlan, s: PlanSample) -> None:
-        """Draw an instant.
-
-        Args:
-            time_ns: simulated time [ns].
-            com: true CoM, shape (3,) [m].
-            com_velocity: shape (3,) [m/s].
-            zmp: true ZMP, x y z [m]; NaN in flight.
-            plan: the plan that is followed.
-            s: its references now.
-        """
-        if plan is not self._plan:
-            self._shape.update(plan)
-            self._plan = plan
-        x, y, _ = centre = com.tolist()
-        vx, vy, _ = com_velocity.tolist()
-        in_flight = zmp[0] != zmp[0]
-        ground = self._shape.ground if in_flight else zmp[2]
-        true_dcm = (x + vx / s.omega, y + vy / s.omega, ground)
-        planned = (*s.zmp.tolist(), ground, *true_dcm, *s.dcm.tolist(), ground)
-        self._points.append(time_ns, (*centre, *s.com.tolist(), *(NOWHERE if in_flight else zmp), *planned))
-        self._outlines.append(time_ns, self._shape.values)
 
 
 class BodyView:
@@ -106,15 +50,15 @@ class BodyView:
         self._joints = Drawn(writer, "/joint_states", JointStates, joints, "positions, velocities and torques")
         forces = "contact forces at the centres of pressure, and pushes"
         self._forces = Drawn(writer, "/scene/forces", SceneUpdate, templates.forces(), forces)
-        self._scene = writer.message_channel("/scene/world", published(SceneUpdate), "robot and terrain, each body in its frame")
+        self._scene = writer.message_channel(
+            "/scene/world", published(SceneUpdate), "robot and terrain, each body in its frame"
+        )
         self._scene_data = world_scene(world.mjcf()).SerializeToString(deterministic=True)
         self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
         self._events = EventLog(writer)
         self._levers = np.zeros((2, 3, 2))
 
-    def events(
-        self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool
-    ) -> None:
+    def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
         """Say what has changed since the last control tick."""
         force = measurement.external_force
         fallback = report.status >= _FALLBACK or plan.status.solver is _HELD

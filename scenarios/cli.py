@@ -4,11 +4,14 @@ import json
 import sys
 import traceback
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from scenarios.errors import LogError, ScenarioError, SetupError
+
+if TYPE_CHECKING:
+    from scenarios.log import Log
 
 app = typer.Typer(
     name="surefoot",
@@ -71,28 +74,50 @@ def run(
 @app.command()
 def inspect(
     log: Annotated[Path, typer.Argument(help="A log, also a truncated one.")],
-    topic: Annotated[str | None, typer.Option(help="Summarise the fields of one topic instead.")] = None,
+    topic: Annotated[str | None, typer.Option(help="Summarise or export one topic instead.")] = None,
+    field: Annotated[str | None, typer.Option(help="Only this field of the topic.")] = None,
+    start: Annotated[float | None, typer.Option("--from", help="From this time on [s].")] = None,
+    end: Annotated[float | None, typer.Option("--to", help="Up to this time [s].")] = None,
+    export: Annotated[Path | None, typer.Option(help="Write the topic to a .csv, .npz or .parquet file.")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Show verdict, metrics, health, topics and rates of a log."""
     from scenarios import inspection
-    from scenarios.console import print_inspection, print_topic
+    from scenarios.console import print_inspection
     from scenarios.log import read
 
     opened = read(log)
     if topic is not None:
-        fields = inspection.topic_summary(opened, topic)
-        if as_json:
-            typer.echo(json.dumps(fields, allow_nan=False))
-        else:
-            print_topic(topic, fields)
+        _show_topic(opened, topic, (start, end), field, export, as_json)
         return
+    if (field, start, end, export) != (None, None, None, None):
+        raise LogError("--field, --from, --to and --export choose from one topic; name it with --topic")
     found = inspection.inspect(opened)
     if as_json:
         typer.echo(json.dumps(found.to_json(), allow_nan=False))
     else:
         print_inspection(found)
     raise typer.Exit(0 if found.verdict.passed else MISSED)
+
+
+def _show_topic(
+    log: "Log", topic: str, span: tuple[float | None, float | None], field: str | None, file: Path | None, as_json: bool
+) -> None:
+    """Summarise a topic, or export it and say where it is."""
+    from scenarios.console import print_topic
+    from scenarios.export import export, selected
+    from scenarios.inspection import topic_summary
+
+    channel = selected(log, topic, *span, field)
+    for loss in log.damage:
+        typer.echo(f"not read: {loss}", err=True)
+    if file is not None:
+        export(channel, file)
+        typer.echo(json.dumps({"file": str(file), "messages": len(channel)}) if as_json else str(file))
+    elif as_json:
+        typer.echo(json.dumps(topic_summary(channel), allow_nan=False))
+    else:
+        print_topic(topic, topic_summary(channel))
 
 
 @app.command()

@@ -1,7 +1,7 @@
 """What a person sees: the progress line on standard error, tables on standard output."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -14,6 +14,7 @@ from rich.text import Text
 
 from scenarios import display
 from scenarios.display import bound_text, value_text
+from scenarios.health import Finding
 from scenarios.inspection import Inspection
 from scenarios.progress import Progress
 from scenarios.verdict import Verdict
@@ -77,14 +78,25 @@ def print_inspection(found: Inspection) -> None:
     """Print everything that an inspection found."""
     console = plain_console()
     console.print(f"{found.log}: {found.start:.3f} s to {found.end:.3f} s")
-    for line in found.health:
-        console.print(f"health: {line}", style="yellow")
+    for line in _health_lines(found.health):
+        console.print(f"health: {line}")
     _print_verdict(console, found.scenario, found.verdict)
     console.print(_metric_table(found.verdict, tuple(found.verdict.metrics)))
     topics = plain_table("topic", "messages", "rate [Hz]")
     for topic in found.topics:
         topics.add_row(topic.topic, str(topic.messages), f"{topic.rate:.1f}")
     console.print(topics)
+
+
+def _health_lines(health: Sequence[Finding]) -> list[str]:
+    """Every warning with its evidence, and how many checks found nothing."""
+    lines = []
+    for finding in health:
+        if finding.status != "ok":
+            when = "" if finding.time is None else f" at {finding.time:.3f} s"
+            value = "" if finding.value is None else f", value {finding.value:.4g}"
+            lines.append(f"{finding.check}{when}{value}: {finding.cause}")
+    return [*lines, f"{len(health) - len(lines)} of {len(health)} checks found nothing"]
 
 
 def print_topic(topic: str, fields: Mapping[str, Mapping[str, Any]]) -> None:

@@ -5,7 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.log import Log
+from scenarios.health import Finding, findings
+from scenarios.log import ChannelData, Log
+from scenarios.metrics import digest
 from scenarios.verdict import Verdict, judge, scenario_of
 
 
@@ -35,7 +37,7 @@ class Inspection:
         truncated: whether the end of the file is missing.
         start: first time [s].
         end: last time [s].
-        health: what is wrong with the log, in words.
+        health: what the checks of the run and of the file found.
         topics: what it holds.
         versions: that made it.
     """
@@ -46,7 +48,7 @@ class Inspection:
     truncated: bool
     start: float
     end: float
-    health: tuple[str, ...]
+    health: tuple[Finding, ...]
     topics: tuple[TopicRate, ...]
     versions: dict[str, str]
 
@@ -62,14 +64,10 @@ def inspect(log: Log) -> Inspection:
     Raises:
         LogError: it does not describe a run.
     """
-    verdict = judge(log)
+    gathered = digest(log)
+    verdict = judge(log, gathered)
     log.verify()
     start, end = log.time_range()
-    health = []
-    if log.truncated:
-        health.append(f"the file is truncated: it can be read up to {end:.3f} s, `surefoot recover` makes it whole")
-    if "recovered" in log.metadata:
-        health.append("recovered from a truncated or damaged log")
     span = max(end - start, 1e-9)
     topics = ((topic, log.count(topic)) for topic in log.topics)
     return Inspection(
@@ -79,19 +77,27 @@ def inspect(log: Log) -> Inspection:
         truncated=log.truncated,
         start=start,
         end=end,
-        health=(*health, *dict.fromkeys(log.damage)),
+        health=(*_file_findings(log, end), *findings(gathered)),
         topics=tuple(TopicRate(topic, count, max(count - 1, 0) / span) for topic, count in topics),
         versions=dict(log.metadata.get("versions", {})),
     )
 
 
-def topic_summary(log: Log, topic: str) -> dict[str, dict[str, Any]]:
-    """Summarise every field of a topic: shape, count of values that are not finite, least, mean, greatest.
+def _file_findings(log: Log, end: float) -> list[Finding]:
+    """What is wrong with the file itself."""
+    causes = list(dict.fromkeys(log.damage))
+    if "recovered" in log.metadata:
+        causes.insert(0, "recovered from a truncated or damaged log")
+    if log.truncated:
+        right = "`surefoot recover` makes it whole"
+        causes.insert(0, f"the file is truncated: it can be read up to {end:.3f} s, {right}")
+    if not causes:
+        return [Finding("file", "ok", None, None)]
+    return [Finding("file", "warning", end if log.truncated else None, None, cause) for cause in causes]
 
-    Raises:
-        LogError: there is no such topic, or its messages are not of a fixed layout.
-    """
-    channel = log[topic]
+
+def topic_summary(channel: ChannelData) -> dict[str, dict[str, Any]]:
+    """Summarise every field of a channel: shape, count of values that are not finite, least, mean, greatest."""
     summary: dict[str, dict[str, Any]] = {}
     for field in channel.fields:
         values = channel.field(field.name).astype(float)

@@ -17,6 +17,7 @@ from scenarios.reference import whole_body_reference
 from scenarios.schema import Scenario
 from scenarios.ticks import RunFault, Watch, refusing, run_ticks
 from scenarios.timeline import run_duration
+from scenarios.viewer.body_view import BodyView
 from scenarios.walk_recorder import TickTiming, WalkRecorder
 from sim.errors import SimulationDiverged
 from sim.measurement import Measurement
@@ -63,6 +64,7 @@ class ClosedLoop:
         writer.attach(AttachedFile(WORLD_FILE, "application/xml", self.rig.world.mjcf().encode()))
         self._recorder = Recorder(writer, sizes, robot.torque_limit)
         self._walk_recorder = WalkRecorder(writer, sizes)
+        self._view = BodyView(writer, self.rig.world, robot, rates.control)
         self._faults = FaultSchedule(scenario.faults, rates.control)
         self._planning = Planning(self.rig.planner, self._walk_recorder, self._faults, rates)
         self._rate = rates.control
@@ -101,13 +103,12 @@ class ClosedLoop:
         self._landed = report.active
         torque = self._zero_torque if self._faults.active("torque_loss", tick) else report.torque
         watch.lap()
-        recorder.body(now_ns, measurement, terms)
-        recorder.estimate(now_ns, terms, state.q, state.v, sample.omega)
-        recorder.contact(now_ns, measurement, terms, reference, report)
+        recorder.tick(now_ns, measurement, terms, state, reference, report, torque)
         self._walk_recorder.reference(now_ns, planning.plan, sample)
-        recorder.control(now_ns, report, torque)
-        log_time = watch.lap()
         fallen = self._fallen(terms, measurement)
+        self._view.events(now_ns, measurement, report, planning.plan, fallen)
+        self._view.picture(tick, now_ns, measurement, terms, planning.plan, sample)
+        log_time = watch.lap()
         self._advance(torque)
         physics_time = watch.lap()
         parts = (state_time, report.build_time, report.solve_time, planner_time, physics_time, log_time)

@@ -24,6 +24,7 @@ from scenarios.progress import End, OnProgress
 from scenarios.schema import Scenario
 from scenarios.ticks import RunFault, Watch, refusing, run_ticks
 from scenarios.timeline import push_time, run_duration
+from scenarios.viewer.walk_view import PointView
 from scenarios.walk_recorder import TickTiming, WalkRecorder
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ class PendulumLoop:
         planner = walking_planner(scenario, robot, flat(), feet, planner_parameters(scenario, LegInertia()))
         self._recorder = PendulumRecorder(writer, sizes, robot.mass)
         self._walk_recorder = WalkRecorder(writer, sizes)
+        self._view = PointView(writer, (robot.sole_length, robot.sole_width), rates.control)
         self._faults = FaultSchedule(scenario.faults, rates.control)
         self._planning = Planning(planner, self._walk_recorder, self._faults, rates)
         self._pushes = tuple(
@@ -97,8 +99,11 @@ class PendulumLoop:
         self._recorder.state(now_ns, state, self._feet.state, force)
         self._recorder.contact(now_ns, self._pendulum.zmp, sample, self._feet.state)
         self._walk_recorder.reference(now_ns, planning.plan, sample)
-        log_time = watch.lap()
         lost = self._lost(state, sample.omega)
+        plan, zmp = planning.plan, self._pendulum.zmp
+        self._view.events(now_ns, sample.contacts, force, plan, lost)
+        self._view.picture(tick, now_ns, state.com, state.com_velocity, zmp, plan, sample)
+        log_time = watch.lap()
         self._advance(now, period, sample, support, force)
         parts = (state_time, 0.0, 0.0, planner_time, watch.lap(), log_time)
         self._walk_recorder.timing(now_ns, TickTiming(*parts, watch.last - begin))

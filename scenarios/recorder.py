@@ -1,66 +1,94 @@
 """Writes what the robot's body and its controller exchange in one run into the log's channels."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from scenarios.derived import contact_points
 from scenarios.log import LogWriter, channels
 from scenarios.log.channels import Sizes
 from sim.measurement import Measurement
 from wbc.model import RobotTerms
-from wbc.types import SolveStatus, WbcReference, WbcReport
-from wbc.zmp import centre_of_pressure, measured_zmp
+from wbc.types import RobotState, SolveStatus, WbcReference, WbcReport
 
 Array = NDArray[np.float64]
 
+_SECOND, _FALLBACK = SolveStatus.SECOND_SOLVER, SolveStatus.EQUALITIES_ONLY
+_INPUTS = 42
+"""Inputs of what is derived, beside the torques: both wrenches, sole positions, sole rotations, CoM, its velocity."""
+
 
 class Recorder:
-    """The channels of the whole body."""
+    """The channels of the whole body, one row per control tick."""
 
     def __init__(self, writer: LogWriter, sizes: Sizes, torque_limit: Array) -> None:
         """Open its channels; ``torque_limit`` of the joints, shape (nj,) [N·m]."""
-        self._torque_limit = torque_limit
-        self._measurement = writer.channel(channels.measurement(sizes))
-        self._truth = writer.channel(channels.truth(sizes))
-        self._estimate = writer.channel(channels.estimate(sizes))
-        self._contact = writer.channel(channels.contact(sizes))
-        self._wbc = writer.channel(channels.wbc(sizes))
-        self._torque = writer.channel(channels.torque(sizes))
+        self._inverse_limit = 1.0 / torque_limit
+        measurement = writer.channel(channels.measurement(sizes))
+        truth = writer.channel(channels.truth(sizes))
+        estimate = writer.channel(channels.estimate(sizes))
+        contact = writer.channel(channels.contact(sizes))
+        wbc = writer.channel(channels.wbc(sizes))
+        torque = writer.channel(channels.torque(sizes))
+        vectors = (
+            (measurement, ("joint_position", "joint_velocity", "joint_torque", "gyro", "accelerometer")),
+            (measurement, ("wrench_left", "wrench_right", "external_force")),
+            (truth, ("q", "v", "com", "com_velocity", "angular_momentum", "left_sole", "right_sole")),
+            (estimate, ("com", "com_velocity", "base_position", "base_velocity")),
+            (wbc, ("acceleration", "wrench_left", "wrench_right", "task_error")),
+            (torque, ("command",)),
+        )
+        numbers = (
+            (truth, ("nonfoot_contact",)),
+            (contact, ("planned", "active", "felt")),
+            (wbc, ("status", "iterations", "primal_residual", "dual_residual")),
+        )
+        derived = (
+            (wbc, ("solver", "fallback")),
+            (truth, ("torso_tilt",)),
+            (estimate, ("dcm",)),
+            (torque, ("limit_ratio_max",)),
+            (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
+        )
+        self._row = writer.rows(vectors, numbers, derived, self._derived, _INPUTS + sizes.nj)
+        self._inputs = -(_INPUTS + sizes.nj)
 
-    def body(self, time_ns: int, measurement: Measurement, terms: RobotTerms) -> None:
-        """Sensors and true state of a control tick; ``terms`` are those of the true state."""
-        m = measurement
-        self._measurement.append(
-            time_ns, m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer,
-            m.wrench[0], m.wrench[1], m.external_force,
+    def tick(
+        self, time_ns: int, measurement: Measurement, terms: RobotTerms, state: RobotState,
+        reference: WbcReference, report: WbcReport, torque: Array,
+    ) -> None:  # fmt: skip
+        """A control tick: sensors and true state, contacts, what the controller was given and what it answered.
+
+        Args:
+            time_ns: simulated time [ns].
+            measurement: what the sensors say.
+            terms: of the true state.
+            state: what the controller was given.
+            reference: what it shall do.
+            report: what it did.
+            torque: the torque commanded, shape (nj,) [N·m].
+        """
+        m, r, com, velocity, wrench = measurement, report, terms.com, terms.com_velocity, measurement.wrench.ravel()
+        numbers = (
+            m.nonfoot_contact, *reference.planned_contact, *r.active, *r.felt,
+            r.status, r.iterations, r.primal_residual, r.dual_residual, reference.omega, terms.torso_rotation[2, 2],
         )  # fmt: skip
-        self._truth.append(
-            time_ns, m.q, m.v, terms.com, terms.com_velocity, terms.angular_momentum,
-            terms.sole_pose[0], terms.sole_pose[1], math.acos(min(1.0, terms.torso_rotation[2, 2])), m.nonfoot_contact,
+        self._row.append(
+            time_ns, numbers,
+            m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer, wrench, m.external_force,
+            m.q, m.v, com, velocity, terms.angular_momentum, terms.sole_pose.ravel(),
+            com, velocity, state.q[:3], state.v[:6],
+            r.acceleration, r.wrench.ravel(), r.task_error, torque,
+            wrench, terms.sole_position.ravel(), terms.sole_rotation.ravel(), com, velocity, torque,
         )  # fmt: skip
 
-    def estimate(self, time_ns: int, terms: RobotTerms, q: Array, v: Array, omega: float) -> None:
-        """State that planner and controller were given, with the DCM that ω makes of it."""
-        dcm = terms.com[:2] + terms.com_velocity[:2] / omega
-        self._estimate.append(time_ns, terms.com, terms.com_velocity, dcm, q[:3], v[:6])
-
-    def contact(
-        self, time_ns: int, measurement: Measurement, terms: RobotTerms, reference: WbcReference, report: WbcReport
-    ) -> None:
-        """Contacts planned, held and felt, and where their forces act."""
-        wrench = measurement.wrench
-        self._contact.append(
-            time_ns, measured_zmp(wrench, terms.sole_position, terms.sole_rotation), wrench[:, 2],
-            reference.planned_contact, report.active, report.felt,
-            centre_of_pressure(wrench[0]), centre_of_pressure(wrench[1]),
-        )  # fmt: skip
-
-    def control(self, time_ns: int, report: WbcReport, torque: Array) -> None:
-        """The whole-body QP's answer and the torque commanded, shape (nj,) [N·m]."""
-        self._wbc.append(
-            time_ns, report.status, report.status is SolveStatus.SECOND_SOLVER, report.iterations,
-            report.status >= SolveStatus.EQUALITIES_ONLY, report.primal_residual, report.dual_residual,
-            report.acceleration, report.wrench[0], report.wrench[1], report.task_error,
-        )  # fmt: skip
-        self._torque.append(time_ns, torque, np.abs(torque / self._torque_limit).max())
+    def _derived(self, vectors: Array, numbers: Array) -> Array:
+        """What follows from the rest: solver, fallback, tilt, DCM, largest torque ratio, ZMP and contact points."""
+        n, inputs = len(vectors), vectors[:, self._inputs :]
+        wrench = inputs[:, :12].reshape(n, 2, 6)
+        zmp, cop = contact_points(wrench, inputs[:, 12:18].reshape(n, 2, 3), inputs[:, 18:36].reshape(n, 2, 3, 3))
+        status, omega, upright = numbers[:, 7], numbers[:, 11:12], numbers[:, 12]
+        return np.column_stack((
+            status == _SECOND, status >= _FALLBACK, np.arccos(np.minimum(upright, 1.0)),
+            inputs[:, 36:38] + inputs[:, 39:41] / omega, np.abs(inputs[:, _INPUTS:] * self._inverse_limit).max(axis=1),
+            zmp, wrench[:, :, 2], cop.reshape(n, 4),
+        ))  # fmt: skip

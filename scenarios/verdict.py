@@ -13,6 +13,7 @@ from scenarios.criteria import Bound
 from scenarios.errors import LogError
 from scenarios.log import Log
 from scenarios.metrics import compute
+from scenarios.metrics.digest import Digest
 from scenarios.notes import asked, notes
 from scenarios.schema import Scenario
 
@@ -61,13 +62,17 @@ class Verdict:
             raise LogError(f"{path}: cannot be written, {(error.strerror or str(error)).lower()}") from None
 
 
-def judge(log: Log) -> Verdict:
+def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     """Judge a run by its log alone.
+
+    Args:
+        log: the log.
+        gathered: its digest, where it was gathered before.
 
     Raises:
         LogError: the log does not describe a run.
     """
-    metrics, scenario = compute(log), scenario_of(log)
+    metrics, scenario = compute(gathered or log), scenario_of(log)
     criteria = asked(scenario.criteria, scenario.fidelity)
     reasons = (*_unfinished(log), *missed(metrics, criteria))
     return Verdict(not reasons, reasons, notes(scenario, metrics), metrics, criteria)

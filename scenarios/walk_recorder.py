@@ -14,7 +14,7 @@ from scenarios.log.channels import SUPPORT_VERTICES, Sizes
 
 Array = NDArray[np.float64]
 
-_NO_FOOTSTEP = np.full(4, np.nan)
+_NO_FOOTSTEP = (math.nan,) * 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +34,18 @@ class WalkRecorder:
     """The channels of planner and clock."""
 
     def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
-        self._reference = writer.channel(channels.reference(sizes))
+        reference = writer.channel(channels.reference(sizes))
+        vectors = (
+            *("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_reference"),
+            *("swing_position", "swing_velocity", "support"),
+        )
+        numbers = ("omega", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
+        self._reference = writer.rows(((reference, vectors),), ((reference, numbers),))
         self._plan = writer.channel(channels.plan(sizes))
         self._footsteps = writer.channel(channels.footsteps(sizes))
         self._footstep = writer.channel(channels.footstep(sizes))
-        self._timing = writer.channel(channels.timing(sizes))
+        timing = writer.channel(channels.timing(sizes))
+        self._timing = writer.rows((), ((timing, [field.name for field in timing.spec.fields]),))
         self._support = np.zeros((SUPPORT_VERTICES, 2))
 
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
@@ -70,19 +77,21 @@ class WalkRecorder:
     def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
         """The reference of a control tick and the gait's clock."""
         phase = plan.phase
+        numbers = (
+            sample.omega, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
+            phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
+        )  # fmt: skip
         self._reference.append(
-            time_ns, sample.com, sample.com_velocity, sample.com_acceleration, sample.zmp, sample.dcm, sample.omega,
-            sample.zmp_reference, sample.swing[:3], sample.swing_velocity[:3],
-            int(phase.kind), -1 if phase.stance is None else int(phase.stance), phase.step,
-            phase.elapsed + sample.time - plan.time, phase.duration, self._support, len(plan.support_polygon),
+            time_ns, numbers, sample.com, sample.com_velocity, sample.com_acceleration, sample.zmp, sample.dcm,
+            sample.zmp_reference, sample.swing[:3], sample.swing_velocity[:3], self._support.ravel(),
         )  # fmt: skip
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick."""
         t = timing
         parts = (t.state, t.wbc_build, t.wbc_solve, t.planner, t.physics, t.log, t.tick)
-        self._timing.append(time_ns, *(1e6 * part for part in parts))
+        self._timing.append(time_ns, tuple([1e6 * part for part in parts]))
 
 
-def _pose(footstep: Footstep) -> Array:
-    return np.append(footstep.position, footstep.yaw)
+def _pose(footstep: Footstep) -> tuple[float, ...]:
+    return (*footstep.position.tolist(), footstep.yaw)

@@ -1,6 +1,8 @@
-"""Centre of pressure and ZMP from measured sole wrenches; plain floats, since they run at every control tick."""
+"""Centre of pressure and ZMP from measured sole wrenches; mostly plain floats, since they run at every control tick."""
 
 import math
+
+import numpy as np
 
 from wbc.types import Array
 
@@ -31,19 +33,16 @@ def measured_zmp(wrench: Array, sole_position: Array, sole_rotation: Array) -> t
     Returns:
         (x, y, z) [m]; NaN when the feet carry no load.
     """
-    force = moment_x = moment_y = height = 0.0
-    loads = []
-    for w, p, R in zip(wrench.tolist(), sole_position.tolist(), sole_rotation.tolist(), strict=True):
-        f = [r[0] * w[0] + r[1] * w[1] + r[2] * w[2] for r in R]
-        t = [r[0] * w[3] + r[1] * w[4] + r[2] * w[5] for r in R]
-        loads.append((f, t, p))
-        force += f[2]
-        height += f[2] * p[2]
+    # World-frame force and torque of each sole as the columns of a (3, 2) matrix.
+    left, right = np.matmul(sole_rotation, wrench.reshape(2, 2, 3).transpose(0, 2, 1)).tolist()
+    (fx_l, tx_l), (fy_l, ty_l), (fz_l, _) = left
+    (fx_r, tx_r), (fy_r, ty_r), (fz_r, _) = right
+    force = fz_l + fz_r
     if force < UNLOADED:
         return math.nan, math.nan, math.nan
-    height /= force
-    for f, t, p in loads:
-        lever = p[2] - height
-        moment_x += t[0] + p[1] * f[2] - lever * f[1]
-        moment_y += t[1] + lever * f[0] - p[0] * f[2]
+    (x_l, y_l, z_l), (x_r, y_r, z_r) = sole_position.tolist()
+    height = (fz_l * z_l + fz_r * z_r) / force
+    z_l, z_r = z_l - height, z_r - height
+    moment_x = tx_l + y_l * fz_l - z_l * fy_l + tx_r + y_r * fz_r - z_r * fy_r
+    moment_y = ty_l + z_l * fx_l - x_l * fz_l + ty_r + z_r * fx_r - x_r * fz_r
     return -moment_y / force, moment_x / force, height

@@ -2,6 +2,6 @@
 
 from scenarios.log.reader import ChannelData, Log, read
 from scenarios.log.spec import ChannelSpec, FieldSpec
-from scenarios.log.writer import AttachedFile, LogWriter
+from scenarios.log.writer import AttachedFile, LogWriter, PublishedSchema
 
-__all__ = ["AttachedFile", "ChannelData", "ChannelSpec", "FieldSpec", "Log", "LogWriter", "read"]
+__all__ = ["AttachedFile", "ChannelData", "ChannelSpec", "FieldSpec", "Log", "LogWriter", "PublishedSchema", "read"]

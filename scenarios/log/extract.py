@@ -7,36 +7,40 @@ from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
 from scenarios.log.layout import PREFIX_BYTES
-from scenarios.log.scan import Buffer
+from scenarios.log.scan import Buffer, ChunkPlace
 
 
-def records_of(
-    data: Buffer, index: NDArray[np.void], channel_id: int, dtype: np.dtype[Any]
-) -> tuple[NDArray[np.uint8], int]:
-    """Collect a channel's message records.
+def block_of(data: memoryview, chunk: ChunkPlace, channel_id: int, size: int, file: Buffer) -> memoryview | bytes:
+    """Bytes of a channel's messages of `size` bytes, one after the other; those beyond the chunk are left out.
+
+    Where the first and the last one are as far apart as their number says, they stand in a row; `sound_records` shows
+    whether they do.
 
     Args:
-        data: a decompressed chunk.
-        index: times and offsets of the channel's messages in it.
-        channel_id: the channel.
-        dtype: type of a whole message record.
-
-    Returns:
-        bytes of the sound records, one after the other, and the number of others.
+        data: the decompressed chunk.
+        chunk: its place.
+        channel_id: the channel, which has messages in it.
+        size: of a message record.
+        file: bytes of the file.
     """
-    offsets, size = index["offset"].astype(np.int64), dtype.itemsize
-    inside = offsets[(offsets >= 0) & (offsets <= len(data) - size)]
-    contiguous = len(inside) and np.all(np.diff(inside) == size)
-    if contiguous:
-        block = np.frombuffer(data, np.uint8, len(inside) * size, inside[0])
-    else:
-        block = np.frombuffer(b"".join(data[start : start + size] for start in inside.tolist()), np.uint8)
+    first, last = chunk.extent(channel_id, file)
+    if last - first == (chunk.count(channel_id) - 1) * size and last + size <= len(data):
+        return data[first : last + size]
+    return gathered(data, chunk.entries(channel_id, file), size)
+
+
+def gathered(data: memoryview, index: NDArray[np.void], size: int) -> bytes:
+    """Bytes of messages that stand anywhere, one after the other; those beyond the data are left out."""
+    last = len(data) - size
+    return b"".join(data[start : start + size] for start in index["offset"].tolist() if start <= last)
+
+
+def sound_records(block: NDArray[np.uint8], channel_id: int, dtype: np.dtype[Any]) -> NDArray[np.void]:
+    """Message records of one channel out of whole records one after the other; others are left out."""
     records = block.view(dtype)
     sound = (
         (records["_opcode"] == Opcode.MESSAGE)
-        & (records["_length"] == size - PREFIX_BYTES)
+        & (records["_length"] == dtype.itemsize - PREFIX_BYTES)
         & (records["_channel"] == channel_id)
     )
-    if not sound.all():
-        block = records[sound].view(np.uint8)
-    return block, len(offsets) - int(np.count_nonzero(sound))
+    return records if sound.all() else records[sound]

@@ -2,7 +2,7 @@
 
 import mmap
 import zlib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +12,13 @@ from numpy.typing import NDArray
 from scenarios.errors import LogError, nearest
 from scenarios.log.compression import decompress
 from scenarios.log.encode import MAGIC
-from scenarios.log.extract import records_of
+from scenarios.log.extract import block_of, gathered, sound_records
 from scenarios.log.layout import record_dtype
-from scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, scan
+from scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
 from scenarios.log.spec import FieldSpec, layout_of
+
+WINDOW = 4.0
+"""Simulated time that is read at once where a whole log is gone through [s]."""
 
 
 class ChannelData:
@@ -43,7 +46,12 @@ class ChannelData:
     @property
     def time(self) -> NDArray[np.float64]:
         """Simulated time of each message, shape (n,) [s]."""
-        return np.asarray(self.time_ns * 1e-9)
+        return np.asarray(self.time_ns / 1e9)
+
+    def between(self, start_ns: int, end_ns: int) -> "ChannelData":
+        """The messages from a time on and up to another one [ns]."""
+        first, last = np.searchsorted(self.time_ns, (start_ns, end_ns + 1))
+        return ChannelData(self.topic, self.fields, self._records[first:last])
 
     def content(self) -> bytes:
         """Bytes of all messages in order, for exact comparison of two runs."""
@@ -55,10 +63,18 @@ class ChannelData:
         Raises:
             LogError: the channel has no such field.
         """
+        self._require(name)
+        return np.array(self._records[name])
+
+    def only(self, name: str) -> "ChannelData":
+        """The same messages with one field; errors as of `field`."""
+        self._require(name)
+        return ChannelData(self.topic, tuple(field for field in self.fields if field.name == name), self._records)
+
+    def _require(self, name: str) -> None:
         if all(field.name != name for field in self.fields):
             right = nearest(name, [field.name for field in self.fields])
             raise LogError(f"channel {self.topic} has no field '{name}'; {right}")
-        return np.array(self._records[name])
 
 
 class Log:
@@ -83,6 +99,7 @@ class Log:
         self.contents = contents = scan(data)
         self.truncated = contents.truncated
         self.damage = contents.damage
+        self._verified: set[int] = set()
         self._index_rest()
         self.metadata = {record.name: record.metadata for record in contents.metadata}
         self.attachments = {record.name: record.data for record in contents.attachments}
@@ -104,26 +121,58 @@ class Log:
         Raises:
             LogError: there is no such topic, or its messages are not of a fixed layout.
         """
-        wanted = {topic: self._layout(topic) for topic in topics if topic not in self._loaded}
-        if not wanted:
-            return
-        blocks: dict[str, list[NDArray[np.uint8]]] = {topic: [] for topic in wanted}
-        for data, index in self._indexed_blocks({self._ids[topic] for topic in wanted}):
-            for topic, fields in wanted.items():
-                number = self._ids[topic]
-                if number in index:
-                    block, bad = records_of(data, index[number], number, record_dtype(fields))
-                    blocks[topic].append(block)
-                    if bad:
-                        self.damage.append(f"{bad} messages of {topic} are damaged or not of its layout")
-        for topic, fields in wanted.items():
-            whole = np.concatenate(blocks[topic]) if blocks[topic] else np.zeros(0, np.uint8)
-            self._loaded[topic] = ChannelData(topic, fields, whole.view(record_dtype(fields)))
+        wanted = [topic for topic in topics if topic not in self._loaded]
+        if wanted:
+            self._loaded.update(self._read(wanted, self.contents.chunks))
+
+    def window(self, topic: str, start: float, end: float) -> ChannelData:
+        """Messages of a topic from a time on and up to another one [s]; only their part of the file is read.
+
+        Raises:
+            LogError: there is no such topic, or its messages are not of a fixed layout.
+        """
+        first, last = round(start * 1e9), round(end * 1e9)
+        chunks = [chunk for chunk in self.contents.chunks if chunk.start_ns <= last and chunk.end_ns >= first]
+        return self._read([topic], chunks)[topic].between(first, last)
+
+    def windows(self, topics: Collection[str], duration: float = WINDOW) -> Iterator[dict[str, ChannelData]]:
+        """Go through the file once, a while at a time, with bounded memory.
+
+        Chunks that do not agree with their checksum are left out and noted in `damage`.
+
+        Args:
+            topics: what to read; every one is in each of the windows.
+            duration: of a window, to the next whole chunk [s].
+
+        Raises:
+            LogError: there is no such topic, or its messages are not of a fixed layout.
+        """
+        group: list[ChunkPlace] = []
+        for chunk in self.contents.chunks:
+            group.append(chunk)
+            if chunk.end_ns - group[0].start_ns >= duration * 1e9:
+                yield self._read(topics, group, verify=True, loose=False)
+                group = []
+        yield self._read(topics, group, verify=True)
+
+    def fields(self, topic: str) -> tuple[FieldSpec, ...]:
+        """Fields of a topic.
+
+        Raises:
+            LogError: there is no such topic, or its messages are not of a fixed layout.
+        """
+        if topic not in self._ids:
+            raise LogError(f"{self.path}: no topic '{topic}'; {nearest(topic, self.topics or ('none',))}")
+        try:
+            return layout_of(self.contents.channels[self._ids[topic]].metadata)
+        except ValueError:
+            right = "read it by its schema with the mcap package"
+            raise LogError(f"{self.path}: topic {topic} states no layout of fixed size; {right}") from None
 
     def count(self, topic: str) -> int:
         """Number of messages of a topic, by the index."""
         number = self._ids[topic]
-        chunked = sum(len(chunk.index.get(number, ())) for chunk in self.contents.chunks)
+        chunked = sum(chunk.count(number) for chunk in self.contents.chunks)
         return chunked + len(self.contents.loose.get(number, ()))
 
     def time_range(self) -> tuple[float, float]:
@@ -134,37 +183,67 @@ class Log:
         return min([*starts, *loose], default=0) * 1e-9, max([*ends, *loose], default=0) * 1e-9
 
     def verify(self) -> None:
-        """Compare every chunk with its checksum; what does not agree is added to `damage`."""
-        for _ in self.sound_chunks():
-            pass
+        """Compare every chunk that has not been compared yet with its checksum; `damage` tells what does not agree."""
+        for chunk in self.contents.chunks:
+            if chunk.position not in self._verified:
+                self._sound(chunk)
 
     def sound_chunks(self) -> Iterator[tuple[ChunkPlace, bytes]]:
         """Every chunk that agrees with its checksum, and its decompressed bytes; the others add to `damage`."""
         for chunk in self.contents.chunks:
-            data = self._decompressed(chunk)
-            if data is not None and chunk.crc and zlib.crc32(data) != chunk.crc:
-                self.damage.append(f"the chunk at byte {chunk.position} does not agree with its checksum")
-            elif data is not None:
+            data = self._sound(chunk)
+            if data is not None:
                 yield chunk, data
 
-    def _layout(self, topic: str) -> tuple[FieldSpec, ...]:
-        if topic not in self._ids:
-            raise LogError(f"{self.path}: no topic '{topic}'; {nearest(topic, self.topics or ('none',))}")
-        try:
-            return layout_of(self.contents.channels[self._ids[topic]].metadata)
-        except ValueError:
-            right = "read it by its schema with the mcap package"
-            raise LogError(f"{self.path}: topic {topic} states no layout of fixed size; {right}") from None
+    def _read(
+        self, topics: Collection[str], chunks: Sequence[ChunkPlace], verify: bool = False, loose: bool = True
+    ) -> dict[str, ChannelData]:
+        """Messages of topics in some chunks and, if they are wanted, outside all chunks."""
+        fields = {topic: self.fields(topic) for topic in topics}
+        sizes = {self._ids[topic]: record_dtype(fields[topic]).itemsize for topic in topics}
+        blocks: dict[int, list[memoryview | bytes]] = {number: [] for number in sizes}
+        expected = dict.fromkeys(sizes, 0)
+        for chunk in chunks:
+            numbers = sizes.keys() & chunk.index.keys()
+            data = (self._sound(chunk) if verify else self._decompressed(chunk)) if numbers or verify else None
+            if data is not None:
+                view = memoryview(data)
+                for number in numbers:
+                    count = chunk.count(number)
+                    expected[number] += count
+                    if count:
+                        blocks[number].append(block_of(view, chunk, number, sizes[number], self.data))
+        for number in sizes.keys() & self.contents.loose.keys() if loose else ():
+            entries = np.array(self.contents.loose[number], INDEX_ENTRY)
+            expected[number] += len(entries)
+            blocks[number].append(gathered(memoryview(self.data), entries, sizes[number]))
+        if chunks:
+            release(self.data, chunks[0].position, chunks[-1].position + chunks[-1].length)
+        return {
+            topic: self._channel(topic, fields[topic], blocks[self._ids[topic]], expected[self._ids[topic]])
+            for topic in topics
+        }
 
-    def _indexed_blocks(self, numbers: set[int]) -> Iterator[tuple[Buffer, dict[int, NDArray[np.void]]]]:
-        """Bytes and index of everything that holds messages of these channels."""
-        if numbers & self.contents.loose.keys():
-            yield self.data, {n: np.array(e, INDEX_ENTRY) for n, e in self.contents.loose.items()}
-        for chunk in self.contents.chunks:
-            if numbers & chunk.index.keys():
-                data = self._decompressed(chunk)
-                if data is not None:
-                    yield data, chunk.index
+    def _channel(
+        self, topic: str, fields: tuple[FieldSpec, ...], blocks: list[memoryview | bytes], expected: int
+    ) -> ChannelData:
+        """The messages in some blocks of bytes, of which so many are expected."""
+        dtype, number = record_dtype(fields), self._ids[topic]
+        whole = np.frombuffer(b"".join(blocks), np.uint8)
+        records = sound_records(whole, number, dtype)
+        if len(records) < expected:
+            self.damage.append(f"{expected - len(records)} messages of {topic} are damaged or not of its layout")
+        return ChannelData(topic, fields, records)
+
+    def _sound(self, chunk: ChunkPlace) -> bytes | None:
+        """Decompressed bytes of a chunk if they agree with its checksum."""
+        data, known = self._decompressed(chunk), chunk.position in self._verified
+        self._verified.add(chunk.position)
+        if data is None or not chunk.crc or zlib.crc32(data) == chunk.crc:
+            return data
+        if not known:
+            self.damage.append(f"the chunk at byte {chunk.position} does not agree with its checksum")
+        return None
 
     def _decompressed(self, chunk: ChunkPlace) -> bytes | None:
         try:
@@ -181,7 +260,7 @@ class Log:
             if not chunk.index or chunk.index.keys() - self.contents.channels.keys():
                 data = self._decompressed(chunk)
                 if data is not None:
-                    chunk.index = index_chunk(data, self.contents)
+                    chunk.index = dict(index_chunk(data, self.contents))
 
 
 def read(path: str | Path) -> Log:

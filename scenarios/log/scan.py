@@ -1,5 +1,6 @@
 """Walks the records of a log file, whole or not: what is there, where, and what could not be read."""
 
+import mmap
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -19,7 +20,12 @@ Buffer = Any
 """A read-only bytes-like object: bytes or a memory map."""
 
 INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
+Index = slice | NDArray[np.void]
 PREFIX = struct.Struct("<BQ")
+_INDEX_HEAD = struct.Struct("<HI")
+_OFFSET = struct.Struct("<Q")
+_INDEX_RECORD = struct.Struct("<BQHI")
+_RELEASE_BYTES = 1 << 25
 _CHUNK = struct.Struct("<QQQII")
 _MESSAGE = struct.Struct("<HIQQ")
 _PRIVATE = 0x80
@@ -39,7 +45,8 @@ class ChunkPlace:
         crc: of the uncompressed bytes, 0 for none.
         compression: method.
         data: where its compressed bytes begin and end.
-        index: times and offsets of the messages by channel id; empty when the index is missing.
+        index: by channel id, where in the file the times and offsets of its messages stand, or they themselves where
+            the file has no index.
     """
 
     position: int
@@ -50,7 +57,26 @@ class ChunkPlace:
     crc: int
     compression: str
     data: slice
-    index: dict[int, NDArray[np.void]] = field(default_factory=dict)
+    index: dict[int, Index] = field(default_factory=dict)
+
+    def count(self, channel_id: int) -> int:
+        """Messages of a channel."""
+        index = self.index.get(channel_id)
+        if isinstance(index, slice):
+            return int(index.stop - index.start) // INDEX_ENTRY.itemsize
+        return 0 if index is None else len(index)
+
+    def entries(self, channel_id: int, data: Buffer) -> NDArray[np.void]:
+        """Times and offsets of the messages of a channel that it has, out of the file's bytes."""
+        index = self.index[channel_id]
+        return np.frombuffer(data[index], INDEX_ENTRY) if isinstance(index, slice) else index
+
+    def extent(self, channel_id: int, data: Buffer) -> tuple[int, int]:
+        """Offsets of the first and the last message of a channel that has some, out of the file's bytes."""
+        index = self.index[channel_id]
+        if isinstance(index, slice):
+            return _OFFSET.unpack_from(data, index.start + 8)[0], _OFFSET.unpack_from(data, index.stop - 8)[0]
+        return int(index["offset"][0]), int(index["offset"][-1])
 
 
 @dataclass(slots=True)
@@ -81,8 +107,11 @@ class Contents:
 def scan(data: Buffer) -> Contents:
     """Walk a file that begins with the MCAP magic."""
     contents = Contents()
-    size, position = len(data), len(MAGIC)
+    size, position, released = len(data), len(MAGIC), 0
     while position < size and contents.truncated:
+        if position - released > _RELEASE_BYTES:
+            release(data, released, position)
+            released = position
         opcode, length = PREFIX.unpack_from(data, position) if position + PREFIX.size <= size else (0, size)
         body, end = position + PREFIX.size, position + PREFIX.size + length
         if end > size or not (0 < opcode <= Opcode.DATA_END or opcode >= _PRIVATE):
@@ -92,8 +121,17 @@ def scan(data: Buffer) -> Contents:
             _take(opcode, data, position, slice(body, end), contents)
         except _UNREADABLE:
             contents.damage.append(f"the {_name(opcode)} record at byte {position} is damaged")
-        position = end
+        position = _take_indexes(data, end, contents) if opcode == Opcode.CHUNK else end
+    release(data, released, size)
     return contents
+
+
+def release(data: Buffer, start: int, stop: int) -> None:
+    """Let go of the memory of a range of a memory map, which stays readable: a long log need not be held whole."""
+    if isinstance(data, mmap.mmap):
+        page = mmap.ALLOCATIONGRANULARITY
+        first = start - start % page
+        data.madvise(mmap.MADV_DONTNEED, first, min(stop, len(data)) - first)
 
 
 def records_in(data: Buffer) -> Iterator[tuple[int, int, slice]]:
@@ -130,6 +168,25 @@ def index_chunk(data: bytes, contents: Contents) -> dict[int, NDArray[np.void]]:
     return {number: np.array(found, INDEX_ENTRY) for number, found in entries.items()}
 
 
+def _take_indexes(data: Buffer, position: int, contents: Contents) -> int:
+    """Take the sound message indexes after a chunk in a tight loop, since they are most of a file's records.
+
+    Returns:
+        where the first other record begins.
+    """
+    unpack, size = _INDEX_RECORD.unpack_from, len(data) - _INDEX_RECORD.size
+    index = contents.chunks[-1].index if contents.chunks else {}
+    while position <= size:
+        opcode, length, channel_id, entries = unpack(data, position)
+        start = position + _INDEX_RECORD.size
+        end = start + entries
+        if opcode != Opcode.MESSAGE_INDEX or length != entries + 6 or entries % INDEX_ENTRY.itemsize or end > len(data):
+            break
+        index[channel_id] = slice(start, end)
+        position = end
+    return position
+
+
 def _message_header(data: Buffer, body: int) -> tuple[int, int]:
     """Channel id and log time [ns] of a message record's body."""
     channel_id, _, log_time, _ = _MESSAGE.unpack_from(data, body)
@@ -143,9 +200,11 @@ def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Conte
     if opcode == Opcode.CHUNK:
         contents.chunks.append(_chunk(data, position, body))
     elif opcode == Opcode.MESSAGE_INDEX and contents.chunks:
-        channel_id, length = struct.unpack_from("<HI", data, body.start)
-        entries = np.frombuffer(data[body.start + 6 : min(body.start + 6 + length, body.stop)], INDEX_ENTRY)
-        contents.chunks[-1].index[channel_id] = entries
+        channel_id, length = _INDEX_HEAD.unpack_from(data, body.start)
+        if length % INDEX_ENTRY.itemsize or body.start + _INDEX_HEAD.size + length > body.stop:
+            raise ValueError("message index of no whole number of entries")
+        start = body.start + _INDEX_HEAD.size
+        contents.chunks[-1].index[channel_id] = slice(start, start + length)
     elif opcode == Opcode.MESSAGE:
         channel_id, time = _message_header(data, body.start)
         contents.loose.setdefault(channel_id, []).append((time, position))

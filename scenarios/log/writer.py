@@ -11,17 +11,19 @@ from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
 
 from scenarios.log.channel_writer import ChannelWriter, Clock
 from scenarios.log.compression import compress
-from scenarios.log.encode import MAGIC, encoded
+from scenarios.log.encode import MAGIC, chunk_head, encoded
 from scenarios.log.layout import PACKAGE, file_descriptor_set
+from scenarios.log.message_writer import MessageWriter
 from scenarios.log.output import Output
+from scenarios.log.row_writer import Columns, Derive, RowWriter
 from scenarios.log.spec import ChannelSpec
 from scenarios.log.summary import Summary
 
 Compression = Literal["lz4", "zstd", ""]
-CHUNK_PERIOD_NS = 40_000_000
+CHUNK_PERIOD_NS = 80_000_000
 """Simulated time in one chunk: what a killed process loses at most, and a tick [ns]."""
 
-_CAPACITY = 64
+_CAPACITY = 128
 _PROFILE, _LIBRARY = "", "surefoot"
 
 
@@ -32,6 +34,19 @@ class AttachedFile:
     name: str
     media_type: str
     data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedSchema:
+    """A protobuf message type.
+
+    Attributes:
+        name: full name.
+        descriptors: serialized ``FileDescriptorSet`` with everything that it refers to.
+    """
+
+    name: str
+    descriptors: bytes
 
 
 class LogWriter:
@@ -65,7 +80,8 @@ class LogWriter:
         self.path = path
         self._compression = compression
         self._summary = Summary()
-        self._channels: list[ChannelWriter] = []
+        self._channels: list[ChannelWriter | MessageWriter] = []
+        self._rows: list[RowWriter] = []
         self._clock = Clock(CHUNK_PERIOD_NS)
         beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
         for name, values in metadata.items():
@@ -77,14 +93,34 @@ class LogWriter:
 
     def channel(self, spec: ChannelSpec) -> ChannelWriter:
         """Add a channel, before or between messages."""
-        number = len(self._channels) + 1
-        schema = Schema(number, file_descriptor_set(spec), "protobuf", f"{PACKAGE}.{spec.message}")
-        channel = Channel(number, spec.topic, "protobuf", spec.metadata(), number)
-        self._output.write(encoded(schema) + encoded(channel))
-        self._summary.add_channel(schema, channel)
+        schema = PublishedSchema(f"{PACKAGE}.{spec.message}", file_descriptor_set(spec))
+        number = self._define(spec.topic, schema, spec.metadata())
         writer = ChannelWriter(spec, number, _CAPACITY, self._clock, self._flush)
         self._channels.append(writer)
         return writer
+
+    def rows(
+        self, vectors: Columns, numbers: Columns, derived: Columns = (), derive: Derive | None = None, inputs: int = 0
+    ) -> RowWriter:
+        """Fill channels of one rate together; arguments as of `RowWriter`."""
+        rows = RowWriter(vectors, numbers, _CAPACITY, self._clock, self._flush, derived, derive, inputs)
+        self._rows.append(rows)
+        return rows
+
+    def message_channel(self, topic: str, schema: PublishedSchema, doc: str) -> MessageWriter:
+        """Add a channel of a published schema whose messages come encoded."""
+        writer = MessageWriter(self._define(topic, schema, {"doc": doc}), self._clock, self._flush)
+        self._channels.append(writer)
+        return writer
+
+    def _define(self, topic: str, schema: PublishedSchema, metadata: dict[str, str]) -> int:
+        """Write the schema and the channel; gives the channel's number."""
+        number = len(self._channels) + 1
+        record = Schema(number, schema.descriptors, "protobuf", schema.name)
+        channel = Channel(number, topic, "protobuf", metadata, number)
+        self._output.write(encoded(record) + encoded(channel))
+        self._summary.add_channel(record, channel)
+        return number
 
     def attach(self, file: AttachedFile) -> None:
         """Write an attachment after everything appended so far."""
@@ -99,11 +135,12 @@ class LogWriter:
 
     def flush(self) -> None:
         """Write what waits as one chunk, if anything waits."""
+        for rows in self._rows:
+            rows.spread()
         waiting = [channel for channel in self._channels if channel.count]
         if not waiting:
             return
-        ranges = [channel.time_range() for channel in waiting]
-        start, end = min(first for first, _ in ranges), max(last for _, last in ranges)
+        start, end = min(min(c.times) for c in waiting), max(max(c.times) for c in waiting)
         blocks, indexes, offset = [], [], 0
         for channel in waiting:
             block, index = channel.take(offset)
@@ -112,9 +149,9 @@ class LogWriter:
             offset += len(block)
         data = b"".join(blocks)
         chunk = Chunk(self._compression, compress(data, self._compression), end, start, zlib.crc32(data), len(data))
-        record = encoded(chunk)
-        self._summary.add_chunk(chunk, self._output.position, len(record), indexes)
-        self._output.write(b"".join((record, *(index for _, index in indexes))))
+        head = chunk_head(chunk)
+        self._summary.add_chunk(chunk, self._output.position, len(head) + len(chunk.data), indexes)
+        self._output.write(b"".join((head, chunk.data, *(index for _, index in indexes))))
 
     def close(self) -> None:
         """Write what waits and the index, and close the file; a second call does nothing."""

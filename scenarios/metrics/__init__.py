@@ -10,6 +10,7 @@ from scenarios.criteria import BODY_METRICS, METRIC_NAMES
 from scenarios.errors import LogError
 from scenarios.log import Log
 from scenarios.metrics import balance, effort, walking
+from scenarios.metrics.digest import Digest, Source
 from scenarios.metrics.view import RunView
 
 _BODY = ("/truth",)
@@ -47,11 +48,39 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
 }
 
 
-def compute(log: Log) -> dict[str, Any]:
+_REDUCTIONS: tuple[tuple[tuple[str, ...], Callable[[RunView], Any]], ...] = (
+    (("/torque",), effort.torque_ratio),
+    (("/torque",), effort.strained_joint),
+    (("/measurement",), effort.joint_limit_margin),
+    (("/measurement",), effort.joint_power),
+    (("/measurement",), walking.knee_flexion),
+    (("/truth", "/contact", "/reference"), balance.zmp_inside),
+    (("/plan",), balance.predicted),
+)
+"""What wide channels are reduced to while the log is read, and the topics it needs."""
+
+
+def digest(log: Log) -> Digest:
+    """Gather what the metrics need, in one pass with bounded memory.
+
+    Raises:
+        LogError: the log does not describe a run.
+    """
+    constants = RunView(log).constants
+
+    def reduce(part: Source) -> dict[Any, Any]:
+        run = RunView(part, constants)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            return {function: function(run) for topics, function in _REDUCTIONS if run.has(*topics)}
+
+    return Digest(log, reduce)
+
+
+def compute(log: Log | Digest) -> dict[str, Any]:
     """Compute every metric of the public contract.
 
     Args:
-        log: a log of a run, whole or truncated.
+        log: a log of a run, whole or truncated, or its digest.
 
     Returns:
         values by metric name, None where a metric does not apply or its channels or fields are missing; plain JSON
@@ -60,9 +89,7 @@ def compute(log: Log) -> dict[str, Any]:
     Raises:
         LogError: the log does not describe a run.
     """
-    run = RunView(log)
-    needed = {topic for topics, _ in _METRICS.values() for topic in topics}
-    log.load(*(topic for topic in log.topics if topic in needed | {"/footstep"}))
+    run = RunView(log if isinstance(log, Digest) else digest(log))
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         return {name: _metric(run, name) for name in METRIC_NAMES}
 

@@ -14,8 +14,8 @@ PREDICTION = 0.2
 """Age of the plan that the true state is compared with [s]."""
 
 
-def zmp_inside_fraction(run: RunView) -> float:
-    """Share of ticks with the measured ZMP inside the planned support polygon of feet shrunk to 90 %.
+def zmp_inside(run: RunView) -> Array:
+    """Whether the measured ZMP is inside the planned support polygon of feet shrunk to 90 % at each tick, shape (n,).
 
     A hull of shrunk feet is the hull of the feet with each edge moved in by a tenth of the foot's half extent along
     the edge's normal; exact for parallel feet, and on the safe side for others. Flight counts as outside.
@@ -28,7 +28,12 @@ def zmp_inside_fraction(run: RunView) -> float:
     normals *= np.sign(_signed_area(vertices))[:, None, None]
     depth = np.sum(normals * (zmp - vertices), axis=2)
     inside = (depth >= (1 - MARGIN) * _half_extent(run, normals) - 1e-9) | (lengths < 1e-9)
-    return float(np.mean(inside.all(axis=1)))
+    return np.asarray(inside.all(axis=1))
+
+
+def zmp_inside_fraction(run: RunView) -> float:
+    """Share of ticks at which `zmp_inside` holds."""
+    return float(np.mean(run.reduced(zmp_inside)))
 
 
 def cop_ratios(run: RunView) -> Array:
@@ -57,26 +62,28 @@ def zmp_error_rms(run: RunView) -> list[float] | None:
     return rms(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
 
 
+def predicted(run: RunView) -> Array:
+    """What each plan predicts for 0.2 s later, shape (plans, 6): CoM, its velocity x y, ω; NaN beyond its horizon."""
+    plan, sample = run.log["/plan"], round(PREDICTION / run.constants.sample_time)
+    com, velocity, omega = (plan.field(name) for name in ("com", "com_velocity", "omega"))
+    if sample >= com.shape[1]:
+        return np.full((len(com), 6), np.nan)
+    return np.column_stack((com[:, sample], velocity[:, sample, :2], omega[:, sample]))
+
+
 def com_error_rms(run: RunView) -> list[float] | None:
     """True CoM minus what the plan of 0.2 s earlier predicted for this instant, RMS, x, y and z [m]."""
-    prediction = _predictions(run)
-    if prediction is None:
-        return None
-    rows, plans, sample = prediction
-    return rms(run.log["/truth"].field("com")[rows] - run.log["/plan"].field("com")[plans, sample])
+    rows, prediction = _predictions(run)
+    return rms(run.log["/truth"].field("com")[rows] - prediction[:, :3])
 
 
 def dcm_error_rms(run: RunView) -> list[float] | None:
     """True DCM minus what the plan of 0.2 s earlier predicted, both by the predicted frequency, RMS, x and y [m]."""
-    prediction = _predictions(run)
-    if prediction is None:
-        return None
-    rows, plans, sample = prediction
-    truth, plan = run.log["/truth"], run.log["/plan"]
-    omega = plan.field("omega")[plans, sample, None]
-    position = truth.field("com")[rows, :2] - plan.field("com")[plans, sample, :2]
-    velocity = truth.field("com_velocity")[rows, :2] - plan.field("com_velocity")[plans, sample, :2]
-    return rms(position + velocity / omega)
+    rows, prediction = _predictions(run)
+    truth = run.log["/truth"]
+    position = truth.field("com")[rows, :2] - prediction[:, :2]
+    velocity = truth.field("com_velocity")[rows, :2] - prediction[:, 3:5]
+    return rms(position + velocity / prediction[:, 5:])
 
 
 def estimation_error_rms(run: RunView) -> float | None:
@@ -92,16 +99,14 @@ def rms(error: Array) -> list[float] | None:
     return [float(value) for value in np.sqrt(np.mean(sound**2, axis=0))] if len(sound) else None
 
 
-def _predictions(run: RunView) -> tuple[Rows, Rows, int] | None:
-    """Rows of /truth, rows of /plan that predicted them, and the sample of the horizon; held plans predict nothing."""
+def _predictions(run: RunView) -> tuple[Rows, Array]:
+    """Rows of /truth and what was predicted for them; held plans predict nothing."""
     plan = run.log["/plan"]
     sample = round(PREDICTION / run.constants.sample_time)
-    if sample >= plan.field("com").shape[1]:
-        return None
     ahead = round(sample * run.constants.sample_time * 1e9)
     rows, near = run.rows_at("/truth", plan.time_ns + ahead)
     plans = np.flatnonzero(near & (plan.field("held") == 0))
-    return (rows[plans], plans, sample) if len(plans) else None
+    return rows[plans], run.reduced(predicted)[plans]
 
 
 def _signed_area(vertices: Array) -> Array:

@@ -11,17 +11,39 @@ SHORTEST_WAY = 0.05
 """Way below which a cost of transport means nothing [m]."""
 
 
+def torque_ratio(run: RunView) -> Array:
+    """Largest commanded joint torque over its limit at each tick, shape (n,)."""
+    return np.asarray(np.max(np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit), axis=1))
+
+
+def strained_joint(run: RunView) -> Array:
+    """Which joint is nearest to its torque limit at each tick, index, shape (n,)."""
+    ratio = np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit)
+    return np.asarray(np.argmax(ratio, axis=1).astype(np.uint8))
+
+
+def joint_limit_margin(run: RunView) -> Array:
+    """Least distance of a joint from its limits at each tick, shape (n,) [rad]."""
+    position = run.field("/measurement", "joint_position")
+    below = position - np.array(run.constants.position_lower)
+    above = np.array(run.constants.position_upper) - position
+    return np.asarray(np.minimum(below, above).min(axis=1))
+
+
+def joint_power(run: RunView) -> Array:
+    """Sum of the joints' absolute powers at each tick, shape (n,) [W]."""
+    power = run.field("/measurement", "joint_torque") * run.field("/measurement", "joint_velocity")
+    return np.asarray(np.abs(power).sum(axis=1))
+
+
 def torque_ratio_max(run: RunView) -> float:
     """Largest commanded joint torque over its limit [-]."""
-    return float(np.max(np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit)))
+    return float(run.reduced(torque_ratio).max())
 
 
 def joint_limit_margin_min(run: RunView) -> float:
     """Least distance of a joint from its limits, negative beyond them [rad]."""
-    position = run.field("/measurement", "joint_position")
-    below = position - np.array(run.constants.position_lower)
-    above = np.array(run.constants.position_upper) - position
-    return float(min(below.min(), above.min()))
+    return float(run.reduced(joint_limit_margin).min())
 
 
 def cost_of_transport(run: RunView) -> float | None:
@@ -30,8 +52,7 @@ def cost_of_transport(run: RunView) -> float | None:
     way = float(np.linalg.norm(com[-1] - com[0]))
     if not way > SHORTEST_WAY:
         return None
-    power = np.abs(run.field("/measurement", "joint_torque") * run.field("/measurement", "joint_velocity"))
-    work = float(power.sum()) / run.constants.control_rate
+    work = float(run.reduced(joint_power).sum()) / run.constants.control_rate
     return work / (run.constants.mass * GRAVITY * way)
 
 

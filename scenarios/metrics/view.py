@@ -1,12 +1,13 @@
 """A log as the metrics see it."""
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenarios.constants import RunConstants
-from scenarios.log import Log
+from scenarios.metrics.digest import Digest, Source
 
 SINGLE_SUPPORT = 2
 """Value of ``/reference.phase`` in single support."""
@@ -21,13 +22,13 @@ class RunView:
     A killed process may leave a tick half written, so control-rate channels are cut to the shortest one.
 
     Attributes:
-        log: the log.
+        log: the log, a part of it or its digest.
         constants: of its run.
     """
 
-    def __init__(self, log: Log) -> None:
+    def __init__(self, log: Source, constants: RunConstants | None = None) -> None:
         self.log = log
-        self.constants = RunConstants.from_metadata(log.metadata, str(log.path))
+        self.constants = constants or RunConstants.from_metadata(log.metadata, str(log.path))
 
     def has(self, *topics: str) -> bool:
         """Whether all of these topics have messages."""
@@ -36,6 +37,11 @@ class RunView:
     def field(self, topic: str, name: str) -> Array:
         """A field of a control-rate channel on the common ticks, shape (n, *field shape)."""
         return self.log[topic].field(name)[: self.ticks]
+
+    def reduced(self, reduce: "Callable[[RunView], Array]") -> Array:
+        """What a function makes of each tick or message: out of the digest if it holds that."""
+        kept = self.log.reduced.get(reduce) if isinstance(self.log, Digest) else None
+        return reduce(self) if kept is None else kept
 
     @cached_property
     def ticks(self) -> int:

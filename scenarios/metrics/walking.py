@@ -1,8 +1,10 @@
 """Metrics of the walk: falls, steps, speed, feet and posture."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from scenarios.metrics.view import Mask, RunView
+from scenarios.metrics.view import Array, Mask, RunView
 
 FALLEN_HEIGHT = 0.6
 """Share of the nominal CoM height above the feet below which a robot has fallen."""
@@ -67,22 +69,51 @@ def footstep_error_max(run: RunView) -> float | None:
     return float(errors.max())
 
 
+@dataclass(frozen=True, slots=True)
+class Slip:
+    """How far a sole moved during a stance.
+
+    Attributes:
+        foot: 0 left, 1 right.
+        start: tick at which the stance began.
+        tick: tick at which the sole was farthest from where it began.
+        distance: horizontal distance then [m].
+    """
+
+    foot: int
+    start: int
+    tick: int
+    distance: float
+
+
+def stance_slips(run: RunView) -> list[Slip]:
+    """The slip of every stance, planned and felt."""
+    contact = (run.field("/contact", "planned") != 0) & (run.field("/contact", "felt") != 0)
+    soles, slips = run.soles, []
+    for foot in range(2):
+        for start, end in runs_of(contact[:, foot]):
+            distance = np.linalg.norm(soles[start:end, foot, :2] - soles[start, foot, :2], axis=1)
+            farthest = int(np.argmax(distance))
+            slips.append(Slip(foot, start, start + farthest, float(distance[farthest])))
+    return slips
+
+
 def foot_slip_max(run: RunView) -> float | None:
     """Largest horizontal distance of a sole from where its stance began, over all stances [m]."""
-    contact = (run.field("/contact", "planned") != 0) & (run.field("/contact", "felt") != 0)
-    slips = [
-        np.linalg.norm(run.soles[start:end, foot, :2] - run.soles[start, foot, :2], axis=1).max()
-        for foot in range(2)
-        for start, end in _runs(contact[:, foot])
-    ]
-    return float(max(slips)) if slips else None
+    return max((slip.distance for slip in stance_slips(run)), default=None)
+
+
+def knee_flexion(run: RunView) -> Array:
+    """Mean flexion of the knees at each tick, shape (n,) [rad]."""
+    knees = [i for i, name in enumerate(run.constants.joint_names) if "knee" in name]
+    return np.asarray(np.abs(run.field("/measurement", "joint_position")[:, knees]).mean(axis=1))
 
 
 def knee_angle_mean(run: RunView) -> float | None:
     """Mean flexion of both knees while walking, or over the whole run when no foot was lifted [rad]."""
-    knees = [i for i, name in enumerate(run.constants.joint_names) if "knee" in name]
-    ticks = run.walking if run.walking.stop else slice(None)
-    return float(np.mean(np.abs(run.field("/measurement", "joint_position")[ticks][:, knees]))) if knees else None
+    if not any("knee" in name for name in run.constants.joint_names):
+        return None
+    return float(np.mean(run.reduced(knee_flexion)[run.walking if run.walking.stop else slice(None)]))
 
 
 def speed_mean(run: RunView) -> float | None:
@@ -115,7 +146,7 @@ def _lost(run: RunView) -> Mask:
     return np.asarray(np.linalg.norm(dcm - run.field("/contact", "zmp")[:, :2], axis=1) > LOST_DISTANCE)
 
 
-def _runs(mask: Mask) -> list[tuple[int, int]]:
+def runs_of(mask: Mask) -> list[tuple[int, int]]:
     """Begin and end of each run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(np.int8), [0]))))
     return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]

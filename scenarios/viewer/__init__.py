@@ -1,0 +1,1 @@
+"""What MCAP viewers draw: a run in Foxglove's well-known schemas, beside the numeric channels of the log."""

@@ -55,7 +55,8 @@ def main() -> None:
         turns = [[spent(loop, start) for loop in loops] for start in range(0, round(500 * seconds), TURN)]
     logged, bare = np.array(turns).T
     print(
-        f"median tick with all channels {1e6 * np.median(logged) / TURN:.0f} us, with none {1e6 * np.median(bare) / TURN:.0f} us"
+        f"median tick with all channels {1e6 * np.median(logged) / TURN:.0f} us, "
+        f"with none {1e6 * np.median(bare) / TURN:.0f} us"
     )
     print(f"logging takes {100 * np.median(1 - bare / logged):.1f} % of the loop (median of {len(turns)} turns)")
 

@@ -35,8 +35,8 @@ def forces_match_weight(run: RunView) -> Finding:
     value = float(error[worst])
     cause = (
         f"over half a second the feet carry {100 * abs(value):.0f} % of the weight too "
-        f"{'much' if value > 0 else 'little'}: the robot is not as heavy as the log says, something but the feet carries "
-        "it, or contacts chatter between ticks"
+        f"{'much' if value > 0 else 'little'}: the robot is not as heavy as the log says, something but the feet "
+        "carries it, or contacts chatter between ticks"
     )
     return judged("contact_forces", abs(value) > FORCE_TOLERANCE, float(run.time[worst]), value, cause)
 

@@ -1,6 +1,7 @@
 """The MCAP log: channels, writer, reader and recovery."""
 
-from scenarios.log.reader import ChannelData, Log, read
+from scenarios.log.channel_data import ChannelData
+from scenarios.log.reader import Log, read
 from scenarios.log.spec import ChannelSpec, FieldSpec
 from scenarios.log.writer import AttachedFile, LogWriter, PublishedSchema
 

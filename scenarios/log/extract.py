@@ -7,7 +7,16 @@ from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
 from scenarios.log.layout import PREFIX_BYTES
-from scenarios.log.scan import Buffer, ChunkPlace
+from scenarios.log.scan import PREFIX, Buffer, ChunkPlace
+
+MESSAGE_BYTES = PREFIX_BYTES + 22
+"""A message record without its content."""
+
+
+def content_at(data: Buffer, offset: int) -> bytes:
+    """Content of the message record at an offset; cut where the data end."""
+    _, length = PREFIX.unpack_from(data, offset)
+    return bytes(data[offset + MESSAGE_BYTES : offset + PREFIX_BYTES + length])
 
 
 def block_of(data: memoryview, chunk: ChunkPlace, channel_id: int, size: int, file: Buffer) -> memoryview | bytes:

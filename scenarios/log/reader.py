@@ -4,77 +4,20 @@ import mmap
 import zlib
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from scenarios.errors import LogError, nearest
+from scenarios.log.channel_data import ChannelData
 from scenarios.log.compression import decompress
 from scenarios.log.encode import MAGIC
-from scenarios.log.extract import block_of, gathered, sound_records
+from scenarios.log.extract import MESSAGE_BYTES, block_of, content_at, gathered, sound_records
 from scenarios.log.layout import record_dtype
 from scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
 from scenarios.log.spec import FieldSpec, layout_of
 
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""
-
-
-class ChannelData:
-    """The messages of one channel in order of time.
-
-    Attributes:
-        topic: the channel's topic.
-        fields: its fields.
-        time_ns: simulated time of each message, shape (n,) [ns].
-    """
-
-    def __init__(self, topic: str, fields: tuple[FieldSpec, ...], records: NDArray[np.void]) -> None:
-        times = records["_log_time"].astype(np.int64)
-        if np.any(times[1:] < times[:-1]):
-            order = np.argsort(times, kind="stable")
-            times, records = times[order], records[order]
-        self.topic = topic
-        self.fields = fields
-        self.time_ns: NDArray[np.int64] = times
-        self._records = records
-
-    def __len__(self) -> int:
-        return len(self._records)
-
-    @property
-    def time(self) -> NDArray[np.float64]:
-        """Simulated time of each message, shape (n,) [s]."""
-        return np.asarray(self.time_ns / 1e9)
-
-    def between(self, start_ns: int, end_ns: int) -> "ChannelData":
-        """The messages from a time on and up to another one [ns]."""
-        first, last = np.searchsorted(self.time_ns, (start_ns, end_ns + 1))
-        return ChannelData(self.topic, self.fields, self._records[first:last])
-
-    def content(self) -> bytes:
-        """Bytes of all messages in order, for exact comparison of two runs."""
-        return self._records.tobytes()
-
-    def field(self, name: str) -> NDArray[Any]:
-        """Values of one field, shape (n, *field shape).
-
-        Raises:
-            LogError: the channel has no such field.
-        """
-        self._require(name)
-        return np.array(self._records[name])
-
-    def only(self, name: str) -> "ChannelData":
-        """The same messages with one field; errors as of `field`."""
-        self._require(name)
-        return ChannelData(self.topic, tuple(field for field in self.fields if field.name == name), self._records)
-
-    def _require(self, name: str) -> None:
-        if all(field.name != name for field in self.fields):
-            right = nearest(name, [field.name for field in self.fields])
-            raise LogError(f"channel {self.topic} has no field '{name}'; {right}")
 
 
 class Log:
@@ -161,13 +104,33 @@ class Log:
         Raises:
             LogError: there is no such topic, or its messages are not of a fixed layout.
         """
-        if topic not in self._ids:
-            raise LogError(f"{self.path}: no topic '{topic}'; {nearest(topic, self.topics or ('none',))}")
+        number = self._number(topic)
         try:
-            return layout_of(self.contents.channels[self._ids[topic]].metadata)
+            return layout_of(self.contents.channels[number].metadata)
         except ValueError:
             right = "read it by its schema with the mcap package"
             raise LogError(f"{self.path}: topic {topic} states no layout of fixed size; {right}") from None
+
+    @property
+    def numeric(self) -> tuple[str, ...]:
+        """Topics whose messages can be read into arrays; the others are of other people's schemas."""
+        return tuple(topic for topic in self.topics if self._is_numeric(topic))
+
+    def messages(self, topic: str) -> Iterator[tuple[int, bytes]]:
+        """Time [ns] and encoded content of every message of a topic, of any schema, in the file's order.
+
+        Raises:
+            LogError: there is no such topic.
+        """
+        number = self._number(topic)
+        for time, offset in self.contents.loose.get(number, ()):
+            yield time, content_at(self.data, offset)
+        for chunk in self.contents.chunks:
+            data = self._decompressed(chunk) if chunk.count(number) else None
+            if data is not None:
+                for time, offset in chunk.entries(number, self.data).tolist():
+                    if offset + MESSAGE_BYTES <= len(data):
+                        yield time, content_at(data, offset)
 
     def count(self, topic: str) -> int:
         """Number of messages of a topic, by the index."""
@@ -194,6 +157,18 @@ class Log:
             data = self._sound(chunk)
             if data is not None:
                 yield chunk, data
+
+    def _number(self, topic: str) -> int:
+        if topic not in self._ids:
+            raise LogError(f"{self.path}: no topic '{topic}'; {nearest(topic, self.topics or ('none',))}")
+        return self._ids[topic]
+
+    def _is_numeric(self, topic: str) -> bool:
+        try:
+            self.fields(topic)
+        except LogError:
+            return False
+        return True
 
     def _read(
         self, topics: Collection[str], chunks: Sequence[ChunkPlace], verify: bool = False, loose: bool = True

@@ -7,7 +7,6 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.errors import LogError
 from scenarios.log import Log
 
 KEPT: Mapping[str, tuple[str, ...]] = {
@@ -129,7 +128,7 @@ class Digest:
             reduce: is applied to every part.
         """
         self.path, self.size, self.metadata = log.path, log.size, log.metadata
-        topics = [topic for topic in KEPT if _is_numeric(log, topic)]
+        topics = [topic for topic in KEPT if topic in log.numeric]
         times: dict[str, list[NDArray[np.int64]]] = {topic: [] for topic in topics}
         fields: dict[tuple[str, str], list[NDArray[Any]]] = {}
         reduced: dict[Any, list[NDArray[Any]]] = {}
@@ -153,14 +152,3 @@ class Digest:
 
     def __getitem__(self, topic: str) -> KeptChannel:
         return self._channels[topic]
-
-
-def _is_numeric(log: Log, topic: str) -> bool:
-    """Whether a topic can be read into arrays."""
-    if topic not in log:
-        return False
-    try:
-        log.fields(topic)
-    except LogError:
-        return False
-    return True

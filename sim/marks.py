@@ -40,14 +40,18 @@ _SHAPES = {
 
 def draw(scene: mujoco.MjvScene, marks: Iterable[Mark]) -> None:
     """Add marks to a scene that was just updated; those that do not fit in are left out."""
+    geoms = scene.geoms  # every access makes a list of all of them
     for mark in marks:
         if scene.ngeom >= scene.maxgeom:
             return
-        geom = scene.geoms[scene.ngeom]
+        geom = geoms[scene.ngeom]
         scene.ngeom += 1
         shape = _SHAPES[mark.kind].value
         size, color = np.full(3, mark.size), np.array([*mark.color, 1.0], dtype=np.float32)
         mujoco.mjv_initGeom(geom, shape, size, mark.ends[0], np.eye(3).ravel(), color)
         if mark.kind != "point":
-            mujoco.mjv_connector(geom, shape, mark.size, mark.ends[0], mark.ends[1])
+            tail, head = mark.ends
+            # The engine draws an arrow half as long as the connector says.
+            reach = 2.0 * (head - tail) if mark.kind == "arrow" else head - tail
+            mujoco.mjv_connector(geom, shape, mark.size, tail, tail + reach)
         geom.emission = EMISSION

@@ -16,6 +16,9 @@ from sim.marks import Mark, draw
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 MAX_GEOMS = 4000
+SHINE = 0.6
+"""Share of a mark in the colour of what hides it."""
+
 SMOOTHING = 0.1
 """Share of the way to the robot that a tracking camera goes per frame."""
 
@@ -107,6 +110,9 @@ class _Painter:
         self._scene = mujoco.MjvScene(model, maxgeom=MAX_GEOMS)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = quality.shadows
         self._scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = quality.reflections
+        self._beside = mujoco.MjvScene(model, maxgeom=MAX_GEOMS)
+        for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_SKYBOX, mujoco.mjtRndFlag.mjRND_HAZE):
+            self._beside.flags[flag] = False
         self._option, self._view = mujoco.MjvOption(), mujoco.MjvCamera()
         self._view.distance, self._view.azimuth = camera.distance, camera.azimuth
         self._view.elevation, self._view.lookat[:] = camera.elevation, math.nan
@@ -123,13 +129,27 @@ class _Painter:
             mujoco.mj_comPos(self._model, self._data)
             mujoco.mj_camlight(self._model, self._data)
             self._follow()
-            # The engine centres the endless floor on the camera of the frame before, unless told of this one's.
-            mujoco.mjv_updateCamera(self._model, self._data, self._view, self._scene)
-            everything = mujoco.mjtCatBit.mjCAT_ALL.value
-            mujoco.mjv_updateScene(self._model, self._data, self._option, None, self._view, everything, self._scene)
-            draw(self._scene, beside)
-            mujoco.mjr_render(self._area, self._scene, self._context)
-            yield self._pixels()
+            shown = list(beside)
+            self._update(self._scene)
+            draw(self._scene, shown)
+            picture = self._picture(self._scene)
+            yield self._shine_through(picture, shown) if shown else picture
+
+    def _update(self, scene: mujoco.MjvScene) -> None:
+        # The engine centres the endless floor on the camera of the frame before, unless told of this one's.
+        mujoco.mjv_updateCamera(self._model, self._data, self._view, scene)
+        everything = mujoco.mjtCatBit.mjCAT_ALL.value
+        mujoco.mjv_updateScene(self._model, self._data, self._option, None, self._view, everything, scene)
+
+    def _shine_through(self, picture: Image, marks: list[Mark]) -> Image:
+        """Blend in a picture of the marks alone, so that those inside or behind the robot are seen too."""
+        self._update(self._beside)
+        self._beside.ngeom = 0
+        draw(self._beside, marks)
+        alone = self._picture(self._beside)
+        drawn = alone.any(axis=2)
+        picture[drawn] = (1.0 - SHINE) * picture[drawn] + SHINE * alone[drawn]
+        return picture
 
     def _follow(self) -> None:
         target = self._data.qpos[:3]
@@ -138,7 +158,8 @@ class _Painter:
         elif self._style.tracking:
             self._view.lookat[:] += SMOOTHING * (target - self._view.lookat)
 
-    def _pixels(self) -> Image:
+    def _picture(self, scene: mujoco.MjvScene) -> Image:
+        mujoco.mjr_render(self._area, scene, self._context)
         image = np.empty((self._area.height, self._area.width, 3), dtype=np.uint8)
         mujoco.mjr_readPixels(image, None, self._area, self._context)
         return image[::-1].copy()

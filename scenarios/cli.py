@@ -126,11 +126,12 @@ def replay(
     window = Window(start, end)
     if html is not None:
         command.html_page(log, html, window)
+        typer.echo(str(html))
     elif video is not None:
         command.video(log, video, window)
+        typer.echo(str(video))
     else:
-        command.live(log, window, lambda line: typer.echo(line))
-    typer.echo(str(html or video))
+        command.live(log, window, typer.echo)
 
 
 @app.command()

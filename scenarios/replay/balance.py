@@ -4,7 +4,7 @@ import numpy as np
 
 from scenarios.metrics.view import RunView
 from scenarios.replay import palette
-from scenarios.replay.content import Array, Track
+from scenarios.replay.content import Array, Color, Track
 from scenarios.replay.frames import Frames
 
 LIFT = 0.004
@@ -27,13 +27,13 @@ def balance_tracks(run: RunView, frames: Frames) -> tuple[Track, ...]:
         _point("CoM", "planned", palette.paler(palette.ORANGE), 0.025, planned["com"]),
         _point("DCM", "measured", palette.PURPLE, 0.014, _flat(dcm, ground), trail=True),
         _point("DCM", "planned", palette.paler(palette.PURPLE), 0.01, _flat(planned["dcm"], ground)),
-        _point("ZMP", "measured", palette.VERMILION, 0.014, zmp + [0.0, 0.0, LIFT], trail=True),
+        _point("ZMP", "measured", palette.VERMILION, 0.014, zmp + np.array([0.0, 0.0, LIFT]), trail=True),
         _point("ZMP", "planned", palette.paler(palette.VERMILION), 0.01, _flat(planned["zmp"], ground)),
         Track("Support polygon", "planned", "outline", palette.GREEN, 0.004, _support(run, frames)),
     )
 
 
-def _point(layer: str, name: str, color: palette.Color, size: float, position: Array, trail: bool = False) -> Track:
+def _point(layer: str, name: str, color: Color, size: float, position: Array, trail: bool = False) -> Track:
     return Track(layer, name, "point", color, size, position[:, None, :], trail)
 
 

@@ -1,5 +1,6 @@
 """What `surefoot replay` does once its options are sound."""
 
+import contextlib
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -34,7 +35,8 @@ def video(log: Path, out: Path, window: Window) -> None:
 
 
 def live(log: Path, window: Window, say: Callable[[str], None]) -> None:
-    """Serve a log until interrupted; errors as of `serve`."""
+    """Serve a log until Ctrl-C; errors as of `serve`."""
     from scenarios.replay.live import serve
 
-    serve(log, window, say)
+    with contextlib.suppress(KeyboardInterrupt):
+        serve(log, window, say)

@@ -36,7 +36,9 @@ def extract(log: Log, window: Window | None = None) -> Replay:
         raise LogError(f"{log.path}: /truth and world.xml are of different robots; replay needs an intact log")
     position, quaternion = body_poses(model, configurations)
     names = tuple(model.body(body).name for body in range(model.nbody))
-    com = position + Rotation.from_quat(quaternion, scalar_first=True).apply(np.broadcast_to(model.body_ipos, position.shape))
+    com = position + Rotation.from_quat(quaternion, scalar_first=True).apply(
+        np.broadcast_to(model.body_ipos, position.shape)
+    )
     return Replay(
         title=run.constants.scenario,
         frame_rate=(window or Window()).frame_rate,

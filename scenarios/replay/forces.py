@@ -15,8 +15,8 @@ from scenarios.verdict import scenario_of
 CONTACT_SCALE = 0.0005
 """Length of a contact force's arrow [m/N]: 1000 N are 0.5 m."""
 
-PUSH_SCALE = 0.001
-"""Length of a push's arrow [m/N]: 500 N are 0.5 m."""
+PUSH_SCALE = 0.002
+"""Length of a push's arrow [m/N]: 200 N are 0.4 m."""
 
 PUSH_SHOWN = 0.3
 """How long a push stays in sight after its end, since many last less than a frame [s]."""

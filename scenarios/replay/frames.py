@@ -42,7 +42,7 @@ class Frames:
     def before(self, seconds: float) -> NDArray[np.intp]:
         """Rows of the ticks up to some seconds before each frame, the frame's own first, shape (n, ticks)."""
         back = np.arange(max(round(seconds * self.rate), 1))
-        return np.maximum(self.rows[:, None] - back, 0)
+        return np.asarray(np.maximum(self.rows[:, None] - back, 0))
 
 
 def choose_frames(run: RunView, window: Window) -> Frames:
@@ -58,7 +58,7 @@ def choose_frames(run: RunView, window: Window) -> Frames:
     start = first if window.start is None else max(window.start, first)
     end = last if window.end is None else min(window.end, last)
     if not start <= end:
-        asked = f"from {start:g} s to {end:g} s"
+        asked = " ".join(f"{word} {t:g} s" for word, t in (("from", window.start), ("to", window.end)) if t is not None)
         raise LogError(f"{run.log.path}: nothing {asked}; the log goes from {first:g} s to {last:g} s")
     time = start + np.arange(int((end - start) * window.frame_rate + 1e-6) + 1) / window.frame_rate
     rows = np.maximum(np.searchsorted(ticks, time + 1e-9, side="right") - 1, 0)

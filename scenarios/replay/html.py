@@ -56,10 +56,14 @@ def _with_legend(recorded: str, replay: Replay) -> str:
     span = f"{replay.time[0]:.1f} s to {replay.time[-1]:.1f} s"
     layers: dict[str, Color] = {}
     for track in replay.tracks:
-        layers.setdefault(track.layer if track.layer != "Contact forces" else f"{track.layer}, {track.name}", track.color)
+        layers.setdefault(
+            track.layer if track.layer != "Contact forces" else f"{track.layer}, {track.name}", track.color
+        )
     entries = "".join(f'<div><b style="background:rgb{rgb(color)}"></b>{name}</div>' for name, color in layers.items())
     title = html.escape(replay.title)
-    legend = f"<style>{_STYLE}</style><div id=surefoot>{title}, {span}{entries}</div><script>{_OPEN_SCENE_TREE}</script>"
+    legend = (
+        f"<style>{_STYLE}</style><div id=surefoot>{title}, {span}{entries}</div><script>{_OPEN_SCENE_TREE}</script>"
+    )
     head, tail = recorded.rsplit("</body>", 1)
     before, after = head.split("<head>", 1)
     return f"{before}<head><title>{title}</title>{after}{legend}</body>{tail}"

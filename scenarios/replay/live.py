@@ -18,6 +18,9 @@ from scenarios.replay.viser_stage import LOCALHOST, serving
 if TYPE_CHECKING:
     import viser
 
+STEP = 0.001
+"""Resolution of the timeline [s]."""
+
 POLL = 1.0
 """Wall-clock time between looks at the log [s]."""
 
@@ -71,16 +74,23 @@ class Player:
         self._replay, self._scene, self._last = replay, ViserScene(server, replay), time.monotonic()
         first, last = float(replay.time[0]), float(replay.time[-1])
         gui: Any = server.gui
-        self._slider = gui.add_slider("time [s]", first, max(last, first + 1e-3), 1e-3, first)
-        self._playing = gui.add_checkbox("play", True)
-        self._following = gui.add_checkbox("follow the run", False, hint="show the newest state of a growing log")
-        self._speed = gui.add_dropdown("speed", SPEEDS, "1x")
+        self._slider = gui.add_slider(
+            "time [s]", min=first, max=max(last, first + STEP), step=STEP, initial_value=first
+        )
+        self._playing = gui.add_checkbox("play", initial_value=True)
+        self._following = gui.add_checkbox("follow the run", initial_value=False, hint="show the end of a growing log")
+        self._speed = gui.add_dropdown("speed", options=SPEEDS, initial_value="1x")
         self._now = first
+        self._slider.on_update(self._sought)
+        with gui.add_folder("show"):
+            for name, node in self._scene.layers.items():
+                switch = gui.add_checkbox(name, initial_value=node.visible)
+                switch.on_update(lambda event, node=node: setattr(node, "visible", event.target.value))
 
-        @self._slider.on_update
-        def _(event: Any) -> None:
-            if event.client is not None:
-                self._now, self._playing.value, self._following.value = event.target.value, False, False
+    def _sought(self, event: Any) -> None:
+        """Stay where the user has moved the slider to."""
+        if event.client is not None:
+            self._now, self._playing.value, self._following.value = event.target.value, False, False
 
     def replace(self, replay: Replay) -> None:
         """Show more of the run."""
@@ -98,6 +108,6 @@ class Player:
             self._now += elapsed * float(self._speed.value.rstrip("x"))
             self._now = self._now if self._now <= times[-1] else float(times[0])
         if self._playing.value or self._following.value:
-            self._slider.value = self._now
+            self._slider.value = round(self._now, 3)
         frame = int(np.clip(np.searchsorted(times, self._now + 1e-9, side="right") - 1, 0, len(times) - 1))
         self._scene.show(frame)

@@ -1,5 +1,6 @@
 """A frame of a replay as marks for MuJoCo's pictures."""
 
+import itertools
 from collections.abc import Iterator
 
 import numpy as np
@@ -21,7 +22,7 @@ def marks_of(replay: Replay, frame: int) -> Iterator[Mark]:
             yield from _mark(track, frame)
         if track.trail:
             path = track.path(slice(frame % TRAIL_STEP, frame + 1, TRAIL_STEP))
-            for ends in zip(path[:-1], path[1:], strict=True):
+            for ends in itertools.pairwise(path):
                 yield Mark("line", track.color, TRAIL_RADIUS, np.stack(ends))
     for footprint in replay.footprints:
         if footprint.since <= replay.time[frame] + 1e-9:

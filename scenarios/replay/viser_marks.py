@@ -49,10 +49,16 @@ def make_mark(scene: "viser.SceneApi", track: Track) -> Mark:
     if track.kind == "point":
         return _Point(scene.add_icosphere(name, radius=size, color=color, subdivisions=2))
     if track.kind == "arrow":
-        head = {"head_radius": 2.2 * size, "head_length": 5.0 * size}
-        return _Arrow(scene.add_arrows(name, np.zeros((1, 2, 3)), color, shaft_radius=size, **head))
+        head: dict[str, Any] = {"head_radius": 2.2 * size, "head_length": 5.0 * size}
+        return _Arrow(scene.add_arrows(name, np.zeros((1, 2, 3)), _linear(color), shaft_radius=size, **head))
     nowhere = np.zeros((track.vertices.shape[1], 2, 3))
     return _Outline(scene.add_line_segments(name, nowhere, color, thickness=2 * size))
+
+
+def _linear(color: tuple[int, int, int]) -> tuple[int, int, int]:
+    """The colour that viser, which takes those of arrows for linear light, shows as the given one."""
+    red, green, blue = (round(255 * (channel / 255) ** 2.2) for channel in color)
+    return red, green, blue
 
 
 def closed(vertices: Array) -> Array:

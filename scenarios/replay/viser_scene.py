@@ -19,12 +19,19 @@ _QUADRANGLE = np.array([[0, 1, 2], [0, 2, 3]])
 
 
 class ViserScene:
-    """Nodes for everything in a replay; `show` moves them to a frame."""
+    """Nodes for everything in a replay; `show` moves them to a frame.
+
+    Attributes:
+        layers: nodes that hide all that is below them, by name.
+    """
 
     def __init__(self, server: "viser.ViserServer", replay: Replay) -> None:
         self._scene = server.scene
         set_stage(server, replay)
+        self.layers: dict[str, Any] = {}
         self._bodies = tuple(self._add_bodies(replay))
+        for name in (*(track.layer for track in replay.tracks), "Taken footprints", "Paths"):
+            self._add_layer(name)
         self._marks = tuple(make_mark(self._scene, track) for track in replay.tracks)
         self._footprints: list[Any] = []
         self.replace(replay)
@@ -53,27 +60,32 @@ class ViserScene:
 
     def _add_bodies(self, replay: Replay) -> Iterator[tuple[int, Any]]:
         """Terrain and robot; the robot twice, since forces and CoM are seen only through it."""
-        yield from self._add_branch(replay, "/Terrain", lambda body: body == 0)
-        yield from self._add_branch(replay, "/Robot", lambda body: body > 0, opacity=SEE_THROUGH)
-        yield from self._add_branch(replay, "/Robot, solid", lambda body: body > 0, visible=False)
+        yield from self._add_branch(replay, "Terrain", lambda body: body == 0)
+        yield from self._add_branch(replay, "Robot", lambda body: body > 0, opacity=SEE_THROUGH)
+        yield from self._add_branch(replay, "Robot, solid", lambda body: body > 0)
+        self.layers["Robot, solid"].visible = False
 
     def _add_branch(
-        self, replay: Replay, branch: str, wanted: Callable[[int], bool], visible: bool = True, **look: Any
+        self, replay: Replay, layer: str, wanted: Callable[[int], bool], **look: Any
     ) -> Iterator[tuple[int, Any]]:
         """A node per body that has surfaces, and its surfaces below it."""
         chosen = [surface for surface in replay.surfaces if wanted(surface.body)]
         if chosen:
-            self._scene.add_frame(branch, show_axes=False, visible=visible)
+            self._add_layer(layer)
         for body in dict.fromkeys(surface.body for surface in chosen):
-            yield body, self._scene.add_frame(f"{branch}/{replay.body_names[body]}", show_axes=False)
+            yield body, self._scene.add_frame(f"/{layer}/{replay.body_names[body]}", show_axes=False)
         for index, surface in enumerate(chosen):
-            name, color = f"{branch}/{replay.body_names[surface.body]}/{index}", rgb(surface.color)
+            name, color = f"/{layer}/{replay.body_names[surface.body]}/{index}", rgb(surface.color)
             self._scene.add_mesh_simple(name, surface.vertices, surface.faces, color=color, **look)
+
+    def _add_layer(self, name: str) -> None:
+        if name not in self.layers:
+            self.layers[name] = self._scene.add_frame(f"/{name}", show_axes=False)
 
     def _add_footprint(self, index: int, footprint: Footprint) -> Any:
         name, color = f"/Taken footprints/{index}", rgb(footprint.color)
         node = self._scene.add_frame(name, show_axes=False, visible=False)
         self._scene.add_line_segments(f"{name}/outline", closed(footprint.corners), color, thickness=0.006)
-        area = {"color": color, "opacity": 0.3, "cast_shadow": False, "side": "double"}
+        area: dict[str, Any] = {"color": color, "opacity": 0.3, "cast_shadow": False, "side": "double"}
         self._scene.add_mesh_simple(f"{name}/area", footprint.corners, _QUADRANGLE, **area)
         return node

@@ -22,8 +22,8 @@ PORT = 8080
 STEP_BACK = np.array([1.6, -1.9, 0.35])
 """From what the camera looks at to where it stands at first, for a robot that stays in place [m]."""
 
-WIDER = 0.2
-"""Share by which the camera steps back for each metre that the robot walks [1/m]."""
+WIDER, WIDEST = 0.2, 1.6
+"""Share by which the camera steps back for each metre that the robot walks [1/m], and the largest factor."""
 
 LOOK_AT_HEIGHT = 0.7
 """Of what the camera looks at, over the ground [m]."""
@@ -57,7 +57,7 @@ def set_stage(server: "viser.ViserServer", replay: Replay) -> None:
     middle[2] += LOOK_AT_HEIGHT
     walked = float(np.linalg.norm(np.ptp(base[:, :2], axis=0)))
     server.initial_camera.look_at = middle
-    server.initial_camera.position = middle + STEP_BACK * (1.0 + WIDER * walked)
+    server.initial_camera.position = middle + STEP_BACK * min(1.0 + WIDER * walked, WIDEST)
     server.initial_camera.fov = np.deg2rad(45.0)
     scene.add_grid(
         "/Ground", infinite_grid=True, cell_size=0.1, section_size=1.0, fade_distance=25.0,

@@ -42,7 +42,7 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """What a picture costs; in software, at 1280x720, 0.6 s with all of it and 0.08 s with only shadows.
+    """What a picture costs; in software, at 1280x720, 0.6 s with all of it and 0.08 s with only shadows and one sample.
 
     Attributes:
         shadows: cast shadows.

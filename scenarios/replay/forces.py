@@ -45,9 +45,8 @@ def push(run: RunView, frames: Frames, body_names: tuple[str, ...], body_com: Ar
         body_names: by body.
         body_com: centres of mass of the bodies, shape (n, bodies, 3) [m].
     """
-    recent = run.field("/measurement", "external_force")[frames.before(PUSH_SHOWN)]
-    strongest = np.linalg.norm(recent, axis=2).argmax(axis=1)
-    force = recent[np.arange(len(recent)), strongest]
+    forces = run.field("/measurement", "external_force")
+    force = forces[frames.strongest(np.linalg.norm(forces, axis=1), run.time, PUSH_SHOWN)]
     head = body_com[:, body_names.index(body)] if (body := _pushed_body(run)) in body_names else body_com[:, 0]
     arrow = _arrow(head - PUSH_SCALE * force, force, PUSH_SCALE)
     return Track("Pushes", "push", "arrow", palette.YELLOW, 0.02, arrow)

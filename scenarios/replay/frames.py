@@ -32,17 +32,22 @@ class Frames:
     Attributes:
         time: of each frame, shape (n,) [s].
         rows: of the control-rate channels, shape (n,).
-        rate: of the control-rate channels [Hz].
     """
 
     time: Array
     rows: NDArray[np.intp]
-    rate: int
 
-    def before(self, seconds: float) -> NDArray[np.intp]:
-        """Rows of the ticks up to some seconds before each frame, the frame's own first, shape (n, ticks)."""
-        back = np.arange(max(round(seconds * self.rate), 1))
-        return np.asarray(np.maximum(self.rows[:, None] - back, 0))
+    def strongest(self, strength: Array, ticks: Array, seconds: float) -> NDArray[np.intp]:
+        """Row of the largest value within some seconds before each frame, the frame's own included.
+
+        Args:
+            strength: by control tick.
+            ticks: time of the control ticks [s].
+            seconds: how far to look back [s].
+        """
+        first = np.minimum(np.searchsorted(ticks, self.time - seconds), self.rows)
+        windows = zip(first.tolist(), self.rows.tolist(), strict=True)
+        return np.array([begin + int(strength[begin : end + 1].argmax()) for begin, end in windows])
 
 
 def choose_frames(run: RunView, window: Window) -> Frames:
@@ -60,9 +65,15 @@ def choose_frames(run: RunView, window: Window) -> Frames:
     if not start <= end:
         asked = " ".join(f"{word} {t:g} s" for word, t in (("from", window.start), ("to", window.end)) if t is not None)
         raise LogError(f"{run.log.path}: nothing {asked}; the log goes from {first:g} s to {last:g} s")
-    time = start + np.arange(int((end - start) * window.frame_rate + 1e-6) + 1) / window.frame_rate
+    # Only frames with a tick of their own, so that one damaged time stamp does not make hours of them.
+    numbers = np.unique(
+        np.floor((ticks[(ticks >= start - 1e-9) & (ticks <= end + 1e-9)] - start) * window.frame_rate + 1e-6)
+    )
+    if not len(numbers):
+        raise LogError(f"{run.log.path}: no control tick from {start:g} s to {end:g} s; choose another part")
+    time = start + numbers / window.frame_rate
     rows = np.maximum(np.searchsorted(ticks, time + 1e-9, side="right") - 1, 0)
     sound = np.isfinite(run.field("/truth", "q")[rows]).all(axis=1)
     if not sound.any():
         raise LogError(f"{run.log.path}: the robot's state is never finite; there is nothing to replay")
-    return Frames(time[sound], rows[sound], run.constants.control_rate)
+    return Frames(time[sound], rows[sound])

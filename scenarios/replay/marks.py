@@ -8,8 +8,8 @@ import numpy as np
 from scenarios.replay.content import Array, Color, Replay, Track
 from sim.marks import Mark
 
-TRAIL_STEP = 3
-"""Frames between the points of a trail."""
+TRAIL_STEP, TRAIL_LENGTH = 3, 300
+"""Frames between the points of a trail, and frames that it reaches back."""
 
 TRAIL_RADIUS = 0.0025
 OUTLINE_RADIUS = 0.004
@@ -21,7 +21,7 @@ def marks_of(replay: Replay, frame: int) -> Iterator[Mark]:
         if track.shown(frame):
             yield from _mark(track, frame)
         if track.trail:
-            path = track.path(slice(frame % TRAIL_STEP, frame + 1, TRAIL_STEP))
+            path = track.path(slice(max(frame % TRAIL_STEP, frame - TRAIL_LENGTH), frame + 1, TRAIL_STEP))
             for ends in itertools.pairwise(path):
                 yield Mark("line", track.color, TRAIL_RADIUS, np.stack(ends))
     for footprint in replay.footprints:

@@ -23,8 +23,10 @@ pytestmark = [
 TIME = "return parseFloat(document.querySelector('input')?.value)"
 PLAY = "document.querySelector('.mantine-ActionIcon-root').click()"
 EYE = """
-const rows = [...document.querySelectorAll('[data-playback-scene-tree] *')].filter(e => e.textContent === '/Robot');
-const row = rows[0].closest('div:has(svg)'); row.querySelectorAll('svg')[1].parentElement.click(); return true"""
+const names = [...document.querySelectorAll('[data-playback-scene-tree] div')].filter(e => e.textContent === '/Robot');
+const eye = names.at(-1).previousElementSibling.querySelector('svg');
+eye.dispatchEvent(new MouseEvent('mousedown', {bubbles: true}));
+eye.dispatchEvent(new MouseEvent('mouseup', {bubbles: true}));"""
 
 
 @pytest.fixture(scope="module")

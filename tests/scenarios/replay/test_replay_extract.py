@@ -1,5 +1,8 @@
 """What a replay shows is what the log says."""
 
+import contextlib
+import random
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -15,6 +18,7 @@ from scenarios.replay.content import Replay, Track
 from scenarios.replay.extract import extract
 from scenarios.replay.forces import CONTACT_SCALE, PUSH_SCALE, PUSH_SHOWN
 from scenarios.replay.frames import Window
+from scenarios.replay.marks import marks_of
 
 pytestmark = pytest.mark.unit
 
@@ -138,6 +142,18 @@ def test_a_truncated_log_shows_what_it_holds(log_path, tmp_path):
 def test_a_log_without_a_replay_says_why(write_log, options, message):
     with pytest.raises(LogError, match=message):
         extract(read(write_log(**options)))
+
+
+def test_flipped_bits_give_a_replay_or_a_sentence(write_log, tmp_path):
+    whole, rng = write_log(duration=0.2).read_bytes(), random.Random(0)
+    damaged = tmp_path / "damaged.mcap"
+    for _ in range(60):
+        content = bytearray(whole)
+        content[rng.randrange(8, len(content))] ^= 1 << rng.randrange(8)
+        damaged.write_bytes(content)
+        with contextlib.suppress(LogError):
+            replay = extract(read(damaged))
+            assert all(np.isfinite(mark.ends).all() for mark in marks_of(replay, len(replay) - 1))
 
 
 @pytest.mark.parametrize("window", [Window(5.0, None), Window(None, -1.0), Window(0.6, 0.5), Window(float("nan"))])

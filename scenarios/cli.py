@@ -175,6 +175,32 @@ def recover(
 
 
 @app.command()
+def replay(
+    log: Annotated[Path, typer.Argument(help="A log, also a truncated or growing one.")],
+    html: Annotated[Path | None, typer.Option(help="Write one page that opens offline.")] = None,
+    video: Annotated[Path | None, typer.Option(help="Write an mp4 video.")] = None,
+    live: Annotated[bool, typer.Option("--live", help="Serve it on this machine, following a growing log.")] = False,
+    start: Annotated[float | None, typer.Option("--from", help="First time [s].")] = None,
+    end: Annotated[float | None, typer.Option("--to", help="Last time [s].")] = None,
+) -> None:
+    """Show a log in 3D: as a page, as a video or live."""
+    if (html is not None) + (video is not None) + live != 1:
+        raise typer.BadParameter("give one of --html FILE, --video FILE and --live")
+    from scenarios.replay import command
+    from scenarios.replay.frames import Window
+
+    window = Window(start, end)
+    if html is not None:
+        command.html_page(log, html, window)
+        typer.echo(str(html))
+    elif video is not None:
+        command.video(log, video, window)
+        typer.echo(str(video))
+    else:
+        command.live(log, window, typer.echo)
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors."""
     from scenarios.schema import Scenario

@@ -11,6 +11,9 @@ from scenarios.errors import LogError
 RECORD = "run"
 """Name of the metadata record."""
 
+WORLD_FILE = "world.xml"
+"""Attachment that holds the simulated world as MJCF, the robot in it."""
+
 
 @dataclass(frozen=True, slots=True)
 class RunConstants:

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from models.types import RobotDescription
 from planner.types import CentroidalState, FeetState, PhaseInfo
 from scenarios.assembly import Rig, assemble
+from scenarios.constants import WORLD_FILE
 from scenarios.faults import FaultSchedule
 from scenarios.log import AttachedFile, LogWriter
 from scenarios.log.channels import Sizes
@@ -23,9 +24,6 @@ from sim.errors import SimulationDiverged
 from sim.measurement import Measurement
 from wbc.model import RobotTerms
 from wbc.types import FootSensing, RobotState
-
-WORLD_FILE = "world.xml"
-"""Attachment that holds the simulated world as MJCF, the robot in it."""
 
 
 def simulate(scenario: Scenario, robot: RobotDescription, writer: LogWriter, on_progress: OnProgress) -> End:

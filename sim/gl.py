@@ -41,16 +41,20 @@ def _loads(library: str) -> bool:
 
 
 def _try_backend(backend: str, width: int, height: int) -> Any | None:
-    """A context of this backend, or None if its driver refuses; the engine reads its choice from the environment."""
+    """A context of this backend, or None if its driver refuses; the engine reads its choice from the environment.
+
+    The environment is left as it was, since a child that imports MuJoCo with a choice loads OpenGL at once.
+    """
     before = os.environ.get("MUJOCO_GL")
     os.environ["MUJOCO_GL"] = backend
     try:
         context = importlib.import_module(f"mujoco.{backend}").GLContext(width, height)
         context.make_current()
     except (ImportError, AttributeError, RuntimeError):
+        return None
+    finally:
         if before is None:
             del os.environ["MUJOCO_GL"]
         else:
             os.environ["MUJOCO_GL"] = before
-        return None
     return context

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import repeat
 
 import mujoco
 import numpy as np
@@ -10,10 +11,14 @@ from numpy.typing import NDArray
 
 from models.convert import pinocchio_to_mujoco
 from sim.gl import make_context
+from sim.marks import Mark, draw
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 MAX_GEOMS = 4000
+SHINE = 0.6
+"""Share of a mark in the colour of what hides it."""
+
 SMOOTHING = 0.1
 """Share of the way to the robot that a tracking camera goes per frame."""
 
@@ -35,13 +40,31 @@ class Camera:
     tracking: bool = True
 
 
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """What a picture costs; in software, at 1280x720, 0.6 s with all of it and 0.08 s with only shadows and one sample.
+
+    Attributes:
+        shadows: cast shadows.
+        reflections: of the floor; the scene is drawn twice.
+        samples: per pixel, against jagged edges; 0 is one.
+        shadow_size: side of the shadow map [px].
+    """
+
+    shadows: bool = True
+    reflections: bool = True
+    samples: int = 4
+    shadow_size: int = 4096
+
+
 def render_frames(
     mjcf: str,
     configurations: Iterable[Array],
     width: int = 1280,
     height: int = 720,
     camera: Camera | None = None,
-    shadows: bool = True,
+    quality: Quality | None = None,
+    marks: Iterable[Iterable[Mark]] | None = None,
 ) -> Iterator[Image]:
     """Draw the robot of a world in each configuration.
 
@@ -51,7 +74,8 @@ def render_frames(
         width: picture width [px].
         height: picture height [px].
         camera: where to look from; a three-quarter view from the front by default.
-        shadows: cast shadows and reflect; without them software rendering is about twice as fast.
+        quality: how carefully to draw; all that there is by default.
+        marks: what to draw beside the world, for each configuration; nothing by default.
 
     Yields:
         one picture per configuration, shape (height, width, 3).
@@ -59,29 +83,36 @@ def render_frames(
     Raises:
         RenderingUnavailableError: the machine has no off-screen OpenGL.
     """
-    model = _compiled(mjcf, width, height)
+    quality = quality or Quality()
+    model = _compiled(mjcf, width, height, quality)
     context = make_context(width, height)
     try:
-        yield from _Painter(model, width, height, camera or Camera(), shadows).paint(configurations)
+        painter = _Painter(model, width, height, camera or Camera(), quality)
+        yield from painter.paint(configurations, repeat(()) if marks is None else marks)
     finally:
         context.free()
 
 
-def _compiled(mjcf: str, width: int, height: int) -> mujoco.MjModel:
+def _compiled(mjcf: str, width: int, height: int, quality: Quality) -> mujoco.MjModel:
     model = mujoco.MjModel.from_xml_string(mjcf)
     model.vis.global_.offwidth = width
     model.vis.global_.offheight = height
+    model.vis.quality.offsamples = quality.samples
+    model.vis.quality.shadowsize = quality.shadow_size
     return model
 
 
 class _Painter:
     """MuJoCo's scene and GPU resources for one sequence of frames, in the current OpenGL context."""
 
-    def __init__(self, model: mujoco.MjModel, width: int, height: int, camera: Camera, shadows: bool) -> None:
+    def __init__(self, model: mujoco.MjModel, width: int, height: int, camera: Camera, quality: Quality) -> None:
         self._model, self._data, self._style = model, mujoco.MjData(model), camera
         self._scene = mujoco.MjvScene(model, maxgeom=MAX_GEOMS)
-        for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
-            self._scene.flags[flag] = shadows
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = quality.shadows
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = quality.reflections
+        self._beside = mujoco.MjvScene(model, maxgeom=MAX_GEOMS)
+        for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_SKYBOX, mujoco.mjtRndFlag.mjRND_HAZE):
+            self._beside.flags[flag] = False
         self._option, self._view = mujoco.MjvOption(), mujoco.MjvCamera()
         self._view.distance, self._view.azimuth = camera.distance, camera.azimuth
         self._view.elevation, self._view.lookat[:] = camera.elevation, math.nan
@@ -89,21 +120,36 @@ class _Painter:
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         self._area = mujoco.MjrRect(0, 0, width, height)
 
-    def paint(self, configurations: Iterable[Array]) -> Iterator[Image]:
+    def paint(self, configurations: Iterable[Array], marks: Iterable[Iterable[Mark]]) -> Iterator[Image]:
         """One picture per configuration."""
         rest = np.zeros(self._model.nv)
-        for q in configurations:
+        for q, beside in zip(configurations, marks, strict=False):
             pinocchio_to_mujoco(q, rest, self._data.qpos, self._data.qvel)
             mujoco.mj_kinematics(self._model, self._data)
             mujoco.mj_comPos(self._model, self._data)
             mujoco.mj_camlight(self._model, self._data)
             self._follow()
-            # The engine centres the endless floor on the camera of the frame before, unless told of this one's.
-            mujoco.mjv_updateCamera(self._model, self._data, self._view, self._scene)
-            everything = mujoco.mjtCatBit.mjCAT_ALL.value
-            mujoco.mjv_updateScene(self._model, self._data, self._option, None, self._view, everything, self._scene)
-            mujoco.mjr_render(self._area, self._scene, self._context)
-            yield self._pixels()
+            shown = list(beside)
+            self._update(self._scene)
+            draw(self._scene, shown)
+            picture = self._picture(self._scene)
+            yield self._shine_through(picture, shown) if shown else picture
+
+    def _update(self, scene: mujoco.MjvScene) -> None:
+        # The engine centres the endless floor on the camera of the frame before, unless told of this one's.
+        mujoco.mjv_updateCamera(self._model, self._data, self._view, scene)
+        everything = mujoco.mjtCatBit.mjCAT_ALL.value
+        mujoco.mjv_updateScene(self._model, self._data, self._option, None, self._view, everything, scene)
+
+    def _shine_through(self, picture: Image, marks: list[Mark]) -> Image:
+        """Blend in a picture of the marks alone, so that those inside or behind the robot are seen too."""
+        self._update(self._beside)
+        self._beside.ngeom = 0
+        draw(self._beside, marks)
+        alone = self._picture(self._beside)
+        drawn = alone.any(axis=2)
+        picture[drawn] = (1.0 - SHINE) * picture[drawn] + SHINE * alone[drawn]
+        return picture
 
     def _follow(self) -> None:
         target = self._data.qpos[:3]
@@ -112,7 +158,8 @@ class _Painter:
         elif self._style.tracking:
             self._view.lookat[:] += SMOOTHING * (target - self._view.lookat)
 
-    def _pixels(self) -> Image:
+    def _picture(self, scene: mujoco.MjvScene) -> Image:
+        mujoco.mjr_render(self._area, scene, self._context)
         image = np.empty((self._area.height, self._area.width, 3), dtype=np.uint8)
         mujoco.mjr_readPixels(image, None, self._area, self._context)
         return image[::-1].copy()

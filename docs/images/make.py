@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from scenarios.constants import WORLD_FILE
 from scenarios.log import Log, read
-from scenarios.loop import WORLD_FILE
 from sim.render import Camera, render_frames
 
 WIDTH, HEIGHT = 1280, 570

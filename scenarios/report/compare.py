@@ -17,6 +17,7 @@ from scenarios.report.settings import (
     setting_differences,
     version_differences,
 )
+from scenarios.viewer import DERIVED_TOPICS
 
 TOLERANCE = 1e-6
 
@@ -113,7 +114,8 @@ def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[C
         raise LogError(f"--tolerance {tolerance}: not a tolerance; give a number from 0 on, such as {TOLERANCE}")
     a, b = read(path_a), read(path_b)
     metrics, notes = metric_pairs(a, b)
-    common = tuple(topic for topic in a.topics if topic in b)
+    topics_a, topics_b = _own(a), _own(b)
+    common = tuple(topic for topic in topics_a if topic in b)
     found = Comparison(
         a=str(a.path),
         b=str(b.path),
@@ -123,8 +125,8 @@ def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[C
         files=file_differences(a, b),
         metrics=metrics,
         channels=compare_channels(a, b, tolerance),
-        only_a=tuple(topic for topic in a.topics if topic not in b),
-        only_b=tuple(topic for topic in b.topics if topic not in a),
+        only_a=tuple(topic for topic in topics_a if topic not in b),
+        only_b=tuple(topic for topic in topics_b if topic not in a),
         notes=(*notes, *_damage("A", a, common), *_damage("B", b, common)),
     )
     return found, a, b
@@ -163,6 +165,11 @@ def describe(channel: ChannelDifference) -> str:
 def timed(name: str) -> bool:
     """Whether a metric's element differs between any two runs."""
     return name.partition(".")[0] in WALL_CLOCK_METRICS
+
+
+def _own(log: Log) -> tuple[str, ...]:
+    """Topics of a log, less those for viewers, which derive from the others."""
+    return tuple(topic for topic in log.topics if topic not in DERIVED_TOPICS)
 
 
 def _damage(name: str, log: Log, common: tuple[str, ...]) -> list[str]:

@@ -8,10 +8,12 @@ from models.registry import describe
 from models.types import RobotOptions
 from planner.terrain import flat
 from sim import gl
-from sim.render import Camera, render_frames
+from sim.marks import Mark
+from sim.render import Camera, Quality, render_frames
 from sim.world import World
 
 pytestmark = pytest.mark.unit
+DRAFT = Quality(shadows=False, reflections=False, samples=0)
 
 
 def test_importing_touches_no_opengl() -> None:
@@ -31,12 +33,47 @@ def test_pictures_show_the_robot_and_follow_it() -> None:
     away = q.copy()
     away[0] += 50.0
     try:
-        here, gone = render_frames(world.mjcf(), [q, away], 160, 120, Camera(azimuth=90, tracking=False), shadows=False)
+        here, gone = render_frames(world.mjcf(), [q, away], 160, 120, Camera(azimuth=90, tracking=False), DRAFT)
     except gl.RenderingUnavailableError as error:
         pytest.skip(str(error))
     assert here.shape == (120, 160, 3)
     orange = (here[..., 0] > 150) & (here[..., 2] < 80)
     assert orange.sum() > 10
     assert not ((gone[..., 0] > 150) & (gone[..., 2] < 80)).any()
-    (tracked,) = render_frames(world.mjcf(), [away], 160, 120, Camera(azimuth=90), shadows=False)
+    (tracked,) = render_frames(world.mjcf(), [away], 160, 120, Camera(azimuth=90), DRAFT)
     assert ((tracked[..., 0] > 150) & (tracked[..., 2] < 80)).sum() == pytest.approx(orange.sum(), rel=0.2)
+
+
+def test_marks_are_drawn_where_they_are() -> None:
+    world = World(describe("humanoid100", RobotOptions()), flat(), 1000)
+    q = np.concatenate(([0.0, 0.0, 0.9, 0.0, 0.0, 0.0, 1.0], world.description.nominal_joint_positions))
+    ends = np.array([[0.0, -0.8, 0.9], [0.0, -0.8, 1.3]])
+    magenta = (1.0, 0.0, 1.0)
+    counts = (("point", 1), ("arrow", 2), ("line", 2))
+    kinds = [(), *([Mark(kind, magenta, 0.05, ends[:count])] for kind, count in counts)]
+    try:
+        pictures = list(render_frames(world.mjcf(), [q] * 4, 160, 120, Camera(azimuth=180), DRAFT, kinds))
+    except gl.RenderingUnavailableError as error:
+        pytest.skip(str(error))
+    none, point, arrow, line = ((p[..., 0] > 150) & (p[..., 1] < 80) & (p[..., 2] > 150) for p in pictures)
+    assert not none.any()
+    rows, columns = np.nonzero(point)
+    assert abs(rows.mean() - 60) < 6
+    assert columns.max() < 70
+    tops = [np.nonzero(picture)[0].min() for picture in (point, arrow, line)]
+    assert tops[1] < tops[0] - 5
+    assert tops[1] == pytest.approx(tops[2], abs=3)
+
+
+def test_marks_inside_the_robot_shine_through() -> None:
+    world = World(describe("humanoid100", RobotOptions()), flat(), 1000)
+    q = np.concatenate(([0.0, 0.0, 0.9, 0.0, 0.0, 0.0, 1.0], world.description.nominal_joint_positions))
+    inside = Mark("point", (1.0, 0.0, 1.0), 0.03, np.array([[0.0, 0.0, 1.0]]))
+    try:
+        plain, marked = render_frames(world.mjcf(), [q, q], 160, 120, Camera(azimuth=180), DRAFT, [(), (inside,)])
+    except gl.RenderingUnavailableError as error:
+        pytest.skip(str(error))
+    rows, columns = np.nonzero((plain != marked).any(axis=2))
+    assert len(rows) > 5
+    assert np.ptp(rows) < 12
+    assert np.ptp(columns) < 12

@@ -1,0 +1,111 @@
+"""What a replay shows, independent of what shows it: surfaces on bodies, marks that move, footprints that stay."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Color = tuple[float, float, float]
+"""Red, green and blue from 0 to 1."""
+
+Kind = Literal["point", "arrow", "outline"]
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """Triangles that move with a body.
+
+    Attributes:
+        body: index of the body; 0 is the world.
+        color: of the surface.
+        vertices: in the body's frame, shape (k, 3) [m].
+        faces: indices of vertices, counter-clockwise from outside, shape (m, 3).
+    """
+
+    body: int
+    color: Color
+    vertices: Array
+    faces: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """A mark that moves.
+
+    Attributes:
+        layer: what it is switched on and off with.
+        name: what it is, within the layer.
+        kind: a point has one vertex, an arrow a tail and a head, an outline two or more in order and is closed.
+        color: of the mark.
+        size: radius of a point, of an arrow's shaft or of an outline's line [m].
+        vertices: in the world by frame, NaN where there is nothing to show, shape (n, k, 3) [m].
+        trail: whether its path is worth drawing.
+    """
+
+    layer: str
+    name: str
+    kind: Kind
+    color: Color
+    size: float
+    vertices: Array
+    trail: bool = False
+
+    def shown(self, frame: int) -> bool:
+        """Whether there is something to show in a frame."""
+        return bool(np.isfinite(self.vertices[frame]).all())
+
+    def path(self, frames: slice) -> Array:
+        """Where a point has been, without the frames in which it was not shown, shape (k, 3) [m]."""
+        points = self.vertices[frames, 0]
+        return np.asarray(points[np.isfinite(points).all(axis=1)])
+
+
+@dataclass(frozen=True, slots=True)
+class Footprint:
+    """Where a sole has been set down; it stays.
+
+    Attributes:
+        color: of the foot.
+        corners: of the sole in the world, in order, shape (4, 3) [m].
+        since: time of the touchdown [s].
+    """
+
+    color: Color
+    corners: Array
+    since: float
+
+
+@dataclass(frozen=True, slots=True)
+class Replay:
+    """A stretch of a run at an even frame rate.
+
+    Attributes:
+        title: what is shown.
+        frame_rate: of the content [Hz].
+        time: simulated time of each frame, shape (n,) [s].
+        configuration: of the robot by frame, in Pinocchio's convention, shape (n, nq).
+        body_names: by body.
+        body_position: origins of the bodies in the world by frame, shape (n, bodies, 3) [m].
+        body_quaternion: w x y z by frame, shape (n, bodies, 4).
+        surfaces: of the robot and of the terrain.
+        tracks: marks that move.
+        footprints: that were taken, in order of time.
+        mjcf: text of the simulated world.
+    """
+
+    title: str
+    frame_rate: float
+    time: Array
+    configuration: Array
+    body_names: tuple[str, ...]
+    body_position: Array
+    body_quaternion: Array
+    surfaces: tuple[Surface, ...]
+    tracks: tuple[Track, ...]
+    footprints: tuple[Footprint, ...]
+    mjcf: str
+
+    def __len__(self) -> int:
+        return len(self.time)

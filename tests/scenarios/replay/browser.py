@@ -1,0 +1,83 @@
+"""A headless Chromium that is driven by the WebDriver protocol, with no way to any network."""
+
+import base64
+import json
+import shutil
+import socket
+import subprocess
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+from typing import Any, Self
+
+FLAGS = (
+    *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
+    *("--disable-background-networking", "--disable-component-update", "--enable-unsafe-swiftshader"),
+    *("--window-size=1000,700", "--proxy-server=127.0.0.1:9"),
+)
+
+
+def missing() -> str | None:
+    """What is not installed, if anything."""
+    names = [name for name in ("chromium", "chromedriver") if shutil.which(name) is None]
+    return f"needs {' and '.join(names)}: apt-get install chromium chromium-driver" if names else None
+
+
+class Browser:
+    """One page in one browser, as a context manager."""
+
+    def __init__(self, page: Path, profile: Path) -> None:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        self._server = f"http://127.0.0.1:{port}"
+        driver = [shutil.which("chromedriver") or "", f"--port={port}"]
+        self._driver = subprocess.Popen(driver, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        options = {"args": [*FLAGS, f"--user-data-dir={profile}"], "binary": shutil.which("chromium")}
+        wanted = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": options}}
+        self._session = ""
+        self._session = f"/session/{self._started(wanted)['sessionId']}"
+        self._call("POST", "/url", {"url": page.as_uri()})
+
+    def _started(self, wanted: dict[str, Any]) -> Any:
+        for _ in range(50):
+            try:
+                self._call("GET", "/status")
+                break
+            except urllib.error.URLError:
+                time.sleep(0.1)
+        return self._call("POST", "/session", {"capabilities": wanted})
+
+    def _call(self, method: str, path: str, body: dict[str, Any] | None = None) -> Any:
+        data = json.dumps(body or {}).encode() if method == "POST" else None
+        headers = {"Content-Type": "application/json"}
+        request = urllib.request.Request(self._server + self._session + path, data, headers, method=method)
+        with urllib.request.urlopen(request, timeout=120) as answer:
+            return json.load(answer)["value"]
+
+    def run(self, script: str) -> Any:
+        """Run JavaScript in the page; gives what it returns."""
+        return self._call("POST", "/execute/sync", {"script": script, "args": []})
+
+    def wait_for(self, script: str, seconds: float = 60.0) -> Any:
+        """Wait until JavaScript returns something true."""
+        end = time.monotonic() + seconds
+        while not (value := self.run(script)):
+            assert time.monotonic() < end, f"never true in {seconds} s: {script}"
+            time.sleep(0.2)
+        return value
+
+    def screenshot(self) -> bytes:
+        """A PNG picture of the page."""
+        return base64.b64decode(self._call("GET", "/screenshot"))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        try:
+            self._call("DELETE", "")
+        finally:
+            self._driver.terminate()
+            self._driver.wait(timeout=20)

@@ -61,7 +61,8 @@ def late_touchdowns(run: RunView) -> Finding:
     single, rate = run.single_support.copy(), run.constants.control_rate
     single[_standing(run) :] = False
     planned = run.field("/reference", "phase_duration")
-    phases = walking.runs_of(single)
+    stance = run.field("/reference", "stance")
+    phases = [phase for foot in (0, 1) for phase in walking.runs_of(single & (stance == foot))]
     late = [(end - start) / rate - float(planned[start]) for start, end in phases if end < len(single)]
     if not late:
         return judged("touchdowns", False, None, None, "")

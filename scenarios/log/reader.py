@@ -232,7 +232,8 @@ class Log:
     def _index_rest(self) -> None:
         """Index chunks that stand without an index, or whose channels are defined only inside them."""
         for chunk in self.contents.chunks:
-            if not chunk.index or chunk.index.keys() - self.contents.channels.keys():
+            foreign = chunk.index.keys() - self.contents.channels.keys()
+            if not chunk.index or chunk.index_damaged or foreign:
                 data = self._decompressed(chunk)
                 if data is not None:
                     chunk.index = dict(index_chunk(data, self.contents))

@@ -47,6 +47,7 @@ class ChunkPlace:
         data: where its compressed bytes begin and end.
         index: by channel id, where in the file the times and offsets of its messages stand, or they themselves where
             the file has no index.
+        index_damaged: whether a part of the index could not be read, so that it must be made anew.
     """
 
     position: int
@@ -58,6 +59,7 @@ class ChunkPlace:
     compression: str
     data: slice
     index: dict[int, Index] = field(default_factory=dict)
+    index_damaged: bool = False
 
     def count(self, channel_id: int) -> int:
         """Messages of a channel."""
@@ -121,6 +123,8 @@ def scan(data: Buffer) -> Contents:
             _take(opcode, data, position, slice(body, end), contents)
         except _UNREADABLE:
             contents.damage.append(f"the {_name(opcode)} record at byte {position} is damaged")
+            if opcode == Opcode.MESSAGE_INDEX:
+                contents.chunks[-1].index_damaged = True
         position = _take_indexes(data, end, contents) if opcode == Opcode.CHUNK else end
     release(data, released, size)
     return contents

@@ -18,6 +18,7 @@ from scenarios.loop import ClosedLoop
 from scenarios.recorder import Recorder
 from scenarios.robots import describe
 from scenarios.timeline import run_duration
+from scenarios.viewer.body_view import BodyView
 from scenarios.walk_recorder import WalkRecorder
 from sim.world import World
 from wbc.controller import WholeBodyController
@@ -30,13 +31,8 @@ PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "reference sampling": ((PlanSampler, "sample"),),
     "QP assembly": ((WholeBodyController, "_assemble"),),
     "QP solve": ((WholeBodyController, "_solve"),),
-    "logging": (
-        (Recorder, "body"),
-        (Recorder, "estimate"),
-        (Recorder, "contact"),
-        (Recorder, "control"),
-        (WalkRecorder, "reference"),
-    ),
+    "logging": ((Recorder, "tick"), (WalkRecorder, "reference")),
+    "viewers' channels": ((BodyView, "events"), (BodyView, "picture")),
     "physics steps": ((World, "advance"),),
 }
 

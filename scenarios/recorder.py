@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from scenarios.derived import contact_points
 from scenarios.log import LogWriter, channels
 from scenarios.log.channels import Sizes
+from scenarios.log.row_writer import places
 from sim.measurement import Measurement
 from wbc.model import RobotTerms
 from wbc.types import RobotState, SolveStatus, WbcReference, WbcReport
@@ -13,8 +14,8 @@ from wbc.types import RobotState, SolveStatus, WbcReference, WbcReport
 Array = NDArray[np.float64]
 
 _SECOND, _FALLBACK = SolveStatus.SECOND_SOLVER, SolveStatus.EQUALITIES_ONLY
-_INPUTS = 42
-"""Inputs of what is derived, beside the torques: both wrenches, sole positions, sole rotations, CoM, its velocity."""
+_ROTATIONS = 18
+"""Numbers of the sole orientations: they are not logged as they are, but the ZMP needs them."""
 
 
 class Recorder:
@@ -49,8 +50,8 @@ class Recorder:
             (torque, ("limit_ratio_max",)),
             (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
         )
-        self._row = writer.rows(vectors, numbers, derived, self._derived, _INPUTS + sizes.nj)
-        self._inputs = -(_INPUTS + sizes.nj)
+        self._row = writer.rows(vectors, numbers, derived, self._derived, _ROTATIONS)
+        self._at = places(vectors)
 
     def tick(
         self, time_ns: int, measurement: Measurement, terms: RobotTerms, state: RobotState,
@@ -67,28 +68,33 @@ class Recorder:
             report: what it did.
             torque: the torque commanded, shape (nj,) [N·m].
         """
-        m, r, com, velocity, wrench = measurement, report, terms.com, terms.com_velocity, measurement.wrench.ravel()
+        m, r, com, velocity = measurement, report, terms.com, terms.com_velocity
         numbers = (
             m.nonfoot_contact, *reference.planned_contact, *r.active, *r.felt,
             r.status, r.iterations, r.primal_residual, r.dual_residual, reference.omega, terms.torso_rotation[2, 2],
         )  # fmt: skip
         self._row.append(
             time_ns, numbers,
-            m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer, wrench, m.external_force,
+            m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer,
+            m.wrench.ravel(), m.external_force,
             m.q, m.v, com, velocity, terms.angular_momentum, terms.sole_pose.ravel(),
             com, velocity, state.q[:3], state.v[:6],
             r.acceleration, r.wrench.ravel(), r.task_error, torque,
-            wrench, terms.sole_position.ravel(), terms.sole_rotation.ravel(), com, velocity, torque,
+            terms.sole_rotation.ravel(),
         )  # fmt: skip
 
     def _derived(self, vectors: Array, numbers: Array) -> Array:
         """What follows from the rest: solver, fallback, tilt, DCM, largest torque ratio, ZMP and contact points."""
-        n, inputs = len(vectors), vectors[:, self._inputs :]
-        wrench = inputs[:, :12].reshape(n, 2, 6)
-        zmp, cop = contact_points(wrench, inputs[:, 12:18].reshape(n, 2, 3), inputs[:, 18:36].reshape(n, 2, 3, 3))
+        n, at = len(vectors), self._at
+        left, right = at["/measurement", "wrench_left"], at["/measurement", "wrench_right"]
+        wrench = vectors[:, left.start : right.stop].reshape(n, 2, 6)
+        soles = vectors[:, at["/truth", "left_sole"].start : at["/truth", "right_sole"].stop].reshape(n, 2, 7)
+        zmp, cop = contact_points(wrench, soles[:, :, :3], vectors[:, -_ROTATIONS:].reshape(n, 2, 3, 3))
+        com, velocity = vectors[:, at["/estimate", "com"]], vectors[:, at["/estimate", "com_velocity"]]
         status, omega, upright = numbers[:, 7], numbers[:, 11:12], numbers[:, 12]
         return np.column_stack((
             status == _SECOND, status >= _FALLBACK, np.arccos(np.minimum(upright, 1.0)),
-            inputs[:, 36:38] + inputs[:, 39:41] / omega, np.abs(inputs[:, _INPUTS:] * self._inverse_limit).max(axis=1),
+            com[:, :2] + velocity[:, :2] / omega,
+            np.abs(vectors[:, at["/torque", "command"]] * self._inverse_limit).max(axis=1),
             zmp, wrench[:, :, 2], cop.reshape(n, 4),
         ))  # fmt: skip

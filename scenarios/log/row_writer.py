@@ -93,12 +93,19 @@ class RowWriter:
         self._numbers.clear()
 
 
-def _columns(group: Columns) -> list[tuple[NDArray[np.generic], int, int]]:
-    """Where the fields of a group wait, and the columns that they take."""
-    columns, start = [], 0
+def places(group: Columns) -> dict[tuple[str, str], slice]:
+    """Columns that the fields of a group take, by topic and name."""
+    found, start = {}, 0
     for writer, names in group:
         sizes = {field.name: field.size for field in writer.spec.fields}
         for name in names:
-            columns.append((writer.view(name), start, start + sizes[name]))
+            found[writer.spec.topic, name] = slice(start, start + sizes[name])
             start += sizes[name]
-    return columns
+    return found
+
+
+def _columns(group: Columns) -> list[tuple[NDArray[np.generic], int, int]]:
+    """Where the fields of a group wait, and the columns that they take."""
+    at = places(group)
+    fields = [(writer, name, at[writer.spec.topic, name]) for writer, names in group for name in names]
+    return [(writer.view(name), place.start, place.stop) for writer, name, place in fields]

@@ -20,7 +20,7 @@ from scenarios.log.spec import ChannelSpec
 from scenarios.log.summary import Summary
 
 Compression = Literal["lz4", "zstd", ""]
-CHUNK_PERIOD_NS = 80_000_000
+CHUNK_PERIOD_NS = 90_000_000
 """Simulated time in one chunk: what a killed process loses at most, and a tick [ns]."""
 
 _CAPACITY = 128

@@ -133,7 +133,7 @@ def test_after_a_broken_length_reading_resumes_at_the_next_chunk(whole, tmp_path
     path = tmp_path / "flipped.mcap"
     path.write_bytes(data)
     log = read(path)
-    assert len(log["/x"]) >= TICKS - 45
+    assert len(log["/x"]) >= TICKS - 50
     assert "cannot be read" in log.damage[0]
     assert log.metadata["end"] == {"kind": "completed"}
 

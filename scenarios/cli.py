@@ -45,20 +45,26 @@ def run(
     set_: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed, over that of the scenario.")] = None,
     out: Annotated[Path | None, typer.Option(help="Directory for the log and the verdict; runs by default.")] = None,
+    video: Annotated[Path | None, typer.Option(help="Also render the run to this .mp4 file.")] = None,
+    view: Annotated[bool, typer.Option("--view", help="Show the run in a browser while it goes on.")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a scenario, write its log and judge it."""
     from scenarios.console import ProgressLine, print_result
     from scenarios.load import load_scenario, locate
+    from scenarios.replay.beside import LiveView, check
     from scenarios.rerun import output_folder
-    from scenarios.run import run_scenario
+    from scenarios.run import LOG_NAME, run_scenario
 
     overrides = [*(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
     loaded = load_scenario(scenario, overrides)
     folder = output_folder(scenario, loaded, out)
+    if video or view:
+        check(loaded.fidelity, video=video, view=view)
     with ProgressLine(loaded.name) as progress:
+        live = LiveView(folder / f"{loaded.name}-{loaded.seed}" / LOG_NAME, progress)
         try:
-            result = run_scenario(loaded, folder, progress)
+            result = run_scenario(loaded, folder, live if view else progress)
         except SetupError as refusal:
             raise locate(scenario, overrides, refusal) from None
     if as_json:
@@ -68,6 +74,12 @@ def run(
     if result.interrupted:
         typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
         raise typer.Exit(INTERRUPTED)
+    if video:
+        from scenarios.replay import command
+        from scenarios.replay.frames import Window
+
+        command.video(result.log, video, Window())
+    live.wait()
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 
 

@@ -17,7 +17,7 @@ from scenarios.log import LogWriter
 from scenarios.loop import ClosedLoop
 from scenarios.robots import describe
 
-TURN = 80
+TURN = 450
 """Ticks of a turn: a whole number of chunks, plans and pictures."""
 
 

@@ -20,7 +20,7 @@ from scenarios.viewer.schemas import published
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]
 
-RATE = 25
+RATE = 20
 """Pictures per simulated second [Hz]."""
 
 _HELD = SolverStatus.HELD

@@ -29,7 +29,8 @@ def leg_mass(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray
 
     One sole moves at 1 m/s forward, then upward, without turning, while the pelvis rests. Point masses μ m at both
     soles r_k have the pitching momentum L = Σ μ m [(r_k - c)_z (r_k' - c')_x - (r_k - c)_x (r_k' - c')_z]: solved for μ
-    in the forward motion, and for the lever ahead of the sole in the upward one. Mean of both legs.
+    in the forward motion, and for the lever ahead of the sole in the upward one. Mean of both legs. In the upward
+    motion c' is left out, so that the lever makes up for four fifths of the knee's momentum only.
 
     Args:
         model: the robot.

@@ -131,7 +131,7 @@ def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
         (["inspect", "/dev/null"], "not an MCAP file"),
         (["inspect", "/"], "a directory"),
         (["inspect", "/no/such"], "no such file"),
-        (["recover", "/dev/null", "/tmp/x"], "not an MCAP file"),
+        (["recover", "/dev/null", "whole.mcap"], "not an MCAP file"),
     ],
 )
 def test_bad_input_is_one_message_and_2(surefoot, arguments, message):

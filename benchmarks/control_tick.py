@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from bare_walk import BareWalk
 
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.log import read
 from scenarios.run import run_scenario
 

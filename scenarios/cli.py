@@ -31,7 +31,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and 
 def list_() -> None:
     """List scenarios and robots, one line each."""
     from scenarios import catalogue
-    from scenarios.robots import RegisteredRobots
+    from scenarios.file.robots import RegisteredRobots
 
     for name in catalogue.names():
         typer.echo(f"scenario  {name:<16} {catalogue.summary(name)}")
@@ -51,7 +51,7 @@ def run(
 ) -> None:
     """Run a scenario, write its log and judge it."""
     from scenarios.console import ProgressLine, print_result
-    from scenarios.load import load_scenario, locate
+    from scenarios.file.load import load_scenario, locate
     from scenarios.replay.beside import LiveView, check
     from scenarios.rerun import output_folder
     from scenarios.run import LOG_NAME, run_scenario
@@ -215,7 +215,7 @@ def replay(
 @app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors."""
-    from scenarios.schema import Scenario
+    from scenarios.file.schema import Scenario
 
     typer.echo(json.dumps(Scenario.model_json_schema(), indent=2))
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from scenarios.criteria import Bound
+from scenarios.file.criteria import Bound
 
 _UNITS: dict[str, tuple[float, str]] = {
     **dict.fromkeys(("zmp_error_rms", "com_error_rms", "dcm_error_rms", "estimation_error_rms"), (1e3, "mm")),

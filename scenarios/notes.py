@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from scenarios.criteria import BODY_METRICS, Bound
-from scenarios.schema import Scenario
-from scenarios.timeline import gait_duration
+from scenarios.file.criteria import BODY_METRICS, Bound
+from scenarios.file.schema import Scenario
+from scenarios.file.timeline import gait_duration
 
 _NO_CONTACT = (("terrain", "friction"), ("start", "angle_noise"))
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""

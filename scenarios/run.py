@@ -13,8 +13,8 @@ from scenarios.errors import LogError, ScenarioError, SetupError
 from scenarios.log import AttachedFile, LogWriter, read
 from scenarios.progress import End, OnProgress, Progress
 from scenarios.provenance import versions
-from scenarios.robots import describe
-from scenarios.schema import Scenario
+from scenarios.file.robots import describe
+from scenarios.file.schema import Scenario
 from scenarios.verdict import END_RECORD, SCENARIO_FILE, Verdict, judge
 
 if TYPE_CHECKING:
@@ -78,10 +78,10 @@ def run_scenario(
 def closed_loop(fidelity: str) -> Simulate:
     """The closed loop of a fidelity, imported only when it is needed."""
     if fidelity == "pendulum":
-        from scenarios import pendulum_loop
+        from scenarios.closed_loop import pendulum_loop
 
         return pendulum_loop.simulate
-    from scenarios import loop
+    from scenarios.closed_loop import loop
 
     return loop.simulate
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.criteria import BODY_METRICS, METRIC_NAMES
+from scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
 from scenarios.errors import LogError
 from scenarios.log import Log
 from scenarios.metrics import balance, effort, walking

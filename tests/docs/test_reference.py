@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.load import read_scenario
-from scenarios.robots import RegisteredRobots
+from scenarios.file.load import read_scenario
+from scenarios.file.robots import RegisteredRobots
 
 pytestmark = pytest.mark.unit
 

@@ -10,8 +10,8 @@ import pytest
 
 from scenarios.log import LogWriter, channels
 from scenarios.progress import End, Progress
-from scenarios.robots import RobotFacts
-from scenarios.schema import Scenario
+from scenarios.file.robots import RobotFacts
+from scenarios.file.schema import Scenario
 
 JOINTS = ("left_hip", "left_knee", "right_hip", "right_knee")
 SIZES = channels.Sizes(nj=4, nq=11, nv=10, horizon=50)

@@ -9,7 +9,7 @@ import pytest
 from scenarios import cli, run
 from scenarios.errors import SetupError
 from scenarios.log import read
-from scenarios.robots import RegisteredRobots
+from scenarios.file.robots import RegisteredRobots
 
 pytestmark = pytest.mark.unit
 
@@ -112,7 +112,7 @@ def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("scenarios.load.load_scenario", interrupt)
+    monkeypatch.setattr("scenarios.file.load.load_scenario", interrupt)
     code, _, err = surefoot("run", scenario)
     assert code in (1, 130)
     assert "Traceback" not in err

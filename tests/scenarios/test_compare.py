@@ -9,7 +9,7 @@ from mcap.writer import Writer
 
 from scenarios import cli
 from scenarios.errors import LogError
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.report.compare import compare
 from scenarios.report.plot import plot
 from scenarios.run import run_scenario

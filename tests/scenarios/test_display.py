@@ -2,7 +2,7 @@
 
 import pytest
 
-from scenarios.criteria import METRIC_NAMES, Bound
+from scenarios.file.criteria import METRIC_NAMES, Bound
 from scenarios.display import bound_text, unit, value_text
 
 pytestmark = pytest.mark.unit

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.log import read
 from scenarios.run import run_scenario
 

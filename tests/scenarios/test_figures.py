@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from scenarios.errors import LogError
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.log import LogWriter, read
 from scenarios.report.figures.balance import support_bounds, true_dcm
 from scenarios.report.figures.page import FIGURES, page, single

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenarios.checks import is_multiple
-from scenarios.reach import longest_step
-from scenarios.schema import Gait, PushSettings, Scenario
-from scenarios.timeline import FINAL_STAND, phase_duration, phase_start, push_time, run_duration
+from scenarios.file.checks import is_multiple
+from scenarios.file.reach import longest_step
+from scenarios.file.schema import Gait, PushSettings, Scenario
+from scenarios.file.timeline import FINAL_STAND, phase_duration, phase_start, push_time, run_duration
 
 pytestmark = pytest.mark.unit
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from planner.terrain import Box, Terrain
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.run import run_scenario
 from sim.world import World
 
@@ -38,7 +38,7 @@ def hidden_step(height, start, end):
     ],
 )
 def test_a_hidden_step_is_felt_and_walked_over(scenario, overrides, step, tmp_path, monkeypatch):
-    monkeypatch.setattr("scenarios.assembly.World", hidden_step(*step))
+    monkeypatch.setattr("scenarios.closed_loop.assembly.World", hidden_step(*step))
     result = run_scenario(load_scenario(scenario, overrides), tmp_path)
     metrics = result.verdict.metrics
     assert not metrics["fell"]
@@ -47,5 +47,5 @@ def test_a_hidden_step_is_felt_and_walked_over(scenario, overrides, step, tmp_pa
 
 
 def test_a_step_of_ten_centimetres_cannot_be_hidden(tmp_path, monkeypatch):
-    monkeypatch.setattr("scenarios.assembly.World", hidden_step(0.1, 0.3, 0.66))
+    monkeypatch.setattr("scenarios.closed_loop.assembly.World", hidden_step(0.1, 0.3, 0.66))
     assert run_scenario(load_scenario("diagonal-walk", STRAIGHT), tmp_path).verdict.metrics["fell"]

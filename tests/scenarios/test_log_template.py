@@ -6,7 +6,7 @@ from foxglove_schemas_protobuf.JointState_pb2 import JointState
 from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from scenarios.derived import contact_points
+from scenarios.recording.derived import contact_points
 from scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from scenarios.log.template import NANOS, SECONDS, Template, slot
 from wbc.zmp import centre_of_pressure, measured_zmp

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from scenarios.criteria import METRIC_NAMES
+from scenarios.file.criteria import METRIC_NAMES
 from scenarios.errors import LogError
 from scenarios.log import LogWriter, read
 from scenarios.metrics import compute

@@ -5,9 +5,9 @@ import pytest
 
 from planner.pendulum import PointPush
 from scenarios.errors import ScenarioError
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.log import read
-from scenarios.pendulum_loop import mean_force
+from scenarios.closed_loop.pendulum_loop import mean_force
 from scenarios.run import run_scenario
 
 pytestmark = pytest.mark.unit

@@ -13,10 +13,10 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 from scenarios.inspection import inspect
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.log import read
 from scenarios.log.recover import recover
-from scenarios.loop import WORLD_FILE
+from scenarios.closed_loop.loop import WORLD_FILE
 from scenarios.run import run_scenario
 from scenarios.viewer import DERIVED_TOPICS
 
@@ -119,7 +119,7 @@ def assert_readable_until(log, told, folder):
 _TELLING = """
 import sys
 from pathlib import Path
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.run import run_scenario
 from scenarios.viewer import DERIVED_TOPICS
 run_scenario(load_scenario("diagonal-walk"), Path(sys.argv[1]), lambda progress: print(progress.time, flush=True))

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from scenarios.errors import ScenarioError
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.log import LogWriter
 from scenarios.rerun import AGAIN, RUNS, output_folder
 from scenarios.run import run_scenario

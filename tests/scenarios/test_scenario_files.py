@@ -7,9 +7,9 @@ import yaml
 
 from scenarios import catalogue
 from scenarios.errors import ScenarioError
-from scenarios.load import load_scenario, read_scenario
+from scenarios.file.load import load_scenario, read_scenario
 from scenarios.run import scenario_yaml
-from scenarios.schema import Scenario
+from scenarios.file.schema import Scenario
 
 pytestmark = pytest.mark.unit
 

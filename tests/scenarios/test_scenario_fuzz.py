@@ -6,8 +6,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from scenarios.errors import ScenarioError
-from scenarios.load import read_scenario
-from scenarios.schema import Scenario
+from scenarios.file.load import read_scenario
+from scenarios.file.schema import Scenario
 
 pytestmark = pytest.mark.unit
 

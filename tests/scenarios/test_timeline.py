@@ -2,9 +2,9 @@ import pytest
 
 from planner.schedule import schedule
 from planner.types import PhaseKind
-from scenarios.planner_setup import gait_parameters
-from scenarios.schema import Gait, Scenario
-from scenarios.timeline import FINAL_STAND, phase_duration, phase_start, run_duration
+from scenarios.file.planner_setup import gait_parameters
+from scenarios.file.schema import Gait, Scenario
+from scenarios.file.timeline import FINAL_STAND, phase_duration, phase_start, run_duration
 
 pytestmark = pytest.mark.unit
 

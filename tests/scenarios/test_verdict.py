@@ -4,11 +4,11 @@ import json
 
 import pytest
 
-from scenarios.criteria import Bound
+from scenarios.file.criteria import Bound
 from scenarios.log import read
 from scenarios.progress import End
 from scenarios.run import run_scenario
-from scenarios.schema import Scenario
+from scenarios.file.schema import Scenario
 from scenarios.verdict import judge, missed
 
 pytestmark = pytest.mark.unit

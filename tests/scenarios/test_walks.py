@@ -4,7 +4,7 @@ import pytest
 from variations import SCENARIO, VARIATIONS
 
 from scenarios import catalogue
-from scenarios.load import load_scenario
+from scenarios.file.load import load_scenario
 from scenarios.run import run_scenario
 
 EVERY_CHANGE = [variation for variation in VARIATIONS if variation.every_change and variation.overrides]

@@ -38,7 +38,7 @@ VARIATIONS = (
 
 def run(variation: Variation) -> dict[str, object]:
     """Metrics of one variation, computed from its log."""
-    from scenarios.load import load_scenario
+    from scenarios.file.load import load_scenario
     from scenarios.run import run_scenario
 
     scenario = load_scenario(SCENARIO, list(variation.overrides))

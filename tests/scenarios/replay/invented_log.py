@@ -11,7 +11,7 @@ from planner.terrain import flat
 from scenarios.constants import RECORD, WORLD_FILE
 from scenarios.log import AttachedFile, LogWriter, channels
 from scenarios.run import run_constants, scenario_yaml
-from scenarios.schema import Scenario
+from scenarios.file.schema import Scenario
 from scenarios.verdict import SCENARIO_FILE
 from sim.world import World
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from scenarios.schema import Scenario
+from scenarios.file.schema import Scenario
 
 if TYPE_CHECKING:
     from models.types import RobotDescription

@@ -4,9 +4,9 @@ from planner.plan import WalkPlan
 from planner.planner import WalkingPlanner
 from planner.sampling import PlanSampler
 from planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
-from scenarios.faults import FaultSchedule
-from scenarios.schema import Rates
-from scenarios.walk_recorder import WalkRecorder
+from scenarios.closed_loop.faults import FaultSchedule
+from scenarios.file.schema import Rates
+from scenarios.recording.walk_recorder import WalkRecorder
 
 
 class Planning:

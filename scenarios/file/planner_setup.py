@@ -10,7 +10,7 @@ from planner.parameters import LegInertia, PlannerParameters, StepAdaptation
 from planner.planner import WalkingPlanner
 from planner.terrain import Terrain
 from planner.types import FeetState
-from scenarios.schema import Scenario
+from scenarios.file.schema import Scenario
 
 if TYPE_CHECKING:
     from models.types import RobotDescription

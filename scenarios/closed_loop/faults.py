@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from scenarios.schema import Fault
+from scenarios.file.schema import Fault
 
 
 class FaultSchedule:

@@ -3,12 +3,12 @@
 import math
 from collections.abc import Iterator
 
-from scenarios.criteria import ELEMENTS
+from scenarios.file.criteria import ELEMENTS
 from scenarios.errors import Problem, nearest
-from scenarios.reach import longest_step
-from scenarios.robots import RobotFacts, Robots
-from scenarios.schema import Gait, PushSettings, Scenario
-from scenarios.walk_checks import FEWEST_SWING_SAMPLES, footstep_problems, swing_too_short, walk_problems
+from scenarios.file.reach import longest_step
+from scenarios.file.robots import RobotFacts, Robots
+from scenarios.file.schema import Gait, PushSettings, Scenario
+from scenarios.file.walk_checks import FEWEST_SWING_SAMPLES, footstep_problems, swing_too_short, walk_problems
 
 
 def check(scenario: Scenario, robots: Robots) -> list[Problem]:

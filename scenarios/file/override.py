@@ -3,7 +3,7 @@
 from typing import Any
 
 from scenarios.errors import Key, ScenarioError
-from scenarios.source import Source, parse
+from scenarios.file.source import Source, parse
 
 
 def apply_override(source: Source, override: str) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from scenarios.errors import Key, Problem, dotted
-from scenarios.schema import BeliefErrors, Scenario, Sensing
+from scenarios.file.schema import BeliefErrors, Scenario, Sensing
 
 _AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.derived import contact_points
+from scenarios.recording.derived import contact_points
 from scenarios.log import LogWriter, channels
 from scenarios.log.channels import Sizes
 from scenarios.log.row_writer import places

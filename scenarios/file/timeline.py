@@ -3,7 +3,7 @@
 Times are nominal; step adaptation may shift the true ones.
 """
 
-from scenarios.schema import Gait, PushSettings, Scenario
+from scenarios.file.schema import Gait, PushSettings, Scenario
 
 FINAL_STAND = 2.5
 """Standing after the last double support that ends a run whose duration is not given [s]."""

@@ -7,9 +7,9 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from scenarios.criteria import BOUNDABLE, Bound
+from scenarios.file.criteria import BOUNDABLE, Bound
 from scenarios.errors import Key, Problem, dotted, nearest
-from scenarios.schema import Scenario
+from scenarios.file.schema import Scenario
 
 _EXPECTED = {
     "int_type": "give a whole number",

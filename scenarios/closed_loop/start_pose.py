@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from models.pinocchio import pinocchio_model
 from models.types import RobotDescription
 from planner.types import FeetState
-from scenarios.planner_setup import square_stance
-from scenarios.schema import Scenario
+from scenarios.file.planner_setup import square_stance
+from scenarios.file.schema import Scenario
 from wbc.ik import PostureIk, PostureTarget
 from wbc.limits import JointLimits
 from wbc.model import BodyFrames

@@ -12,10 +12,10 @@ from planner.parameters import PlannerParameters
 from planner.terrain import flat
 from planner.types import GRAVITY, Foot
 from scenarios.errors import Problem
-from scenarios.planner_setup import gait_parameters, square_stance
-from scenarios.robots import RobotFacts
-from scenarios.schema import Gait, Scenario
-from scenarios.timeline import gait_duration
+from scenarios.file.planner_setup import gait_parameters, square_stance
+from scenarios.file.robots import RobotFacts
+from scenarios.file.schema import Gait, Scenario
+from scenarios.file.timeline import gait_duration
 
 MOST_SAMPLES = 1_000_000
 """Planner samples of a gait, which are laid out in memory before it starts."""

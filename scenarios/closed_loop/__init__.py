@@ -1,0 +1,1 @@
+"""The closed loops of both fidelities, put together from a scenario."""

@@ -1,0 +1,1 @@
+"""What a running loop writes into the log's channels."""

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
 from scenarios.errors import LogError
+from scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
 from scenarios.log import Log
 from scenarios.metrics import balance, effort, walking
 from scenarios.metrics.digest import Digest, Source

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.recording.derived import contact_points
 from scenarios.log import LogWriter, channels
 from scenarios.log.channels import Sizes
 from scenarios.log.row_writer import places
+from scenarios.recording.derived import contact_points
 from sim.measurement import Measurement
 from wbc.model import RobotTerms
 from wbc.types import RobotState, SolveStatus, WbcReference, WbcReport

@@ -12,14 +12,14 @@ from threadpoolctl import threadpool_limits
 
 from planner.planner import WalkingPlanner
 from planner.sampling import PlanSampler
-from scenarios.file.load import load_scenario
-from scenarios.log import LogWriter
 from scenarios.closed_loop.loop import ClosedLoop
-from scenarios.recording.recorder import Recorder
+from scenarios.file.load import load_scenario
 from scenarios.file.robots import describe
 from scenarios.file.timeline import run_duration
-from scenarios.viewer.body_view import BodyView
+from scenarios.log import LogWriter
+from scenarios.recording.recorder import Recorder
 from scenarios.recording.walk_recorder import WalkRecorder
+from scenarios.viewer.body_view import BodyView
 from sim.world import World
 from wbc.controller import WholeBodyController
 

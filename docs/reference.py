@@ -13,13 +13,13 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
 from scenarios.display import unit
+from scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
+from scenarios.file.schema import Fault, PushSettings, Scenario
 from scenarios.log import channels
 from scenarios.log.channels import Sizes
 from scenarios.log.spec import ChannelSpec
 from scenarios.metrics import describe_metric
-from scenarios.file.schema import Fault, PushSettings, Scenario
 
 FOLDER = Path(__file__).parent
 CHANNELS = (

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from scenarios.errors import LogError, ScenarioError
+from scenarios.file.schema import Scenario
 from scenarios.log import read
 from scenarios.run import LOG_NAME
-from scenarios.file.schema import Scenario
 from scenarios.verdict import SCENARIO_FILE
 
 LOG_ENDING = ".mcap"

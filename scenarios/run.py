@@ -10,11 +10,11 @@ from threadpoolctl import threadpool_limits
 
 from scenarios.constants import RECORD, RunConstants
 from scenarios.errors import LogError, ScenarioError, SetupError
+from scenarios.file.robots import describe
+from scenarios.file.schema import Scenario
 from scenarios.log import AttachedFile, LogWriter, read
 from scenarios.progress import End, OnProgress, Progress
 from scenarios.provenance import versions
-from scenarios.file.robots import describe
-from scenarios.file.schema import Scenario
 from scenarios.verdict import END_RECORD, SCENARIO_FILE, Verdict, judge
 
 if TYPE_CHECKING:

@@ -9,13 +9,13 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from scenarios.file.criteria import Bound
 from scenarios.errors import LogError
+from scenarios.file.criteria import Bound
+from scenarios.file.schema import Scenario
 from scenarios.log import Log
 from scenarios.metrics import compute
 from scenarios.metrics.digest import Digest
 from scenarios.notes import asked, notes
-from scenarios.file.schema import Scenario
 
 SCENARIO_FILE = "scenario.yaml"
 """Attachment that holds the scenario as run."""

@@ -9,9 +9,9 @@ from models.types import RobotDescription
 from planner.parameters import LegInertia
 from planner.planner import WalkingPlanner
 from planner.terrain import flat
+from scenarios.closed_loop.start_pose import Body, body_of, disturbed, feet_at, pressed, start_posture
 from scenarios.file.planner_setup import planner_parameters, walking_planner
 from scenarios.file.schema import Scenario
-from scenarios.closed_loop.start_pose import Body, body_of, disturbed, feet_at, pressed, start_posture
 from scenarios.file.timeline import push_time
 from sim.pushes import Push
 from sim.world import World

@@ -6,20 +6,20 @@ from numpy.typing import NDArray
 from models.types import RobotDescription
 from planner.types import CentroidalState, FeetState, PhaseInfo
 from scenarios.closed_loop.assembly import Rig, assemble
-from scenarios.constants import WORLD_FILE
 from scenarios.closed_loop.faults import FaultSchedule
+from scenarios.closed_loop.planning import Planning
+from scenarios.closed_loop.reference import whole_body_reference
+from scenarios.closed_loop.ticks import RunFault, Watch, refusing, run_ticks
+from scenarios.constants import WORLD_FILE
+from scenarios.file.schema import Scenario
+from scenarios.file.timeline import run_duration
 from scenarios.log import AttachedFile, LogWriter
 from scenarios.log.channels import Sizes
 from scenarios.metrics.walking import FALLEN_HEIGHT, FALLEN_TILT
-from scenarios.closed_loop.planning import Planning
 from scenarios.progress import End, OnProgress
 from scenarios.recording.recorder import Recorder
-from scenarios.closed_loop.reference import whole_body_reference
-from scenarios.file.schema import Scenario
-from scenarios.closed_loop.ticks import RunFault, Watch, refusing, run_ticks
-from scenarios.file.timeline import run_duration
-from scenarios.viewer.body_view import BodyView
 from scenarios.recording.walk_recorder import TickTiming, WalkRecorder
+from scenarios.viewer.body_view import BodyView
 from sim.errors import SimulationDiverged
 from sim.measurement import Measurement
 from wbc.model import RobotTerms

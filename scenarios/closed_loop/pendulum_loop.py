@@ -14,18 +14,18 @@ from planner.sampling import PlanSample
 from planner.terrain import flat
 from planner.types import CentroidalState, Foot, Footstep, PhaseInfo
 from scenarios.closed_loop.faults import FaultSchedule
+from scenarios.closed_loop.planning import Planning
+from scenarios.closed_loop.ticks import RunFault, Watch, refusing, run_ticks
+from scenarios.file.planner_setup import planner_parameters, square_stance, walking_planner
+from scenarios.file.schema import Scenario
+from scenarios.file.timeline import push_time, run_duration
 from scenarios.log import LogWriter
 from scenarios.log.channels import Sizes
 from scenarios.metrics.walking import LOST_DISTANCE
-from scenarios.recording.pendulum_recorder import PendulumRecorder
-from scenarios.file.planner_setup import planner_parameters, square_stance, walking_planner
-from scenarios.closed_loop.planning import Planning
 from scenarios.progress import End, OnProgress
-from scenarios.file.schema import Scenario
-from scenarios.closed_loop.ticks import RunFault, Watch, refusing, run_ticks
-from scenarios.file.timeline import push_time, run_duration
-from scenarios.viewer.walk_view import PointView
+from scenarios.recording.pendulum_recorder import PendulumRecorder
 from scenarios.recording.walk_recorder import TickTiming, WalkRecorder
+from scenarios.viewer.walk_view import PointView
 
 if TYPE_CHECKING:
     from models.types import RobotDescription

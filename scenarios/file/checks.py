@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterator
 
-from scenarios.file.criteria import ELEMENTS
 from scenarios.errors import Problem, nearest
+from scenarios.file.criteria import ELEMENTS
 from scenarios.file.reach import longest_step
 from scenarios.file.robots import RobotFacts, Robots
 from scenarios.file.schema import Gait, PushSettings, Scenario

@@ -8,16 +8,16 @@ from typing import Any
 from pydantic import ValidationError
 
 from scenarios import catalogue
+from scenarios.errors import Key, Problem, ScenarioError, SetupError, nearest
 from scenarios.file.checks import check
 from scenarios.file.criteria import Bound
-from scenarios.errors import Key, Problem, ScenarioError, SetupError, nearest
 from scenarios.file.override import apply_override
-from scenarios.rerun import attached_scenario, is_log
 from scenarios.file.robots import RegisteredRobots, Robots
 from scenarios.file.schema import Scenario
 from scenarios.file.source import MAX_BYTES, parse
 from scenarios.file.supported import unavailable
 from scenarios.file.translate import problems_of, unknown_metrics, without
+from scenarios.rerun import attached_scenario, is_log
 
 
 def load_scenario(reference: str, overrides: Sequence[str] = (), robots: Robots | None = None) -> Scenario:

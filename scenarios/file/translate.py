@@ -7,8 +7,8 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from scenarios.file.criteria import BOUNDABLE, Bound
 from scenarios.errors import Key, Problem, dotted, nearest
+from scenarios.file.criteria import BOUNDABLE, Bound
 from scenarios.file.schema import Scenario
 
 _EXPECTED = {

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
 from scenarios.errors import LogError
+from scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
 from scenarios.log import Log
 from scenarios.metrics import balance, effort, walking
 from scenarios.metrics.digest import Digest, Source
@@ -32,7 +32,9 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
     "dcm_error_rms": (_PLAN, balance.dcm_error_rms),
     "footstep_error_max": (("/footstep",), walking.footstep_error_max),
     "foot_slip_max": (_FEET, walking.foot_slip_max),
+    "self_contact_time": (_BODY, walking.self_contact_time),
     "torque_ratio_max": (("/torque",), effort.torque_ratio_max),
+    "torque_at_limit_fraction": (("/torque",), effort.torque_at_limit_fraction),
     "joint_limit_margin_min": (("/measurement",), effort.joint_limit_margin_min),
     "knee_angle_mean": (("/measurement", "/reference"), walking.knee_angle_mean),
     "cost_of_transport": (("/truth", "/measurement"), effort.cost_of_transport),

@@ -6,9 +6,9 @@ from typing import Any
 
 from scenarios.constants import RECORD
 from scenarios.errors import LogError, ScenarioError
+from scenarios.file.source import parse
 from scenarios.log import Log
 from scenarios.metrics import compute
-from scenarios.file.source import parse
 from scenarios.verdict import SCENARIO_FILE
 
 WALL_CLOCK_METRICS = ("planner_time", "wbc_time", "real_time_factor", "log_bytes")

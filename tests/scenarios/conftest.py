@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenarios.log import LogWriter, channels
-from scenarios.progress import End, Progress
 from scenarios.file.robots import RobotFacts
 from scenarios.file.schema import Scenario
+from scenarios.log import LogWriter, channels
+from scenarios.progress import End, Progress
 
 JOINTS = ("left_hip", "left_knee", "right_hip", "right_knee")
 SIZES = channels.Sizes(nj=4, nq=11, nv=10, horizon=50)

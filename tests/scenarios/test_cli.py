@@ -8,8 +8,8 @@ import pytest
 
 from scenarios import cli, run
 from scenarios.errors import SetupError
-from scenarios.log import read
 from scenarios.file.robots import RegisteredRobots
+from scenarios.log import read
 
 pytestmark = pytest.mark.unit
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from scenarios.file.criteria import METRIC_NAMES, Bound
 from scenarios.display import bound_text, unit, value_text
+from scenarios.file.criteria import METRIC_NAMES, Bound
 
 pytestmark = pytest.mark.unit
 

@@ -6,9 +6,9 @@ from foxglove_schemas_protobuf.JointState_pb2 import JointState
 from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from scenarios.recording.derived import contact_points
 from scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from scenarios.log.template import NANOS, SECONDS, Template, slot
+from scenarios.recording.derived import contact_points
 from wbc.zmp import centre_of_pressure, measured_zmp
 
 pytestmark = pytest.mark.unit

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from scenarios.file.criteria import METRIC_NAMES
 from scenarios.errors import LogError
+from scenarios.file.criteria import METRIC_NAMES
 from scenarios.log import LogWriter, read
 from scenarios.metrics import compute
 from scenarios.run import run_scenario

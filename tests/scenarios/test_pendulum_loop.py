@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from planner.pendulum import PointPush
+from scenarios.closed_loop.pendulum_loop import mean_force
 from scenarios.errors import ScenarioError
 from scenarios.file.load import load_scenario
 from scenarios.log import read
-from scenarios.closed_loop.pendulum_loop import mean_force
 from scenarios.run import run_scenario
 
 pytestmark = pytest.mark.unit

@@ -12,11 +12,11 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from scenarios.inspection import inspect
+from scenarios.closed_loop.loop import WORLD_FILE
 from scenarios.file.load import load_scenario
+from scenarios.inspection import inspect
 from scenarios.log import read
 from scenarios.log.recover import recover
-from scenarios.closed_loop.loop import WORLD_FILE
 from scenarios.run import run_scenario
 from scenarios.viewer import DERIVED_TOPICS
 

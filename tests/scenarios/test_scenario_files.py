@@ -8,8 +8,8 @@ import yaml
 from scenarios import catalogue
 from scenarios.errors import ScenarioError
 from scenarios.file.load import load_scenario, read_scenario
-from scenarios.run import scenario_yaml
 from scenarios.file.schema import Scenario
+from scenarios.run import scenario_yaml
 
 pytestmark = pytest.mark.unit
 

@@ -4,8 +4,8 @@ import pytest
 
 from models.registry import describe
 from models.types import RobotOptions
-from scenarios.file.schema import Gait, Scenario, Start
 from scenarios.closed_loop.start_pose import SOLE_SINKAGE, body_of, disturbed, feet_at, pressed, start_posture
+from scenarios.file.schema import Gait, Scenario, Start
 
 pytestmark = pytest.mark.unit
 

@@ -5,10 +5,10 @@ import json
 import pytest
 
 from scenarios.file.criteria import Bound
+from scenarios.file.schema import Scenario
 from scenarios.log import read
 from scenarios.progress import End
 from scenarios.run import run_scenario
-from scenarios.file.schema import Scenario
 from scenarios.verdict import judge, missed
 
 pytestmark = pytest.mark.unit

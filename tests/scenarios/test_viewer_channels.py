@@ -12,8 +12,8 @@ from mcap_protobuf.decoder import DecoderFactory
 from models.pinocchio import pinocchio_model
 from planner.terrain import flat
 from scenarios.file.load import load_scenario
-from scenarios.log import read
 from scenarios.file.robots import describe
+from scenarios.log import read
 from scenarios.run import run_scenario
 from scenarios.viewer.drawing import METRES_PER_NEWTON, force_arrow
 from scenarios.viewer.walk_view import RATE

@@ -9,9 +9,9 @@ from models.registry import describe
 from models.types import RobotOptions
 from planner.terrain import flat
 from scenarios.constants import RECORD, WORLD_FILE
+from scenarios.file.schema import Scenario
 from scenarios.log import AttachedFile, LogWriter, channels
 from scenarios.run import run_constants, scenario_yaml
-from scenarios.file.schema import Scenario
 from scenarios.verdict import SCENARIO_FILE
 from sim.world import World
 

@@ -3,7 +3,7 @@
 Both engines read the same text. Inertials are explicit: Pinocchio's MJCF reader silently drops the mass of geoms
 that do not collide, and MuJoCo's own XML writer rounds to six digits, which would make the engines differ by 5e-6.
 
-Robot geoms have contype 0 and conaffinity 1: they touch a terrain of contype 1, never each other.
+Robot geoms have contype 2 and conaffinity 3: they touch a terrain of contype 1 and each other, neighbours aside.
 """
 
 import math
@@ -18,13 +18,16 @@ def numbers(values: Iterable[float]) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 
-def robot_mjcf(name: str, base: Body, materials: Mapping[str, Mapping[str, str]]) -> str:
+def robot_mjcf(
+    name: str, base: Body, materials: Mapping[str, Mapping[str, str]], neighbours: Iterable[tuple[str, str]] = ()
+) -> str:
     """The robot as a complete MJCF document.
 
     Args:
         name: model name.
         base: the floating base with everything that hangs on it.
         materials: MJCF attributes per material name.
+        neighbours: pairs of bodies that may overlap at the joints between them; parent and child always may.
     """
     root = ElementTree.Element("mujoco", model=name)
     ElementTree.SubElement(root, "compiler", angle="radian", autolimits="true")
@@ -33,6 +36,9 @@ def robot_mjcf(name: str, base: Body, materials: Mapping[str, Mapping[str, str]]
     for material, attributes in materials.items():
         ElementTree.SubElement(asset, "material", {"name": material, **attributes})
     _add_body(ElementTree.SubElement(root, "worldbody"), base)
+    contact = ElementTree.SubElement(root, "contact")
+    for one, other in neighbours:
+        ElementTree.SubElement(contact, "exclude", name=f"{one}-{other}", body1=one, body2=other)
     motors = ElementTree.SubElement(root, "actuator")
     for body in base.walk():
         if body.joint is not None:
@@ -45,8 +51,8 @@ def _add_defaults(root: ElementTree.Element) -> None:
     top = ElementTree.SubElement(root, "default")
     for role in Role:
         group = {Role.VISUAL: "1", Role.SOLE: "2", Role.COLLISION: "3"}[role]
-        conaffinity = "0" if role is Role.VISUAL else "1"
-        attributes = {"contype": "0", "conaffinity": conaffinity, "condim": "3", "group": group}
+        contype, conaffinity = ("0", "0") if role is Role.VISUAL else ("2", "3")
+        attributes = {"contype": contype, "conaffinity": conaffinity, "condim": "3", "group": group}
         ElementTree.SubElement(ElementTree.SubElement(top, "default", {"class": role.value}), "geom", attributes)
 
 

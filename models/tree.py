@@ -49,7 +49,7 @@ class Geom:
         ends: end points of a capsule's or cylinder's axis, (x1, y1, z1, x2, y2, z2) [m].
         tilt: rotation about the body's y axis [rad]; ignored with `ends`.
         material: colour.
-        role: drawn only, drawn and in contact (sole), or in contact only.
+        role: drawn only, drawn and in contact (sole), or in contact only; what is in contact touches terrain and robot.
         name: optional name.
     """
 

@@ -30,6 +30,7 @@ class Measurement:
         v: true velocity in Pinocchio's convention, shape (6 + nj,).
         external_force: sum of the pushes, world frame, shape (3,) [N].
         nonfoot_contact: whether anything but the feet touches the terrain.
+        self_contact: whether the robot touches itself; a foot's wrench then holds that touch, too.
     """
 
     time: float
@@ -43,3 +44,4 @@ class Measurement:
     v: Array
     external_force: Array
     nonfoot_contact: bool
+    self_contact: bool

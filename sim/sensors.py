@@ -1,10 +1,11 @@
-"""Reading the sensors out of MuJoCo's state, without a look at single contacts."""
+"""Reading the sensors out of MuJoCo's state, without a look at the forces of single contacts."""
 
 import mujoco
 import numpy as np
 
 from models.convert import mujoco_to_pinocchio
 from models.types import RobotDescription
+from sim.contacts import ContactSense
 from sim.errors import WorldError
 from sim.measurement import Array, Measurement
 from sim.pushes import PushSchedule
@@ -39,10 +40,7 @@ class SensorReader:
         ]
         self._external = data.cfrc_ext
         self._contact: Array = np.zeros((model.nbody, 6))
-        self._masked: Array = np.zeros((model.nbody, 6))
-        self._masked_flat = self._masked.reshape(-1)
-        self._nonfoot: Array = np.ones((model.nbody, 6))
-        self._nonfoot[[0, *feet]] = 0.0
+        self._touch = ContactSense(model, data, feet)
         self._allocate(model.nq, model.nv)
 
     def _allocate(self, nq: int, nv: int) -> None:
@@ -67,7 +65,7 @@ class SensorReader:
         com = self._com.tolist()
         for wrench, (foot, position, rotation) in zip(self._wrench, self._soles, strict=True):
             wrench[:] = _at_sole(contact[foot].tolist(), com, position.tolist(), rotation.tolist())
-        np.multiply(contact, self._nonfoot, out=self._masked)
+        nonfoot_contact, self_contact = self._touch.read()
         return Measurement(
             time=time,
             joint_position=self._joint_position,
@@ -79,7 +77,8 @@ class SensorReader:
             q=self._q_view,
             v=self._v_view,
             external_force=self._push_view,
-            nonfoot_contact=bool(self._masked_flat.dot(self._masked_flat) > 0.0),
+            nonfoot_contact=nonfoot_contact,
+            self_contact=self_contact,
         )
 
     def _without_pushes(self, pushes: PushSchedule) -> Array:

@@ -1,6 +1,6 @@
 """Terrain as data turned into MJCF geoms.
 
-Terrain has contype 1 and conaffinity 0, robots 0 and 1: a robot touches the terrain, and nothing else touches.
+Terrain has contype 1 and conaffinity 0, robots 2 and 3: a robot touches the terrain and itself, nothing else touches.
 Priority 1 makes MuJoCo take friction and contact stiffness from the terrain alone instead of the larger of the two.
 """
 

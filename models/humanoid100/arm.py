@@ -46,6 +46,7 @@ def _upper_arm(side: str) -> Body:
         (
             Geom("capsule", (0.043,), ends=(0.0, 0.0, -0.06, 0.0, 0.0, -0.24)),
             Geom("ellipsoid", (0.052, 0.048, 0.09), (0.006, 0.0, -0.13)),
+            Geom("capsule", (0.045,), ends=(0.0, 0.0, -0.06, 0.0, 0.0, -0.26), role=Role.COLLISION),
         ),
         children=(_forearm(side),),
     )
@@ -71,5 +72,6 @@ def _forearm(side: str) -> Body:
             Geom("capsule", (0.014,), ends=(-0.012, 0.0, wrist - 0.08, -0.008, 0.0, wrist - 0.135), material="joint"),
             Geom("sphere", (0.045,), (0.0, 0.0, wrist - 0.08), role=Role.COLLISION),
             Geom("sphere", (0.045,), role=Role.COLLISION),
+            Geom("capsule", (0.038,), ends=(0.0, 0.0, -0.04, 0.0, 0.0, wrist), role=Role.COLLISION),
         ),
     )

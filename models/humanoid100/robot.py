@@ -25,6 +25,15 @@ _MATERIALS: Mapping[str, Mapping[str, str]] = {
     "visor": {"rgba": "0.05 0.10 0.16 1", "specular": "0.9", "shininess": "0.9"},
 }
 
+_NEIGHBOURS = (
+    ("pelvis", "torso"),
+    ("torso", "head"),
+    *(("pelvis", f"{side}_thigh") for side in ("left", "right")),
+    *((f"{side}_shank", f"{side}_foot") for side in ("left", "right")),
+    *(("torso", f"{side}_upper_arm") for side in ("left", "right")),
+)
+"""Bodies with small links between them, whose shapes overlap at the joint."""
+
 
 def describe(options: RobotOptions) -> RobotDescription:
     """The robot with the chosen feet and payload.
@@ -38,7 +47,7 @@ def describe(options: RobotOptions) -> RobotDescription:
     joints = tuple(body.joint for body in bodies if body.joint is not None)
     return RobotDescription(
         name=NAME,
-        mjcf=robot_mjcf(NAME, replace(base, position=(0.0, 0.0, dim.LEG)), _MATERIALS),
+        mjcf=robot_mjcf(NAME, replace(base, position=(0.0, 0.0, dim.LEG)), _MATERIALS, _NEIGHBOURS),
         mass=float(sum(body.inertial.mass for body in bodies)),
         joint_names=tuple(joint.name for joint in joints),
         torque_limit=_constant([joint.actuator.torque_limit for joint in joints]),

@@ -67,6 +67,7 @@ def truth(n: Sizes) -> ChannelSpec:
         _real("right_sole", 7, "m, -", "world", "pose of the sole centre"),
         _scalar("torso_tilt", "rad", "angle of the torso from the vertical"),
         _int("nonfoot_contact", "1: something but a foot touches the ground"),
+        _int("self_contact", "1: the robot touches itself"),
     )
     return ChannelSpec("/truth", "Truth", fields, truth.__doc__ or "")
 

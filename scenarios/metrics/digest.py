@@ -12,7 +12,7 @@ from scenarios.log import Log
 KEPT: Mapping[str, tuple[str, ...]] = {
     "/measurement": ("external_force",),
     "/truth": (
-        *("com", "com_velocity", "left_sole", "right_sole", "torso_tilt", "nonfoot_contact"),
+        *("com", "com_velocity", "left_sole", "right_sole", "torso_tilt", "nonfoot_contact", "self_contact"),
         "external_force",  # of the pendulum
     ),
     "/estimate": ("com",),

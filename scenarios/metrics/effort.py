@@ -7,6 +7,9 @@ from scenarios.metrics.view import Array, RunView
 GRAVITY = 9.81
 """Gravitational acceleration [m/s^2]."""
 
+AT_LIMIT = 0.999
+"""Share of its limit from which a torque counts as being at it; solvers end a hair below [-]."""
+
 SHORTEST_WAY = 0.05
 """Way below which a cost of transport means nothing [m]."""
 
@@ -39,6 +42,11 @@ def joint_power(run: RunView) -> Array:
 def torque_ratio_max(run: RunView) -> float:
     """Largest commanded joint torque over its limit [-]."""
     return float(run.reduced(torque_ratio).max())
+
+
+def torque_at_limit_fraction(run: RunView) -> float:
+    """Share of ticks at which some joint's commanded torque is at its limit [-]."""
+    return float(np.mean(run.reduced(torque_ratio) >= AT_LIMIT))
 
 
 def joint_limit_margin_min(run: RunView) -> float:

@@ -103,6 +103,15 @@ def foot_slip_max(run: RunView) -> float | None:
     return max((slip.distance for slip in stance_slips(run)), default=None)
 
 
+def self_contact_time(run: RunView) -> float:
+    """How long the robot touched itself, before a fall [s]."""
+    fallen = fall_time(run)
+    touching = run.field("/truth", "self_contact") != 0
+    if fallen is not None:
+        touching = touching & (run.time < fallen)
+    return float(np.count_nonzero(touching) / run.constants.control_rate)
+
+
 def knee_flexion(run: RunView) -> Array:
     """Mean flexion of the knees at each tick, shape (n,) [rad]."""
     knees = [i for i, name in enumerate(run.constants.joint_names) if "knee" in name]

@@ -39,7 +39,7 @@ class Recorder:
             (torque, ("command",)),
         )
         numbers = (
-            (truth, ("nonfoot_contact",)),
+            (truth, ("nonfoot_contact", "self_contact")),
             (contact, ("planned", "active", "felt")),
             (wbc, ("status", "iterations", "primal_residual", "dual_residual")),
         )
@@ -70,7 +70,7 @@ class Recorder:
         """
         m, r, com, velocity = measurement, report, terms.com, terms.com_velocity
         numbers = (
-            m.nonfoot_contact, *reference.planned_contact, *r.active, *r.felt,
+            m.nonfoot_contact, m.self_contact, *reference.planned_contact, *r.active, *r.felt,
             r.status, r.iterations, r.primal_residual, r.dual_residual, reference.omega, terms.torso_rotation[2, 2],
         )  # fmt: skip
         self._row.append(
@@ -91,7 +91,7 @@ class Recorder:
         soles = vectors[:, at["/truth", "left_sole"].start : at["/truth", "right_sole"].stop].reshape(n, 2, 7)
         zmp, cop = contact_points(wrench, soles[:, :, :3], vectors[:, -_ROTATIONS:].reshape(n, 2, 3, 3))
         com, velocity = vectors[:, at["/estimate", "com"]], vectors[:, at["/estimate", "com_velocity"]]
-        status, omega, upright = numbers[:, 7], numbers[:, 11:12], numbers[:, 12]
+        status, omega, upright = numbers[:, 8], numbers[:, 12:13], numbers[:, 13]
         return np.column_stack((
             status == _SECOND, status >= _FALLBACK, np.arccos(np.minimum(upright, 1.0)),
             com[:, :2] + velocity[:, :2] / omega,

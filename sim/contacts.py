@@ -1,0 +1,25 @@
+"""What touches what: the ground under the feet, the ground under anything else, the robot itself."""
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+_TERRAIN, _FOOT, _BODY = 0, 1, 3
+"""Codes of geoms: the sum over a contact's two tells its kind; 3 is a body other than a foot on the terrain."""
+
+
+class ContactSense:
+    """Sorts the contacts of the latest physics step."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, feet: Sequence[int]) -> None:
+        """Look at a model's contacts; ``feet`` are the ids of the two foot bodies."""
+        self._contact = data.contact
+        code = np.where(np.isin(model.geom_bodyid, feet), _FOOT, _BODY)
+        self._code: NDArray[np.intp] = np.where(model.geom_bodyid == 0, _TERRAIN, code)
+
+    def read(self) -> tuple[bool, bool]:
+        """Whether anything but a foot touches the terrain, and whether the robot touches itself."""
+        codes = self._code[self._contact.geom]
+        return bool((codes.sum(axis=1) == _BODY).any()), bool(codes.all(axis=1).any())

@@ -43,8 +43,8 @@ def _advance(stride: Stride) -> tuple[float, float]:
 class StepRegion:
     """Bounds of a landing.
 
-    Two soles apart by less than `nearest` may touch whatever the distance ahead, so a foot that keeps this distance
-    neither lands on the other one, nor passes through it, nor crosses over.
+    Two soles that are `nearest` apart sideways keep the gap whatever the distance ahead, so that a foot neither lands
+    on the other one, nor passes through it, nor crosses over.
 
     Attributes:
         length: largest distance ahead or behind [m].

@@ -12,6 +12,7 @@ from scenarios.constants import RECORD, RunConstants
 from scenarios.errors import LogError, ScenarioError, SetupError
 from scenarios.file.robots import describe
 from scenarios.file.schema import Scenario
+from scenarios.file.timeline import step_count
 from scenarios.log import AttachedFile, LogWriter, read
 from scenarios.progress import End, OnProgress, Progress
 from scenarios.provenance import versions
@@ -97,7 +98,7 @@ def run_constants(scenario: Scenario, robot: "RobotDescription") -> RunConstants
         scenario=scenario.name,
         fidelity=scenario.fidelity,
         seed=scenario.seed,
-        steps_planned=scenario.gait.steps,
+        steps_planned=step_count(scenario.gait),
         mass=float(robot.mass),
         com_height=scenario.gait.com_height,
         foot_length=float(robot.sole_length),

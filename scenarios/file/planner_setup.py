@@ -10,6 +10,7 @@ from planner.parameters import LegInertia, PlannerParameters, StepAdaptation
 from planner.planner import WalkingPlanner
 from planner.terrain import Terrain
 from planner.types import FeetState
+from scenarios.file.commands import gait_of, step_region
 from scenarios.file.schema import Scenario
 
 if TYPE_CHECKING:
@@ -26,21 +27,7 @@ def square_stance(scenario: Scenario) -> FeetState:
 
 def gait_parameters(scenario: Scenario) -> GaitParameters:
     """The scenario's gait in the planner's terms."""
-    gait = scenario.gait
-    return GaitParameters(
-        steps=gait.steps,
-        step_length=gait.step_length,
-        step_width=gait.step_width,
-        lateral_step=gait.lateral_step,
-        turn=gait.turn,
-        single_support=gait.single_support,
-        double_support=gait.double_support,
-        swing_height=gait.swing_height,
-        com_height=gait.com_height,
-        initial_stand=gait.initial_stand,
-        apex_ss=gait.apex_single,
-        apex_ds=gait.apex_double,
-    )
+    return gait_of(scenario.gait)
 
 
 def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters:
@@ -64,4 +51,6 @@ def walking_planner(
     Raises:
         ValueError: it cannot plan this gait; one sentence says why.
     """
-    return WalkingPlanner(gait_parameters(scenario), feet, robot.sole_length, robot.sole_width, terrain, parameters)
+    sole = (robot.sole_length, robot.sole_width)
+    gait = gait_of(scenario.gait, step_region(parameters, sole))
+    return WalkingPlanner(gait, feet, *sole, terrain, parameters)

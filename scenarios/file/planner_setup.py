@@ -1,6 +1,7 @@
 """The planner's side of a scenario, in the planner's terms; knows no robot model and no simulator."""
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,5 +53,7 @@ def walking_planner(
         ValueError: it cannot plan this gait; one sentence says why.
     """
     sole = (robot.sole_length, robot.sole_width)
-    gait = gait_of(scenario.gait, step_region(parameters, sole))
+    region = step_region(parameters, sole)
+    gait = gait_of(scenario.gait, region)
+    parameters = replace(parameters, reach_width=(region.nearest(0.0), region.width[1]))
     return WalkingPlanner(gait, feet, *sole, terrain, parameters)

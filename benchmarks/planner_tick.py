@@ -35,11 +35,12 @@ def print_matrices() -> None:
     A = np.tile([[1.0, T, T * T / 2], [0.0, 1.0, T], [0.0, 0.0, 1.0]], (N, 1, 1))
     B = np.tile([T**3 / 6, T * T / 2, T], (N, 1))
     C = np.stack([np.ones(N), np.zeros(N), -1.0 / stiffness], axis=1)
+    full, short = cached_response(T, tuple(range(N)), N), cached_response(T, (0, 1), N)
     rows: tuple[tuple[str, Callable[[], object], int], ...] = (
         ("literal double sum, any A(k), B(k), C(k)", lambda: literal_response(A, B, C), 3),
         ("recursion, any A(k), B(k), C(k)", lambda: recursive_response(A, B, C), 50),
-        ("cached P_x - diag(1/λ) P_a, N_c 50", lambda c=cached_response(T, tuple(range(N)), N): c.at(stiffness), 2000),
-        ("cached P_x - diag(1/λ) P_a, N_c 2", lambda c=cached_response(T, (0, 1), N): c.at(stiffness), 2000),
+        ("cached P_x - diag(1/λ) P_a, N_c 50", lambda: full.at(stiffness), 2000),
+        ("cached P_x - diag(1/λ) P_a, N_c 2", lambda: short.at(stiffness), 2000),
     )
     print(f"{'S_x, S_u1, S_u, N_p 50':<42} {'median us':>10}")
     for name, function, tries in rows:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from planner.clearance import swing_courses
 from planner.com_height import HeightPreview, HeightProfile, SmoothHeight, check_height, preview_height
 from planner.constraints import StepContext, check_reach, generate_constraints
 from planner.dcm import natural_frequency
@@ -64,8 +65,8 @@ class WalkingPlanner:
         problem: the QPs of the last tick, to be looked at or stored; None before the first.
 
     Raises:
-        ValueError: a duration is no multiple of the sample time, a footstep is out of reach, or the CoM would fall
-            almost freely.
+        ValueError: a duration is no multiple of the sample time, a footstep is out of reach, the CoM would fall
+            almost freely, or no swing clears the edges before a footstep.
     """
 
     def __init__(
@@ -92,7 +93,8 @@ class WalkingPlanner:
         self._stepper = Stepper(self.schedule, footsteps, terrain, p)
         self._shape = (height_profile or SmoothHeight()).shape(gait, self.schedule)
         check_height(self._shape, self.schedule, footsteps.support_points()[:, 2])
-        self._swing_shape = swing_shape(gait, self.schedule, p)
+        self._courses = swing_courses(footsteps, terrain, self._half_size, gait.swing_height, p)
+        self._swing_shape = swing_shape(self.schedule, footsteps, self._courses, p)
         self._prediction = predict(p.sample_time, block_moves(p.moves, p.horizon))
         self._support: Support | None = None
         self._swing: SwingTrajectory | None = None
@@ -156,7 +158,7 @@ class WalkingPlanner:
             self._stepper.footsteps,
             (support.rotation, support.origin),
             slice(window[0], window[0] + window[1]),
-            reference.point,
+            np.column_stack((reference.point, reference.height)),
             height.stiffness,
             height.height[0] - reference.height,
             self.parameters.leg,
@@ -249,8 +251,9 @@ class WalkingPlanner:
         if self._swing is None:
             yaw = float(stepper.footsteps.yaw[stepper.row - 1])
             pose = np.append(feet.position[foot], yaw + wrap_angle(float(feet.yaw[foot]) - yaw))
-            times = swing_times(time, phase.samples, self.parameters)
-            self._swing = start_swing(foot, pose, target, times, self.gait.swing_height, self.parameters)
+            course = self._courses[phase.step - 1]
+            times = swing_times(time, phase.samples, course, self.parameters)
+            self._swing = start_swing(foot, pose, target, times, course.height, self.parameters)
             return
         decided = stepper.fixed or solution.solver is SolverStatus.HELD
         if not decided and np.abs(target - self._swing.target).max() > _SAME_TARGET:

@@ -35,6 +35,7 @@ class RunConstants:
         position_lower: by joint [rad].
         position_upper: by joint [rad].
         terrain: kind of ground.
+        boxes: the solids on the ground plane, each as centre, half sizes [m] and rotation to the world, row by row.
     """
 
     scenario: str
@@ -52,6 +53,7 @@ class RunConstants:
     position_lower: tuple[float, ...]
     position_upper: tuple[float, ...]
     terrain: str
+    boxes: tuple[tuple[float, ...], ...] = ()
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""

@@ -11,11 +11,12 @@ from planner.pendulum import Pendulum, PointPush
 from planner.pendulum_walk import IdealFeet
 from planner.polygon import convex_hull, sole_corners
 from planner.sampling import PlanSample
-from planner.terrain import flat
 from planner.types import CentroidalState, Foot, Footstep, PhaseInfo
 from scenarios.closed_loop.faults import FaultSchedule
 from scenarios.closed_loop.planning import Planning
 from scenarios.closed_loop.ticks import RunFault, Watch, refusing, run_ticks
+from scenarios.file.ground import terrain_of
+from scenarios.file.height import start_com_height
 from scenarios.file.planner_setup import planner_parameters, square_stance, walking_planner
 from scenarios.file.schema import Scenario
 from scenarios.file.timeline import push_time, run_duration
@@ -58,7 +59,8 @@ class PendulumLoop:
         self._rate, self._mass = rates.control, robot.mass
         self._half_size = 0.5 * np.array([robot.sole_length, robot.sole_width])
         sizes = Sizes(nj=0, nq=0, nv=0, horizon=scenario.planner.horizon)
-        planner = walking_planner(scenario, robot, flat(), feet, planner_parameters(scenario, LegInertia()))
+        parameters = planner_parameters(scenario, LegInertia())
+        planner = walking_planner(scenario, robot, terrain_of(scenario), feet, parameters)
         self._recorder = PendulumRecorder(writer, sizes, robot.mass)
         self._walk_recorder = WalkRecorder(writer, sizes)
         self._view = PointView(writer, (robot.sole_length, robot.sole_width), rates.control)
@@ -70,7 +72,7 @@ class PendulumLoop:
         )
         self._feet = IdealFeet(feet)
         self._pendulum = Pendulum(robot.mass, start_position(scenario), np.zeros(2))
-        self._height, self._climb = scenario.gait.com_height, 0.0
+        self._height, self._climb = start_com_height(scenario), 0.0
         self._contacts, self._support = (False, False), np.zeros((0, 2))
 
     @property

@@ -8,10 +8,9 @@ from scenarios.file.schema import BeliefErrors, Scenario, Sensing
 
 _AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
-    ("terrain", "kind"): ("flat",),
+    ("terrain", "kind"): ("flat", "stairs"),
     ("planner", "profile"): ("default",),
     ("planner", "step_adaptation"): ("none", "location"),
-    ("planner", "knee"): ("stretched",),
     **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items()},
     **{("errors", name): (field.default,) for name, field in BeliefErrors.model_fields.items()},
 }

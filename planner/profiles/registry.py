@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from planner.com_height import HeightProfile, SmoothHeight
+from planner.com_height import HeightProfile, PaperHeight, SmoothHeight
 from planner.gait import GaitParameters
 from planner.motion import MotionPlanner
 from planner.moves import BLOCK_STARTS
@@ -51,7 +51,7 @@ PROFILES: Mapping[str, Profile] = MappingProxyType(
         profile.name: profile
         for profile in (
             Profile("default", PlannerParameters(), SmoothHeight(), FootstepTvmpc, moves=True),
-            Profile("paper", _PAPER, SmoothHeight(), paper_law, moves=True),
+            Profile("paper", _PAPER, PaperHeight(), paper_law, moves=True),
             Profile("repaired", _REPAIRED, SmoothHeight(), repaired_law, moves=True),
             Profile("lti", PlannerParameters(), SmoothHeight(), ConstantHeightTvmpc, moves=True),
             Profile("preview", PlannerParameters(), SmoothHeight(), ZmpPreview, moves=False),

@@ -84,7 +84,7 @@ CASES = {
     "gait: 3": "f.yaml:1:7: gait is 3; give a group of keys",
     "terrain: {kind: stairs}": "terrain.kind 'stairs' is not available in this version; available: flat",
     "planner: {profile: paper}": "planner.profile 'paper' is not available in this version; available: default",
-    "sensing: {zmp_noise: 1e-3}": "sensing.zmp_noise 0.001 is not available in this version",
+    "sensing: {gyro_noise: 1e-3}": "sensing.gyro_noise 0.001 is not available in this version",
     "name: a\nname: b": "f.yaml:2:1: 'name' is given twice, first at line 1; keep one of them",
     "name: ../a": "f.yaml:1:7: name is '../a'; use letters, digits",
     "": "f.yaml:1:1: the file is empty; give at least 'name: f'",

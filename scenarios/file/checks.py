@@ -10,6 +10,7 @@ from scenarios.file.criteria import ELEMENTS
 from scenarios.file.reach import longest_step
 from scenarios.file.robots import RobotFacts, Robots
 from scenarios.file.schema import Gait, PushSettings, Scenario
+from scenarios.file.stair_checks import stair_problems
 from scenarios.file.timeline import step_count
 from scenarios.file.walk_checks import FEWEST_SWING_SAMPLES, footstep_problems, swing_too_short, walk_problems
 
@@ -25,6 +26,7 @@ def check(scenario: Scenario, robots: Robots) -> list[Problem]:
         *_durations(scenario),
         *_pushes(scenario),
         *_criteria(scenario),
+        *_beliefs(scenario),
         *walk_problems(scenario),
         *_robot(scenario, robots),
     ]
@@ -93,6 +95,13 @@ def _criteria(scenario: Scenario) -> Iterator[Problem]:
                 yield Problem(("criteria", name, side), what, f"give one number, or {size} of them")
 
 
+def _beliefs(scenario: Scenario) -> Iterator[Problem]:
+    height, error = scenario.gait.com_height, scenario.errors.com_height
+    if error > 0.5 * height:
+        what = f"errors.com_height {error} m leaves {height - error:.3g} m of gait.com_height {height} m as the truth"
+        yield Problem(("errors", "com_height"), what, f"use at most {0.5 * height:.3g} m")
+
+
 def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
     names = robots.names()
     if scenario.robot not in names:
@@ -109,7 +118,7 @@ def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
             yield Problem(key, f"unknown body '{body}' of {scenario.robot}", nearest(body, facts.bodies))
     reach = list(_reach(scenario.gait, facts))
     steps = commanded_step_problems if commanded(scenario.gait) else footstep_problems
-    yield from reach or steps(scenario, facts)
+    yield from reach or list(steps(scenario, facts)) or stair_problems(scenario, facts)
 
 
 def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:

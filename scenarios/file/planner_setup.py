@@ -2,16 +2,19 @@
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from planner.gait import GaitParameters
 from planner.parameters import LegInertia, PlannerParameters, StepAdaptation
 from planner.planner import WalkingPlanner
+from planner.profiles.registry import PROFILES, Profile
 from planner.terrain import Terrain
 from planner.types import FeetState
 from scenarios.file.commands import gait_of, step_region
+from scenarios.file.ground import start_height
+from scenarios.file.height import height_profile
 from scenarios.file.schema import Scenario
 
 if TYPE_CHECKING:
@@ -19,10 +22,10 @@ if TYPE_CHECKING:
 
 
 def square_stance(scenario: Scenario) -> FeetState:
-    """Where the feet stand at the start: side by side at the start position and heading."""
+    """Where the feet stand at the start: side by side at the start position and heading, on the ground there."""
     start = scenario.start
     left = 0.5 * scenario.gait.step_width * np.array([-math.sin(start.yaw), math.cos(start.yaw), 0.0])
-    origin = np.array([start.x, start.y, 0.0])
+    origin = np.array([start.x, start.y, start_height(scenario)])
     return FeetState(np.array([origin + left, origin - left]), np.full(2, start.yaw), (True, True))
 
 
@@ -31,23 +34,33 @@ def gait_parameters(scenario: Scenario) -> GaitParameters:
     return gait_of(scenario.gait)
 
 
+def planner_profile(scenario: Scenario) -> Profile:
+    """The formulation that the scenario asks for."""
+    return PROFILES[scenario.planner.profile]
+
+
 def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters:
-    """The scenario's planner settings in the planner's terms; a pendulum's legs have no inertia."""
+    """The profile's parameters with what the scenario changes of them; a pendulum's legs have no inertia."""
     settings = scenario.planner
-    return PlannerParameters(
+    chosen: dict[str, Any] = {
+        "horizon": settings.horizon,
+        "moves": None if settings.control_horizon is None else tuple(range(settings.control_horizon)),
+        "jerk_limit": settings.jerk_limit,
+        "jerk_rate_limit": settings.jerk_rate_limit,
+    }
+    return replace(
+        planner_profile(scenario).parameters,
         sample_time=settings.sample_time,
-        horizon=settings.horizon,
-        jerk_limit=settings.jerk_limit,
-        jerk_rate_limit=math.inf if settings.jerk_rate_limit is None else settings.jerk_rate_limit,
         leg=leg,
         step_adaptation=StepAdaptation(settings.step_adaptation),
+        **{name: value for name, value in chosen.items() if value is not None},
     )
 
 
 def walking_planner(
     scenario: Scenario, robot: "RobotDescription", terrain: Terrain, feet: FeetState, parameters: PlannerParameters
 ) -> WalkingPlanner:
-    """The planner of a scenario for start feet.
+    """The planner of a scenario for start feet; its adaptation leaves at least half the planned gap between soles.
 
     Raises:
         ValueError: it cannot plan this gait; one sentence says why.
@@ -55,5 +68,6 @@ def walking_planner(
     sole = (robot.sole_length, robot.sole_width)
     region = step_region(parameters, sole)
     gait = gait_of(scenario.gait, region)
-    parameters = replace(parameters, reach_width=(region.nearest(0.0), region.width[1]))
-    return WalkingPlanner(gait, feet, *sole, terrain, parameters)
+    near, far = parameters.reach_width
+    adapting = replace(parameters, reach_width=(max(near, robot.sole_width + 0.5 * region.gap), far))
+    return WalkingPlanner(gait, feet, *sole, terrain, adapting, height_profile(scenario), planner_profile(scenario))

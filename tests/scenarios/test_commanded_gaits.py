@@ -22,6 +22,8 @@ VELOCITY = "gait: {single_support: 0.5, double_support: 0.1, velocity: [{time: 0
 FOOTSTEPS = "gait: {footsteps: [%s]}"
 
 REFUSED = {
+    "terrain: {kind: stairs}\n"
+    + VELOCITY % "v_x: 0.3": "gait.velocity on stairs, whose treads its footsteps would not",
     FAST + VELOCITY % "v_x: 0.9": "steps of 0.54 m ahead in 0.6 s, out of reach; the fastest in this direction is v_x"
     " 0.666, v_y 0, yaw_rate 0; or take faster steps",
     FAST

@@ -48,7 +48,7 @@ class ConstantHeightTvmpc:
     """
 
     def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
-        self._law = FootstepTvmpc(parameters, gait)
+        self._law = FootstepTvmpc(parameters, com_height)
         self._stiffness = softening(parameters.leg) * GRAVITY / com_height
 
     def plan(self, problem: MotionProblem) -> Motion:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from planner.com_height import HeightProfile
+from planner.com_height import HeightProfile, PaperHeight
 from planner.motion import MotionPlanner
 from planner.moves import BLOCK_STARTS
 from planner.parameters import PlannerParameters
@@ -50,7 +50,7 @@ PROFILES: Mapping[str, Profile] = MappingProxyType(
         profile.name: profile
         for profile in (
             Profile("default", PlannerParameters(), FootstepTvmpc, moves=True),
-            Profile("paper", _PAPER, paper_law, moves=True),
+            Profile("paper", _PAPER, paper_law, moves=True, height=PaperHeight()),
             Profile("repaired", _REPAIRED, repaired_law, moves=True),
             Profile("lti", PlannerParameters(), ConstantHeightTvmpc, moves=True),
             Profile("preview", PlannerParameters(), ZmpPreview, moves=False),

@@ -1,6 +1,6 @@
 """The CoM height law of a scenario."""
 
-from planner.com_height import BENT_KNEES, BentKneeHeight, HeightProfile, Rise, SmoothHeight
+from planner.com_height import BENT_KNEES, BentKneeHeight, HeightProfile, PaperHeight, Rise, SmoothHeight
 from scenarios.file.ground import start_height
 from scenarios.file.schema import Scenario
 
@@ -8,8 +8,10 @@ from scenarios.file.schema import Scenario
 def height_profile(scenario: Scenario) -> HeightProfile:
     """The height law: where the CoM climbs follows from the fidelity unless the scenario says it.
 
-    A pendulum can do what the paper does, and climbs in double support; legs cannot, and climb in single support.
+    The paper's profile has the paper's own law, in double support and with its jumps. A pendulum can do what the paper does, and climbs in double support; legs cannot, and climb in single support.
     """
+    if scenario.planner.profile == "paper" and scenario.planner.knee == "stretched":
+        return PaperHeight()
     place = scenario.planner.rise or ("double" if scenario.fidelity == "pendulum" else "single")
     rise = Rise(place)
     return BentKneeHeight(rise) if scenario.planner.knee == "bent" else SmoothHeight(rise)

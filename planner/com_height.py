@@ -188,7 +188,8 @@ def _on_levels(place: Rise, schedule: Schedule, bump: Array) -> HeightShape:
         if phase.kind is PhaseKind.SINGLE:
             for change, share in zip(changes, (_CLIMB_SHARE, _DESCENT_SHARE), strict=True):
                 change[:, span] = _early_rise(phase, share, schedule.sample_time)
-    return HeightShape(index, *changes, bump, lower_levels)
+    rise, fall = changes
+    return HeightShape(index, rise, fall, bump, lower_levels)
 
 
 def _early_rise(phase: Phase, share: float, sample_time: float) -> Array:

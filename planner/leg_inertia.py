@@ -21,11 +21,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.clearance import SwingCourse
 from planner.footsteps import FootstepPlan
 from planner.parameters import LegInertia, PlannerParameters
 from planner.schedule import Schedule
-from planner.swing import SwingTrajectory, start_swing, swing_times
+from planner.swing import SwingCourse, SwingTrajectory, start_swing, swing_times
 from planner.types import Array, Foot, PhaseKind
 
 

@@ -83,7 +83,7 @@ class WalkingPlanner:
         check_reach(footsteps, p)
         shape = (height_profile or profile.height or SmoothHeight()).shape(gait, self.schedule)
         check_height(shape, self.schedule, footsteps.support_points()[:, 2])
-        self._courses = swing_courses(footsteps, terrain, self._half_size, gait.swing_height, p)
+        self._courses = swing_courses(footsteps, self.schedule, terrain, self._half_size, gait.swing_height, p)
         swings = swing_shape(self.schedule, footsteps, self._courses, p)
         self._stepper = Stepper(self.schedule, footsteps, terrain, p)
         self._outlook = Outlook(self.schedule, shape, swings, p.leg, p.horizon + p.preview + 1)

@@ -108,7 +108,7 @@ def _step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Arr
     if steps.free[1]:
         lower[1], upper[1] = np.minimum(lower[1], 0.0), np.maximum(upper[1], 0.0)
     if steps.free[0] and steps.swing is not None:
-        travel = parameters.swing_speed * steps.time_left / np.sqrt(2.0)
+        travel = 2.0 * parameters.swing_speed * steps.time_left / np.sqrt(2.0)
         here = steps.swing - steps.increment[0]
         low = np.maximum(lower[0], np.minimum(here - travel, upper[0]))
         upper[0] = np.minimum(upper[0], np.maximum(here + travel, lower[0]))

@@ -11,7 +11,8 @@ from planner.dcm import natural_frequency
 from planner.footsteps import FootstepPlan, plan_footsteps
 from planner.frames import wrap_angle
 from planner.gait import GaitParameters
-from planner.leg_inertia import softening, swing_shape, zmp_offset
+from planner.leg_inertia import softening, sole_positions, swing_shape, zmp_offset
+from planner.nominal import nominal_motion
 from planner.moves import block_moves
 from planner.parameters import PlannerParameters
 from planner.plan import WalkPlan
@@ -124,43 +125,49 @@ class WalkingPlanner:
         window = (stepper.sample, n + p.preview + 1)
         reference = zmp_reference(self.schedule, support.table, *window)
         height = preview_height(self._shape, *window, support.heights, reference.height)
-        offset = self._leg_offset(support, window, reference, height)
+        local = self._local_state(state, support)
+        offset = self._leg_offset(support, local[:, 0], reference.point, height)
         driving = replace(reference, point=reference.point - offset)
         stiffness = softening(p.leg) * height.stiffness
         omega = natural_frequency(stiffness, p.sample_time)
         steps = self._step_context(support, feet)
+        nominal = nominal_motion(local[:, 0], driving.point, stiffness, p.sample_time)
+        rest = replace(reference, point=np.zeros_like(reference.point))
         self.problem = build_problem(
             p,
             self._prediction,
-            self._local_state(state, support),
+            local - nominal.com[:, 0].T,
             stiffness[: n + 1],
-            driving,
-            generate_constraints(p, driving, stiffness, omega, steps),
-            self._local_jerk(support)[0],
+            rest,
+            generate_constraints(p, rest, stiffness, omega, steps),
+            self._local_jerk(support)[0] - nominal.jerk[0],
         )
-        solution = solve_problem(self.problem, self._prediction, p.solvers, self._shifted_jerk(support))
+        solution = solve_problem(
+            self.problem, self._prediction, p.solvers, self._shifted_jerk(support) - nominal.jerk[:n]
+        )
         footsteps = stepper.upcoming(state.time, solution.shifts @ support.rotation.T)
         self._update_swing(state.time, feet, footsteps, solution)
         motion = trajectory(self._prediction, self.problem, solution.jerk)
+        motion = Trajectory(
+            motion.com + nominal.com[:, : n + 1], motion.zmp + driving.point[: n + 1], motion.jerk + nominal.jerk[:n]
+        )
         preview = _Preview(reference, offset, height, stiffness, omega)
         self._plan = self._world_plan(state.time, support, preview, motion, solution, footsteps)
         return self._plan
 
-    def _leg_offset(
-        self, support: Support, window: tuple[int, int], reference: ZmpReference, height: HeightPreview
-    ) -> Array:
-        if self.parameters.leg.mass_ratio == 0.0:
-            return np.zeros_like(reference.point)
-        return zmp_offset(
-            self._swing_shape,
-            self._stepper.footsteps,
-            (support.rotation, support.origin),
-            slice(window[0], window[0] + window[1]),
-            reference.point,
-            height.stiffness,
-            height.height[0] - reference.height,
-            self.parameters.leg,
-        )
+    def _leg_offset(self, support: Support, position: Array, reference: Array, height: HeightPreview) -> Array:
+        """ZMP offset of the legs' motion over the window, shape (n, 2) [m], for a CoM near the nominal motion."""
+        p, offset = self.parameters, np.zeros_like(reference)
+        chain, softened = p.leg.chain, softening(p.leg) * height.stiffness
+        if chain is None:
+            return offset
+        samples = np.maximum(self._stepper.sample + np.arange(-1, len(reference)), 0)
+        frame = (support.rotation, support.origin)
+        soles, heading = sole_positions(self._swing_shape, self._stepper.footsteps, frame, samples)
+        for _ in range(2):
+            motion = nominal_motion(position, reference - offset, softened, p.sample_time)
+            offset = zmp_offset(chain, soles, heading, motion, height, softened)
+        return offset
 
     def _world_plan(
         self,

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.types import RobotDescription
+from planner.leg_chain import LegChain, Link
 from planner.parameters import LegInertia
 from planner.planner import WalkingPlanner
 from planner.terrain import flat
@@ -16,7 +17,7 @@ from scenarios.file.timeline import push_time
 from sim.pushes import Push
 from sim.world import World
 from wbc.controller import Sole, WbcParameters, WholeBodyController
-from wbc.leg_mass import leg_mass
+from wbc.leg_mass import LinkMass, leg_mass
 from wbc.statics import standing_torque
 
 Array = NDArray[np.float64]
@@ -68,7 +69,20 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
 def leg_inertia(body: Body, q: Array) -> LegInertia:
     """The robot's legs as the planner sees them, from its start posture q, shape (nq,)."""
     leg = leg_mass(body.model, body.frames, q, body.leg_joints)
-    return LegInertia(leg.ratio, leg.lever)
+    chain = LegChain(
+        hip_half_width=leg.hip_half_width,
+        trunk=leg.trunk,
+        thigh=_link(leg.thigh),
+        shank=_link(leg.shank),
+        foot_mass=leg.foot_mass,
+        foot_centre=leg.foot_centre,
+        ankle=leg.ankle,
+    )
+    return LegInertia(leg.ratio, chain)
+
+
+def _link(link: LinkMass) -> Link:
+    return Link(link.length, link.mass, link.centre, link.inertia)
 
 
 def pushes(scenario: Scenario, robot: RobotDescription) -> tuple[Push, ...]:

@@ -108,10 +108,11 @@ def _step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Arr
     if steps.free[1]:
         lower[1], upper[1] = np.minimum(lower[1], 0.0), np.maximum(upper[1], 0.0)
     if steps.free[0] and steps.swing is not None:
-        travel = 2.0 * parameters.swing_speed * steps.time_left / np.sqrt(2.0)
+        travel = parameters.swing_speed * steps.time_left / np.sqrt(2.0)
         here = steps.swing - steps.increment[0]
-        low = np.maximum(lower[0], np.minimum(here - travel, upper[0]))
-        upper[0] = np.minimum(upper[0], np.maximum(here + travel, lower[0]))
+        # The nominal footstep is never out of reach: a fast gait's swing is faster than that speed by itself.
+        low = np.maximum(lower[0], np.minimum(np.minimum(here - travel, 0.0), upper[0]))
+        upper[0] = np.minimum(upper[0], np.maximum(np.maximum(here + travel, 0.0), lower[0]))
         lower[0] = low
     return lower, upper
 

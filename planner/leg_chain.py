@@ -13,8 +13,9 @@ from planner.types import Array
 _ITERATIONS = 3
 """Corrections of the hips; each leaves a fifth of the CoM's error, and a constant rest does no harm."""
 
-_STRETCHED = 0.9999
-"""Share of its length that a leg is bent to where the sole is out of reach [-]."""
+_BEND = 0.02
+"""Share of its length by which a leg stays the more bent the nearer it comes to straight, or its sole out of reach: the
+knee of a straight leg would move infinitely fast [-]."""
 
 Vector = tuple[float, float, float]
 
@@ -108,7 +109,9 @@ class LegChain:
         leg = ankles - hips
         long = np.sqrt(np.einsum("kni,kni->kn", leg, leg))
         a, b = self.thigh.length, self.shank.length
-        reach = np.clip(long, abs(a - b) + 1e-6, _STRETCHED * (a + b))
+        slack = 1.0 - long / (a + b)
+        reach = (a + b) * (1.0 - 0.5 * (slack + np.sqrt(slack * slack + _BEND * _BEND)))
+        reach = np.maximum(reach, abs(a - b) + 1e-6)
         along = (a * a - b * b + reach * reach) / (2.0 * reach)
         down = leg / long[..., None]
         ahead = forward - np.einsum("kni,ni->kn", down, forward)[..., None] * down

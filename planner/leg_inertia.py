@@ -12,9 +12,9 @@ that
 
     p = c - (1 + 2 μ) c'' / λ + o
 
-defines an offset o that the CoM's own deviations hardly change. So the motion is again a pendulum c'' = λ' (c - (p - o))
-with λ' = λ / (1 + 2 μ), driven by the ZMP less the known offset o. (Multi-mass ZMP models: Takanishi et al., 1988; Sato,
-Sakaino and Tsuji, ICRA 2010.)
+defines an offset o that the CoM's own deviations hardly change. So the motion is again a pendulum,
+c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP less the known offset o. (Multi-mass ZMP models:
+Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 """
 
 from dataclasses import dataclass
@@ -84,9 +84,7 @@ def sole_positions(
         Left and right sole, shape (2, n, 3) [m]; heading, shape (n,) [rad].
     """
     rotation, origin = frame
-    points = np.column_stack(
-        ((footsteps.position[:, :2] - origin) @ rotation, footsteps.position[:, 2], footsteps.yaw)
-    )
+    points = np.column_stack(((footsteps.position[:, :2] - origin) @ rotation, footsteps.position[:, 2], footsteps.yaw))
     row, progress = shape.row[samples], shape.progress[samples, None]
     before, after = points[row - 1], points[np.minimum(row + 1, len(points) - 1)]
     stance, swing = points[row], before + progress * (after - before)
@@ -117,8 +115,8 @@ def zmp_offset(
     com = np.empty((n + 1, 3))
     com[1:, :2], com[1:, 2] = motion.com[0], height.height[0]
     t = motion.sample_time
-    com[0, :2] = _before(*motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
-    com[0, 2] = _before(*height.height[:, 0], t)
+    com[0, :2] = _before(motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
+    com[0, 2] = _before(height.height[:, 0], t)
     rate = chain.momentum_rate(com, soles, heading, t)
     pressing = GRAVITY + height.height[2]
     offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]
@@ -127,8 +125,9 @@ def zmp_offset(
     return np.asarray(offset)
 
 
-def _before(position: Array, velocity: Array, acceleration: Array, time: float) -> Array:
-    return np.asarray(position - velocity * time + 0.5 * acceleration * time**2)
+def _before(state: Array, time: float) -> Array:
+    """Position some time before a state of position, velocity and acceleration."""
+    return np.asarray(state[0] - state[1] * time + 0.5 * state[2] * time**2)
 
 
 def _unit_swing(gait: GaitParameters, samples: int, parameters: PlannerParameters) -> Array:

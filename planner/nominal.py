@@ -19,11 +19,13 @@ class NominalMotion:
 
     Attributes:
         com: position, velocity, acceleration at samples 0..n-1, shape (3, n, 2) [m, m/s, m/s^2].
+        zmp: the point that drives it, shape (n, 2) [m].
         jerk: of each interval, shape (n - 1, 2) [m/s^3].
         sample_time: length of an interval [s].
     """
 
     com: Array
+    zmp: Array
     jerk: Array
     sample_time: float
 
@@ -55,4 +57,25 @@ def nominal_motion(position: Array, zmp: Array, stiffness: Array, sample_time: f
     v = np.empty_like(c)
     v[:-1] = np.diff(c, axis=0) / t - t / 6.0 * (2.0 * a[:-1] + a[1:])
     v[-1] = v[-2] + 0.5 * t * (a[-2] + a[-1])
-    return NominalMotion(np.stack((c, v, a)), np.diff(a, axis=0) / t, t)
+    return NominalMotion(np.stack((c, v, a)), zmp, np.diff(a, axis=0) / t, t)
+
+
+def no_motion(count: int, sample_time: float) -> NominalMotion:
+    """A CoM that rests at the origin: then the moves are the whole motion."""
+    zero = np.zeros((3, count, 2))
+    return NominalMotion(zero, zero[0], zero[0, 1:], sample_time)
+
+
+def jerk_range(jerk: Array, starts: tuple[int, ...], limit: float) -> tuple[Array, Array]:
+    """Bounds of the moves that keep the whole jerk within its limit where the nominal one is; zero always is allowed.
+
+    Args:
+        jerk: nominal jerk over the horizon, shape (N, 2) [m/s^3].
+        starts: first sample of each block of moves.
+        limit: of the whole jerk [m/s^3].
+
+    Returns:
+        Lower and upper bounds, shape (2, m) each: per axis and block [m/s^3].
+    """
+    lowest, highest = np.minimum.reduceat(jerk, starts), np.maximum.reduceat(jerk, starts)
+    return np.minimum(-limit - lowest, 0.0).T, np.maximum(limit - highest, 0.0).T

@@ -12,8 +12,8 @@ from planner.footsteps import FootstepPlan, plan_footsteps
 from planner.frames import wrap_angle
 from planner.gait import GaitParameters
 from planner.leg_inertia import softening, sole_positions, swing_shape, zmp_offset
-from planner.nominal import nominal_motion
 from planner.moves import block_moves
+from planner.nominal import NominalMotion, jerk_range, no_motion, nominal_motion
 from planner.parameters import PlannerParameters
 from planner.plan import WalkPlan
 from planner.prediction import predict
@@ -131,8 +131,8 @@ class WalkingPlanner:
         stiffness = softening(p.leg) * height.stiffness
         omega = natural_frequency(stiffness, p.sample_time)
         steps = self._step_context(support, feet)
-        nominal = nominal_motion(local[:, 0], driving.point, stiffness, p.sample_time)
-        rest = replace(reference, point=np.zeros_like(reference.point))
+        nominal = self._nominal(local[:, 0], driving.point, stiffness)
+        rest = replace(driving, point=driving.point - nominal.zmp)
         self.problem = build_problem(
             p,
             self._prediction,
@@ -141,6 +141,7 @@ class WalkingPlanner:
             rest,
             generate_constraints(p, rest, stiffness, omega, steps),
             self._local_jerk(support)[0] - nominal.jerk[0],
+            jerk_range(nominal.jerk[:n], p.moves, p.jerk_limit),
         )
         solution = solve_problem(
             self.problem, self._prediction, p.solvers, self._shifted_jerk(support) - nominal.jerk[:n]
@@ -149,11 +150,18 @@ class WalkingPlanner:
         self._update_swing(state.time, feet, footsteps, solution)
         motion = trajectory(self._prediction, self.problem, solution.jerk)
         motion = Trajectory(
-            motion.com + nominal.com[:, : n + 1], motion.zmp + driving.point[: n + 1], motion.jerk + nominal.jerk[:n]
+            motion.com + nominal.com[:, : n + 1], motion.zmp + nominal.zmp[: n + 1], motion.jerk + nominal.jerk[:n]
         )
         preview = _Preview(reference, offset, height, stiffness, omega)
         self._plan = self._world_plan(state.time, support, preview, motion, solution, footsteps)
         return self._plan
+
+    def _nominal(self, position: Array, zmp: Array, stiffness: Array) -> NominalMotion:
+        """The motion that the moves are added to; with a limit on the jerk's rate they are the whole motion."""
+        t = self.parameters.sample_time
+        if math.isfinite(self.parameters.jerk_rate_limit):
+            return no_motion(len(zmp), t)
+        return nominal_motion(position, zmp, stiffness, t)
 
     def _leg_offset(self, support: Support, position: Array, reference: Array, height: HeightPreview) -> Array:
         """ZMP offset of the legs' motion over the window, shape (n, 2) [m], for a CoM near the nominal motion."""

@@ -1,4 +1,4 @@
-"""The body reduced to what a pendulum planner needs to know of it: legs of three links under a trunk that does not turn."""
+"""The body reduced to what a pendulum planner needs of it: legs of three links under a trunk that does not turn."""
 
 from dataclasses import dataclass
 
@@ -131,7 +131,7 @@ def _mirrored(vector: Array) -> Vector:
 
 
 def _point_mass(model: pin.Model, sole: str, q: Array, joints: NDArray[np.intp]) -> float:
-    """Mass over the total mass whose momentum L = Σ μ m (r_k - c)_z (r_k' - c')_x is that of a sole at 1 m/s forward."""
+    """μ whose momentum L = Σ μ m (r_k - c)_z (r_k' - c')_x is that of one sole at 1 m/s forward [-]."""
     data = model.createData()
     pin.computeJointJacobians(model, data, q)
     pin.updateFramePlacements(model, data)

@@ -37,8 +37,8 @@ class TaskWeights:
     orientation: float = 1.0
     swing: float = 10.0
     upper_posture: float = 0.5
-    leg_posture: float = 1e-3
-    acceleration: float = 1e-4
+    leg_posture: float = 1e-5
+    acceleration: float = 1e-5
     force: float = 1e-6
     moment: float = 1e-4
 

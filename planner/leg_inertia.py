@@ -17,14 +17,15 @@ c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP less the k
 Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.clearance import SwingCourse
 from planner.com_height import HeightPreview
 from planner.footsteps import FootstepPlan
-from planner.gait import GaitParameters
 from planner.leg_chain import LegChain
 from planner.nominal import NominalMotion
 from planner.parameters import LegInertia, PlannerParameters
@@ -45,27 +46,31 @@ class SwingShape:
     Attributes:
         row: row of a foot that stands, shape (K,); the other foot goes from the row before to the row after.
         progress: share of that way done, shape (K,).
-        lift: height of its sole above the straight line between both, shape (K,) [m].
+        height: of its sole above the row before, shape (K,) [m].
     """
 
     row: NDArray[np.intp]
     progress: Array
-    lift: Array
+    height: Array
 
 
-def swing_shape(gait: GaitParameters, schedule: Schedule, parameters: PlannerParameters) -> SwingShape:
-    """Tabulate the swings of a schedule."""
+def swing_shape(
+    schedule: Schedule, footsteps: FootstepPlan, courses: Sequence[SwingCourse], parameters: PlannerParameters
+) -> SwingShape:
+    """Tabulate the swings of a schedule to nominal footsteps, each on its course."""
     count = len(schedule.phase_index)
     rows = np.empty(count, dtype=np.intp)
     values = np.zeros((2, count))
-    tables: dict[int, Array] = {}
+    tables: dict[tuple[int, float, SwingCourse], Array] = {}
     for phase in schedule.phases:
         span = slice(phase.start, phase.end if phase.samples else count)
         rows[span] = phase.step + (phase.kind is not PhaseKind.SINGLE)
         if phase.kind is PhaseKind.SINGLE:
-            if phase.samples not in tables:
-                tables[phase.samples] = _unit_swing(gait, phase.samples, parameters)
-            values[:, span] = tables[phase.samples]
+            climb = float(footsteps.position[phase.step + 1, 2] - footsteps.position[phase.step - 1, 2])
+            key = (phase.samples, round(climb, 6), courses[phase.step - 1])
+            if key not in tables:
+                tables[key] = _unit_swing(*key, parameters)
+            values[:, span] = tables[key]
     return SwingShape(rows, *values)
 
 
@@ -88,7 +93,7 @@ def sole_positions(
     row, progress = shape.row[samples], shape.progress[samples, None]
     before, after = points[row - 1], points[np.minimum(row + 1, len(points) - 1)]
     stance, swing = points[row], before + progress * (after - before)
-    swing[:, 2] += shape.lift[samples]
+    swing[:, 2] = before[:, 2] + shape.height[samples]
     left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row, None]
     soles = np.stack((np.where(left, stance, swing), np.where(left, swing, stance)))
     turned = 0.5 * (stance[:, 3] + swing[:, 3]) - np.arctan2(rotation[1, 0], rotation[0, 0])
@@ -130,10 +135,10 @@ def _before(state: Array, time: float) -> Array:
     return np.asarray(state[0] - state[1] * time + 0.5 * state[2] * time**2)
 
 
-def _unit_swing(gait: GaitParameters, samples: int, parameters: PlannerParameters) -> Array:
-    """Progress and height of the sole at the samples of a swing, shape (2, samples)."""
-    times = swing_times(0.0, samples, parameters)
+def _unit_swing(samples: int, climb: float, course: SwingCourse, parameters: PlannerParameters) -> Array:
+    """Progress of the sole and its height above lift-off at the samples of a swing, shape (2, samples)."""
+    times = swing_times(0.0, samples, course, parameters)
     swing: SwingTrajectory = start_swing(
-        Foot.LEFT, np.zeros(4), np.array([1.0, 0.0, 0.0, 0.0]), times, gait.swing_height, parameters
+        Foot.LEFT, np.zeros(4), np.array([1.0, 0.0, climb, 0.0]), times, course.height, parameters
     )
     return np.array([swing.evaluate(k * parameters.sample_time)[0, [0, 2]] for k in range(samples)]).T

@@ -2,9 +2,6 @@
 
 import math
 
-SHORTEST_REACH, LONGEST_REACH = 0.4, 0.7
-"""Least and greatest bound on the planner's footsteps ahead of their stance foot, whatever the legs [m]."""
-
 
 def longest_step(leg_length: float, hip_height: float, hip_width: float, step_width: float) -> float:
     """Longest step with flat soles, the CoM halfway between the feet at touchdown.
@@ -24,9 +21,3 @@ def longest_step(leg_length: float, hip_height: float, hip_width: float, step_wi
     sideways = (step_width - hip_width) / 2
     square = leg_length**2 - hip_height**2 - sideways**2
     return 2 * math.sqrt(square) if square >= 0 else math.nan
-
-
-def step_reach(leg_length: float, hip_height: float, hip_width: float, step_width: float) -> float:
-    """How far ahead of or behind its stance foot the planner may place a footstep [m]: the same, within bounds."""
-    longest = longest_step(leg_length, hip_height, hip_width, step_width)
-    return SHORTEST_REACH if math.isnan(longest) else min(max(longest, SHORTEST_REACH), LONGEST_REACH)

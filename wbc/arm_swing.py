@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from wbc.model import RobotTerms
-from wbc.types import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,8 +26,9 @@ _IMPULSE_LIMIT = 0.95
 _LEAST_HEIGHT = 0.1
 """Height over the ZMP that the pendulum never goes below [m]."""
 
-_RISE_SHARE = 0.8
-"""Share of single support in which the level changes [-]."""
+_CLIMB_SHARE, _DESCENT_SHARE = 0.8, 1.0
+"""Shares of single support in which the level rises and sinks: the knee is bent most, and can lift least, at the begin
+of a climb and at the end of a descent [-]."""
 
 BENT_KNEES = 0.08
 """How much lower than stretched knees carry it bent ones carry the CoM [m]."""
@@ -50,11 +51,13 @@ class Rise(Enum):
 class HeightShape:
     """CoM height of a whole walk, before the heights of the footholds are known.
 
-    At sample k the CoM is at `level[i] + rise[0, k] * (level[i + 1] - level[i]) + bump[0, k]` with i = `index[k]`.
+    At sample k the CoM is at `level[i] + rise[0, k] * (level[i + 1] - level[i]) + bump[0, k]` with i = `index[k]`, and
+    with `fall` for `rise` where the next level is lower.
 
     Attributes:
         index: base level that the CoM leaves, shape (K,).
         rise: share of the change to the next level done, its first and second derivative, shape (3, K) [-, 1/s, 1/s^2].
+        fall: the same on the way down.
         bump: height above the base, and its first and second derivative, shape (3, K) [m, m/s, m/s^2].
         levels: makes the base levels of the heights of the support points, both of shape (n + 2,) [m].
         impulsive: whether the velocity jumps, which the second derivative then has as impulses of one sample.
@@ -62,6 +65,7 @@ class HeightShape:
 
     index: NDArray[np.intp]
     rise: Array
+    fall: Array
     bump: Array
     levels: Callable[[Array], Array]
     impulsive: bool = False
@@ -75,7 +79,7 @@ class HeightShape:
         """
         levels, index = self.levels(support_height), self.index[window]
         step = np.append(np.diff(levels), 0.0)[index]
-        height = self.bump[:, window] + self.rise[:, window] * step
+        height = self.bump[:, window] + np.where(step < 0.0, self.fall[:, window], self.rise[:, window]) * step
         height[0] += levels[index]
         return np.asarray(height)
 
@@ -162,7 +166,7 @@ class PaperHeight:
         index, done = schedule.index - ended, schedule.index + schedule.fraction
         rise = _differences(done, t)
         rise[0] = done - index
-        return HeightShape(index, rise, _differences(bump, t), own_levels, impulsive=True)
+        return HeightShape(index, rise, rise, _differences(bump, t), own_levels, impulsive=True)
 
 
 def _differences(values: Array, sample_time: float) -> Array:
@@ -176,17 +180,24 @@ def _on_levels(place: Rise, schedule: Schedule, bump: Array) -> HeightShape:
     """A shape with quintic changes of level at a place."""
     if place is Rise.DOUBLE:
         rise = quintic_rise(schedule.fraction, schedule.fraction_rate)
-        return HeightShape(schedule.index, rise, bump, own_levels)
-    index, rise = np.empty_like(schedule.index), np.zeros_like(bump)
+        return HeightShape(schedule.index, rise, rise, bump, own_levels)
+    index, changes = np.empty_like(schedule.index), np.zeros((2, *bump.shape))
     for phase in schedule.phases:
         span = slice(phase.start, phase.end if phase.samples else None)
         reached = phase.kind is PhaseKind.SINGLE or phase.samples == 0
         index[span] = max(phase.support - reached, 0)
         if phase.kind is PhaseKind.SINGLE:
-            share = np.arange(phase.samples) / (_RISE_SHARE * phase.samples)
-            rate = np.where(share < 1.0, 1.0 / (_RISE_SHARE * phase.samples * schedule.sample_time), 0.0)
-            rise[:, span] = quintic_rise(np.minimum(share, 1.0), rate)
-    return HeightShape(index, rise, bump, lower_levels)
+            for change, share in zip(changes, (_CLIMB_SHARE, _DESCENT_SHARE), strict=True):
+                change[:, span] = _early_rise(phase, share, schedule.sample_time)
+    rise, fall = changes
+    return HeightShape(index, rise, fall, bump, lower_levels)
+
+
+def _early_rise(phase: Phase, share: float, sample_time: float) -> Array:
+    """Quintic rise within the first share of a phase and rest at 1 after it, shape (3, samples)."""
+    fraction = np.arange(phase.samples) / (share * phase.samples)
+    rate = np.where(fraction < 1.0, 1.0 / (share * phase.samples * sample_time), 0.0)
+    return quintic_rise(np.minimum(fraction, 1.0), rate)
 
 
 def quintic_rise(fraction: Array, rate: Array) -> Array:

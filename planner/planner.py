@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from planner.clearance import swing_courses
-from planner.com_height import HeightProfile, check_height
+from planner.com_height import HeightProfile, SmoothHeight, check_height
 from planner.constraints import StepContext, check_reach
 from planner.footsteps import FootstepPlan, plan_footsteps
 from planner.frames import wrap_angle
@@ -45,7 +45,7 @@ class WalkingPlanner:
         foot_width: width of the sole [m].
         terrain: what the planner believes about the ground.
         parameters: the planner's own parameters; those of the profile by default.
-        height_profile: vertical CoM motion; that of the profile by default.
+        height_profile: vertical CoM motion; that of the profile, or else the smooth one, by default.
         profile: formulation of the planner; the robust one by default.
 
     Attributes:
@@ -81,14 +81,14 @@ class WalkingPlanner:
         self.schedule = schedule(gait, p.sample_time, p.horizon + p.preview)
         footsteps = plan_footsteps(gait, feet, terrain)
         check_reach(footsteps, p)
-        shape = (height_profile or profile.height).shape(gait, self.schedule)
+        shape = (height_profile or profile.height or SmoothHeight()).shape(gait, self.schedule)
         check_height(shape, self.schedule, footsteps.support_points()[:, 2])
-        self._courses = swing_courses(footsteps, terrain, self._half_size, gait.swing_height, p)
+        self._courses = swing_courses(footsteps, self.schedule, terrain, self._half_size, gait.swing_height, p)
         swings = swing_shape(self.schedule, footsteps, self._courses, p)
         self._stepper = Stepper(self.schedule, footsteps, terrain, p)
         self._outlook = Outlook(self.schedule, shape, swings, p.leg, p.horizon + p.preview + 1)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
-        self._law = profile.law(p, gait)
+        self._law = profile.law(p, float(shape.bump[0, 0]))
         self._support: Support | None = None
         self._swing: SwingTrajectory | None = None
         self._plan: WalkPlan | None = None
@@ -116,8 +116,9 @@ class WalkingPlanner:
         self._fix_imminent_footstep(state.time)
         support = present_support(self._support, stepper, self._half_size, p.foot_margin)
         self._support = support
-        window = self._outlook.window(stepper.sample, support, stepper.footsteps)
-        problem = self._problem(state, feet, support, window)
+        local = self._local_state(state, support)
+        window = self._outlook.window(stepper.sample, support, stepper.footsteps, local[:, 0])
+        problem = self._problem(local, feet, support, window)
         motion = self._law.plan(problem)
         self.motion = motion
         footsteps = stepper.upcoming(state.time, motion.shifts @ support.rotation.T)
@@ -129,12 +130,12 @@ class WalkingPlanner:
         )
         return self._plan
 
-    def _problem(self, state: CentroidalState, feet: FeetState, support: Support, window: Window) -> MotionProblem:
+    def _problem(self, local: Array, feet: FeetState, support: Support, window: Window) -> MotionProblem:
         jerk = np.zeros((self.parameters.horizon + 1, 2))
         if self._plan is not None:
             jerk[:-1] = self._plan.jerk @ support.rotation
         return MotionProblem(
-            state=self._local_state(state, support),
+            state=local,
             stiffness=window.stiffness,
             omega=window.omega,
             reference=window.driving,

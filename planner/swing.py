@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from planner.clearance import SwingCourse
 from planner.parameters import PlannerParameters
 from planner.polynomial import quintic, shifted
 from planner.types import Array, Foot
@@ -116,6 +115,23 @@ class SwingTrajectory:
 
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
+
+
+@dataclass(frozen=True, slots=True)
+class SwingCourse:
+    """How a swing divides its time, as shares of it.
+
+    Attributes:
+        apex: when the sole is highest [-].
+        glide_start: when it begins to move forward, sideways and to turn [-].
+        glide_end: when that is done [-].
+        height: of the apex above the higher of lift-off and touchdown [m].
+    """
+
+    apex: float
+    glide_start: float
+    glide_end: float
+    height: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ from scenarios.file.schema import Scenario
 def height_profile(scenario: Scenario) -> HeightProfile:
     """The height law: where the CoM climbs follows from the fidelity unless the scenario says it.
 
-    The paper's profile has the paper's own law, in double support and with its jumps. Of the others, a pendulum can do
-    what the paper does and climbs in double support; legs cannot, and climb in single support.
+    The paper's profile has the paper's own law, in double support and with its jumps. A pendulum can do what the paper
+    does, and climbs in double support; legs cannot, and climb in single support.
     """
     if scenario.planner.profile == "paper" and scenario.planner.knee == "stretched":
         return PaperHeight()

@@ -15,10 +15,14 @@ from planner.types import FeetState
 from scenarios.file.commands import gait_of, step_region
 from scenarios.file.ground import start_height
 from scenarios.file.height import height_profile
-from scenarios.file.schema import Scenario
+from scenarios.file.schema import Gait, Scenario
 
 if TYPE_CHECKING:
     from models.types import RobotDescription
+
+
+SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
+"""Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait [m]."""
 
 
 def square_stance(scenario: Scenario) -> FeetState:
@@ -39,6 +43,11 @@ def planner_profile(scenario: Scenario) -> Profile:
     return PROFILES[scenario.planner.profile]
 
 
+def step_reach(gait: Gait) -> float:
+    """How far ahead of its stance foot the planner may place a footstep: a decimetre beyond the gait's own [m]."""
+    return min(max(abs(gait.step_length) + 0.1, SHORTEST_REACH), LONGEST_REACH)
+
+
 def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters:
     """The profile's parameters with what the scenario changes of them; a pendulum's legs have no inertia."""
     settings = scenario.planner
@@ -52,6 +61,7 @@ def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters
         planner_profile(scenario).parameters,
         sample_time=settings.sample_time,
         leg=leg,
+        reach_length=step_reach(scenario.gait),
         step_adaptation=StepAdaptation(settings.step_adaptation),
         **{name: value for name, value in chosen.items() if value is not None},
     )

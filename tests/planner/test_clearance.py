@@ -6,6 +6,7 @@ from planner.footsteps import plan_footsteps
 from planner.gait import GaitParameters
 from planner.parameters import PlannerParameters
 from planner.polygon import sole_corners
+from planner.schedule import schedule
 from planner.stairs import Direction, Stairs, staircase
 from planner.swing import start_swing, swing_times
 from planner.terrain import flat
@@ -24,6 +25,11 @@ def walk_plan(direction, riser, tread, steps=6):
     return plan_footsteps(GaitParameters(steps=steps, step_length=tread), feet, terrain), terrain
 
 
+def courses_of(plan, terrain, half_size, samples=75):
+    gait = GaitParameters(steps=plan.steps, single_support=0.02 * samples)
+    return swing_courses(plan, schedule(gait, 0.02, 10), terrain, np.array(half_size), 0.05, PARAMETERS)
+
+
 def swings(plan, courses, samples):
     for row, course in enumerate(courses, start=2):
         ends = [np.append(plan.position[r], plan.yaw[r]) for r in (row - 2, row)]
@@ -37,24 +43,24 @@ def swings(plan, courses, samples):
 def test_the_whole_sole_clears_every_edge(direction, riser, tread, foot, samples):
     half_size = 0.5 * np.array([foot, 0.1])
     plan, terrain = walk_plan(direction, riser, tread)
-    courses = swing_courses(plan, terrain, half_size, 0.05, PARAMETERS)
+    courses = courses_of(plan, terrain, half_size, samples)
     for _, times, swing in swings(plan, courses, samples):
         clearance = []
-        for time in np.arange(0.0, times.touchdown, 0.01):
+        for time in np.arange(0.0, times.touchdown, 0.002):
             pose = swing.evaluate(time)[0]
             grid = sole_corners(Footstep(Foot.LEFT, pose[:3], float(pose[3])), half_size)
             heights = terrain.heights(grid)
             if np.ptp(heights) > 1e-3:
                 clearance.append(pose[2] - heights.max())
-        assert min(clearance, default=EDGE_CLEARANCE) > 0.5 * EDGE_CLEARANCE
+        assert min(clearance, default=EDGE_CLEARANCE) > EDGE_CLEARANCE - 2e-3
 
 
 def test_on_level_ground_nothing_changes(stand):
     plan = plan_footsteps(GaitParameters(), stand(), flat())
-    courses = swing_courses(plan, flat(), np.array([0.04, 0.04]), 0.05, PARAMETERS)
+    courses = courses_of(plan, flat(), [0.04, 0.04])
     assert {(c.apex, c.glide_start, c.glide_end, c.height) for c in courses} == {(0.5, 0.0, 1.0, 0.05)}
     plan, terrain = walk_plan(Direction.UP_DOWN, 0.1, 0.3, steps=9)
-    courses = swing_courses(plan, terrain, np.array([0.04, 0.04]), 0.05, PARAMETERS)
+    courses = courses_of(plan, terrain, [0.04, 0.04])
     assert (courses[4].apex, courses[4].glide_start) == (0.5, 0.0)
 
 
@@ -62,7 +68,7 @@ def test_a_plain_swing_would_stub_its_toe():
     """Negative control: without a course of its own the swing goes through the nosings."""
     plan, terrain = walk_plan(Direction.UP, 0.185, 0.24)
     half_size = np.array([0.11, 0.05])
-    plain = swing_courses(plan_footsteps(GaitParameters(), stand_here(), flat()), flat(), half_size, 0.05, PARAMETERS)
+    plain = courses_of(plan_footsteps(GaitParameters(), stand_here(), flat()), flat(), half_size)
     (_, times, swing) = list(swings(plan, plain[:2], 45))[1]
     depth = []
     for time in np.arange(0.0, times.touchdown, 0.01):
@@ -79,6 +85,6 @@ def stand_here():
 def test_edges_that_nothing_clears_are_refused():
     plan, terrain = walk_plan(Direction.UP, 0.2, 0.2)
     with pytest.raises(
-        ValueError, match=r"Footstep 1 cannot be swung over the edges .* terrain\.tread more depth.*\.$"
+        ValueError, match=r"Footstep 1 cannot be swung 0\.02 m clear of .* terrain\.tread more depth.*\.$"
     ):
-        swing_courses(plan, terrain, np.array([0.11, 0.05]), 0.05, PARAMETERS)
+        courses_of(plan, terrain, [0.16, 0.05])

@@ -86,10 +86,9 @@ class StepRegion:
             return f"lands {place.beside:.3f} m beside its stance foot, and {far:g} m is the most"
         if abs(place.ahead) > self.length + _ROUNDING:
             return f"lands {place.ahead:.3f} m ahead of its stance foot, and {self.length:g} m is the most"
-        if math.hypot(place.ahead, place.beside - self.hip_width) > self.leg_span + _ROUNDING:
-            return (
-                f"lands {place.ahead:.3f} m ahead of and {place.beside:.3f} m beside its stance foot, beyond the legs"
-            )
+        stretch = math.hypot(place.ahead, place.beside - self.hip_width)
+        if stretch > self.leg_span + _ROUNDING:
+            return f"lands {stretch:.3f} m from where the legs stand upright, and {self.leg_span:.3f} m is the most"
         return None
 
     def fitted(self, stride: Stride) -> Stride:

@@ -9,6 +9,7 @@ from planner.parameters import PlannerParameters
 from planner.step_region import StepRegion, landing
 from scenarios.errors import Problem
 from scenarios.file.commands import commanded, gait_of, step_region, twist_of
+from scenarios.file.planner_setup import LONGEST_REACH
 from scenarios.file.reach import longest_step
 from scenarios.file.robots import RobotFacts
 from scenarios.file.schema import Gait, Scenario
@@ -37,7 +38,7 @@ def commanded_step_problems(scenario: Scenario, facts: RobotFacts) -> Iterator[P
     """Name velocities whose steps are out of reach with the fastest possible, or the first footstep that is."""
     gait = scenario.gait
     sole, span = (facts.foot_length, facts.foot_width), _leg_span(gait, facts)
-    region = step_region(PlannerParameters(), sole, span, facts.hip_width)
+    region = step_region(PlannerParameters(reach_length=LONGEST_REACH), sole, span, facts.hip_width)
     for index, command in enumerate(gait.velocity):
         right = _too_fast(gait, twist_of(command), region)
         if right is not None:

@@ -17,7 +17,7 @@ from planner.commands import (
 )
 from planner.gait import GaitParameters
 from planner.parameters import PlannerParameters
-from planner.step_region import StepRegion
+from planner.step_region import StepRegion, landing
 from planner.types import Foot, Footstep
 from scenarios.file.schema import FootstepSettings, Gait, VelocitySettings
 
@@ -67,6 +67,12 @@ def gait_of(gait: Gait, region: StepRegion | None = None) -> GaitParameters:
         footsteps = footsteps_of(gait.footsteps)
         return walk_of(plain, footstep_bouts(footsteps, plain), footsteps[0].foot)
     return plain
+
+
+def longest_landing(gait: Gait) -> float:
+    """How far ahead of or behind its stance foot a commanded step lands at most, either foot leading [m]."""
+    places = [landing(stride, foot) for stride in gait_of(gait).strides for foot in Foot]
+    return max((abs(place.ahead) for place in places), default=0.0)
 
 
 def twist_of(command: VelocitySettings) -> Twist:

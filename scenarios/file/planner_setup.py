@@ -12,7 +12,7 @@ from planner.planner import WalkingPlanner
 from planner.profiles.registry import PROFILES, Profile
 from planner.terrain import Terrain
 from planner.types import FeetState
-from scenarios.file.commands import gait_of, step_region
+from scenarios.file.commands import commanded, gait_of, longest_landing, step_region
 from scenarios.file.ground import start_height
 from scenarios.file.height import height_profile
 from scenarios.file.schema import Gait, Scenario
@@ -45,7 +45,8 @@ def planner_profile(scenario: Scenario) -> Profile:
 
 def step_reach(gait: Gait) -> float:
     """How far ahead of its stance foot the planner may place a footstep: a decimetre beyond the gait's own [m]."""
-    return min(max(abs(gait.step_length) + 0.1, SHORTEST_REACH), LONGEST_REACH)
+    own = longest_landing(gait) if commanded(gait) else abs(gait.step_length)
+    return min(max(own + 0.1, SHORTEST_REACH), LONGEST_REACH)
 
 
 def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters:

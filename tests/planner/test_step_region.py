@@ -94,4 +94,4 @@ def test_what_is_wrong_with_a_landing(place, why):
 def test_legs_reach_a_disc_about_their_own_hip():
     region = StepRegion(0.4, (0.08, 0.4), (0.075, 0.075), leg_span=0.3, hip_width=0.2)
     assert region.contains(Landing(0.3, 0.2, 0.0))
-    assert "beyond the legs" in region.why_not(Landing(0.25, 0.39, 0.0))
+    assert "from where the legs stand upright, and 0.300 m" in region.why_not(Landing(0.25, 0.39, 0.0))

@@ -1,16 +1,19 @@
 """Velocity commands and explicit footsteps in scenario files: what they become, and what is refused."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import yaml
 
 from planner.footsteps import plan_footsteps
+from planner.parameters import LegInertia
 from planner.terrain import flat
 from planner.types import Foot
 from scenarios.errors import ScenarioError
 from scenarios.file.commands import gait_of
 from scenarios.file.load import read_scenario
-from scenarios.file.planner_setup import square_stance
+from scenarios.file.planner_setup import planner_parameters, square_stance, walking_planner
 from scenarios.file.timeline import step_count
 from scenarios.notes import notes
 from scenarios.run import scenario_yaml
@@ -25,7 +28,7 @@ REFUSED = {
     "terrain: {kind: stairs}\n"
     + VELOCITY % "v_x: 0.3": "gait.velocity on stairs, whose treads its footsteps would not",
     FAST + VELOCITY % "v_x: 0.9": "steps of 0.54 m ahead in 0.6 s, out of reach; the fastest in this direction is v_x"
-    " 0.666, v_y 0, yaw_rate 0; or take faster steps",
+    " 0.825, v_y 0, yaw_rate 0; or take faster steps",
     FAST
     + VELOCITY % "v_y: -0.5": "gait.velocity.0 asks for steps of -0.3 m to the left in 0.6 s, out of reach; the fastest"
     " in this direction is v_x 0, v_y -0.233, yaw_rate 0",
@@ -40,8 +43,9 @@ REFUSED = {
     FOOTSTEPS % "{foot: left, x: 0.2, y: 0.1}, {foot: left, x: 0.4, y: 0.1}": "gait.footsteps.1 moves the left foot a",
     FOOTSTEPS % "{foot: left, x: 0.1, y: -0.2}": "footstep 1 crosses its stance foot, -0.100 m beside it; 0.085 m is",
     FOOTSTEPS % "{foot: left, x: 0, y: -0.03}": "footstep 1 would touch its stance foot, 0.070 m beside it; 0.085 m",
-    FOOTSTEPS % "{foot: left, x: 0.1, y: 0.1}, {foot: right, x: 0.6, y: -0.1}": "footstep 2 lands 0.500 m ahead of its"
-    " stance foot; 0.4 m is the most",
+    FOOTSTEPS
+    % "{foot: left, x: 0.1, y: 0.1}, {foot: right, x: 0.6, y: -0.1}": "footstep 2 lands 0.500 m from where the"
+    " legs stand upright; 0.496 m is the most",
     FOOTSTEPS
     % "{foot: right, x: 0.1, y: -0.1, yaw: -0.6}": "footstep 1 turns by -0.6 rad against its stance foot; 0.5",
     FOOTSTEPS % "{foot: middle, x: 0, y: 0}": "gait.footsteps.0.foot is 'middle'; it must be 'left' or 'right'",
@@ -61,11 +65,18 @@ def test_what_cannot_be_walked_is_refused_with_one_message(robots, text):
     assert REFUSED[text] in caught.value.problems[0]
 
 
-@pytest.mark.parametrize("twist", ["v_x: 0.66", "v_y: 0.23", "yaw_rate: -0.8", "v_x: -0.3, v_y: 0.1, yaw_rate: 0.3"])
+@pytest.mark.parametrize(
+    "twist",
+    ["v_x: 0.82", "v_y: 0.23", "yaw_rate: -0.8", "v_x: -0.3, v_y: 0.1, yaw_rate: 0.3", "v_x: 0.7, yaw_rate: 0.8"],
+)
 def test_what_is_just_within_reach_is_accepted_and_reads_back_as_itself(robots, twist):
     scenario = read(robots, FAST + VELOCITY % twist)
     assert step_count(scenario.gait) == 8
     assert read(robots, scenario_yaml(scenario)) == scenario
+    robot = SimpleNamespace(sole_length=0.22, sole_width=0.11)
+    parameters = planner_parameters(scenario, LegInertia())
+    planner = walking_planner(scenario, robot, flat(), square_stance(scenario), parameters)
+    assert planner.gait.steps == 8
 
 
 def test_footsteps_are_relative_to_the_start_stance(robots):

@@ -46,7 +46,7 @@ def _velocity(*rows: tuple[float, ...]) -> str:
 
 
 COMMANDS = (
-    Variation("as fast as the reach lets it", (_velocity((0, 0.6), (5,), (8.5, 0.6), (12,)),)),
+    Variation("at 0.6 m/s, with a stop", (_velocity((0, 0.6), (5,), (8.5, 0.6), (12,)),)),
     Variation("from 0.6 m/s forward to 0.6 m/s backward", (_velocity((0, 0.6), (4, -0.6), (8,)),)),
     Variation("stops for a moment", (_velocity((0, 0.5), (5,), (5.5, 0.5), (9,)),)),
     Variation("four short stops", (_velocity((0, 0.3), (2,), (4, 0.3), (5,), (7, 0.3), (8,), (10, 0.3), (12,)),)),

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, fields
 from enum import Enum
 
+from planner.leg_chain import LegChain
 from planner.moves import BLOCK_STARTS
 
 
@@ -16,25 +17,22 @@ class StepAdaptation(Enum):
 
 @dataclass(frozen=True, slots=True)
 class LegInertia:
-    """A leg reduced to a point mass at its sole (see `planner.leg_inertia`).
+    """What the legs' inertia does to the pendulum (see `planner.leg_inertia`); the default is legs without any.
 
     Attributes:
-        mass_ratio: μ, mass of one reduced leg over the total mass [-].
-        lever: ℓ, how far ahead of the sole it seems to be when the sole moves vertically [m].
+        mass_ratio: μ, mass over the total mass of one leg reduced to a point mass at its sole [-].
+        chain: the legs with their links, for the ZMP offset of their motion; None leaves it out.
 
     Raises:
         ValueError: the mass is negative or no number, or both legs would outweigh the body.
     """
 
     mass_ratio: float = 0.0
-    lever: float = 0.0
+    chain: LegChain | None = None
 
     def __post_init__(self) -> None:
-        if not (0.0 <= self.mass_ratio < 0.5 and math.isfinite(self.lever)):
-            raise ValueError(
-                f"planner.leg has mass ratio {self.mass_ratio:g} and lever {self.lever:g} m, but the ratio must be"
-                " within 0 to 0.5 and the lever finite."
-            )
+        if not 0.0 <= self.mass_ratio < 0.5:
+            raise ValueError(f"planner.leg has mass ratio {self.mass_ratio:g}, but it must be within 0 to 0.5.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +58,7 @@ class PlannerParameters:
         step_adaptation: what a disturbance may change about the footsteps.
         reach_length: largest distance of a footstep ahead of or behind the stance foot [m].
         reach_width: smallest and largest lateral distance of a footstep from the stance foot [m].
+        compliance_margin: change of a footstep that the paper's step law does not ask for [m].
         swing_speed: fastest mean speed of the swing foot to a shifted footstep [m/s].
         freeze_time: time before touchdown from which the footstep is fixed [s].
         late_touchdown: longest wait of the phase clock for a touchdown [s].
@@ -92,6 +91,7 @@ class PlannerParameters:
     step_adaptation: StepAdaptation = StepAdaptation.LOCATION
     reach_length: float = 0.4
     reach_width: tuple[float, float] = (0.08, 0.4)
+    compliance_margin: float = 0.05
     swing_speed: float = 3.0
     freeze_time: float = 0.08
     late_touchdown: float = 0.3
@@ -114,6 +114,8 @@ class PlannerParameters:
                 "touchdown_speed",
                 "search_speed",
                 "terminal_weight",
+                "jerk_weight",
+                "compliance_margin",
             )
             if not (value > 0 or (may_be_zero and value == 0)):
                 raise ValueError(f"planner.{field.name} is {value:g}, but it must be greater than 0.")

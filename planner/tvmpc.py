@@ -1,4 +1,4 @@
-"""TVMPC: from state, reference and constraints to one QP per axis, and from its solution to a trajectory."""
+"""TVMPC with footsteps in the QP: from state, reference and constraints to one QP per axis."""
 
 from dataclasses import dataclass
 
@@ -15,39 +15,6 @@ _EXTRA = 4
 """Variables after the moves: two footstep shifts, ZMP slack, terminal slack."""
 
 
-@dataclass(frozen=True, slots=True)
-class TvmpcProblem:
-    """The QPs of one tick, to be looked at, solved or stored.
-
-    Variables per axis: m moves of the jerk [m/s^3], shifts of the next two footsteps [m], ZMP slack [m], terminal slack
-    [m]. The two axes share P and G.
-
-    Attributes:
-        axes: the problems of the plan frame's x and y axis.
-        state: CoM position, velocity, acceleration per axis, shape (2, 3).
-        stiffness: λ at samples 0..N, shape (N + 1,) [1/s^2].
-    """
-
-    axes: tuple[Qp, Qp]
-    state: Array
-    stiffness: Array
-
-
-@dataclass(frozen=True, slots=True)
-class Trajectory:
-    """A predicted motion in the plan frame.
-
-    Attributes:
-        com: position, velocity, acceleration at samples 0..N, shape (3, N + 1, 2).
-        zmp: shape (N + 1, 2) [m].
-        jerk: shape (N, 2) [m/s^3].
-    """
-
-    com: Array
-    zmp: Array
-    jerk: Array
-
-
 def build_problem(
     parameters: PlannerParameters,
     prediction: Prediction,
@@ -56,8 +23,12 @@ def build_problem(
     reference: ZmpReference,
     constraints: Constraints,
     last_jerk: Array,
-) -> TvmpcProblem:
-    """Assemble both axes.
+    move_range: tuple[Array, Array] | None = None,
+) -> tuple[Qp, Qp]:
+    """The QPs of the plan frame's x and y axis; they share P and G.
+
+    Variables per axis: m moves of the jerk [m/s^3], shifts of the next two footsteps [m], ZMP slack [m], terminal slack
+    [m].
 
     Cost (eq. costfunction with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks.
     The terminal cost is what the best linear feedback would still spend on the squared ZMP error after the horizon;
@@ -73,6 +44,7 @@ def build_problem(
         reference: ZMP reference, at least N + 1 samples.
         constraints: bounds of this tick.
         last_jerk: jerk applied now, shape (2,) [m/s^3]; enters only with a finite rate limit.
+        move_range: bounds of the moves, shape (axis, m) each [m/s^3]; the jerk limit on both sides by default.
     """
     errors = _linear_errors(prediction, state, stiffness, reference, constraints)
     m = prediction.basis.shape[1]
@@ -80,15 +52,9 @@ def build_problem(
     G, h = _inequalities(constraints, errors, m)
     if np.isfinite(parameters.jerk_rate_limit):
         G, h = _with_rate_limit(G, h, m, parameters.jerk_rate_limit, last_jerk)
-    lower, upper = _bounds(parameters, constraints, m)
+    lower, upper = _bounds(constraints, m, move_range or (-parameters.jerk_limit, parameters.jerk_limit))
     x, y = (Qp(P, q[i], G, h[i], lower[i], upper[i]) for i in range(2))
-    return TvmpcProblem((x, y), state, stiffness)
-
-
-def trajectory(prediction: Prediction, problem: TvmpcProblem, jerk: Array) -> Trajectory:
-    """Motion under a jerk sequence, shape (N, 2), from the problem's state."""
-    com = prediction.state @ problem.state.T + prediction.samples @ jerk
-    return Trajectory(com, zmp_response(com, problem.stiffness), jerk)
+    return x, y
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,9 +119,9 @@ def _diagonal_cost(parameters: PlannerParameters, m: int) -> Array:
     return cost
 
 
-def _bounds(parameters: PlannerParameters, constraints: Constraints, m: int) -> tuple[Array, Array]:
+def _bounds(constraints: Constraints, m: int, moves: tuple[Array, Array] | tuple[float, float]) -> tuple[Array, Array]:
     lower, upper = np.zeros((2, m + _EXTRA)), np.full((2, m + _EXTRA), np.inf)
-    lower[:, :m], upper[:, :m] = -parameters.jerk_limit, parameters.jerk_limit
+    lower[:, :m], upper[:, :m] = moves
     lower[:, m : m + 2], upper[:, m : m + 2] = constraints.step_lower.T, constraints.step_upper.T
     return lower, upper
 

@@ -7,13 +7,15 @@ from typing import Any
 from scenarios.file.criteria import Bound
 
 _UNITS: dict[str, tuple[float, str]] = {
-    **dict.fromkeys(("zmp_error_rms", "com_error_rms", "dcm_error_rms", "estimation_error_rms"), (1e3, "mm")),
+    **dict.fromkeys(("zmp_error_rms", "com_error_rms", "dcm_error_rms"), (1e3, "mm")),
+    **dict.fromkeys(("estimation_error_rms", "dcm_estimation_error_rms"), (1e3, "mm")),
     **dict.fromkeys(("footstep_error_max", "foot_slip_max", "stair_edge_margin_min", "com_height_range"), (1e3, "mm")),
     **dict.fromkeys(("fall_time", "duration", "standing_time_final", "self_contact_time"), (1.0, "s")),
     **dict.fromkeys(("planner_time", "wbc_time"), (1e3, "ms")),
     **dict.fromkeys(("joint_limit_margin_min", "knee_angle_mean"), (180.0 / math.pi, "deg")),
     **dict.fromkeys(("cop_ratio_p99", "cop_ratio_max"), (1e2, "% of half the foot")),
     "zmp_inside_fraction": (1e2, "% of the time"),
+    "planner_infeasible_fraction": (1e2, "% of the plans"),
     "torque_ratio_max": (1e2, "% of the limit"),
     "torque_at_limit_fraction": (1e2, "% of the time"),
     "speed_mean": (1.0, "m/s"),

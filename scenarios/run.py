@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from scenarios.constants import RECORD, RunConstants
 from scenarios.errors import LogError, ScenarioError, SetupError
+from scenarios.file.ground import true_terrain_of
 from scenarios.file.robots import describe
 from scenarios.file.schema import Scenario
 from scenarios.log import AttachedFile, LogWriter, read
@@ -98,8 +99,8 @@ def run_constants(scenario: Scenario, robot: "RobotDescription") -> RunConstants
         fidelity=scenario.fidelity,
         seed=scenario.seed,
         steps_planned=scenario.gait.steps,
-        mass=float(robot.mass),
-        com_height=scenario.gait.com_height,
+        mass=float(robot.mass) / scenario.errors.mass_scale,
+        com_height=scenario.gait.com_height - scenario.errors.com_height,
         foot_length=float(robot.sole_length),
         foot_width=float(robot.sole_width),
         control_rate=scenario.rates.control,
@@ -109,6 +110,11 @@ def run_constants(scenario: Scenario, robot: "RobotDescription") -> RunConstants
         position_lower=tuple(float(value) for value in robot.position_lower),
         position_upper=tuple(float(value) for value in robot.position_upper),
         terrain=scenario.terrain.kind,
+        plant=scenario.pendulum.plant,
+        boxes=tuple(
+            (*box.center.tolist(), *box.half_size.tolist(), *box.rotation.ravel().tolist())
+            for box in true_terrain_of(scenario).boxes
+        ),
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from wbc.arm_swing import ArmSwing, shoulder_pitches
 from wbc.balance import BalanceGains, SupportRegion, com_acceleration
 from wbc.cone import CONE_ROWS, wrench_cone
 from wbc.contacts import ContactParameters, ContactSchedule, ContactState
@@ -46,6 +47,7 @@ class WbcParameters:
         schedule: thresholds of the contact schedule.
         solver: the solver tried first, chosen by ``benchmarks/qp_solvers.py``.
         second_solver: the one tried when the first fails.
+        arm_swing: swing of the shoulders per stride [rad/m].
     """
 
     weights: TaskWeights = field(default_factory=TaskWeights)
@@ -55,6 +57,7 @@ class WbcParameters:
     schedule: ContactParameters = field(default_factory=ContactParameters)
     solver: str = "equality-first"
     second_solver: str = "proxqp"
+    arm_swing: float = 0.6
 
 
 class WholeBodyController:
@@ -91,11 +94,13 @@ class WholeBodyController:
         self.terms = RobotTerms(model, frames)
         self.layout = QpLayout(model.nv, CONE_ROWS)
         self.qp: QpData = allocate(self.layout)
+        shoulders = shoulder_pitches(tuple(model.names)[2:])
+        arms = ArmSwing(shoulders, parameters.arm_swing) if shoulders and parameters.arm_swing else None
         share = sole.cop_share
         cone = wrench_cone(share * sole.half_length, share * sole.half_width, sole.friction / np.sqrt(2.0))
         self._hard = HardConstraints(self.qp, self.layout, cone, limits, parameters.contact)
         self._tasks = TaskStack(
-            self.qp, self.layout, self.terms.mass, parameters.weights, parameters.gains, posture, leg_joints
+            self.qp, self.layout, self.terms.mass, parameters.weights, parameters.gains, posture, leg_joints, arms
         )
         self._contacts = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)

@@ -8,6 +8,7 @@ from scenarios.file.criteria import ELEMENTS
 from scenarios.file.reach import longest_step
 from scenarios.file.robots import RobotFacts, Robots
 from scenarios.file.schema import Gait, PushSettings, Scenario
+from scenarios.file.stair_checks import stair_problems
 from scenarios.file.walk_checks import FEWEST_SWING_SAMPLES, footstep_problems, swing_too_short, walk_problems
 
 
@@ -18,6 +19,7 @@ def check(scenario: Scenario, robots: Robots) -> list[Problem]:
         *_durations(scenario),
         *_pushes(scenario),
         *_criteria(scenario),
+        *_beliefs(scenario),
         *walk_problems(scenario),
         *_robot(scenario, robots),
     ]
@@ -86,6 +88,13 @@ def _criteria(scenario: Scenario) -> Iterator[Problem]:
                 yield Problem(("criteria", name, side), what, f"give one number, or {size} of them")
 
 
+def _beliefs(scenario: Scenario) -> Iterator[Problem]:
+    height, error = scenario.gait.com_height, scenario.errors.com_height
+    if error > 0.5 * height:
+        what = f"errors.com_height {error} m leaves {height - error:.3g} m of gait.com_height {height} m as the truth"
+        yield Problem(("errors", "com_height"), what, f"use at most {0.5 * height:.3g} m")
+
+
 def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
     names = robots.names()
     if scenario.robot not in names:
@@ -101,7 +110,7 @@ def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
         if body is not None and body not in facts.bodies:
             yield Problem(key, f"unknown body '{body}' of {scenario.robot}", nearest(body, facts.bodies))
     reach = list(_reach(scenario.gait, facts))
-    yield from reach or footstep_problems(scenario, facts)
+    yield from reach or list(footstep_problems(scenario, facts)) or stair_problems(scenario, facts)
 
 
 def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:

@@ -1,26 +1,34 @@
 """The planner's side of a scenario, in the planner's terms; knows no robot model and no simulator."""
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from planner.gait import GaitParameters
 from planner.parameters import LegInertia, PlannerParameters, StepAdaptation
 from planner.planner import WalkingPlanner
+from planner.profiles.registry import PROFILES, Profile
 from planner.terrain import Terrain
 from planner.types import FeetState
-from scenarios.file.schema import Scenario
+from scenarios.file.ground import start_height
+from scenarios.file.height import height_profile
+from scenarios.file.schema import Gait, Scenario
 
 if TYPE_CHECKING:
     from models.types import RobotDescription
 
 
+SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
+"""Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait [m]."""
+
+
 def square_stance(scenario: Scenario) -> FeetState:
-    """Where the feet stand at the start: side by side at the start position and heading."""
+    """Where the feet stand at the start: side by side at the start position and heading, on the ground there."""
     start = scenario.start
     left = 0.5 * scenario.gait.step_width * np.array([-math.sin(start.yaw), math.cos(start.yaw), 0.0])
-    origin = np.array([start.x, start.y, 0.0])
+    origin = np.array([start.x, start.y, start_height(scenario)])
     return FeetState(np.array([origin + left, origin - left]), np.full(2, start.yaw), (True, True))
 
 
@@ -43,16 +51,32 @@ def gait_parameters(scenario: Scenario) -> GaitParameters:
     )
 
 
+def planner_profile(scenario: Scenario) -> Profile:
+    """The formulation that the scenario asks for."""
+    return PROFILES[scenario.planner.profile]
+
+
+def step_reach(gait: Gait) -> float:
+    """How far ahead of its stance foot the planner may place a footstep: a decimetre beyond the gait's own [m]."""
+    return min(max(abs(gait.step_length) + 0.1, SHORTEST_REACH), LONGEST_REACH)
+
+
 def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters:
-    """The scenario's planner settings in the planner's terms; a pendulum's legs have no inertia."""
+    """The profile's parameters with what the scenario changes of them; a pendulum's legs have no inertia."""
     settings = scenario.planner
-    return PlannerParameters(
+    chosen: dict[str, Any] = {
+        "horizon": settings.horizon,
+        "moves": None if settings.control_horizon is None else tuple(range(settings.control_horizon)),
+        "jerk_limit": settings.jerk_limit,
+        "jerk_rate_limit": settings.jerk_rate_limit,
+    }
+    return replace(
+        planner_profile(scenario).parameters,
         sample_time=settings.sample_time,
-        horizon=settings.horizon,
-        jerk_limit=settings.jerk_limit,
-        jerk_rate_limit=math.inf if settings.jerk_rate_limit is None else settings.jerk_rate_limit,
         leg=leg,
+        reach_length=step_reach(scenario.gait),
         step_adaptation=StepAdaptation(settings.step_adaptation),
+        **{name: value for name, value in chosen.items() if value is not None},
     )
 
 
@@ -64,4 +88,13 @@ def walking_planner(
     Raises:
         ValueError: it cannot plan this gait; one sentence says why.
     """
-    return WalkingPlanner(gait_parameters(scenario), feet, robot.sole_length, robot.sole_width, terrain, parameters)
+    return WalkingPlanner(
+        gait_parameters(scenario),
+        feet,
+        robot.sole_length,
+        robot.sole_width,
+        terrain,
+        parameters,
+        height_profile(scenario),
+        planner_profile(scenario),
+    )

@@ -54,9 +54,15 @@ class TerrainSettings(Group):
     kind: Literal["flat", "stairs", "blocks", "slope"] = Field(default="flat", description="shape of the ground")
     riser: NonNegative = Field(default=0.1, description="height of a stair or block [m]")
     tread: Positive = Field(default=0.3, description="depth of a stair or block [m]")
-    count: Annotated[int, Field(ge=1, le=10_000)] = Field(default=5, description="number of stairs or blocks [-]")
+    count: Annotated[int, Field(ge=1, le=1000)] = Field(default=5, description="number of stairs or blocks [-]")
     direction: Literal["up", "down", "up_down"] = Field(default="up", description="which way the stairs go")
-    height_noise: NonNegative = Field(default=0.0, description="half range of the block heights [m]")
+    start: Finite | None = Field(
+        default=None, description="start to the first riser, null: the first footstep lands in mid-tread [m]"
+    )
+    landing: Positive | None = Field(default=None, description="depth between up and down, null: three treads [m]")
+    height_noise: NonNegative = Field(
+        default=0.0, description="half range by which each tread's true height differs from the planner's belief [m]"
+    )
     angle: Angle = Field(default=0.0, description="inclination of a slope [rad]")
     friction: Annotated[float, Field(ge=0, le=10, allow_inf_nan=False)] = Field(
         default=0.8, description="Coulomb coefficient of every surface [-]"
@@ -92,24 +98,41 @@ class PlannerSettings(Group):
     profile: Literal["default", "paper", "repaired", "lti", "preview", "dcm"] = Field(
         default="default", description="formulation of the planner"
     )
-    horizon: Annotated[int, Field(ge=2, le=1000)] = Field(default=50, description="samples of the preview [-]")
-    sample_time: Positive = Field(default=0.02, description="sample time of the preview, and of replanning [s]")
-    jerk_limit: Positive = Field(default=60.0, description="bound on the CoM jerk [m/s^3]")
+    horizon: Annotated[int, Field(ge=2, le=1000)] | None = Field(
+        default=None, description="samples of the horizon, N_p, null: the profile's own [-]"
+    )
+    control_horizon: Annotated[int, Field(ge=1, le=1000)] | None = Field(
+        default=None, description="moves of the jerk, one per sample, N_c, null: the profile's own blocks [-]"
+    )
+    sample_time: Positive = Field(default=0.02, description="sample time of the horizon, and of replanning [s]")
+    jerk_limit: Positive | None = Field(
+        default=None, description="bound on the CoM jerk, null: the profile's own [m/s^3]"
+    )
     jerk_rate_limit: Positive | None = Field(
-        default=None, description="bound on its change per sample, null: none [m/s^3]"
+        default=None, description="bound on its change per sample, null: the profile's own [m/s^3]"
     )
     step_adaptation: Literal["none", "location", "timing"] = Field(
         default="location", description="what of the next footstep the planner may change"
     )
-    knee: Literal["stretched", "bent"] = Field(default="stretched", description="law of the vertical CoM motion")
+    knee: Literal["stretched", "bent"] = Field(
+        default="stretched", description="CoM height: the paper's rises, or constant and 0.08 m lower"
+    )
+    rise: Literal["single", "double"] | None = Field(
+        default=None, description="support phase in which the CoM climbs, null: double on a pendulum, single for legs"
+    )
+    filter: Literal["none", "kalman", "zmp_only"] | None = Field(
+        default=None, description="filter of the planner's state, null: kalman when ZMP or CoM are noisy, else none"
+    )
 
 
 class Sensing(Group):
-    """What the controller knows of the robot; noises are standard deviations."""
+    """What planner and controller know of the robot; noises are standard deviations."""
 
     source: Literal["truth", "estimated"] = Field(default="truth", description="state given to planner and controller")
-    zmp_noise: NonNegative = Field(default=0.0, description="of the measured ZMP [m]")
-    com_noise: NonNegative = Field(default=0.0, description="of the measured CoM [m]")
+    zmp_noise: NonNegative = Field(default=0.0, description="of the ZMP that the planner measures [m]")
+    com_noise: NonNegative = Field(
+        default=0.0, description="of the CoM that the planner measures [m]; of its velocity 5 / s times as much"
+    )
     encoder_noise: NonNegative = Field(default=0.0, description="of the joint encoders [rad]")
     gyro_noise: NonNegative = Field(default=0.0, description="of the gyroscope [rad/s]")
     accelerometer_noise: NonNegative = Field(default=0.0, description="of the accelerometer [m/s^2]")
@@ -130,8 +153,12 @@ class Start(Group):
 class BeliefErrors(Group):
     """The planner's belief minus the truth."""
 
-    com_height: Finite = Field(default=0.0, description="error of the CoM height [m]")
-    mass_scale: Positive = Field(default=1.0, description="believed over true mass [-]")
+    com_height: Annotated[float, Field(ge=-0.4, le=0.4, allow_inf_nan=False)] = Field(
+        default=0.0, description="error of the CoM height [m]"
+    )
+    mass_scale: Annotated[float, Field(ge=0.5, le=2.0, allow_inf_nan=False)] = Field(
+        default=1.0, description="believed over true mass [-]"
+    )
     friction: Finite = Field(default=0.0, description="error of the friction coefficient [-]")
 
 
@@ -149,6 +176,18 @@ class PushSettings(Group):
     duration: Positive = Field(default=0.1, description="how long the force acts [s]")
     force: Vector = Field(default=(0.0, 0.0, 0.0), description="force in the world frame [N]")
     body: str | None = Field(default=None, description="body it acts on, at its centre of mass; null: the torso")
+
+
+class PendulumSettings(Group):
+    """The plant of fidelity pendulum."""
+
+    plant: Literal["pendulum", "cart_table"] = Field(
+        default="pendulum",
+        description="the true pendulum, or the paper's cart-table that does any jerk and cannot fall",
+    )
+    feedback: NonNegative = Field(
+        default=3.0, description="gain of the pendulum's ZMP on its true DCM's error, the low level's part [-]"
+    )
 
 
 class Fault(Group):
@@ -190,6 +229,7 @@ class Scenario(Group):
     sensing: Sensing = Field(default=Sensing(), description="the sensors")
     start: Start = Field(default=Start(), description="the start pose")
     errors: BeliefErrors = Field(default=BeliefErrors(), description="the planner's belief minus the truth")
+    pendulum: PendulumSettings = Field(default=PendulumSettings(), description="the plant of fidelity pendulum")
     pushes: Annotated[tuple[PushSettings, ...], BeforeValidator(_tuple)] = Field(default=(), description="disturbances")
     faults: Annotated[tuple[Fault, ...], BeforeValidator(_tuple)] = Field(default=(), description="injected faults")
     rates: Rates = Field(default=Rates(), description="the clock")

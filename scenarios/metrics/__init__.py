@@ -31,6 +31,7 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
     "com_error_rms": (_PLAN, balance.com_error_rms),
     "dcm_error_rms": (_PLAN, balance.dcm_error_rms),
     "footstep_error_max": (("/footstep",), walking.footstep_error_max),
+    "stair_edge_margin_min": (("/footstep",), walking.stair_edge_margin_min),
     "foot_slip_max": (_FEET, walking.foot_slip_max),
     "self_contact_time": (_BODY, walking.self_contact_time),
     "torque_ratio_max": (("/torque",), effort.torque_ratio_max),
@@ -40,7 +41,9 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
     "cost_of_transport": (("/truth", "/measurement"), effort.cost_of_transport),
     "speed_mean": (("/truth", "/reference"), walking.speed_mean),
     "com_height_range": (_BODY, walking.com_height_range),
-    "estimation_error_rms": (("/truth", "/estimate"), balance.estimation_error_rms),
+    "planner_infeasible_fraction": (("/plan",), effort.planner_infeasible_fraction),
+    "estimation_error_rms": (("/truth", "/planner_state"), balance.estimation_error_rms),
+    "dcm_estimation_error_rms": (("/truth", "/planner_state", "/reference"), balance.dcm_estimation_error_rms),
     "planner_time": (("/timing",), effort.planner_time),
     "wbc_time": (("/timing",), effort.wbc_time),
     "real_time_factor": (("/timing",), effort.real_time_factor),
@@ -117,6 +120,4 @@ def _plain(value: Any) -> Any:
 
 def describe_metric(name: str) -> str:
     """What a metric is, in a sentence: the first line of its function's documentation."""
-    if name not in _METRICS:
-        return "Least distance of a foothold from the edge of its stair [m]; not available in this version."
     return (_METRICS[name][1].__doc__ or "").split("\n", 1)[0]

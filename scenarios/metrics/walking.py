@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from planner.polygon import sole_corners
+from planner.terrain import Box, Terrain
+from planner.types import Foot, Footstep
 from scenarios.metrics.view import Array, Mask, RunView
 
 FALLEN_HEIGHT = 0.6
@@ -23,7 +26,7 @@ def fall_time(run: RunView) -> float | None:
     """First time at which the robot has fallen [s].
 
     A body: its CoM is low over the lower foot, its torso lies, or more than its feet touches. A pendulum: its DCM is
-    out of reach of any foot.
+    out of reach of any foot. A cart-table never falls.
     """
     fallen = np.flatnonzero(_lost(run) if run.constants.fidelity == "pendulum" else _lying(run))
     return float(run.time[fallen[0]]) if len(fallen) else None
@@ -67,6 +70,19 @@ def footstep_error_max(run: RunView) -> float | None:
     steps = run.log["/footstep"]
     errors = np.linalg.norm(steps.field("actual")[:, :3] - steps.field("planned")[:, :3], axis=1)
     return float(errors.max())
+
+
+def stair_edge_margin_min(run: RunView) -> float | None:
+    """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
+    boxes = [np.array(numbers) for numbers in run.constants.boxes]
+    if not boxes:
+        return None
+    terrain = Terrain(tuple(Box(n[:3], n[3:6], n[6:].reshape(3, 3)) for n in boxes))
+    half_size = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
+    landed = run.log["/footstep"].field("actual")
+    soles = [Footstep(Foot.LEFT, pose[:3], float(pose[3])) for pose in landed]
+    corners = np.array([sole_corners(sole, half_size) for sole in soles])
+    return float(terrain.edge_margins(landed[:, :2], corners).min())
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +164,7 @@ def _lying(run: RunView) -> Mask:
 
 
 def _lost(run: RunView) -> Mask:
-    if not run.has("/contact", "/reference"):
+    if run.constants.plant == "cart_table" or not run.has("/contact", "/reference"):
         return np.zeros(run.ticks, dtype=np.bool_)
     omega = run.field("/reference", "omega")[:, None]
     dcm = run.field("/truth", "com")[:, :2] + run.field("/truth", "com_velocity")[:, :2] / omega

@@ -16,13 +16,13 @@ class SeparationParameters:
 
     Attributes:
         clearance: distance that must remain [m].
-        attention: distance from which a pair is looked at [m].
+        attention: distance from which a pair is looked at; an approach of up to attention / horizon can be stopped [m].
         horizon: T of the critically damped approach [s].
         slots: pairs that are looked at in one tick, the nearest ones.
     """
 
-    clearance: float = 0.01
-    attention: float = 0.05
+    clearance: float = 0.003
+    attention: float = 0.04
     horizon: float = 0.05
     slots: int = 3
 
@@ -34,7 +34,8 @@ class Separation:
     d' = n·(a' - b') = J v, and d'' = J q̈ but for products of velocities (the points slide, the normal turns): below
     1 m/s^2 in walking, against (d - clearance) / T² of 8 m/s^2 at two centimetres. The approach is that of the joint
     limits, T² d'' + 2 T d' + (d - clearance) >= 0, which never comes closer than the clearance. A pair inside it is not
-    pushed apart (its last term counts as zero), because two standing feet could not obey. (Faverjon and Tournassoud,
+    pushed apart (its last term counts as zero), because two standing feet could not obey, and one that touches is left
+    to the contact forces. (Faverjon and Tournassoud,
     ICRA 1987, is the first such damper on distances.)
     """
 
@@ -61,7 +62,7 @@ class Separation:
         pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
         pin.computeDistances(self._geometry, self._data)
         distances = [result.min_distance for result in self._data.distanceResults]
-        near = [k for k, distance in enumerate(distances) if distance < p.attention]
+        near = [k for k, distance in enumerate(distances) if 0.0 < distance < p.attention]
         near.sort(key=distances.__getitem__)
         for slot in range(p.slots):
             if slot >= len(near):

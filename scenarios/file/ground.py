@@ -62,7 +62,7 @@ def stairs_of(scenario: Scenario) -> Stairs:
 
 
 def _behind(scenario: Scenario) -> float:
-    """How far behind mid-tread the feet stand: half of the room there is, if the scenario says how long they are [m]."""
+    """How far behind mid-tread the feet stand: half of the room there, if the scenario says how long they are [m]."""
     foot = scenario.robot_options.foot_length
     return 0.0 if foot is None else min(MOST_BEHIND, max(0.0, 0.25 * (scenario.terrain.tread - foot)))
 

@@ -82,7 +82,7 @@ def test_from_rest_the_gap_opens_as_the_row_says(robot, geometry) -> None:
 
 
 def test_legs_that_obey_do_not_touch(robot, geometry) -> None:
-    """The hip drives the legs together, up to 0.7 m/s where they are looked at; with the rows the clearance remains, without they meet."""
+    """The hip drives the legs together, at up to 0.7 m/s where they are looked at; without the rows they meet."""
     parameters = SeparationParameters()
     for obeys in (True, False):
         q, v, dt = _crossing(robot, 0.0), np.zeros(robot.nv), 1e-3

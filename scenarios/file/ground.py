@@ -6,7 +6,8 @@ import numpy as np
 
 from planner.stairs import Direction, Stairs, staircase
 from planner.terrain import Box, Terrain, flat
-from scenarios.file.schema import Scenario
+from scenarios.file.commands import commanded, gait_of
+from scenarios.file.schema import Gait, Scenario
 
 LANDING_TREADS = 3
 """Depth of a landing whose depth is not given, in treads: the gait keeps its rhythm on it."""
@@ -57,7 +58,7 @@ def stairs_of(scenario: Scenario) -> Stairs:
         direction=Direction(settings.direction),
         start=fitted if settings.start is None else settings.start,
         landing=LANDING_TREADS * settings.tread if settings.landing is None else settings.landing,
-        beyond=gait.steps * abs(gait.step_length) + PLATFORM,
+        beyond=_way(gait) + PLATFORM,
     )
 
 
@@ -65,6 +66,13 @@ def _behind(scenario: Scenario) -> float:
     """How far behind mid-tread the feet stand: half of the room there, if the scenario says how long they are [m]."""
     foot = scenario.robot_options.foot_length
     return 0.0 if foot is None else min(MOST_BEHIND, max(0.0, 0.25 * (scenario.terrain.tread - foot)))
+
+
+def _way(gait: Gait) -> float:
+    """Way that the steps go at most [m]."""
+    if not commanded(gait):
+        return gait.steps * abs(gait.step_length)
+    return sum(abs(stride.length) for stride in gait_of(gait).strides)
 
 
 def _raised(box: Box, height: float) -> Box:

@@ -19,6 +19,7 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 FootSize = Annotated[float, Field(ge=0.01, le=0.5)]
 Angle = Annotated[float, Field(ge=-6.3, le=6.3, allow_inf_nan=False)]
 Place = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
+Speed = Annotated[float, Field(ge=-10, le=10, allow_inf_nan=False)]
 Noise = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000)]
@@ -71,6 +72,26 @@ class TerrainSettings(Group):
     )
 
 
+class VelocitySettings(Group):
+    """A velocity command, in force from its time until the next one; all zero is standing."""
+
+    time: Annotated[float, Field(ge=0, le=LONGEST_RUN, allow_inf_nan=False)] = Field(description="from when on [s]")
+    v_x: Speed = Field(default=0.0, description="forward velocity of the path [m/s]")
+    v_y: Speed = Field(default=0.0, description="velocity to the left [m/s]")
+    yaw_rate: Speed = Field(default=0.0, description="rate of its heading, left positive [rad/s]")
+
+
+class FootstepSettings(Group):
+    """A footstep, in the frame between the start feet, x along their heading."""
+
+    foot: Literal["left", "right"] = Field(description="foot that steps; they must take turns")
+    x: Place = Field(description="sole centre, forward [m]")
+    y: Place = Field(description="sole centre, to the left [m]")
+    yaw: Annotated[float, Field(ge=-1e3, le=1e3, allow_inf_nan=False)] = Field(
+        default=0.0, description="heading of the sole, whole turns counted [rad]"
+    )
+
+
 class Gait(Group):
     """The walk that is asked for; defaults are the paper's table."""
 
@@ -91,6 +112,12 @@ class Gait(Group):
     )
     apex_double: NonNegative = Field(
         default=0.00135, description="apex of the CoM rise in double support, A_ds of the paper [m]"
+    )
+    velocity: Annotated[tuple[VelocitySettings, ...], BeforeValidator(_tuple)] = Field(
+        default=(), description="velocity commands over time, in place of equal steps; the last one must stop"
+    )
+    footsteps: Annotated[tuple[FootstepSettings, ...], BeforeValidator(_tuple)] = Field(
+        default=(), description="every footstep, in place of equal steps"
     )
 
 

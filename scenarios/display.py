@@ -8,6 +8,7 @@ from scenarios.file.criteria import Bound
 
 _UNITS: dict[str, tuple[float, str]] = {
     **dict.fromkeys(("zmp_error_rms", "com_error_rms", "dcm_error_rms", "estimation_error_rms"), (1e3, "mm")),
+    **dict.fromkeys(("zmp_error_max", "zmp_excursion_max"), (1e3, "mm")),
     **dict.fromkeys(("footstep_error_max", "foot_slip_max", "stair_edge_margin_min", "com_height_range"), (1e3, "mm")),
     **dict.fromkeys(("fall_time", "duration", "standing_time_final", "self_contact_time"), (1.0, "s")),
     **dict.fromkeys(("planner_time", "wbc_time"), (1e3, "ms")),
@@ -16,6 +17,7 @@ _UNITS: dict[str, tuple[float, str]] = {
     "zmp_inside_fraction": (1e2, "% of the time"),
     "torque_ratio_max": (1e2, "% of the limit"),
     "torque_at_limit_fraction": (1e2, "% of the time"),
+    "knee_torque_rms": (1.0, "N m"),
     "speed_mean": (1.0, "m/s"),
     "real_time_factor": (1.0, "times real time"),
     "log_bytes": (1e-6, "MB"),

@@ -12,9 +12,11 @@ METRIC_NAMES = (
     "steps_taken",
     "standing_time_final",
     "zmp_inside_fraction",
+    "zmp_excursion_max",
     "cop_ratio_p99",
     "cop_ratio_max",
     "zmp_error_rms",
+    "zmp_error_max",
     "com_error_rms",
     "dcm_error_rms",
     "footstep_error_max",
@@ -22,6 +24,7 @@ METRIC_NAMES = (
     "foot_slip_max",
     "self_contact_time",
     "torque_ratio_max",
+    "knee_torque_rms",
     "torque_at_limit_fraction",
     "joint_limit_margin_min",
     "knee_angle_mean",
@@ -43,6 +46,7 @@ BODY_METRICS = (
     "foot_slip_max",
     "self_contact_time",
     "torque_ratio_max",
+    "knee_torque_rms",
     "torque_at_limit_fraction",
     "joint_limit_margin_min",
     "knee_angle_mean",
@@ -57,7 +61,7 @@ BODY_METRICS = (
 TIMED = ("planner_time", "wbc_time")
 """Metrics that are a median and a 99th percentile."""
 
-ELEMENTS = {"zmp_error_rms": 2, "com_error_rms": 3, "dcm_error_rms": 2}
+ELEMENTS = {"zmp_error_rms": 2, "zmp_error_max": 2, "com_error_rms": 3, "dcm_error_rms": 2}
 """Number of elements of the list-valued metrics."""
 
 BOUNDABLE = tuple(

@@ -18,10 +18,10 @@ gate: $(VENV)/.installed-dev
 	$(BIN)/lint-imports
 
 unit: $(VENV)/.installed-dev
-	$(BIN)/pytest -m unit
+	$(BIN)/pytest -m unit -n auto --dist loadscope
 
 physics: $(VENV)/.installed-dev
-	$(BIN)/pytest -m physics
+	$(BIN)/pytest -m physics -n auto --dist loadscope
 
 long: $(VENV)/.installed-dev
 	$(BIN)/pytest -m long

@@ -22,6 +22,7 @@ class StepContext:
         free: whether each of them may be shifted.
         swing: position of the swing foot from the stance foot, shape (2,) [m], or None when no foot swings.
         time_left: time until the first of them lands [s].
+        transfer_time: duration of the double support that follows, zero when no foot swings (T_ds) [s].
     """
 
     increment: Array
@@ -29,6 +30,7 @@ class StepContext:
     free: tuple[bool, bool]
     swing: Array | None
     time_left: float
+    transfer_time: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +73,7 @@ def generate_constraints(
     """
     n = parameters.horizon
     weights = viability_weights(stiffness[n:], omega[n:], parameters.sample_time)
-    lower, upper = _step_bounds(parameters, steps)
+    lower, upper = step_bounds(parameters, steps)
     return Constraints(
         half_size=reference.half_size[1 : n + 1],
         terminal_omega=float(omega[n]),
@@ -95,10 +97,11 @@ def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]
     return np.array([-x, near]), np.array([x, far])
 
 
-def _step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Array, Array]:
-    """Reach boxes of both shifts; the first one also within what the swing foot can still reach in time.
+def step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Array, Array]:
+    """Lower and upper bounds of the footstep shifts, each of shape (step, axis) = (2, 2) [m].
 
-    A shift that is not free has no effect on the motion and costs something, so its wide bounds leave it at zero.
+    They are the reach boxes, the first one also within what the swing foot can still reach in time. A shift that is
+    not free has no effect on the motion and costs something, so its wide bounds leave it at zero.
     """
     lower, upper = np.full((2, 2), -1.0), np.full((2, 2), 1.0)
     for j in range(2):

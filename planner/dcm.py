@@ -59,11 +59,36 @@ def viability_weights(stiffness: Array, omega: Array, sample_time: float) -> Arr
     Returns:
         Weights that sum to 1, shape (n,).
     """
-    rate = stiffness / omega
-    decay = np.exp(-0.5 * sample_time * np.concatenate(([0.0], np.cumsum(rate[1:] + rate[:-1]))))
+    decay = decays(stiffness, omega, sample_time)
     share = 0.5 * (decay[:-1] - decay[1:])
     weights = np.zeros_like(stiffness)
     weights[:-1] = share
     weights[1:] += share
     weights[-1] += decay[-1]
     return weights
+
+
+def decays(stiffness: Array, omega: Array, sample_time: float) -> Array:
+    """Factors e^{-∫λ/ω} from the first sample to each, shape (n,); their inverse is how much a DCM error has grown."""
+    rate = stiffness / omega
+    return np.asarray(np.exp(-0.5 * sample_time * np.concatenate(([0.0], np.cumsum(rate[1:] + rate[:-1])))))
+
+
+def nominal_dcm(stiffness: Array, omega: Array, zmp: Array, sample_time: float) -> Array:
+    """DCM at each sample that a known future ZMP keeps bounded, by the backward recursion ξ' = (λ/ω)(ξ - p).
+
+    It ends on the last ZMP and starts at `viability_weights` @ zmp.
+
+    Args:
+        stiffness: λ, shape (n,) [1/s^2].
+        omega: ω, shape (n,) [1/s].
+        zmp: future ZMP, shape (n, k) [m].
+        sample_time: [s].
+
+    Returns:
+        ξ, shape (n, k) [m].
+    """
+    decay = decays(stiffness, omega, sample_time)[:, None]
+    share = 0.5 * (decay[:-1] - decay[1:]) * (zmp[:-1] + zmp[1:])
+    ahead = np.concatenate((np.cumsum(share[::-1], axis=0)[::-1], np.zeros_like(zmp[:1])))
+    return np.asarray((ahead + decay[-1] * zmp[-1]) / decay)

@@ -60,6 +60,7 @@ class PlannerParameters:
         step_adaptation: what a disturbance may change about the footsteps.
         reach_length: largest distance of a footstep ahead of or behind the stance foot [m].
         reach_width: smallest and largest lateral distance of a footstep from the stance foot [m].
+        compliance_margin: change of a footstep that the paper's step law does not ask for [m].
         swing_speed: fastest mean speed of the swing foot to a shifted footstep [m/s].
         freeze_time: time before touchdown from which the footstep is fixed [s].
         late_touchdown: longest wait of the phase clock for a touchdown [s].
@@ -92,6 +93,7 @@ class PlannerParameters:
     step_adaptation: StepAdaptation = StepAdaptation.LOCATION
     reach_length: float = 0.4
     reach_width: tuple[float, float] = (0.08, 0.4)
+    compliance_margin: float = 0.05
     swing_speed: float = 3.0
     freeze_time: float = 0.08
     late_touchdown: float = 0.3
@@ -114,6 +116,8 @@ class PlannerParameters:
                 "touchdown_speed",
                 "search_speed",
                 "terminal_weight",
+                "jerk_weight",
+                "compliance_margin",
             )
             if not (value > 0 or (may_be_zero and value == 0)):
                 raise ValueError(f"planner.{field.name} is {value:g}, but it must be greater than 0.")

@@ -1,44 +1,32 @@
 """The walking planner: the four modules of the paper, put together once per tick."""
 
 import math
-from dataclasses import dataclass, replace
 
 import numpy as np
 
-from planner.com_height import HeightPreview, HeightProfile, SmoothHeight, check_height, preview_height
-from planner.constraints import StepContext, check_reach, generate_constraints
-from planner.dcm import natural_frequency
+from planner.com_height import HeightProfile, check_height
+from planner.constraints import StepContext, check_reach
 from planner.footsteps import FootstepPlan, plan_footsteps
 from planner.frames import wrap_angle
 from planner.gait import GaitParameters
-from planner.leg_inertia import softening, swing_shape, zmp_offset
+from planner.leg_inertia import swing_shape
+from planner.motion import Motion, MotionProblem
 from planner.moves import block_moves
 from planner.parameters import PlannerParameters
 from planner.plan import WalkPlan
-from planner.prediction import predict
+from planner.prediction import predict, trajectory
+from planner.profiles.registry import PROFILES, Profile
 from planner.schedule import schedule
-from planner.solution import TvmpcSolution, solve_problem
 from planner.stepper import Stepper
 from planner.support import Support, present_support
 from planner.swing import SwingTrajectory, start_swing, swing_times
 from planner.terrain import Terrain, flat
-from planner.tvmpc import Trajectory, TvmpcProblem, build_problem, trajectory
 from planner.types import Array, CentroidalState, FeetState, Foot, PlannedFootstep, PlanStatus, SolverStatus
-from planner.zmp_reference import ZmpReference, zmp_reference
+from planner.window import Outlook, Window
+from planner.world_plan import world_plan
 
 _SAME_TARGET = 1e-4
 """Difference of touchdown pose that is not worth a new swing trajectory [m, rad]."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Preview:
-    """What is known of the window before solving."""
-
-    reference: ZmpReference
-    offset: Array
-    height: HeightPreview
-    stiffness: Array
-    omega: Array
 
 
 class WalkingPlanner:
@@ -46,7 +34,8 @@ class WalkingPlanner:
 
     It plans in a frame with origin and planned heading at the stance foot (the foot landed last in double support), so
     that its numbers do not depend on where in the world it walks, and ZMP boxes and reach boxes are aligned with it.
-    CoM position and velocity come from the measurement, the acceleration from the plan before.
+    CoM position and velocity come from the measurement, the acceleration from the plan before. How the CoM moves is
+    the profile's law of motion (see `planner.profiles`); all else is common to the profiles.
 
     Args:
         gait: the walk.
@@ -54,14 +43,15 @@ class WalkingPlanner:
         foot_length: length of the sole [m].
         foot_width: width of the sole [m].
         terrain: what the planner believes about the ground.
-        parameters: the planner's own parameters.
-        height_profile: vertical CoM motion.
+        parameters: the planner's own parameters; those of the profile by default.
+        height_profile: vertical CoM motion; that of the profile by default.
+        profile: formulation of the planner; the robust one by default.
 
     Attributes:
         gait: the walk.
         parameters: the planner's own parameters.
         schedule: its phases on the clock.
-        problem: the QPs of the last tick, to be looked at or stored; None before the first.
+        motion: the law's answer of the last tick, with the QPs that it solved; None before the first.
 
     Raises:
         ValueError: a duration is no multiple of the sample time, a footstep is out of reach, or the CoM would fall
@@ -77,9 +67,10 @@ class WalkingPlanner:
         terrain: Terrain | None = None,
         parameters: PlannerParameters | None = None,
         height_profile: HeightProfile | None = None,
+        profile: Profile = PROFILES["default"],
     ) -> None:
         self.gait = gait
-        self.parameters = parameters or PlannerParameters()
+        self.parameters = parameters or profile.parameters
         p = self.parameters
         terrain = terrain or flat()
         for name, size in (("foot_length", foot_length), ("foot_width", foot_width)):
@@ -89,15 +80,17 @@ class WalkingPlanner:
         self.schedule = schedule(gait, p.sample_time, p.horizon + p.preview)
         footsteps = plan_footsteps(gait, feet, terrain)
         check_reach(footsteps, p)
+        shape = (height_profile or profile.height).shape(gait, self.schedule)
+        check_height(shape, self.schedule, footsteps.support_points()[:, 2])
+        swings = swing_shape(gait, self.schedule, p)
         self._stepper = Stepper(self.schedule, footsteps, terrain, p)
-        self._shape = (height_profile or SmoothHeight()).shape(gait, self.schedule)
-        check_height(self._shape, self.schedule, footsteps.support_points()[:, 2])
-        self._swing_shape = swing_shape(gait, self.schedule, p)
-        self._prediction = predict(p.sample_time, block_moves(p.moves, p.horizon))
+        self._outlook = Outlook(self.schedule, shape, swings, p.leg, p.horizon + p.preview + 1)
+        self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
+        self._law = profile.law(p, gait)
         self._support: Support | None = None
         self._swing: SwingTrajectory | None = None
         self._plan: WalkPlan | None = None
-        self.problem: TvmpcProblem | None = None
+        self.motion: Motion | None = None
 
     @property
     def footsteps(self) -> FootstepPlan:
@@ -116,90 +109,37 @@ class WalkingPlanner:
         """
         if not math.isfinite(float(state.com.sum() + state.com_velocity.sum() + feet.position.sum() + feet.yaw.sum())):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
-        p, stepper, n = self.parameters, self._stepper, self.parameters.horizon
+        p, stepper = self.parameters, self._stepper
         stepper.advance(feet)
         self._fix_imminent_footstep(state.time)
         support = present_support(self._support, stepper, self._half_size, p.foot_margin)
         self._support = support
-        window = (stepper.sample, n + p.preview + 1)
-        reference = zmp_reference(self.schedule, support.table, *window)
-        height = preview_height(self._shape, *window, support.heights, reference.height)
-        offset = self._leg_offset(support, window, reference, height)
-        driving = replace(reference, point=reference.point - offset)
-        stiffness = softening(p.leg) * height.stiffness
-        omega = natural_frequency(stiffness, p.sample_time)
-        steps = self._step_context(support, feet)
-        self.problem = build_problem(
-            p,
-            self._prediction,
-            self._local_state(state, support),
-            stiffness[: n + 1],
-            driving,
-            generate_constraints(p, driving, stiffness, omega, steps),
-            self._local_jerk(support)[0],
+        window = self._outlook.window(stepper.sample, support, stepper.footsteps)
+        problem = self._problem(state, feet, support, window)
+        motion = self._law.plan(problem)
+        self.motion = motion
+        footsteps = stepper.upcoming(state.time, motion.shifts @ support.rotation.T)
+        self._update_swing(state.time, feet, footsteps, motion.solver)
+        moving = trajectory(self._prediction, problem.state, window.stiffness[: p.horizon + 1], motion.jerk)
+        status = self._status(motion)
+        self._plan = world_plan(
+            state.time, stepper, support, window, moving, motion.shifts, footsteps, self._swing, status
         )
-        solution = solve_problem(self.problem, self._prediction, p.solvers, self._shifted_jerk(support))
-        footsteps = stepper.upcoming(state.time, solution.shifts @ support.rotation.T)
-        self._update_swing(state.time, feet, footsteps, solution)
-        motion = trajectory(self._prediction, self.problem, solution.jerk)
-        preview = _Preview(reference, offset, height, stiffness, omega)
-        self._plan = self._world_plan(state.time, support, preview, motion, solution, footsteps)
         return self._plan
 
-    def _leg_offset(
-        self, support: Support, window: tuple[int, int], reference: ZmpReference, height: HeightPreview
-    ) -> Array:
-        if self.parameters.leg.mass_ratio == 0.0:
-            return np.zeros_like(reference.point)
-        return zmp_offset(
-            self._swing_shape,
-            self._stepper.footsteps,
-            (support.rotation, support.origin),
-            slice(window[0], window[0] + window[1]),
-            reference.point,
-            height.stiffness,
-            height.height[0] - reference.height,
-            self.parameters.leg,
-        )
-
-    def _world_plan(
-        self,
-        time: float,
-        support: Support,
-        preview: _Preview,
-        motion: Trajectory,
-        solution: TvmpcSolution,
-        footsteps: tuple[PlannedFootstep, ...],
-    ) -> WalkPlan:
-        stepper, reference, height = self._stepper, preview.reference, preview.height
-        count, to_world = self.parameters.horizon + 1, support.rotation.T
-        com = np.empty((3, count, 3))
-        com[:, :, :2] = motion.com @ to_world
-        com[0, :, :2] += support.origin
-        com[:, :, 2] = height.height[:, :count]
-        point = reference.point[:count] + reference.gain[:count] @ solution.shifts
-        window = slice(stepper.sample, stepper.sample + count)
-        return WalkPlan(
-            time=time,
-            sample_time=self.parameters.sample_time,
-            com=com[0],
-            com_velocity=com[1],
-            com_acceleration=com[2],
-            jerk=motion.jerk @ to_world,
-            zmp=(motion.zmp + preview.offset[:count]) @ to_world + support.origin,
-            zmp_offset=preview.offset[:count] @ to_world,
-            zmp_reference=point @ to_world + support.origin,
-            stiffness=preview.stiffness[:count],
-            omega=preview.omega[:count],
-            phase=stepper.info,
-            contacts=self.schedule.contacts[window],
-            load_left=self.schedule.load_left[window],
-            support_polygon=support.outer,
-            inner_polygon=support.inner,
-            footholds=support.footholds,
-            footsteps=footsteps,
-            swing=self._swing,
-            status=self._status(solution),
+    def _problem(self, state: CentroidalState, feet: FeetState, support: Support, window: Window) -> MotionProblem:
+        jerk = np.zeros((self.parameters.horizon + 1, 2))
+        if self._plan is not None:
+            jerk[:-1] = self._plan.jerk @ support.rotation
+        return MotionProblem(
+            state=self._local_state(state, support),
+            stiffness=window.stiffness,
+            omega=window.omega,
+            reference=window.driving,
+            steps=self._step_context(support, feet),
+            last_jerk=jerk[0],
+            fallback=jerk[1:],
+            rotation=support.rotation,
         )
 
     def _fix_imminent_footstep(self, time: float) -> None:
@@ -218,7 +158,7 @@ class WalkingPlanner:
         side = 1.0 if steps.feet[row] is Foot.RIGHT else -1.0
         here = None if swing is None else (feet.position[swing, :2] - support.origin) @ support.rotation
         left = 0.0 if swing is None else stepper.time_to_touchdown(stepper.phase.step)
-        return StepContext(increment, (side, -side), stepper.free, here, left)
+        return StepContext(increment, (side, -side), stepper.free, here, left, stepper.transfer_time)
 
     def _local_state(self, state: CentroidalState, support: Support) -> Array:
         """Position and velocity as measured, acceleration as the last plan had it for now."""
@@ -228,18 +168,8 @@ class WalkingPlanner:
         local[2] = self._plan.com_acceleration[1, :2] if self._plan is not None else 0.0
         return np.ascontiguousarray((local @ support.rotation).T)
 
-    def _local_jerk(self, support: Support) -> Array:
-        if self._plan is None:
-            return np.zeros((self.parameters.horizon, 2))
-        return self._plan.jerk @ support.rotation
-
-    def _shifted_jerk(self, support: Support) -> Array:
-        jerk = np.zeros((self.parameters.horizon, 2))
-        jerk[:-1] = self._local_jerk(support)[1:]
-        return jerk
-
     def _update_swing(
-        self, time: float, feet: FeetState, footsteps: tuple[PlannedFootstep, ...], solution: TvmpcSolution
+        self, time: float, feet: FeetState, footsteps: tuple[PlannedFootstep, ...], solver: SolverStatus
     ) -> None:
         stepper, phase, foot = self._stepper, self._stepper.phase, self._stepper.swing_foot
         if foot is None:
@@ -252,12 +182,20 @@ class WalkingPlanner:
             times = swing_times(time, phase.samples, self.parameters)
             self._swing = start_swing(foot, pose, target, times, self.gait.swing_height, self.parameters)
             return
-        decided = stepper.fixed or solution.solver is SolverStatus.HELD
+        decided = stepper.fixed or solver is SolverStatus.HELD
         if not decided and np.abs(target - self._swing.target).max() > _SAME_TARGET:
             self._swing = self._swing.retargeted(time, target)
 
-    def _status(self, solution: TvmpcSolution) -> PlanStatus:
-        held = solution.solver is SolverStatus.HELD
-        age = (self._plan.status.age if self._plan is not None else 0) + 1 if held else 0
-        waited, early = self._stepper.waited, self._stepper.early
-        return PlanStatus(solution.solver, solution.zmp_slack, solution.terminal_slack, age, waited, early)
+    def _status(self, motion: Motion) -> PlanStatus:
+        age = 0
+        if motion.solver is SolverStatus.HELD:
+            age = (self._plan.status.age if self._plan is not None else 0) + 1
+        return PlanStatus(
+            solver=motion.solver,
+            zmp_slack=motion.zmp_slack,
+            terminal_slack=motion.terminal_slack,
+            infeasible=motion.infeasible,
+            age=age,
+            late_touchdown=self._stepper.waited,
+            early_touchdown=self._stepper.early,
+        )

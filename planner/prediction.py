@@ -58,6 +58,34 @@ def predict(sample_time: float, basis: Array) -> Prediction:
     return Prediction(state, np.ascontiguousarray(samples @ basis), samples, basis)
 
 
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """A predicted motion in the plan frame.
+
+    Attributes:
+        com: position, velocity, acceleration at samples 0..N, shape (3, N + 1, 2).
+        zmp: shape (N + 1, 2) [m].
+        jerk: shape (N, 2) [m/s^3].
+    """
+
+    com: Array
+    zmp: Array
+    jerk: Array
+
+
+def trajectory(prediction: Prediction, state: Array, stiffness: Array, jerk: Array) -> Trajectory:
+    """Motion under a jerk sequence.
+
+    Args:
+        prediction: prediction matrices.
+        state: CoM position, velocity, acceleration per axis, shape (2, 3).
+        stiffness: λ at samples 0..N, shape (N + 1,) [1/s^2].
+        jerk: shape (N, 2) [m/s^3].
+    """
+    com = prediction.state @ state.T + prediction.samples @ jerk
+    return Trajectory(com, zmp_response(com, stiffness), jerk)
+
+
 def zmp_response(response: Array, stiffness: Array) -> Array:
     """Response of the ZMP y = x - x''/λ.
 

@@ -3,12 +3,16 @@
 from dataclasses import dataclass
 from typing import Any
 
+import daqp
 import numpy as np
 import qpsolvers
 
 from planner.types import Array
 
-_EXACT: dict[str, dict[str, Any]] = {"daqp": {"primal_tol": 1e-9, "dual_tol": 1e-12}}
+DAQP_OPTIONS: dict[str, Any] = {"primal_tol": 1e-9, "dual_tol": 1e-12}
+"""Tolerances that make DAQP exact to the last digits that matter."""
+
+_UNBOUNDED = 1e30
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,14 +58,28 @@ def solve(qp: Qp, solvers: tuple[str, ...]) -> QpSolution:
 
     Args:
         qp: the problem.
-        solvers: names known to qpsolvers, in the order to try.
+        solvers: names known to qpsolvers, in the order to try. DAQP is called without the wrapper, which would take as
+            long as the solver.
     """
-    problem = qp.problem()
     for attempt, name in enumerate(solvers):
         try:
-            solution = qpsolvers.solve_problem(problem, name, **_EXACT.get(name, {}))
+            z = _daqp(qp) if name == "daqp" else _wrapped(qp, name)
         except (ValueError, ArithmeticError, qpsolvers.QPError):
             continue
-        if solution.found and solution.x is not None and np.isfinite(solution.x).all():
-            return QpSolution(solution.x, attempt)
+        if z is not None and np.isfinite(z).all():
+            return QpSolution(z, attempt)
     return QpSolution(None, len(solvers))
+
+
+def _wrapped(qp: Qp, name: str) -> Array | None:
+    solution = qpsolvers.solve_problem(qp.problem(), name)
+    return solution.x if solution.found else None
+
+
+def _daqp(qp: Qp) -> Array | None:
+    """DAQP takes bounds as its first rows, and rows from below too."""
+    n, rows = len(qp.q), len(qp.h)
+    upper, lower = np.concatenate((qp.upper, qp.h)), np.full(n + rows, -_UNBOUNDED)
+    lower[:n] = qp.lower
+    z, _, flag, _ = daqp.solve(qp.P, qp.q, qp.G, upper, lower, np.zeros(n + rows, dtype=np.intc), **DAQP_OPTIONS)
+    return np.asarray(z) if flag > 0 else None

@@ -21,6 +21,7 @@ class Stepper:
     felt and never moves the clock (moving it was measured to cost 17 to 28 mm of DCM error).
 
     Attributes:
+        schedule: phases of the walk.
         footsteps: all footholds, landed ones as measured.
         row: row of the foot that landed last; it is the stance foot in single support.
         tick: sample of the gait's clock, -1 before the first tick.
@@ -32,13 +33,13 @@ class Stepper:
     def __init__(
         self, schedule: Schedule, footsteps: FootstepPlan, terrain: Terrain, parameters: PlannerParameters
     ) -> None:
+        self.schedule = schedule
         self.footsteps = footsteps
         self.row = 1
         self.tick = -1
         self.waited = 0
         self.early = False
         self.fixed = False
-        self._schedule = schedule
         self._terrain = terrain
         self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION
         self._patience = round(parameters.late_touchdown / parameters.sample_time)
@@ -47,17 +48,17 @@ class Stepper:
     @property
     def sample(self) -> int:
         """Index into the schedule's arrays."""
-        return min(self.tick, self._schedule.last)
+        return min(self.tick, self.schedule.last)
 
     @property
     def phase(self) -> Phase:
         """The phase now."""
-        return self._schedule.phase(max(self.tick, 0))
+        return self.schedule.phase(max(self.tick, 0))
 
     @property
     def info(self) -> PhaseInfo:
         """The phase now, in seconds."""
-        phase, t = self.phase, self._schedule.sample_time
+        phase, t = self.phase, self.schedule.sample_time
         duration = phase.samples * t if phase.samples else math.inf
         return PhaseInfo(phase.kind, phase.stance, phase.step, (self.tick - phase.start) * t, duration)
 
@@ -75,7 +76,15 @@ class Stepper:
 
     def time_to_touchdown(self, step: int) -> float:
         """Time by the phase clock until a step lands [s]."""
-        return (self._touchdown[step - 1] - self.tick) * self._schedule.sample_time
+        return (self._touchdown[step - 1] - self.tick) * self.schedule.sample_time
+
+    @property
+    def transfer_time(self) -> float:
+        """Duration of the double support that follows a single support, zero in other phases [s]."""
+        phase = self.phase
+        if phase.kind is not PhaseKind.SINGLE:
+            return 0.0
+        return self.schedule.phase(phase.end).samples * self.schedule.sample_time
 
     def advance(self, feet: FeetState) -> None:
         """Go on by one tick.

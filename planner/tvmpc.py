@@ -1,4 +1,4 @@
-"""TVMPC: from state, reference and constraints to one QP per axis, and from its solution to a trajectory."""
+"""TVMPC with footsteps in the QP: from state, reference and constraints to one QP per axis."""
 
 from dataclasses import dataclass
 
@@ -15,39 +15,6 @@ _EXTRA = 4
 """Variables after the moves: two footstep shifts, ZMP slack, terminal slack."""
 
 
-@dataclass(frozen=True, slots=True)
-class TvmpcProblem:
-    """The QPs of one tick, to be looked at, solved or stored.
-
-    Variables per axis: m moves of the jerk [m/s^3], shifts of the next two footsteps [m], ZMP slack [m], terminal slack
-    [m]. The two axes share P and G.
-
-    Attributes:
-        axes: the problems of the plan frame's x and y axis.
-        state: CoM position, velocity, acceleration per axis, shape (2, 3).
-        stiffness: λ at samples 0..N, shape (N + 1,) [1/s^2].
-    """
-
-    axes: tuple[Qp, Qp]
-    state: Array
-    stiffness: Array
-
-
-@dataclass(frozen=True, slots=True)
-class Trajectory:
-    """A predicted motion in the plan frame.
-
-    Attributes:
-        com: position, velocity, acceleration at samples 0..N, shape (3, N + 1, 2).
-        zmp: shape (N + 1, 2) [m].
-        jerk: shape (N, 2) [m/s^3].
-    """
-
-    com: Array
-    zmp: Array
-    jerk: Array
-
-
 def build_problem(
     parameters: PlannerParameters,
     prediction: Prediction,
@@ -56,8 +23,11 @@ def build_problem(
     reference: ZmpReference,
     constraints: Constraints,
     last_jerk: Array,
-) -> TvmpcProblem:
-    """Assemble both axes.
+) -> tuple[Qp, Qp]:
+    """The QPs of the plan frame's x and y axis; they share P and G.
+
+    Variables per axis: m moves of the jerk [m/s^3], shifts of the next two footsteps [m], ZMP slack [m], terminal slack
+    [m].
 
     Cost (eq. costfunction with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks.
     The terminal cost is what the best linear feedback would still spend on the squared ZMP error after the horizon;
@@ -82,13 +52,7 @@ def build_problem(
         G, h = _with_rate_limit(G, h, m, parameters.jerk_rate_limit, last_jerk)
     lower, upper = _bounds(parameters, constraints, m)
     x, y = (Qp(P, q[i], G, h[i], lower[i], upper[i]) for i in range(2))
-    return TvmpcProblem((x, y), state, stiffness)
-
-
-def trajectory(prediction: Prediction, problem: TvmpcProblem, jerk: Array) -> Trajectory:
-    """Motion under a jerk sequence, shape (N, 2), from the problem's state."""
-    com = prediction.state @ problem.state.T + prediction.samples @ jerk
-    return Trajectory(com, zmp_response(com, problem.stiffness), jerk)
+    return x, y
 
 
 @dataclass(frozen=True, slots=True)

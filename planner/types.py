@@ -96,6 +96,7 @@ class PlanStatus:
         solver: the worse status of the two axes.
         zmp_slack: violation of the ZMP box that the optimum accepts, shape (2,) for the plan frame's axes [m].
         terminal_slack: violation of the terminal DCM bound, shape (2,) [m].
+        infeasible: the profile's hard constraints had no solution; it was softened by the slack told here.
         age: number of ticks since the last plan in which both axes were solved; 0 for a fresh one.
         late_touchdown: ticks for which the phase clock has waited for the touchdown.
         early_touchdown: the swing foot landed before its time; its foothold is fixed, the clock is not moved.
@@ -104,6 +105,7 @@ class PlanStatus:
     solver: SolverStatus
     zmp_slack: Array
     terminal_slack: Array
+    infeasible: bool
     age: int
     late_touchdown: int
     early_touchdown: bool

@@ -15,6 +15,7 @@ _UNITS: dict[str, tuple[float, str]] = {
     **dict.fromkeys(("joint_limit_margin_min", "knee_angle_mean"), (180.0 / math.pi, "deg")),
     **dict.fromkeys(("cop_ratio_p99", "cop_ratio_max"), (1e2, "% of half the foot")),
     "zmp_inside_fraction": (1e2, "% of the time"),
+    "planner_infeasible_fraction": (1e2, "% of the plans"),
     "torque_ratio_max": (1e2, "% of the limit"),
     "torque_at_limit_fraction": (1e2, "% of the time"),
     "knee_torque_rms": (1.0, "N m"),

@@ -58,7 +58,7 @@ class ClosedLoop:
         rates = scenario.rates
         self.rig: Rig = assemble(scenario, robot)
         layout, nq = self.rig.controller.layout, len(robot.joint_names) + 7
-        sizes = Sizes(nj=layout.joints, nq=nq, nv=layout.nv, horizon=scenario.planner.horizon)
+        sizes = Sizes(nj=layout.joints, nq=nq, nv=layout.nv, horizon=self.rig.planner.parameters.horizon)
         writer.attach(AttachedFile(WORLD_FILE, "application/xml", self.rig.world.mjcf().encode()))
         self._recorder = Recorder(writer, sizes, robot.torque_limit)
         self._walk_recorder = WalkRecorder(writer, sizes)

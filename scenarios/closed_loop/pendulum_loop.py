@@ -57,8 +57,8 @@ class PendulumLoop:
         rates, feet = scenario.rates, square_stance(scenario)
         self._rate, self._mass = rates.control, robot.mass
         self._half_size = 0.5 * np.array([robot.sole_length, robot.sole_width])
-        sizes = Sizes(nj=0, nq=0, nv=0, horizon=scenario.planner.horizon)
         planner = walking_planner(scenario, robot, flat(), feet, planner_parameters(scenario, LegInertia()))
+        sizes = Sizes(nj=0, nq=0, nv=0, horizon=planner.parameters.horizon)
         self._recorder = PendulumRecorder(writer, sizes, robot.mass)
         self._walk_recorder = WalkRecorder(writer, sizes)
         self._view = PointView(writer, (robot.sole_length, robot.sole_width), rates.control)

@@ -32,6 +32,7 @@ METRIC_NAMES = (
     "speed_mean",
     "com_height_range",
     "estimation_error_rms",
+    "planner_infeasible_fraction",
     "planner_time",
     "wbc_time",
     "real_time_factor",

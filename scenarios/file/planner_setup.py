@@ -1,13 +1,15 @@
 """The planner's side of a scenario, in the planner's terms; knows no robot model and no simulator."""
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from planner.gait import GaitParameters
 from planner.parameters import LegInertia, PlannerParameters, StepAdaptation
 from planner.planner import WalkingPlanner
+from planner.profiles.registry import PROFILES, Profile
 from planner.terrain import Terrain
 from planner.types import FeetState
 from scenarios.file.schema import Scenario
@@ -43,16 +45,26 @@ def gait_parameters(scenario: Scenario) -> GaitParameters:
     )
 
 
+def planner_profile(scenario: Scenario) -> Profile:
+    """The formulation that the scenario asks for."""
+    return PROFILES[scenario.planner.profile]
+
+
 def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters:
-    """The scenario's planner settings in the planner's terms; a pendulum's legs have no inertia."""
+    """The profile's parameters with what the scenario changes of them; a pendulum's legs have no inertia."""
     settings = scenario.planner
-    return PlannerParameters(
+    chosen: dict[str, Any] = {
+        "horizon": settings.horizon,
+        "moves": None if settings.control_horizon is None else tuple(range(settings.control_horizon)),
+        "jerk_limit": settings.jerk_limit,
+        "jerk_rate_limit": settings.jerk_rate_limit,
+    }
+    return replace(
+        planner_profile(scenario).parameters,
         sample_time=settings.sample_time,
-        horizon=settings.horizon,
-        jerk_limit=settings.jerk_limit,
-        jerk_rate_limit=math.inf if settings.jerk_rate_limit is None else settings.jerk_rate_limit,
         leg=leg,
         step_adaptation=StepAdaptation(settings.step_adaptation),
+        **{name: value for name, value in chosen.items() if value is not None},
     )
 
 
@@ -64,4 +76,12 @@ def walking_planner(
     Raises:
         ValueError: it cannot plan this gait; one sentence says why.
     """
-    return WalkingPlanner(gait_parameters(scenario), feet, robot.sole_length, robot.sole_width, terrain, parameters)
+    return WalkingPlanner(
+        gait_parameters(scenario),
+        feet,
+        robot.sole_length,
+        robot.sole_width,
+        terrain,
+        parameters,
+        profile=planner_profile(scenario),
+    )

@@ -92,11 +92,18 @@ class PlannerSettings(Group):
     profile: Literal["default", "paper", "repaired", "lti", "preview", "dcm"] = Field(
         default="default", description="formulation of the planner"
     )
-    horizon: Annotated[int, Field(ge=2, le=1000)] = Field(default=50, description="samples of the preview [-]")
-    sample_time: Positive = Field(default=0.02, description="sample time of the preview, and of replanning [s]")
-    jerk_limit: Positive = Field(default=60.0, description="bound on the CoM jerk [m/s^3]")
+    horizon: Annotated[int, Field(ge=2, le=1000)] | None = Field(
+        default=None, description="samples of the horizon, N_p, null: the profile's own [-]"
+    )
+    control_horizon: Annotated[int, Field(ge=1, le=1000)] | None = Field(
+        default=None, description="moves of the jerk, one per sample, N_c, null: the profile's own blocks [-]"
+    )
+    sample_time: Positive = Field(default=0.02, description="sample time of the horizon, and of replanning [s]")
+    jerk_limit: Positive | None = Field(
+        default=None, description="bound on the CoM jerk, null: the profile's own [m/s^3]"
+    )
     jerk_rate_limit: Positive | None = Field(
-        default=None, description="bound on its change per sample, null: none [m/s^3]"
+        default=None, description="bound on its change per sample, null: the profile's own [m/s^3]"
     )
     step_adaptation: Literal["none", "location", "timing"] = Field(
         default="location", description="what of the next footstep the planner may change"

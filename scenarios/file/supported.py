@@ -9,7 +9,6 @@ from scenarios.file.schema import BeliefErrors, Scenario, Sensing
 _AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
     ("terrain", "kind"): ("flat",),
-    ("planner", "profile"): ("default",),
     ("planner", "step_adaptation"): ("none", "location"),
     ("planner", "knee"): ("stretched",),
     **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items()},

@@ -7,12 +7,11 @@ from dataclasses import replace
 from planner.constraints import reach_box
 from planner.footsteps import plan_footsteps
 from planner.frames import frame_rotation
-from planner.moves import BLOCK_STARTS
 from planner.parameters import PlannerParameters
 from planner.terrain import flat
 from planner.types import GRAVITY, Foot
 from scenarios.errors import Problem
-from scenarios.file.planner_setup import gait_parameters, square_stance
+from scenarios.file.planner_setup import gait_parameters, planner_profile, square_stance
 from scenarios.file.robots import RobotFacts
 from scenarios.file.schema import Gait, Scenario
 from scenarios.file.timeline import gait_duration
@@ -38,9 +37,7 @@ def swing_too_short(scenario: Scenario) -> bool:
 def walk_problems(scenario: Scenario) -> Iterator[Problem]:
     """List what cannot be planned whatever the robot."""
     gait, sample_time = scenario.gait, scenario.planner.sample_time
-    if scenario.planner.horizon <= BLOCK_STARTS[-1]:
-        what = f"planner.horizon {scenario.planner.horizon} is shorter than the planner's blocks of moves"
-        yield Problem(("planner", "horizon"), what, f"use at least {BLOCK_STARTS[-1] + 1}")
+    yield from _moves(scenario)
     if gait_duration(gait) > MOST_SAMPLES * sample_time:
         what = f"a gait of {gait_duration(gait):.6g} s"
         yield Problem(
@@ -51,6 +48,24 @@ def walk_problems(scenario: Scenario) -> Iterator[Problem]:
         yield Problem(("duration",), what, f"use at least {1 / scenario.rates.control:g} s")
     if not swing_too_short(scenario):
         yield from _apexes(gait)
+
+
+def _moves(scenario: Scenario) -> Iterator[Problem]:
+    """List moves of the jerk that the profile has not got, or that begin after the horizon."""
+    profile, settings = planner_profile(scenario), scenario.planner
+    if not profile.moves:
+        if settings.control_horizon is not None:
+            what = f"planner.control_horizon with profile {profile.name!r}, which optimises no moves of the jerk"
+            yield Problem(("planner", "control_horizon"), what, "leave it null")
+        return
+    horizon = settings.horizon or profile.parameters.horizon
+    if settings.control_horizon is not None:
+        if settings.control_horizon > horizon:
+            what = f"planner.control_horizon {settings.control_horizon} exceeds the horizon of {horizon} samples"
+            yield Problem(("planner", "control_horizon"), what, f"use at most {horizon}")
+    elif horizon <= profile.parameters.moves[-1]:
+        what = f"planner.horizon {horizon} is shorter than the planner's blocks of moves"
+        yield Problem(("planner", "horizon"), what, f"use at least {profile.parameters.moves[-1] + 1}")
 
 
 def footstep_problems(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:

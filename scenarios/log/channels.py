@@ -146,6 +146,7 @@ def plan(n: Sizes) -> ChannelSpec:
         _int("status", "solver status, 0 solved"),
         _real("slack", 2, "m", "", "of the ZMP bounds and of the terminal bound"),
         _int("held", "1: no new plan, the last one is held"),
+        _int("infeasible", "1: the profile's hard constraints had no solution and were softened by the slack"),
     )
     return ChannelSpec("/plan", "Plan", fields, plan.__doc__ or "")
 

@@ -44,6 +44,7 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
     "speed_mean": (("/truth", "/reference"), walking.speed_mean),
     "com_height_range": (_BODY, walking.com_height_range),
     "estimation_error_rms": (("/truth", "/estimate"), balance.estimation_error_rms),
+    "planner_infeasible_fraction": (("/plan",), effort.planner_infeasible_fraction),
     "planner_time": (("/timing",), effort.planner_time),
     "wbc_time": (("/timing",), effort.wbc_time),
     "real_time_factor": (("/timing",), effort.real_time_factor),

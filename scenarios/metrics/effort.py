@@ -89,6 +89,11 @@ def wbc_fallbacks(run: RunView) -> int:
     return int(np.count_nonzero(run.field("/wbc", "fallback")))
 
 
+def planner_infeasible_fraction(run: RunView) -> float:
+    """Share of plans whose hard constraints had no solution and were softened [-]."""
+    return float(np.mean(run.log["/plan"].field("infeasible") != 0))
+
+
 def planner_time(run: RunView) -> dict[str, float] | None:
     """Wall-clock time of a plan: median and 99th percentile [s]."""
     spent = run.field("/timing", "planner")

@@ -54,6 +54,7 @@ class WalkRecorder:
         self._plan.append(
             time_ns, plan.com, plan.com_velocity, plan.zmp, plan.zmp_reference, plan.jerk, plan.omega,
             status.solver, (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD,
+            status.infeasible,
         )  # fmt: skip
         ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
         self._footsteps.append(

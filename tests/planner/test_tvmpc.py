@@ -19,7 +19,7 @@ def problem_at(stand, com=(0.0, 0.0), velocity=(0.0, 0.0), ticks=1, **parameters
     for tick in range(ticks):
         state = CentroidalState(0.02 * tick, np.array([*com, 1.0]), np.array([*velocity, 0.0]))
         planner.update(state, stand())
-    return planner.problem
+    return planner.motion.qps
 
 
 def kkt_residuals(qp, solver):
@@ -29,7 +29,7 @@ def kkt_residuals(qp, solver):
 
 @pytest.mark.parametrize("com", [(0.0, 0.0), (0.01, -0.02), (0.04, -0.1), (0.2, 0.3)])
 def test_solution_passes_kkt_and_two_solvers_agree(stand, com):
-    for qp in problem_at(stand, com, ticks=3).axes:
+    for qp in problem_at(stand, com, ticks=3):
         first, *residuals = kkt_residuals(qp, "daqp")
         second, *_ = kkt_residuals(qp, "quadprog")
         assert max(residuals) < 1e-8
@@ -39,8 +39,7 @@ def test_solution_passes_kkt_and_two_solvers_agree(stand, com):
 
 def test_cost_is_the_sum_of_squares_it_says(stand):
     """Along any two points the quadratic part equals that of the predicted ZMP errors and weights."""
-    problem = problem_at(stand, (0.01, -0.02), ticks=3)
-    qp, p = problem.axes[1], PlannerParameters()
+    qp, p = problem_at(stand, (0.01, -0.02), ticks=3)[1], PlannerParameters()
     np.testing.assert_allclose(qp.P, qp.P.T, atol=1e-12)
     assert np.linalg.eigvalsh(qp.P).min() > 0.0
     z = np.random.default_rng(0).normal(size=14)
@@ -60,14 +59,14 @@ def test_any_state_has_a_solution_and_its_slack_is_reported(stand):
 
 
 def test_rate_limit_bounds_every_change_of_jerk(stand):
-    qp = problem_at(stand, (0.0, 0.02), jerk_limit=1.5, jerk_rate_limit=0.1).axes[1]
+    qp = problem_at(stand, (0.0, 0.02), jerk_limit=1.5, jerk_rate_limit=0.1)[1]
     moves = solve(qp, ("daqp", "quadprog")).z[:10]
     assert np.abs(np.diff(moves, prepend=0.0)).max() <= 0.1 + 1e-8
     assert np.abs(np.diff(moves, prepend=0.0)).max() > 0.09
 
 
 def test_second_solver_is_used_and_said(stand):
-    qp = problem_at(stand).axes[0]
+    qp = problem_at(stand)[0]
     assert solve(qp, ("no-such-solver", "quadprog")).attempt == 1
 
 

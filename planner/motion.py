@@ -1,0 +1,68 @@
+"""What the planner profiles have in common: one problem in, one motion out; only what lies between differs."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from planner.constraints import StepContext
+from planner.qp import Qp
+from planner.types import Array, SolverStatus
+from planner.zmp_reference import ZmpReference
+
+
+@dataclass(frozen=True, slots=True)
+class MotionProblem:
+    """What is known of one tick, in the plan frame (origin and heading of the stance foot, or of the last landed one).
+
+    The window is the horizon of N samples and a preview of M more. The pendulum is c'' = λ (c - p) for the ZMP p of
+    the reference; what the swing leg adds to the ZMP is already taken out of the reference.
+
+    Attributes:
+        state: CoM position, velocity, acceleration per axis, shape (2, 3) [m, m/s, m/s^2].
+        stiffness: λ over the window, shape (N + M + 1,) [1/s^2].
+        omega: ω of the DCM over the window, ω' = ω² - λ, shape (N + M + 1,) [1/s].
+        reference: ZMP reference and its box over the window.
+        steps: the next two footsteps.
+        last_jerk: jerk applied until now, u(-1), shape (2,) [m/s^3].
+        fallback: the previous jerk sequence shifted by one sample, to go on with when no solver answers, shape (N, 2).
+        rotation: plan frame to world, for a law that remembers something from tick to tick, shape (2, 2).
+    """
+
+    state: Array
+    stiffness: Array
+    omega: Array
+    reference: ZmpReference
+    steps: StepContext
+    last_jerk: Array
+    fallback: Array
+    rotation: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """The answer to a `MotionProblem`, in the plan frame.
+
+    Attributes:
+        jerk: CoM jerk of each sample, shape (N, 2) [m/s^3].
+        shifts: shifts of the next two footsteps, shape (step, axis) = (2, 2) [m].
+        zmp_slack: violation of the ZMP box that was accepted, per axis; NaN for an axis that was not solved, shape (2,)
+            [m].
+        terminal_slack: violation of the terminal DCM bound, likewise, shape (2,) [m].
+        solver: the worse status of the two axes.
+        infeasible: a hard problem had no solution and was softened.
+        qps: the problems that were solved, x and y axis, to be looked at or stored; none where a law needs no QP.
+    """
+
+    jerk: Array
+    shifts: Array
+    zmp_slack: Array
+    terminal_slack: Array
+    solver: SolverStatus = SolverStatus.SOLVED
+    infeasible: bool = False
+    qps: tuple[Qp, ...] = ()
+
+
+class MotionPlanner(Protocol):
+    """A law of motion: the one thing in which the planner profiles differ."""
+
+    def plan(self, problem: MotionProblem) -> Motion:
+        """The jerk over the horizon, and where the next footsteps go."""

@@ -1,0 +1,1 @@
+"""Planner profiles: formulations of the same walk behind one interface (`planner.motion`), to be compared."""

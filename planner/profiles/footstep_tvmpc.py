@@ -1,0 +1,59 @@
+"""Profiles `default` and `lti`: soft TVMPC with the footsteps as variables of the QP (Herdt et al., 2010)."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from planner.constraints import generate_constraints
+from planner.gait import GaitParameters
+from planner.leg_inertia import softening
+from planner.motion import Motion, MotionProblem
+from planner.moves import block_moves
+from planner.parameters import PlannerParameters
+from planner.prediction import predict
+from planner.solution import solve_problem
+from planner.tvmpc import build_problem
+from planner.types import GRAVITY
+
+
+class FootstepTvmpc:
+    """Blocked jerk and two footstep shifts per axis; ZMP box and terminal DCM bound are soft, so it has no bad tick.
+
+    Args:
+        parameters: planner parameters.
+        gait: the walk.
+    """
+
+    def __init__(self, parameters: PlannerParameters, gait: GaitParameters) -> None:
+        self._parameters = parameters
+        self._prediction = predict(parameters.sample_time, block_moves(parameters.moves, parameters.horizon))
+
+    def plan(self, problem: MotionProblem) -> Motion:
+        """See `MotionPlanner`."""
+        p = self._parameters
+        constraints = generate_constraints(p, problem.reference, problem.stiffness, problem.omega, problem.steps)
+        stiffness = problem.stiffness[: p.horizon + 1]
+        qps = build_problem(
+            p, self._prediction, problem.state, stiffness, problem.reference, constraints, problem.last_jerk
+        )
+        return solve_problem(qps, self._prediction, p.solvers, problem.fallback)
+
+
+class ConstantHeightTvmpc:
+    """The same without previewing the dynamics: λ = g / z_c and ω = sqrt(λ) over the whole window (LIPM).
+
+    Args:
+        parameters: planner parameters.
+        gait: the walk; gives the CoM height over the ground.
+    """
+
+    def __init__(self, parameters: PlannerParameters, gait: GaitParameters) -> None:
+        self._law = FootstepTvmpc(parameters, gait)
+        self._stiffness = softening(parameters.leg) * GRAVITY / gait.com_height
+
+    def plan(self, problem: MotionProblem) -> Motion:
+        """See `MotionPlanner`."""
+        stiffness = np.full_like(problem.stiffness, self._stiffness)
+        omega = np.full_like(problem.omega, math.sqrt(self._stiffness))
+        return self._law.plan(replace(problem, stiffness=stiffness, omega=omega))

@@ -1,0 +1,62 @@
+"""The profiles by name: parameters, CoM height and law of motion of each."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+from planner.com_height import HeightProfile, SmoothHeight
+from planner.gait import GaitParameters
+from planner.motion import MotionPlanner
+from planner.moves import BLOCK_STARTS
+from planner.parameters import PlannerParameters
+from planner.profiles.dcm_feedback import DcmFeedback
+from planner.profiles.footstep_tvmpc import ConstantHeightTvmpc, FootstepTvmpc
+from planner.profiles.hard_tvmpc import paper_law, repaired_law
+from planner.profiles.zmp_preview import ZmpPreview
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """A formulation of the planner.
+
+    Attributes:
+        name: its name.
+        parameters: its parameters; a user may change some of them.
+        height: its vertical CoM motion.
+        law: makes its law of motion for a walk.
+        moves: whether it optimises moves of the jerk, whose number may be chosen.
+    """
+
+    name: str
+    parameters: PlannerParameters
+    height: HeightProfile
+    law: Callable[[PlannerParameters, GaitParameters], MotionPlanner]
+    moves: bool
+
+
+_PAPER = PlannerParameters(
+    horizon=50,
+    moves=(0, 1),
+    jerk_limit=1.5,
+    jerk_rate_limit=0.1,
+    jerk_weight=0.0,
+    foot_margin=0.9,
+    zmp_slack=(1e4, 10.0),
+    terminal_margin=1.0,
+)
+_REPAIRED = replace(_PAPER, moves=BLOCK_STARTS)
+
+PROFILES: Mapping[str, Profile] = MappingProxyType(
+    {
+        profile.name: profile
+        for profile in (
+            Profile("default", PlannerParameters(), SmoothHeight(), FootstepTvmpc, moves=True),
+            Profile("paper", _PAPER, SmoothHeight(), paper_law, moves=True),
+            Profile("repaired", _REPAIRED, SmoothHeight(), repaired_law, moves=True),
+            Profile("lti", PlannerParameters(), SmoothHeight(), ConstantHeightTvmpc, moves=True),
+            Profile("preview", PlannerParameters(), SmoothHeight(), ZmpPreview, moves=False),
+            Profile("dcm", PlannerParameters(), SmoothHeight(), DcmFeedback, moves=False),
+        )
+    }
+)
+"""Every profile by its name."""

@@ -24,7 +24,15 @@ from scenarios.metrics import describe_metric
 FOLDER = Path(__file__).parent
 CHANNELS = (
     *(channels.measurement, channels.truth, channels.point_truth, channels.estimate, channels.contact),
-    *(channels.reference, channels.plan, channels.footsteps, channels.footstep, channels.wbc, channels.torque),
+    *(
+        channels.planner_state,
+        channels.reference,
+        channels.plan,
+        channels.footsteps,
+        channels.footstep,
+        channels.wbc,
+        channels.torque,
+    ),
     channels.timing,
 )
 SIZES = Sizes(nj=1009, nq=1013, nv=1019, horizon=1031)

@@ -24,8 +24,8 @@ class RunConstants:
         fidelity: full or pendulum.
         seed: its seed.
         steps_planned: footsteps asked for.
-        mass: of the robot [kg].
-        com_height: nominal CoM height above the soles [m].
+        mass: true mass of the robot [kg].
+        com_height: true nominal CoM height above the soles [m].
         foot_length: of the soles [m].
         foot_width: of the soles [m].
         control_rate: ticks of the controller [Hz].
@@ -35,6 +35,7 @@ class RunConstants:
         position_lower: by joint [rad].
         position_upper: by joint [rad].
         terrain: kind of ground.
+        plant: of fidelity pendulum.
     """
 
     scenario: str
@@ -52,6 +53,7 @@ class RunConstants:
     position_lower: tuple[float, ...]
     position_upper: tuple[float, ...]
     terrain: str
+    plant: str = "pendulum"
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""

@@ -7,8 +7,11 @@ from scenarios.file.criteria import BODY_METRICS, Bound
 from scenarios.file.schema import Scenario
 from scenarios.file.timeline import gait_duration
 
-_NO_CONTACT = (("terrain", "friction"), ("start", "angle_noise"))
+_NO_CONTACT = (("terrain", "friction"), ("start", "angle_noise"), ("errors", "friction"))
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
+
+_POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
+"""Keys of the pendulum alone."""
 
 
 def asked(criteria: Mapping[str, Bound], fidelity: str) -> dict[str, Bound]:
@@ -37,12 +40,11 @@ def _skipped(scenario: Scenario) -> Iterator[str]:
 
 
 def _without_effect(scenario: Scenario) -> Iterator[str]:
-    if scenario.fidelity != "pendulum":
-        return
-    for group, name in _NO_CONTACT:
+    point = scenario.fidelity == "pendulum"
+    for group, name in _NO_CONTACT if point else _POINT_ONLY:
         settings = getattr(scenario, group)
         if getattr(settings, name) != type(settings).model_fields[name].default:
-            yield f"{group}.{name} has no effect on a pendulum"
+            yield f"{group}.{name} has no effect on a {'pendulum' if point else 'whole body'}"
 
 
 def _cut_short(scenario: Scenario) -> Iterator[str]:

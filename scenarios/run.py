@@ -98,8 +98,8 @@ def run_constants(scenario: Scenario, robot: "RobotDescription") -> RunConstants
         fidelity=scenario.fidelity,
         seed=scenario.seed,
         steps_planned=scenario.gait.steps,
-        mass=float(robot.mass),
-        com_height=scenario.gait.com_height,
+        mass=float(robot.mass) / scenario.errors.mass_scale,
+        com_height=scenario.gait.com_height - scenario.errors.com_height,
         foot_length=float(robot.sole_length),
         foot_width=float(robot.sole_width),
         control_rate=scenario.rates.control,
@@ -109,6 +109,7 @@ def run_constants(scenario: Scenario, robot: "RobotDescription") -> RunConstants
         position_lower=tuple(float(value) for value in robot.position_lower),
         position_upper=tuple(float(value) for value in robot.position_upper),
         terrain=scenario.terrain.kind,
+        plant=scenario.pendulum.plant,
     )
 
 

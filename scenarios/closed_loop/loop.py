@@ -7,10 +7,12 @@ from models.types import RobotDescription
 from planner.types import CentroidalState, FeetState, PhaseInfo
 from scenarios.closed_loop.assembly import Rig, assemble
 from scenarios.closed_loop.faults import FaultSchedule
+from scenarios.closed_loop.planner_state import PlannerSensing
 from scenarios.closed_loop.planning import Planning
 from scenarios.closed_loop.reference import whole_body_reference
 from scenarios.closed_loop.ticks import RunFault, Watch, refusing, run_ticks
 from scenarios.constants import WORLD_FILE
+from scenarios.file.planner_setup import square_stance
 from scenarios.file.schema import Scenario
 from scenarios.file.timeline import run_duration
 from scenarios.log import AttachedFile, LogWriter
@@ -24,6 +26,7 @@ from sim.errors import SimulationDiverged
 from sim.measurement import Measurement
 from wbc.model import RobotTerms
 from wbc.types import FootSensing, RobotState
+from wbc.zmp import measured_zmp
 
 
 def simulate(scenario: Scenario, robot: RobotDescription, writer: LogWriter, on_progress: OnProgress) -> End:
@@ -64,10 +67,11 @@ class ClosedLoop:
         self._walk_recorder = WalkRecorder(writer, sizes)
         self._view = BodyView(writer, self.rig.world, robot, rates.control)
         self._faults = FaultSchedule(scenario.faults, rates.control)
-        self._planning = Planning(self.rig.planner, self._walk_recorder, self._faults, rates)
+        sensing = PlannerSensing(scenario, square_stance(scenario))
+        self._planning = Planning(self.rig.planner, sensing, self._walk_recorder, self._faults, rates)
         self._rate = rates.control
         self._steps = rates.physics // rates.control
-        self._fallen_height = FALLEN_HEIGHT * scenario.gait.com_height
+        self._fallen_height = FALLEN_HEIGHT * (scenario.gait.com_height - scenario.errors.com_height)
         self._zero_torque = np.zeros(layout.joints)
         self._landed = (True, True)
 
@@ -89,10 +93,11 @@ class ClosedLoop:
         measurement = world.measure()
         state = self._sense(measurement, tick)
         terms = controller.observe(state)
+        truth = self._true_terms(measurement)
         state_time = watch.lap()
         planner_time = 0.0
         if planning.due(tick):
-            self._replan(now, now_ns, terms)
+            self._replan(tick, now_ns, terms, measurement)
             planner_time = watch.lap()
         sample = planning.sampler.sample(now)
         reference = whole_body_reference(planning.plan, sample)
@@ -101,11 +106,11 @@ class ClosedLoop:
         self._landed = report.active
         torque = self._zero_torque if self._faults.active("torque_loss", tick) else report.torque
         watch.lap()
-        recorder.tick(now_ns, measurement, terms, state, reference, report, torque)
+        recorder.tick(now_ns, measurement, truth, terms, state, reference, report, torque)
         self._walk_recorder.reference(now_ns, planning.plan, sample)
-        fallen = self._fallen(terms, measurement)
+        fallen = self._fallen(truth, measurement)
         self._view.events(now_ns, measurement, report, planning.plan, fallen)
-        self._view.picture(tick, now_ns, measurement, terms, planning.plan, sample)
+        self._view.picture(tick, now_ns, measurement, truth, planning.plan, sample)
         log_time = watch.lap()
         self._advance(torque)
         physics_time = watch.lap()
@@ -121,10 +126,18 @@ class ClosedLoop:
             raise RunFault(f"the measured state is not finite at {tick / self._rate:.3f} s")
         return RobotState(q, v)
 
-    def _replan(self, now: float, now_ns: int, terms: RobotTerms) -> None:
+    def _true_terms(self, measurement: Measurement) -> RobotTerms:
+        truth = self.rig.truth
+        if truth is not self.rig.controller.terms:
+            truth.update(measurement.q, measurement.v)
+        return truth
+
+    def _replan(self, tick: int, now_ns: int, terms: RobotTerms, measurement: Measurement) -> None:
         R = terms.sole_rotation
         feet = FeetState(terms.sole_position.copy(), np.arctan2(R[:, 1, 0], R[:, 0, 0]), self._landed)
-        self._planning.update(now_ns, CentroidalState(now, terms.com.copy(), terms.com_velocity.copy()), feet)
+        state = CentroidalState(tick / self._rate, terms.com.copy(), terms.com_velocity.copy())
+        zmp = np.array(measured_zmp(measurement.wrench, terms.sole_position, R)[:2])
+        self._planning.update(tick, now_ns, state, zmp, feet)
 
     def _advance(self, torque: NDArray[np.float64]) -> None:
         try:

@@ -1,4 +1,4 @@
-"""The closed loop of fidelity pendulum: the same planner on the true variable-height pendulum with ideal feet."""
+"""The closed loop of fidelity pendulum: the same planner on a point mass with ideal feet."""
 
 import math
 from typing import TYPE_CHECKING
@@ -7,14 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.parameters import LegInertia
-from planner.pendulum import Pendulum, PointPush
+from planner.pendulum import PointPush
 from planner.pendulum_walk import IdealFeet
 from planner.polygon import convex_hull, sole_corners
-from planner.sampling import PlanSample
 from planner.terrain import flat
 from planner.types import CentroidalState, Foot, Footstep, PhaseInfo
 from scenarios.closed_loop.faults import FaultSchedule
+from scenarios.closed_loop.planner_state import PlannerSensing
 from scenarios.closed_loop.planning import Planning
+from scenarios.closed_loop.plants import plant
 from scenarios.closed_loop.ticks import RunFault, Watch, refusing, run_ticks
 from scenarios.file.planner_setup import planner_parameters, square_stance, walking_planner
 from scenarios.file.schema import Scenario
@@ -32,9 +33,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-FEEDBACK = 3.0
-"""Gain of the ZMP command on the DCM error, the stand-in of the whole-body controller's balance task [-]."""
-
 
 def simulate(scenario: Scenario, robot: "RobotDescription", writer: LogWriter, on_progress: OnProgress) -> End:
     """Run a scenario on the pendulum; arguments and errors as of the loop in full physics."""
@@ -44,10 +42,9 @@ def simulate(scenario: Scenario, robot: "RobotDescription", writer: LogWriter, o
 
 
 class PendulumLoop:
-    """Pendulum, planner and recorders of one run.
+    """Plant, planner and recorders of one run; the feet do what the plan says.
 
-    The mass is driven by p = p_ref + k (ξ - ξ_ref), clipped to the hull of the soles in contact; the feet do what the
-    plan says.
+    The plant's true height is the planned one less the scenario's error of the CoM height.
 
     Raises:
         ValueError: the planner refuses the gait.
@@ -55,21 +52,24 @@ class PendulumLoop:
 
     def __init__(self, scenario: Scenario, robot: "RobotDescription", writer: LogWriter) -> None:
         rates, feet = scenario.rates, square_stance(scenario)
-        self._rate, self._mass = rates.control, robot.mass
+        self._rate, self._height_error = rates.control, scenario.errors.com_height
+        mass = robot.mass / scenario.errors.mass_scale
         self._half_size = 0.5 * np.array([robot.sole_length, robot.sole_width])
         planner = walking_planner(scenario, robot, flat(), feet, planner_parameters(scenario, LegInertia()))
         sizes = Sizes(nj=0, nq=0, nv=0, horizon=planner.parameters.horizon)
-        self._recorder = PendulumRecorder(writer, sizes, robot.mass)
+        self._recorder = PendulumRecorder(writer, sizes, mass)
         self._walk_recorder = WalkRecorder(writer, sizes)
         self._view = PointView(writer, (robot.sole_length, robot.sole_width), rates.control)
         self._faults = FaultSchedule(scenario.faults, rates.control)
-        self._planning = Planning(planner, self._walk_recorder, self._faults, rates)
+        sensing = PlannerSensing(scenario, feet)
+        self._planning = Planning(planner, sensing, self._walk_recorder, self._faults, rates)
         self._pushes = tuple(
             PointPush(push_time(scenario.gait, push), push.duration, np.array(push.force[:2]))
             for push in scenario.pushes
         )
         self._feet = IdealFeet(feet)
-        self._pendulum = Pendulum(robot.mass, start_position(scenario), np.zeros(2))
+        self._plant = plant(scenario.pendulum, mass, start_position(scenario), self._height_error)
+        self._can_fall = scenario.pendulum.plant == "pendulum"
         self._height, self._climb = scenario.gait.com_height, 0.0
         self._contacts, self._support = (False, False), np.zeros((0, 2))
 
@@ -91,37 +91,38 @@ class PendulumLoop:
         planning = self._planning
         state_time = watch.lap()
         if planning.due(tick):
-            planning.update(now_ns, state, self._feet.state)
+            planning.update(tick, now_ns, self._believed(state), self._plant.zmp, self._feet.state)
         sample = planning.sampler.sample(now)
         planner_time = watch.lap()
         force = mean_force(self._pushes, now, period)
         support = self._support_of(sample.contacts)
         self._recorder.state(now_ns, state, self._feet.state, force)
-        self._recorder.contact(now_ns, self._pendulum.zmp, sample, self._feet.state)
+        self._recorder.contact(now_ns, self._plant.zmp, sample, self._feet.state)
         self._walk_recorder.reference(now_ns, planning.plan, sample)
         lost = self._lost(state, sample.omega)
-        plan, zmp = planning.plan, self._pendulum.zmp
+        plan, zmp = planning.plan, self._plant.zmp
         self._view.events(now_ns, sample.contacts, force, plan, lost)
         self._view.picture(tick, now_ns, state.com, state.com_velocity, zmp, plan, sample)
         log_time = watch.lap()
-        self._advance(now, period, sample, support, force)
+        self._advance(now, period, support, force)
         parts = (state_time, 0.0, 0.0, planner_time, watch.lap(), log_time)
         self._walk_recorder.timing(now_ns, TickTiming(*parts, watch.last - begin))
         return lost
 
     def _sense(self, now: float, tick: int) -> CentroidalState:
-        position = np.append(self._pendulum.position, self._height)
-        velocity = np.append(self._pendulum.velocity, self._climb)
+        position = np.append(self._plant.position, self._height - self._height_error)
+        velocity = np.append(self._plant.velocity, self._climb)
         if self._faults.active("state_nan", tick) or not math.isfinite(float(position.sum() + velocity.sum())):
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
         return CentroidalState(now, position, velocity)
 
-    def _advance(self, now: float, period: float, sample: PlanSample, support: Array, force: Array) -> None:
-        """Drive the mass by the middle of the tick, then move feet and height to its end."""
-        pendulum, sampler = self._pendulum, self._planning.sampler
-        middle = sampler.sample(now + 0.5 * period)
-        error = pendulum.position + pendulum.velocity / sample.omega - sample.dcm
-        pendulum.advance(period, middle.pendulum_zmp + FEEDBACK * error, support, middle.stiffness, force)
+    def _believed(self, state: CentroidalState) -> CentroidalState:
+        return CentroidalState(state.time, np.append(state.com[:2], self._height), state.com_velocity)
+
+    def _advance(self, now: float, period: float, support: Array, force: Array) -> None:
+        """Drive the plant through the tick, then move feet and height to its end."""
+        sampler = self._planning.sampler
+        self._plant.drive(sampler, now, period, support, force)
         end = sampler.sample(now + period)
         self._height, self._climb = float(end.com[2]), float(end.com_velocity[2])
         self._feet.follow(sampler, now + period)
@@ -137,7 +138,7 @@ class PendulumLoop:
 
     def _lost(self, state: CentroidalState, omega: float) -> bool:
         dcm = state.com[:2] + state.com_velocity[:2] / omega
-        return bool(np.hypot(*(dcm - self._pendulum.zmp)) > LOST_DISTANCE)
+        return self._can_fall and bool(np.hypot(*(dcm - self._plant.zmp)) > LOST_DISTANCE)
 
 
 def start_position(scenario: Scenario) -> Array:

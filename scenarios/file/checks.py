@@ -18,6 +18,7 @@ def check(scenario: Scenario, robots: Robots) -> list[Problem]:
         *_durations(scenario),
         *_pushes(scenario),
         *_criteria(scenario),
+        *_beliefs(scenario),
         *walk_problems(scenario),
         *_robot(scenario, robots),
     ]
@@ -84,6 +85,13 @@ def _criteria(scenario: Scenario) -> Iterator[Problem]:
             if isinstance(limit, tuple) and len(limit) != size:
                 what = f"criteria.{name}.{side} has {len(limit)} elements"
                 yield Problem(("criteria", name, side), what, f"give one number, or {size} of them")
+
+
+def _beliefs(scenario: Scenario) -> Iterator[Problem]:
+    height, error = scenario.gait.com_height, scenario.errors.com_height
+    if error > 0.5 * height:
+        what = f"errors.com_height {error} m leaves {height - error:.3g} m of gait.com_height {height} m as the truth"
+        yield Problem(("errors", "com_height"), what, f"use at most {0.5 * height:.3g} m")
 
 
 def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:

@@ -33,6 +33,7 @@ METRIC_NAMES = (
     "com_height_range",
     "estimation_error_rms",
     "planner_infeasible_fraction",
+    "dcm_estimation_error_rms",
     "planner_time",
     "wbc_time",
     "real_time_factor",
@@ -52,7 +53,6 @@ BODY_METRICS = (
     "joint_limit_margin_min",
     "knee_angle_mean",
     "cost_of_transport",
-    "estimation_error_rms",
     "wbc_time",
     "qp_failures",
     "wbc_fallbacks",
@@ -62,7 +62,7 @@ BODY_METRICS = (
 TIMED = ("planner_time", "wbc_time")
 """Metrics that are a median and a 99th percentile."""
 
-ELEMENTS = {"zmp_error_rms": 2, "zmp_error_max": 2, "com_error_rms": 3, "dcm_error_rms": 2}
+ELEMENTS = {"zmp_error_rms": 2, "zmp_error_max": 2, "com_error_rms": 3, "dcm_error_rms": 2, "dcm_estimation_error_rms": 2}
 """Number of elements of the list-valued metrics."""
 
 BOUNDABLE = tuple(

@@ -109,14 +109,19 @@ class PlannerSettings(Group):
         default="location", description="what of the next footstep the planner may change"
     )
     knee: Literal["stretched", "bent"] = Field(default="stretched", description="law of the vertical CoM motion")
+    filter: Literal["none", "kalman", "zmp_only"] | None = Field(
+        default=None, description="filter of the planner's state, null: kalman when ZMP or CoM are noisy, else none"
+    )
 
 
 class Sensing(Group):
-    """What the controller knows of the robot; noises are standard deviations."""
+    """What planner and controller know of the robot; noises are standard deviations."""
 
     source: Literal["truth", "estimated"] = Field(default="truth", description="state given to planner and controller")
-    zmp_noise: NonNegative = Field(default=0.0, description="of the measured ZMP [m]")
-    com_noise: NonNegative = Field(default=0.0, description="of the measured CoM [m]")
+    zmp_noise: NonNegative = Field(default=0.0, description="of the ZMP that the planner measures [m]")
+    com_noise: NonNegative = Field(
+        default=0.0, description="of the CoM that the planner measures [m]; of its velocity 5 / s times as much"
+    )
     encoder_noise: NonNegative = Field(default=0.0, description="of the joint encoders [rad]")
     gyro_noise: NonNegative = Field(default=0.0, description="of the gyroscope [rad/s]")
     accelerometer_noise: NonNegative = Field(default=0.0, description="of the accelerometer [m/s^2]")
@@ -137,8 +142,12 @@ class Start(Group):
 class BeliefErrors(Group):
     """The planner's belief minus the truth."""
 
-    com_height: Finite = Field(default=0.0, description="error of the CoM height [m]")
-    mass_scale: Positive = Field(default=1.0, description="believed over true mass [-]")
+    com_height: Annotated[float, Field(ge=-0.4, le=0.4, allow_inf_nan=False)] = Field(
+        default=0.0, description="error of the CoM height [m]"
+    )
+    mass_scale: Annotated[float, Field(ge=0.5, le=2.0, allow_inf_nan=False)] = Field(
+        default=1.0, description="believed over true mass [-]"
+    )
     friction: Finite = Field(default=0.0, description="error of the friction coefficient [-]")
 
 
@@ -156,6 +165,18 @@ class PushSettings(Group):
     duration: Positive = Field(default=0.1, description="how long the force acts [s]")
     force: Vector = Field(default=(0.0, 0.0, 0.0), description="force in the world frame [N]")
     body: str | None = Field(default=None, description="body it acts on, at its centre of mass; null: the torso")
+
+
+class PendulumSettings(Group):
+    """The plant of fidelity pendulum."""
+
+    plant: Literal["pendulum", "cart_table"] = Field(
+        default="pendulum",
+        description="the true pendulum, or the paper's cart-table that does any jerk and cannot fall",
+    )
+    feedback: NonNegative = Field(
+        default=3.0, description="gain of the pendulum's ZMP on its true DCM's error, the low level's part [-]"
+    )
 
 
 class Fault(Group):
@@ -197,6 +218,7 @@ class Scenario(Group):
     sensing: Sensing = Field(default=Sensing(), description="the sensors")
     start: Start = Field(default=Start(), description="the start pose")
     errors: BeliefErrors = Field(default=BeliefErrors(), description="the planner's belief minus the truth")
+    pendulum: PendulumSettings = Field(default=PendulumSettings(), description="the plant of fidelity pendulum")
     pushes: Annotated[tuple[PushSettings, ...], BeforeValidator(_tuple)] = Field(default=(), description="disturbances")
     faults: Annotated[tuple[Fault, ...], BeforeValidator(_tuple)] = Field(default=(), description="injected faults")
     rates: Rates = Field(default=Rates(), description="the clock")

@@ -4,15 +4,17 @@ from collections.abc import Iterator
 from typing import Any
 
 from scenarios.errors import Key, Problem, dotted
-from scenarios.file.schema import BeliefErrors, Scenario, Sensing
+from scenarios.file.schema import Scenario, Sensing
+
+_SENSED = ("zmp_noise", "com_noise")
+"""Noises of what the planner measures; those of the whole-body controller's sensors need its estimator."""
 
 _AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
     ("terrain", "kind"): ("flat",),
     ("planner", "step_adaptation"): ("none", "location"),
     ("planner", "knee"): ("stretched",),
-    **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items()},
-    **{("errors", name): (field.default,) for name, field in BeliefErrors.model_fields.items()},
+    **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
 }
 
 _PENDULUM_FAULTS = ("planner_freeze", "state_nan")

@@ -85,7 +85,7 @@ def point_truth(_: Sizes) -> ChannelSpec:
 
 
 def estimate(_: Sizes) -> ChannelSpec:
-    """The state that planner and controller were given, every control tick."""
+    """The state that the whole-body controller was given, by its robot model, every control tick."""
     fields = (
         _real("com", 3, "m", "world", "CoM"),
         _real("com_velocity", 3, "m/s", "world", "CoM velocity"),
@@ -94,6 +94,20 @@ def estimate(_: Sizes) -> ChannelSpec:
         _real("base_velocity", 6, "m/s, rad/s", "base", "linear, angular"),
     )
     return ChannelSpec("/estimate", "Estimate", fields, estimate.__doc__ or "")
+
+
+def planner_state(_: Sizes) -> ChannelSpec:
+    """What the planner measured of the CoM and was given of it, every planner tick."""
+    fields = (
+        _real("measured_com", 3, "m", "world", "CoM with noise"),
+        _real("measured_com_velocity", 3, "m/s", "world", "CoM velocity with noise"),
+        _real("measured_zmp", 2, "m", "world", "ZMP with noise"),
+        _real("com", 3, "m", "world", "CoM that the planner was given"),
+        _real("com_velocity", 3, "m/s", "world", "CoM velocity that the planner was given"),
+        _real("com_acceleration", 2, "m/s^2", "world", "CoM acceleration of the filter; NaN without one"),
+        _real("innovation", 2, "-", "world", "normalised innovation squared of the filter; NaN without one"),
+    )
+    return ChannelSpec("/planner_state", "PlannerState", fields, planner_state.__doc__ or "")
 
 
 def contact(_: Sizes) -> ChannelSpec:

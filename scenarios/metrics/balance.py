@@ -106,16 +106,34 @@ def dcm_error_rms(run: RunView) -> list[float] | None:
 
 
 def estimation_error_rms(run: RunView) -> float | None:
-    """Distance of the estimated from the true CoM, RMS [m]."""
-    error = run.field("/estimate", "com") - run.field("/truth", "com")
+    """Distance of the CoM that the planner was given from the true one, RMS [m]."""
+    rows, given = _given(run)
+    error = run.log["/planner_state"].field("com")[given] - run.log["/truth"].field("com")[rows]
     value = rms(np.linalg.norm(error, axis=1)[:, None])
     return value[0] if value else None
+
+
+def dcm_estimation_error_rms(run: RunView) -> list[float] | None:
+    """DCM that the planner was given minus the true one, both by the planned frequency, RMS, x and y [m]."""
+    rows, given = _given(run)
+    state, truth = run.log["/planner_state"], run.log["/truth"]
+    omega = run.log["/reference"].field("omega")[rows, None]
+    position = state.field("com")[given, :2] - truth.field("com")[rows, :2]
+    velocity = state.field("com_velocity")[given, :2] - truth.field("com_velocity")[rows, :2]
+    return rms(position + velocity / omega)
 
 
 def rms(error: Array) -> list[float] | None:
     """Root mean square of each column over the rows that are finite; None when there is none."""
     sound = error[np.isfinite(error).all(axis=1)]
     return [float(value) for value in np.sqrt(np.mean(sound**2, axis=0))] if len(sound) else None
+
+
+def _given(run: RunView) -> tuple[Rows, Rows]:
+    """Rows of /truth and of /planner_state at the planner's measurements, of ticks that are whole."""
+    rows, near = run.rows_at("/truth", run.log["/planner_state"].time_ns)
+    given = np.flatnonzero(near & (rows < run.ticks))
+    return rows[given], given
 
 
 def _predictions(run: RunView) -> tuple[Rows, Array]:

@@ -16,6 +16,7 @@ KEPT: Mapping[str, tuple[str, ...]] = {
         "external_force",  # of the pendulum
     ),
     "/estimate": ("com",),
+    "/planner_state": ("com", "com_velocity"),
     "/contact": ("zmp", "normal_force", "planned", "felt", "cop_left", "cop_right"),
     "/reference": ("com_acceleration", "zmp_reference", "omega", "phase", "phase_duration", "stance", "step"),
     "/wbc": ("status", "solver", "fallback"),

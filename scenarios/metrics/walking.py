@@ -23,7 +23,7 @@ def fall_time(run: RunView) -> float | None:
     """First time at which the robot has fallen [s].
 
     A body: its CoM is low over the lower foot, its torso lies, or more than its feet touches. A pendulum: its DCM is
-    out of reach of any foot.
+    out of reach of any foot. A cart-table never falls.
     """
     fallen = np.flatnonzero(_lost(run) if run.constants.fidelity == "pendulum" else _lying(run))
     return float(run.time[fallen[0]]) if len(fallen) else None
@@ -148,7 +148,7 @@ def _lying(run: RunView) -> Mask:
 
 
 def _lost(run: RunView) -> Mask:
-    if not run.has("/contact", "/reference"):
+    if run.constants.plant == "cart_table" or not run.has("/contact", "/reference"):
         return np.zeros(run.ticks, dtype=np.bool_)
     omega = run.field("/reference", "omega")[:, None]
     dcm = run.field("/truth", "com")[:, :2] + run.field("/truth", "com_velocity")[:, :2] / omega

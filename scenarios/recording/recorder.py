@@ -54,7 +54,7 @@ class Recorder:
         self._at = places(vectors)
 
     def tick(
-        self, time_ns: int, measurement: Measurement, terms: RobotTerms, state: RobotState,
+        self, time_ns: int, measurement: Measurement, truth: RobotTerms, terms: RobotTerms, state: RobotState,
         reference: WbcReference, report: WbcReport, torque: Array,
     ) -> None:  # fmt: skip
         """A control tick: sensors and true state, contacts, what the controller was given and what it answered.
@@ -62,25 +62,26 @@ class Recorder:
         Args:
             time_ns: simulated time [ns].
             measurement: what the sensors say.
-            terms: of the true state.
-            state: what the controller was given.
+            truth: terms of the true robot in its true state.
+            terms: terms of the controller's robot model in the state that it was given.
+            state: that state.
             reference: what it shall do.
             report: what it did.
             torque: the torque commanded, shape (nj,) [N·m].
         """
-        m, r, com, velocity = measurement, report, terms.com, terms.com_velocity
+        m, r = measurement, report
         numbers = (
             m.nonfoot_contact, m.self_contact, *reference.planned_contact, *r.active, *r.felt,
-            r.status, r.iterations, r.primal_residual, r.dual_residual, reference.omega, terms.torso_rotation[2, 2],
+            r.status, r.iterations, r.primal_residual, r.dual_residual, reference.omega, truth.torso_rotation[2, 2],
         )  # fmt: skip
         self._row.append(
             time_ns, numbers,
             m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer,
             m.wrench.ravel(), m.external_force,
-            m.q, m.v, com, velocity, terms.angular_momentum, terms.sole_pose.ravel(),
-            com, velocity, state.q[:3], state.v[:6],
+            m.q, m.v, truth.com, truth.com_velocity, truth.angular_momentum, truth.sole_pose.ravel(),
+            terms.com, terms.com_velocity, state.q[:3], state.v[:6],
             r.acceleration, r.wrench.ravel(), r.task_error, torque,
-            terms.sole_rotation.ravel(),
+            truth.sole_rotation.ravel(),
         )  # fmt: skip
 
     def _derived(self, vectors: Array, numbers: Array) -> Array:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from planner.plan import WalkPlan
 from planner.sampling import PlanSample
-from planner.types import FeetState, Foot, Footstep, PlannedFootstep, SolverStatus
+from planner.types import CentroidalState, FeetState, Foot, Footstep, PlannedFootstep, SolverStatus
 from scenarios.log import LogWriter, channels
 from scenarios.log.channels import SUPPORT_VERTICES, Sizes
 
@@ -30,6 +30,26 @@ class TickTiming:
     tick: float
 
 
+@dataclass(frozen=True, slots=True)
+class PlannerState:
+    """What the planner measured, and what it was given; world frame.
+
+    Attributes:
+        measured: CoM as measured.
+        measured_zmp: ZMP as measured, shape (2,) [m].
+        given: CoM as estimated, which the planner gets.
+        acceleration: its estimated acceleration, which the planner does not get, since it keeps the one that it has
+            planned; NaN without a filter, shape (2,) [m/s^2].
+        innovation: normalised innovation squared of the filter, by axis; NaN without a filter, shape (2,) [-].
+    """
+
+    measured: CentroidalState
+    measured_zmp: Array
+    given: CentroidalState
+    acceleration: Array
+    innovation: Array
+
+
 class WalkRecorder:
     """The channels of planner and clock."""
 
@@ -41,12 +61,21 @@ class WalkRecorder:
         )
         numbers = ("omega", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
         self._reference = writer.rows(((reference, vectors),), ((reference, numbers),))
+        self._state = writer.channel(channels.planner_state(sizes))
         self._plan = writer.channel(channels.plan(sizes))
         self._footsteps = writer.channel(channels.footsteps(sizes))
         self._footstep = writer.channel(channels.footstep(sizes))
         timing = writer.channel(channels.timing(sizes))
         self._timing = writer.rows((), ((timing, [field.name for field in timing.spec.fields]),))
         self._support = np.zeros((SUPPORT_VERTICES, 2))
+
+    def planner_state(self, time_ns: int, state: PlannerState) -> None:
+        """What the planner measured and was given."""
+        measured, given = state.measured, state.given
+        self._state.append(
+            time_ns, measured.com, measured.com_velocity, state.measured_zmp,
+            given.com, given.com_velocity, state.acceleration, state.innovation,
+        )  # fmt: skip
 
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
         """A new plan with its horizon and footsteps."""

@@ -13,7 +13,10 @@ from scenarios.log import ChannelData, FieldSpec, Log
 WALL_CLOCK = ("/timing",)
 """Topics that differ between any two runs."""
 
-_CHAIN = ("/truth", "/measurement", "/contact", "/estimate", "/plan", "/footsteps", "/reference", "/wbc", "/torque")
+_CHAIN = (
+    *("/truth", "/measurement", "/contact", "/estimate", "/planner_state"),
+    *("/plan", "/footsteps", "/reference", "/wbc", "/torque"),
+)
 """The way through a tick: of channels that part at the same time, the first is nearest to the cause."""
 
 

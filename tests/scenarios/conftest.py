@@ -118,7 +118,7 @@ class _Loop:
         com = self.com(times) - np.array(self.motion.plan_offset)
         velocity = np.zeros((51, 3))
         velocity[:, 0] = np.where((times >= 0.5 - 1e-9) & (times < 1.5 - 1e-9), self.motion.speed, 0.0)
-        status = (0, [0, 0], 0)
+        status = (0, [0, 0], 0, 0)
         flat = np.zeros((51, 2))
         self.out["plan"].append(ns, com, velocity, flat, flat, np.zeros((50, 2)), np.full(51, 3.13), *status)
 

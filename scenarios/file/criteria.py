@@ -62,7 +62,13 @@ BODY_METRICS = (
 TIMED = ("planner_time", "wbc_time")
 """Metrics that are a median and a 99th percentile."""
 
-ELEMENTS = {"zmp_error_rms": 2, "zmp_error_max": 2, "com_error_rms": 3, "dcm_error_rms": 2, "dcm_estimation_error_rms": 2}
+ELEMENTS = {
+    "zmp_error_rms": 2,
+    "zmp_error_max": 2,
+    "com_error_rms": 3,
+    "dcm_error_rms": 2,
+    "dcm_estimation_error_rms": 2,
+}
 """Number of elements of the list-valued metrics."""
 
 BOUNDABLE = tuple(

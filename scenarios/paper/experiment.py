@@ -14,6 +14,10 @@ WORLD_SETTINGS: dict[World, tuple[str, ...]] = {
 }
 
 
+PROFILE_SETTINGS: dict[str, tuple[str, ...]] = {"paper": ("planner.step_adaptation=none",)}
+"""Printed as it is, the paper's step law steps on the DCM and the walk stops; a study of the law sets it again."""
+
+
 @dataclass(frozen=True, slots=True)
 class Study:
     """A scenario of the paper, or one that answers what the paper leaves open.
@@ -71,6 +75,7 @@ class Experiment:
             f"name={self.name}",
             *WORLD_SETTINGS[self.world],
             f"planner.profile={self.profile}",
+            *PROFILE_SETTINGS.get(self.profile, ()),
             *self.study.settings,
             f"seed={self.seed}",
         )

@@ -40,7 +40,14 @@ def tables(results: Results) -> dict[str, tuple[Table, ...]]:
     def balance(name: str, *chosen: Study) -> Table:
         return balance_table(name, results.samples(chosen))
 
-    plain = (studies.WALK, studies.BRISK_WALK, *studies.STAIRS, studies.BRISK_STAIRS)
+    plain = (
+        studies.WALK,
+        studies.WIDE_WALK,
+        studies.STEP_LAW,
+        studies.BRISK_WALK,
+        *studies.STAIRS,
+        studies.BRISK_STAIRS,
+    )
     return {
         "profiles": (balance("profiles-table", *plain),),
         "noise": (balance("noise-table", studies.NOISE_WALK, studies.NOISE_STAIRS, studies.ZMP_ONLY),),

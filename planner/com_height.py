@@ -1,6 +1,13 @@
-"""Vertical CoM motion: the paper's profile (eq. z_traj), made twice continuously differentiable."""
+"""Vertical CoM motion: the paper's profile (eq. z_traj), a smooth one, and one that legs can follow on stairs.
 
+A profile has two parts: the base level, which changes from support to support, and the bumps above it. On stairs the
+paper changes the level in double support, where the rear foot stands a riser below the front one and the CoM is
+already over the front foot: the rear leg is then too short. So there are two places for the rise, see `Rise`.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 from typing import Protocol
 
 import numpy as np
@@ -13,26 +20,74 @@ from planner.types import GRAVITY, Array, PhaseKind
 _FALL_LIMIT = 0.8
 """Downward CoM acceleration that a plan may ask for, as a share of gravity: beyond it the feet hardly press [-]."""
 
+_IMPULSE_LIMIT = 0.95
+"""The same where one-sample impulses of a height with velocity jumps are cut off [-]."""
+
 _LEAST_HEIGHT = 0.1
 """Height over the ZMP that the pendulum never goes below [m]."""
+
+_RISE_SHARE = 0.8
+"""Share of single support in which the level changes [-]."""
+
+BENT_KNEES = 0.08
+"""How much lower than stretched knees carry it bent ones carry the CoM [m]."""
+
+
+class Rise(Enum):
+    """Where the base level of the CoM changes.
+
+    DOUBLE, as in the paper: from the height of one support point to that of the next, while the ZMP moves.
+    SINGLE: the level of a double support is that of the lower of its two feet, so that both legs reach the ground; it
+    is changed in the single support before, on the new foot when going up and above the foot left behind when going
+    down.
+    """
+
+    DOUBLE = "double"
+    SINGLE = "single"
 
 
 @dataclass(frozen=True, slots=True)
 class HeightShape:
     """CoM height of a whole walk, before the heights of the footholds are known.
 
-    At sample k the CoM is at `base + rise[0, k] * step + bump[0, k]` over the support point `index[k]`, where `base` is
-    that support's height and `step` the difference to the next one's.
+    At sample k the CoM is at `level[i] + rise[0, k] * (level[i + 1] - level[i]) + bump[0, k]` with i = `index[k]`.
 
     Attributes:
-        index: support point that the base leaves, shape (K,).
-        rise: share of the height step done, and its first and second derivative [1/s, 1/s^2], shape (3, K).
+        index: base level that the CoM leaves, shape (K,).
+        rise: share of the change to the next level done, its first and second derivative, shape (3, K) [-, 1/s, 1/s^2].
         bump: height above the base, and its first and second derivative, shape (3, K) [m, m/s, m/s^2].
+        levels: makes the base levels of the heights of the support points, both of shape (n + 2,) [m].
+        impulsive: whether the velocity jumps, which the second derivative then has as impulses of one sample.
     """
 
     index: NDArray[np.intp]
     rise: Array
     bump: Array
+    levels: Callable[[Array], Array]
+    impulsive: bool = False
+
+    def height(self, window: slice, support_height: Array) -> Array:
+        """z, z', z'' in the world frame over a window, shape (3, n) [m, m/s, m/s^2].
+
+        Args:
+            window: samples.
+            support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
+        """
+        levels, index = self.levels(support_height), self.index[window]
+        step = np.append(np.diff(levels), 0.0)[index]
+        height = self.bump[:, window] + self.rise[:, window] * step
+        height[0] += levels[index]
+        return np.asarray(height)
+
+
+def own_levels(support_height: Array) -> Array:
+    """Base levels of `Rise.DOUBLE`: the heights of the support points, shape (n + 2,) [m]."""
+    return support_height
+
+
+def lower_levels(support_height: Array) -> Array:
+    """Base levels of `Rise.SINGLE`: the lower foot of each double support 0..n, and the last one again [m]."""
+    return np.append(np.minimum(support_height[:-1], support_height[1:]), support_height[-1])
 
 
 class HeightProfile(Protocol):
@@ -44,22 +99,93 @@ class HeightProfile(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class SmoothHeight:
-    """C² height: a bump of A sin³ in each support phase, and a quintic rise to the next support in double support.
+    """C² height: a bump of A sin³ in each support phase, and a quintic change of level.
 
     The paper's A sin and its linear rise jump in velocity at every phase change, which asks for a ZMP that no foot
     has; sin³ and the quintic reach the same heights with continuous z, z', z''.
+
+    Attributes:
+        rise: where the level changes.
     """
+
+    rise: Rise = Rise.DOUBLE
 
     def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
         """The height of the whole walk (see `HeightProfile`)."""
-        rise = quintic_rise(schedule.fraction, schedule.fraction_rate)
-        bump = np.zeros_like(rise)
+        bump = np.zeros((3, len(schedule.index)))
         bump[0] = gait.com_height
         for phase in schedule.phases:
             amplitude = {PhaseKind.SINGLE: gait.apex_ss, PhaseKind.DOUBLE: gait.apex_ds}.get(phase.kind, 0.0)
             if amplitude:
                 bump[:, phase.start : phase.end] += _sine_cubed(phase, amplitude, schedule.sample_time)
-        return HeightShape(schedule.index, rise, bump)
+        return _on_levels(self.rise, schedule, bump)
+
+
+@dataclass(frozen=True, slots=True)
+class BentKneeHeight:
+    """Constant height over the level, `BENT_KNEES` below the gait's: the crouched gait of most humanoids.
+
+    Attributes:
+        rise: where the level changes.
+    """
+
+    rise: Rise = Rise.DOUBLE
+
+    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
+        """The height of the whole walk (see `HeightProfile`)."""
+        bump = np.zeros((3, len(schedule.index)))
+        bump[0] = gait.com_height - BENT_KNEES
+        return _on_levels(self.rise, schedule, bump)
+
+
+@dataclass(frozen=True, slots=True)
+class PaperHeight:
+    """The paper's height as printed (eq. z_traj): A sin in each support phase, a linear rise in double support.
+
+    Two things are mended, without which the equation means nothing over more than one step: z_c0 goes up by Δz_c with
+    every step, and t begins anew with every step and phase. Its velocity jumps at each phase change stay: z' and z''
+    are central differences at the sample time, so that z'' carries the jumps as impulses of one sample, some of which
+    ask for more than free fall (steps of 0.15 m in 0.5 s at 50 Hz do). λ is kept positive there. Taking the analytic
+    z'' instead, which ignores the jumps, would leave a λ that stairs do not change at all.
+    """
+
+    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
+        """The height of the whole walk (see `HeightProfile`)."""
+        t = schedule.sample_time
+        bump = np.full(len(schedule.index), gait.com_height)
+        for phase in schedule.phases:
+            amplitude = {PhaseKind.SINGLE: gait.apex_ss, PhaseKind.DOUBLE: gait.apex_ds}.get(phase.kind, 0.0)
+            if amplitude:
+                bump[phase.start : phase.end] += amplitude * np.sin(np.pi * np.arange(phase.samples) / phase.samples)
+        # Where a rise has just ended its slope still counts: that sample belongs to the level that was left.
+        ended = np.diff(schedule.index, prepend=0) > 0
+        index, done = schedule.index - ended, schedule.index + schedule.fraction
+        rise = _differences(done, t)
+        rise[0] = done - index
+        return HeightShape(index, rise, _differences(bump, t), own_levels, impulsive=True)
+
+
+def _differences(values: Array, sample_time: float) -> Array:
+    """Values and their first and second central differences, at rest beyond both ends, shape (3, K)."""
+    padded = np.pad(values, 1, mode="edge")
+    slope = (padded[2:] - padded[:-2]) / (2.0 * sample_time)
+    return np.stack((values, slope, (padded[2:] - 2.0 * values + padded[:-2]) / sample_time**2))
+
+
+def _on_levels(place: Rise, schedule: Schedule, bump: Array) -> HeightShape:
+    """A shape with quintic changes of level at a place."""
+    if place is Rise.DOUBLE:
+        rise = quintic_rise(schedule.fraction, schedule.fraction_rate)
+        return HeightShape(schedule.index, rise, bump, own_levels)
+    index, rise = np.empty_like(schedule.index), np.zeros_like(bump)
+    for phase in schedule.phases:
+        span = slice(phase.start, phase.end if phase.samples else None)
+        index[span] = phase.step - 1 if phase.kind is PhaseKind.SINGLE else phase.step
+        if phase.kind is PhaseKind.SINGLE:
+            share = np.arange(phase.samples) / (_RISE_SHARE * phase.samples)
+            rate = np.where(share < 1.0, 1.0 / (_RISE_SHARE * phase.samples * schedule.sample_time), 0.0)
+            rise[:, span] = quintic_rise(np.minimum(share, 1.0), rate)
+    return HeightShape(index, rise, bump, lower_levels)
 
 
 def quintic_rise(fraction: Array, rate: Array) -> Array:
@@ -114,12 +240,9 @@ def preview_height(
         support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
         zmp_height: height of the ground under the ZMP reference over the window, shape (count,) [m].
     """
-    window = slice(start, start + count)
-    index = shape.index[window]
-    step = np.append(np.diff(support_height), 0.0)[index]
-    height = shape.bump[:, window] + shape.rise[:, window] * step
-    height[0] += support_height[index]
-    pressing = np.maximum(GRAVITY + height[2], (1.0 - _FALL_LIMIT) * GRAVITY)
+    height = shape.height(slice(start, start + count), support_height)
+    limit = _IMPULSE_LIMIT if shape.impulsive else _FALL_LIMIT
+    pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
     return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT))
 
 
@@ -132,17 +255,19 @@ def check_height(shape: HeightShape, schedule: Schedule, support_height: Array) 
         support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
 
     Raises:
-        ValueError: names the acceleration or the height that is out of bounds.
+        ValueError: names the acceleration or the height that is out of bounds. The impulses of an impulsive shape last
+            a sample and depend on its length; they are not refused.
     """
     step = np.append(np.diff(support_height), 0.0)[schedule.index]
     ground = support_height[schedule.index] + schedule.fraction * step
-    height = preview_height(shape, 0, len(ground), support_height, ground).height
+    height = shape.height(slice(0, len(ground)), support_height)
     lowest = float(np.min(height[0] - ground))
     if lowest <= 0.0:
         raise ValueError(f"The CoM comes within {lowest:.2f} m of the ground under it, but it must stay above it.")
     fall = float(np.min(height[2]))
-    if fall < -_FALL_LIMIT * GRAVITY:
+    if fall < -_FALL_LIMIT * GRAVITY and not shape.impulsive:
+        name = "double" if shape.levels is own_levels else "single"
         raise ValueError(
             f"The CoM height falls off with {fall:.1f} m/s^2, but {-_FALL_LIMIT * GRAVITY:.1f} m/s^2 is the limit:"
-            " the height step between two footsteps needs a longer gait.double_support."
+            f" the height step between two footsteps needs a longer gait.{name}_support."
         )

@@ -1,4 +1,4 @@
-"""The sequence of footsteps, kept as increments so that a step landed elsewhere shifts all that follow."""
+"""The sequence of footsteps: on level ground a step landed elsewhere shifts all that follow, on treads none."""
 
 from dataclasses import dataclass, replace
 
@@ -41,16 +41,20 @@ class FootstepPlan:
     def moved(self, row: int, position: Array, terrain: Terrain) -> "FootstepPlan":
         """The plan with one foothold somewhere else and its successors at their nominal increments from it.
 
+        Where the ground has edges the successors stay on the treads that were chosen for them.
+
         Args:
             row: the row that moves.
             position: its new sole centre in the world frame, shape (3,) [m].
-            terrain: gives the heights of the shifted successors.
+            terrain: gives the heights of the shifted successors, or keeps them where they are.
         """
         moved = self.position.copy()
         moved[row] = position
+        if terrain.boxes:
+            return replace(self, position=moved)
         following = position[:2] + np.cumsum(self.increment[row + 1 :], axis=0)
         moved[row + 1 :, :2] = following
-        moved[row + 1 :, 2] = [terrain.height(float(x), float(y)) for x, y in following]
+        moved[row + 1 :, 2] = terrain.heights(following)
         return replace(self, position=moved)
 
     def support_points(self) -> Array:
@@ -86,7 +90,7 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
             path = path + frame_rotation(0.5 * (yaw[row - 1] + yaw[row])) @ (gait.step_length, gait.lateral_step)
         side = 0.5 * gait.step_width * (1.0 if rows[row] is Foot.LEFT else -1.0)
         position[row, :2] = path + frame_rotation(yaw[row]) @ (0.0, side)
-        position[row, 2] = terrain.height(float(position[row, 0]), float(position[row, 1]))
+    position[2:, 2] = terrain.heights(position[2:, :2])
     increment = np.zeros((n + 2, 2))
     increment[1:] = np.diff(position[:, :2], axis=0)
     return FootstepPlan(rows, position, yaw, increment)

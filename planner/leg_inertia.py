@@ -6,21 +6,23 @@ sole r_k, the angular momentum about the CoM is L = Σ μ m (r_k - c) x (r_k' - 
 (c - p) x m (c'' + g e_z) + L' = 0, gives per horizontal axis (with h = c_z - p_z, λ = (g + z'') / h, the other sole at
 rest)
 
-    p = c - (1 + 2 μ) c'' / λ + o,      o = (μ / λ) [ a + (r + ℓ - p_ref) a_z / h ],
+    p = c - (1 + 2 μ) c'' / λ + o,      o = (μ / λ) [ a (c_z - r_z) / h + (r + ℓ - p_ref) a_z / h ],
 
-where r and a are position and acceleration of the swing sole, and ℓ, ahead of the sole, stands for the knee, which
-moves forward when the sole moves up. Terms in z'' times μ are left out, and the CoM stands over p_ref in the small last
-term. So the motion is again a pendulum c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP less the known
-offset o. (Multi-mass ZMP models: Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
+where r and a are position and acceleration of the swing sole, r_z its height, and ℓ, ahead of the sole, stands for the
+knee, which moves forward when the sole moves up. Terms in z'' times μ are left out, and the CoM stands over p_ref in
+the small last term. So the motion is again a pendulum c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP
+less the known offset o.
+(Multi-mass ZMP models: Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.clearance import SwingCourse
 from planner.footsteps import FootstepPlan
-from planner.gait import GaitParameters
 from planner.parameters import LegInertia, PlannerParameters
 from planner.schedule import Schedule
 from planner.swing import SwingTrajectory, start_swing, swing_times
@@ -40,27 +42,33 @@ class SwingShape:
         row: row of the stance foot of the sample's swing, shape (K,).
         progress: share of the step done, shape (K,).
         acceleration: its second derivative, shape (K,) [1/s^2].
-        vertical: vertical acceleration of the swing sole on level ground, shape (K,) [m/s^2].
+        height: height of the swing sole above its lift-off, shape (K,) [m].
+        vertical: its second derivative, shape (K,) [m/s^2].
     """
 
     row: NDArray[np.intp]
     progress: Array
     acceleration: Array
+    height: Array
     vertical: Array
 
 
-def swing_shape(gait: GaitParameters, schedule: Schedule, parameters: PlannerParameters) -> SwingShape:
-    """Tabulate the swings of a schedule."""
+def swing_shape(
+    schedule: Schedule, footsteps: FootstepPlan, courses: Sequence[SwingCourse], parameters: PlannerParameters
+) -> SwingShape:
+    """Tabulate the swings of a schedule to nominal footsteps, each on its course."""
     count = len(schedule.phase_index)
     rows = np.zeros(count, dtype=np.intp)
-    values = np.zeros((3, count))
-    table: Array | None = None
+    values = np.zeros((4, count))
+    tables: dict[tuple[int, float, SwingCourse], Array] = {}
     for phase in schedule.phases:
         if phase.kind is PhaseKind.SINGLE:
-            if table is None:
-                table = _unit_swing(gait, phase.samples, parameters)
+            climb = float(footsteps.position[phase.step + 1, 2] - footsteps.position[phase.step - 1, 2])
+            key = (phase.samples, round(climb, 6), courses[phase.step - 1])
+            if key not in tables:
+                tables[key] = _unit_swing(*key, parameters)
             rows[phase.start : phase.end] = phase.step
-            values[:, phase.start : phase.end] = table
+            values[:, phase.start : phase.end] = tables[key]
     return SwingShape(rows, *values)
 
 
@@ -81,7 +89,7 @@ def zmp_offset(
         footsteps: footholds in the world frame.
         frame: the plan frame's rotation to the world, shape (2, 2), and origin, shape (2,) [m].
         window: samples.
-        reference: ZMP reference, shape (n, 2) [m].
+        reference: ZMP reference, x, y in the plan frame and height, shape (n, 3) [m].
         stiffness: λ of the point-mass pendulum, shape (n,) [1/s^2].
         height: CoM height over the ZMP, shape (n,) [m].
         leg: the reduced leg.
@@ -96,16 +104,18 @@ def zmp_offset(
     step = points.take(np.minimum(row + 1, len(points) - 1), axis=0) - lift
     sole = lift + shape.progress[window, None] * step
     sole[:, 0] += leg.lever
+    above = footsteps.position[:, 2].take(np.maximum(row - 1, 0)) + shape.height[window] - reference[:, 2]
+    lever = (shape.acceleration[window] * (1.0 - above / height))[:, None]
     lift_rate = (shape.vertical[window] / height)[:, None]
-    moving = shape.acceleration[window, None] * step + lift_rate * (sole - reference)
+    moving = lever * step + lift_rate * (sole - reference[:, :2])
     return np.asarray((leg.mass_ratio / stiffness)[:, None] * moving)
 
 
-def _unit_swing(gait: GaitParameters, samples: int, parameters: PlannerParameters) -> Array:
-    """Progress, its second derivative and vertical acceleration at the samples of a swing, shape (3, samples)."""
-    times = swing_times(0.0, samples, parameters)
+def _unit_swing(samples: int, climb: float, course: SwingCourse, parameters: PlannerParameters) -> Array:
+    """Progress, its second derivative, height and vertical acceleration at the samples of a swing, (4, samples)."""
+    times = swing_times(0.0, samples, course, parameters)
     swing: SwingTrajectory = start_swing(
-        Foot.LEFT, np.zeros(4), np.array([1.0, 0.0, 0.0, 0.0]), times, gait.swing_height, parameters
+        Foot.LEFT, np.zeros(4), np.array([1.0, 0.0, climb, 0.0]), times, course.height, parameters
     )
     states = [swing.evaluate(k * parameters.sample_time) for k in range(samples)]
-    return np.array([(s[0, 0], s[2, 0], s[2, 2]) for s in states]).T
+    return np.array([(s[0, 0], s[2, 0], s[0, 2], s[2, 2]) for s in states]).T

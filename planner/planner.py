@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from planner.com_height import HeightProfile, check_height
+from planner.clearance import swing_courses
+from planner.com_height import HeightProfile, SmoothHeight, check_height
 from planner.constraints import StepContext, check_reach
 from planner.footsteps import FootstepPlan, plan_footsteps
 from planner.frames import wrap_angle
@@ -44,7 +45,7 @@ class WalkingPlanner:
         foot_width: width of the sole [m].
         terrain: what the planner believes about the ground.
         parameters: the planner's own parameters; those of the profile by default.
-        height_profile: vertical CoM motion; that of the profile by default.
+        height_profile: vertical CoM motion; that of the profile, or else the smooth one, by default.
         profile: formulation of the planner; the robust one by default.
 
     Attributes:
@@ -54,8 +55,8 @@ class WalkingPlanner:
         motion: the law's answer of the last tick, with the QPs that it solved; None before the first.
 
     Raises:
-        ValueError: a duration is no multiple of the sample time, a footstep is out of reach, or the CoM would fall
-            almost freely.
+        ValueError: a duration is no multiple of the sample time, a footstep is out of reach, the CoM would fall
+            almost freely, or no swing clears the edges before a footstep.
     """
 
     def __init__(
@@ -80,13 +81,14 @@ class WalkingPlanner:
         self.schedule = schedule(gait, p.sample_time, p.horizon + p.preview)
         footsteps = plan_footsteps(gait, feet, terrain)
         check_reach(footsteps, p)
-        shape = (height_profile or profile.height).shape(gait, self.schedule)
+        shape = (height_profile or profile.height or SmoothHeight()).shape(gait, self.schedule)
         check_height(shape, self.schedule, footsteps.support_points()[:, 2])
-        swings = swing_shape(gait, self.schedule, p)
+        self._courses = swing_courses(footsteps, terrain, self._half_size, gait.swing_height, p)
+        swings = swing_shape(self.schedule, footsteps, self._courses, p)
         self._stepper = Stepper(self.schedule, footsteps, terrain, p)
         self._outlook = Outlook(self.schedule, shape, swings, p.leg, p.horizon + p.preview + 1)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
-        self._law = profile.law(p, gait)
+        self._law = profile.law(p, float(shape.bump[0, 0]))
         self._support: Support | None = None
         self._swing: SwingTrajectory | None = None
         self._plan: WalkPlan | None = None
@@ -179,8 +181,9 @@ class WalkingPlanner:
         if self._swing is None:
             yaw = float(stepper.footsteps.yaw[stepper.row - 1])
             pose = np.append(feet.position[foot], yaw + wrap_angle(float(feet.yaw[foot]) - yaw))
-            times = swing_times(time, phase.samples, self.parameters)
-            self._swing = start_swing(foot, pose, target, times, self.gait.swing_height, self.parameters)
+            course = self._courses[phase.step - 1]
+            times = swing_times(time, phase.samples, course, self.parameters)
+            self._swing = start_swing(foot, pose, target, times, course.height, self.parameters)
             return
         decided = stepper.fixed or solver is SolverStatus.HELD
         if not decided and np.abs(target - self._swing.target).max() > _SAME_TARGET:

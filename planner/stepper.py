@@ -41,7 +41,7 @@ class Stepper:
         self.early = False
         self.fixed = False
         self._terrain = terrain
-        self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION
+        self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and not terrain.boxes
         self._patience = round(parameters.late_touchdown / parameters.sample_time)
         self._touchdown = [phase.end for phase in schedule.phases if phase.kind is PhaseKind.SINGLE]
 

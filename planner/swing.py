@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from planner.clearance import SwingCourse
 from planner.parameters import PlannerParameters
 from planner.polynomial import quintic, shifted
 from planner.types import Array, Foot
@@ -11,23 +12,28 @@ from planner.types import Array, Foot
 _NOW = 1e-9
 """Times of ticks carry rounding; a piece begins this much early [s]."""
 
+_LEAST_GLIDE = 0.1
+"""A new target is reached by touchdown instead of by the end of the glide when less than this is left of it [s]."""
+
 
 @dataclass(frozen=True, slots=True)
 class SwingTrajectory:
     """Motion of a swing foot; columns are x, y, z [m] and yaw [rad] in the world frame.
 
     x, y and yaw are one quintic from the state at the last change of target to rest at the target, so that an unchanged
-    target is continued identically. z is one quintic up to the apex and one down to the touchdown height, joined with
-    continuous acceleration. After the touchdown time x, y, yaw hold and z goes on downwards from the touchdown speed,
-    gaining speed up to the search speed: a jump in speed there would shake the ZMP of the stance foot.
+    target is continued identically; before and after this glide they rest. z is one quintic up to the apex and one down
+    to the touchdown height, joined with continuous acceleration. After the touchdown time x, y, yaw hold and z goes on
+    downwards from the touchdown speed, gaining speed up to the search speed: a jump in speed there would shake the ZMP
+    of the stance foot.
 
     Attributes:
         foot: the foot that swings.
-        start_time: local time zero of x, y, yaw [s].
+        start_time: local time zero of x, y, yaw, before which they rest [s].
+        glide_end: when x, y, yaw come to rest [s].
         apex_time: when the sole is highest [s].
         touchdown_time: when it is planned to land [s].
         target: touchdown position and yaw, shape (4,).
-        clearance: swing height above the higher of lift-off and touchdown [m].
+        clearance: height of the apex above the higher of lift-off and touchdown [m].
         touchdown_speed: downward speed at touchdown [m/s].
         search_speed: greatest downward speed after it [m/s].
         search_acceleration: at which that speed is gained [m/s^2].
@@ -40,6 +46,7 @@ class SwingTrajectory:
 
     foot: Foot
     start_time: float
+    glide_end: float
     apex_time: float
     touchdown_time: float
     target: Array
@@ -54,14 +61,19 @@ class SwingTrajectory:
     fall: Array
 
     def coefficients(self, time: float) -> Array:
-        """Polynomials in the local time from `time` on, valid until the next apex or touchdown, shape (6, 4)."""
+        """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 4)."""
         result = np.zeros((6, 4))
         if time >= self.touchdown_time - _NOW:
             result[0] = self.target
             result[:3, 2] = self._search(time - self.touchdown_time)
             return result
-        level = shifted(self.level, time - self.start_time)
-        result[:, :2], result[:, 3] = level[:, :2], level[:, 2]
+        if time >= self.glide_end - _NOW:
+            result[0] = self.target
+        elif time >= self.start_time - _NOW:
+            level = shifted(self.level, time - self.start_time)
+            result[:, :2], result[:, 3] = level[:, :2], level[:, 2]
+        else:
+            result[0, :2], result[0, 3] = self.level[0, :2], self.level[0, 2]
         if time >= self.apex_time - _NOW:
             result[:, 2] = shifted(self.fall, time - self.fall_start)[:, 0]
         else:
@@ -90,8 +102,10 @@ class SwingTrajectory:
             target: new touchdown position and yaw, shape (4,).
         """
         state = self.evaluate(time)
-        level = _to_rest(state[:, [0, 1, 3]], target[[0, 1, 3]], self.touchdown_time - time)
-        moved = replace(self, start_time=time, level=level, target=np.array(target))
+        start = max(time, self.start_time)
+        end = self.glide_end if time < self.glide_end - _LEAST_GLIDE else self.touchdown_time
+        level = _to_rest(state[:, [0, 1, 3]], target[[0, 1, 3]], end - start)
+        moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target))
         if target[2] == self.target[2]:
             return moved
         if time < self.apex_time - _NOW:
@@ -104,20 +118,37 @@ class SwingTrajectory:
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 
 
-def swing_times(start: float, samples: int, parameters: PlannerParameters) -> tuple[float, float, float]:
-    """Lift-off, apex and touchdown [s] of a swing in a single support of so many samples that begins at `start`."""
+@dataclass(frozen=True, slots=True)
+class SwingTimes:
+    """Instants of a swing, on the planner's clock except the touchdown [s].
+
+    Attributes:
+        lift: the foot leaves the ground.
+        glide_start: it begins to move horizontally.
+        apex: it is highest.
+        glide_end: it has stopped to move horizontally.
+        touchdown: it is planned to land.
+    """
+
+    lift: float
+    glide_start: float
+    apex: float
+    glide_end: float
+    touchdown: float
+
+
+def swing_times(start: float, samples: int, course: SwingCourse, parameters: PlannerParameters) -> SwingTimes:
+    """Times [s] of a swing in a single support of so many samples that begins at `start`."""
     t = parameters.sample_time
-    lead = min(parameters.touchdown_lead, 0.25 * samples * t)
-    return start, start + round(parameters.apex_share * samples) * t, start + samples * t - lead
+    touchdown = start + samples * t - min(parameters.touchdown_lead, 0.25 * samples * t)
+    glide_start, apex, glide_end = (
+        start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
+    )
+    return SwingTimes(start, glide_start, apex, min(glide_end, touchdown), touchdown)
 
 
 def start_swing(
-    foot: Foot,
-    pose: Array,
-    target: Array,
-    times: tuple[float, float, float],
-    clearance: float,
-    parameters: PlannerParameters,
+    foot: Foot, pose: Array, target: Array, times: SwingTimes, clearance: float, parameters: PlannerParameters
 ) -> SwingTrajectory:
     """Swing from rest.
 
@@ -125,30 +156,30 @@ def start_swing(
         foot: the foot that swings.
         pose: lift-off position and yaw, shape (4,).
         target: touchdown position and yaw, shape (4,).
-        times: lift-off, apex and touchdown [s].
-        clearance: swing height above the higher of both ends [m].
+        times: of the swing.
+        clearance: height of the apex above the higher of both ends [m].
         parameters: give the speeds of touchdown and search.
     """
-    lift, apex, touchdown = times
     rest = np.zeros((3, 4))
     rest[0] = pose
     trajectory = SwingTrajectory(
         foot=foot,
-        start_time=lift,
-        apex_time=apex,
-        touchdown_time=touchdown,
+        start_time=times.glide_start,
+        glide_end=times.glide_end,
+        apex_time=times.apex,
+        touchdown_time=times.touchdown,
         target=np.array(target),
         clearance=clearance,
         touchdown_speed=parameters.touchdown_speed,
         search_speed=parameters.search_speed,
         search_acceleration=parameters.search_acceleration,
-        level=_to_rest(rest[:, [0, 1, 3]], target[[0, 1, 3]], touchdown - lift),
-        rise_start=lift,
+        level=_to_rest(rest[:, [0, 1, 3]], target[[0, 1, 3]], times.glide_end - times.glide_start),
+        rise_start=times.lift,
         rise=np.zeros((6, 1)),
-        fall_start=apex,
+        fall_start=times.apex,
         fall=np.zeros((6, 1)),
     )
-    return _with_height(trajectory, lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
+    return _with_height(trajectory, times.lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
 
 
 def _with_height(trajectory: SwingTrajectory, time: float, state: Array, apex: float) -> SwingTrajectory:

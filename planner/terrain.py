@@ -20,14 +20,21 @@ class Box:
     half_size: NDArray[np.float64]
     rotation: NDArray[np.float64]
 
-    def top_height(self, x: float, y: float) -> float | None:
-        """Height [m] of the top face above the world point (x, y), or None beside the box."""
+    def top(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The plane of the top face above or below world points.
+
+        Args:
+            points: x, y in the world frame, shape (k, 2) [m].
+
+        Returns:
+            Heights of the plane, shape (k,) [m]; distances of the points on it from the face's nearest edge, positive
+            on the face, shape (k,) [m].
+        """
         normal = self.rotation[:, 2]
         face = self.center + self.half_size[2] * normal
-        z = face[2] - (normal[0] * (x - face[0]) + normal[1] * (y - face[1])) / normal[2]
-        local = self.rotation.T @ (np.array([x, y, z]) - self.center)
-        inside = abs(local[0]) <= self.half_size[0] and abs(local[1]) <= self.half_size[1]
-        return float(z) if inside else None
+        z = face[2] - (points - face[:2]) @ normal[:2] / normal[2]
+        local = (np.column_stack((points, z)) - self.center) @ self.rotation[:, :2]
+        return z, np.min(self.half_size[:2] - np.abs(local), axis=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +51,40 @@ class Terrain:
 
     def height(self, x: float, y: float) -> float:
         """Ground height [m] at the world point (x, y)."""
-        tops = [top for box in self.boxes if (top := box.top_height(x, y)) is not None]
-        return max(tops, default=0.0)
+        return float(self.heights(np.array([[x, y]]))[0])
+
+    def heights(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Ground heights at world points x, y, shape (k, 2) [m]; shape (k,) [m]."""
+        highest = np.zeros(len(points))
+        for box in self.boxes:
+            top, inside = box.top(points)
+            highest = np.where(inside >= 0.0, np.maximum(highest, top), highest)
+        return highest
+
+    def edge_margins(self, centers: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Least distance of each sole's corners from the edge of the face that carries the sole's centre.
+
+        Negative when a corner is beyond the edge: it hangs over, or stands in a riser. On the ground plane the edges
+        are those of the boxes around; without any the distance is infinite.
+
+        Args:
+            centers: centres of soles in the world frame, x, y, shape (n, 2) [m].
+            corners: their corners, shape (n, k, 2) [m].
+
+        Returns:
+            Shape (n,) [m].
+        """
+        points, shape = corners.reshape(-1, 2), corners.shape[:2]
+        highest, margins = np.zeros(len(centers)), np.full(len(centers), np.inf)
+        for box in self.boxes:
+            height, inside = box.top(centers)
+            corner_inside = box.top(points)[1].reshape(shape)
+            on_plane = (highest == 0.0) & (inside < 0.0)
+            margins[on_plane] = np.minimum(margins, -corner_inside.max(axis=1))[on_plane]
+            carrying = (inside >= 0.0) & (height > highest)
+            highest[carrying] = height[carrying]
+            margins[carrying] = corner_inside.min(axis=1)[carrying]
+        return margins
 
 
 def flat(friction: float = 0.8) -> Terrain:

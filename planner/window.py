@@ -76,7 +76,7 @@ class Outlook:
             footsteps,
             (support.rotation, support.origin),
             slice(sample, sample + self.count),
-            reference.point,
+            np.column_stack((reference.point, reference.height)),
             height.stiffness,
             height.height[0] - reference.height,
             self.leg,

@@ -36,6 +36,7 @@ class RunConstants:
         position_upper: by joint [rad].
         terrain: kind of ground.
         plant: of fidelity pendulum.
+        boxes: the solids on the ground plane, each as centre, half sizes [m] and rotation to the world, row by row.
     """
 
     scenario: str
@@ -54,6 +55,7 @@ class RunConstants:
     position_upper: tuple[float, ...]
     terrain: str
     plant: str = "pendulum"
+    boxes: tuple[tuple[float, ...], ...] = ()
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""

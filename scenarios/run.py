@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from scenarios.constants import RECORD, RunConstants
 from scenarios.errors import LogError, ScenarioError, SetupError
+from scenarios.file.ground import true_terrain_of
 from scenarios.file.robots import describe
 from scenarios.file.schema import Scenario
 from scenarios.log import AttachedFile, LogWriter, read
@@ -110,6 +111,10 @@ def run_constants(scenario: Scenario, robot: "RobotDescription") -> RunConstants
         position_upper=tuple(float(value) for value in robot.position_upper),
         terrain=scenario.terrain.kind,
         plant=scenario.pendulum.plant,
+        boxes=tuple(
+            (*box.center.tolist(), *box.half_size.tolist(), *box.rotation.ravel().tolist())
+            for box in true_terrain_of(scenario).boxes
+        ),
     )
 
 

@@ -48,13 +48,14 @@ class TaskGains:
     """Feedback of each task: stiffness [1/s^2] and damping [1/s].
 
     Attributes:
-        orientation: of pelvis and torso.
+        orientation: of pelvis and torso; 40 / s^2 let a trunk fold at the waist whose mass sits 0.2 m higher than the
+            model says, more than 250 / s^2 pays for 1 degree of start noise with a ZMP at the edge.
         swing: of the swing foot, position and rotation.
         posture: of the joints towards the posture.
         angular_momentum: decay of the angular momentum [1/s].
     """
 
-    orientation: tuple[float, float] = (40.0, 13.0)
+    orientation: tuple[float, float] = (250.0, 32.0)
     swing: tuple[float, float] = (400.0, 40.0)
     posture: tuple[float, float] = (20.0, 9.0)
     angular_momentum: float = 3.0

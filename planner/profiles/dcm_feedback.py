@@ -3,7 +3,6 @@
 import numpy as np
 
 from planner.dcm import nominal_dcm
-from planner.gait import GaitParameters
 from planner.motion import Motion, MotionProblem
 from planner.parameters import PlannerParameters
 from planner.profiles.jerk_limit import limited
@@ -21,10 +20,10 @@ class DcmFeedback:
 
     Args:
         parameters: planner parameters.
-        gait: the walk.
+        com_height: CoM height over the ground, which it does not need [m].
     """
 
-    def __init__(self, parameters: PlannerParameters, gait: GaitParameters) -> None:
+    def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
         self._parameters = parameters
 
     def plan(self, problem: MotionProblem) -> Motion:

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from planner.constraints import generate_constraints
-from planner.gait import GaitParameters
 from planner.leg_inertia import softening
 from planner.motion import Motion, MotionProblem
 from planner.moves import block_moves
@@ -22,10 +21,10 @@ class FootstepTvmpc:
 
     Args:
         parameters: planner parameters.
-        gait: the walk.
+        com_height: CoM height over the ground, which it does not need [m].
     """
 
-    def __init__(self, parameters: PlannerParameters, gait: GaitParameters) -> None:
+    def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
         self._parameters = parameters
         self._prediction = predict(parameters.sample_time, block_moves(parameters.moves, parameters.horizon))
 
@@ -45,12 +44,12 @@ class ConstantHeightTvmpc:
 
     Args:
         parameters: planner parameters.
-        gait: the walk; gives the CoM height over the ground.
+        com_height: CoM height over the ground at rest, z_c [m].
     """
 
-    def __init__(self, parameters: PlannerParameters, gait: GaitParameters) -> None:
-        self._law = FootstepTvmpc(parameters, gait)
-        self._stiffness = softening(parameters.leg) * GRAVITY / gait.com_height
+    def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
+        self._law = FootstepTvmpc(parameters, com_height)
+        self._stiffness = softening(parameters.leg) * GRAVITY / com_height
 
     def plan(self, problem: MotionProblem) -> Motion:
         """See `MotionPlanner`."""

@@ -12,7 +12,6 @@ from collections.abc import Callable
 import numpy as np
 
 from planner.delta_u import build_hard_problem, softened
-from planner.gait import GaitParameters
 from planner.motion import Motion, MotionProblem
 from planner.moves import block_moves
 from planner.parameters import PlannerParameters
@@ -71,11 +70,11 @@ class HardTvmpc:
         return soft, solution.z, solution.attempt
 
 
-def paper_law(parameters: PlannerParameters, gait: GaitParameters) -> HardTvmpc:
+def paper_law(parameters: PlannerParameters, com_height: float) -> HardTvmpc:
     """The law of profile `paper`."""
     return HardTvmpc(parameters, paper_shift, terminal=False)
 
 
-def repaired_law(parameters: PlannerParameters, gait: GaitParameters) -> HardTvmpc:
+def repaired_law(parameters: PlannerParameters, com_height: float) -> HardTvmpc:
     """The law of profile `repaired`."""
     return HardTvmpc(parameters, corrected_shift, terminal=True)

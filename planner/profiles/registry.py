@@ -4,8 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from planner.com_height import HeightProfile, SmoothHeight
-from planner.gait import GaitParameters
+from planner.com_height import HeightProfile, PaperHeight
 from planner.motion import MotionPlanner
 from planner.moves import BLOCK_STARTS
 from planner.parameters import PlannerParameters
@@ -22,16 +21,16 @@ class Profile:
     Attributes:
         name: its name.
         parameters: its parameters; a user may change some of them.
-        height: its vertical CoM motion.
-        law: makes its law of motion for a walk.
+        law: makes its law of motion, from the parameters and the CoM height over the ground at rest [m].
         moves: whether it optimises moves of the jerk, whose number may be chosen.
+        height: vertical CoM motion that belongs to it; None for what the user chooses.
     """
 
     name: str
     parameters: PlannerParameters
-    height: HeightProfile
-    law: Callable[[PlannerParameters, GaitParameters], MotionPlanner]
+    law: Callable[[PlannerParameters, float], MotionPlanner]
     moves: bool
+    height: HeightProfile | None = None
 
 
 _PAPER = PlannerParameters(
@@ -50,12 +49,12 @@ PROFILES: Mapping[str, Profile] = MappingProxyType(
     {
         profile.name: profile
         for profile in (
-            Profile("default", PlannerParameters(), SmoothHeight(), FootstepTvmpc, moves=True),
-            Profile("paper", _PAPER, SmoothHeight(), paper_law, moves=True),
-            Profile("repaired", _REPAIRED, SmoothHeight(), repaired_law, moves=True),
-            Profile("lti", PlannerParameters(), SmoothHeight(), ConstantHeightTvmpc, moves=True),
-            Profile("preview", PlannerParameters(), SmoothHeight(), ZmpPreview, moves=False),
-            Profile("dcm", PlannerParameters(), SmoothHeight(), DcmFeedback, moves=False),
+            Profile("default", PlannerParameters(), FootstepTvmpc, moves=True),
+            Profile("paper", _PAPER, paper_law, moves=True, height=PaperHeight()),
+            Profile("repaired", _REPAIRED, repaired_law, moves=True),
+            Profile("lti", PlannerParameters(), ConstantHeightTvmpc, moves=True),
+            Profile("preview", PlannerParameters(), ZmpPreview, moves=False),
+            Profile("dcm", PlannerParameters(), DcmFeedback, moves=False),
         )
     }
 )

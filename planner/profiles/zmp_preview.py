@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from planner.gait import GaitParameters
 from planner.leg_inertia import softening
 from planner.motion import Motion, MotionProblem
 from planner.parameters import PlannerParameters
@@ -72,12 +71,12 @@ class ZmpPreview:
 
     Args:
         parameters: planner parameters.
-        gait: the walk; gives the CoM height over the ground.
+        com_height: CoM height over the ground at rest, z_c [m].
     """
 
-    def __init__(self, parameters: PlannerParameters, gait: GaitParameters) -> None:
+    def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
         self._parameters = parameters
-        self._stiffness = softening(parameters.leg) * GRAVITY / gait.com_height
+        self._stiffness = softening(parameters.leg) * GRAVITY / com_height
         self._gains = preview_gains(parameters.sample_time, self._stiffness, min(_PREVIEW, parameters.preview))
         self._summed = np.zeros(2)
 

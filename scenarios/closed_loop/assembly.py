@@ -10,8 +10,8 @@ from models.pinocchio import pinocchio_model
 from models.types import RobotDescription
 from planner.parameters import LegInertia
 from planner.planner import WalkingPlanner
-from planner.terrain import flat
 from scenarios.closed_loop.start_pose import Body, body_of, disturbed, feet_at, pressed, start_posture
+from scenarios.file.ground import terrain_of, true_terrain_of
 from scenarios.file.planner_setup import planner_parameters, walking_planner
 from scenarios.file.schema import BeliefErrors, Scenario
 from scenarios.file.timeline import push_time
@@ -53,11 +53,11 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
     Raises:
         ValueError: a part refuses its parameters, e.g. a start posture out of reach; one sentence says which and why.
     """
-    body, terrain = body_of(robot), flat(scenario.terrain.friction)
+    body, terrain = body_of(robot), terrain_of(scenario)
     posture = start_posture(scenario, body)
     q = pressed(disturbed(posture, scenario, body))
     actual = true_robot(scenario.errors, robot)
-    world = World(actual, terrain, scenario.rates.physics, pushes(scenario, robot))
+    world = World(actual, true_terrain_of(scenario), scenario.rates.physics, pushes(scenario, robot))
     world.reset(q, torque=standing_torque(body.model, body.frames, q))
     controller = WholeBodyController(
         model=body.model,

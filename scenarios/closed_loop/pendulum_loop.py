@@ -10,13 +10,14 @@ from planner.parameters import LegInertia
 from planner.pendulum import PointPush
 from planner.pendulum_walk import IdealFeet
 from planner.polygon import convex_hull, sole_corners
-from planner.terrain import flat
 from planner.types import CentroidalState, Foot, Footstep, PhaseInfo
 from scenarios.closed_loop.faults import FaultSchedule
 from scenarios.closed_loop.planner_state import PlannerSensing
 from scenarios.closed_loop.planning import Planning
 from scenarios.closed_loop.plants import plant
 from scenarios.closed_loop.ticks import RunFault, Watch, refusing, run_ticks
+from scenarios.file.ground import terrain_of
+from scenarios.file.height import start_com_height
 from scenarios.file.planner_setup import planner_parameters, square_stance, walking_planner
 from scenarios.file.schema import Scenario
 from scenarios.file.timeline import push_time, run_duration
@@ -55,7 +56,8 @@ class PendulumLoop:
         self._rate, self._height_error = rates.control, scenario.errors.com_height
         mass = robot.mass / scenario.errors.mass_scale
         self._half_size = 0.5 * np.array([robot.sole_length, robot.sole_width])
-        planner = walking_planner(scenario, robot, flat(), feet, planner_parameters(scenario, LegInertia()))
+        parameters = planner_parameters(scenario, LegInertia())
+        planner = walking_planner(scenario, robot, terrain_of(scenario), feet, parameters)
         sizes = Sizes(nj=0, nq=0, nv=0, horizon=planner.parameters.horizon)
         self._recorder = PendulumRecorder(writer, sizes, mass)
         self._walk_recorder = WalkRecorder(writer, sizes)
@@ -70,7 +72,7 @@ class PendulumLoop:
         self._feet = IdealFeet(feet)
         self._plant = plant(scenario.pendulum, mass, start_position(scenario), self._height_error)
         self._can_fall = scenario.pendulum.plant == "pendulum"
-        self._height, self._climb = scenario.gait.com_height, 0.0
+        self._height, self._climb = start_com_height(scenario), 0.0
         self._contacts, self._support = (False, False), np.zeros((0, 2))
 
     @property

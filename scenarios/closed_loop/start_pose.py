@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from models.pinocchio import pinocchio_model
 from models.types import RobotDescription
 from planner.types import FeetState
+from scenarios.file.ground import start_height
+from scenarios.file.height import standing_height
 from scenarios.file.planner_setup import square_stance
 from scenarios.file.schema import Scenario
 from wbc.ik import PostureIk, PostureTarget
@@ -64,11 +66,12 @@ def start_posture(scenario: Scenario, body: Body) -> Array:
     Raises:
         ValueError: if the legs cannot reach that stance.
     """
-    feet, start, height = square_stance(scenario), scenario.start, scenario.gait.com_height
-    target = PostureTarget(feet.position, feet.yaw, np.array([start.x, start.y, height]), start.yaw)
+    feet, start, height = square_stance(scenario), scenario.start, standing_height(scenario)
+    ground = start_height(scenario)
+    target = PostureTarget(feet.position, feet.yaw, np.array([start.x, start.y, ground + height]), start.yaw)
     robot = body.robot
     q = pin.neutral(body.model)
-    q[:3] = start.x, start.y, robot.leg_length
+    q[:3] = start.x, start.y, ground + robot.leg_length
     q[3:7] = 0.0, 0.0, math.sin(0.5 * start.yaw), math.cos(0.5 * start.yaw)
     q[7:] = robot.nominal_joint_positions
     result = body.ik(robot.nominal_joint_positions).solve(target, q)
@@ -99,7 +102,8 @@ def disturbed(q: Array, scenario: Scenario, body: Body) -> Array:
     offset[3:] = rng.uniform(-start.angle_noise, start.angle_noise, nv - 3)
     q = pin.integrate(body.model, q, offset)
     feet = feet_at(body, q)
-    soles = feet.position * np.array([1.0, 1.0, 0.0])
+    soles = feet.position.copy()
+    soles[:, 2] = start_height(scenario)
     result = body.ik(q[7:]).solve(PostureTarget(soles, feet.yaw), q)
     if not result.reached:
         raise ValueError(

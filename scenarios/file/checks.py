@@ -8,6 +8,7 @@ from scenarios.file.criteria import ELEMENTS
 from scenarios.file.reach import longest_step
 from scenarios.file.robots import RobotFacts, Robots
 from scenarios.file.schema import Gait, PushSettings, Scenario
+from scenarios.file.stair_checks import stair_problems
 from scenarios.file.walk_checks import FEWEST_SWING_SAMPLES, footstep_problems, swing_too_short, walk_problems
 
 
@@ -109,7 +110,7 @@ def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
         if body is not None and body not in facts.bodies:
             yield Problem(key, f"unknown body '{body}' of {scenario.robot}", nearest(body, facts.bodies))
     reach = list(_reach(scenario.gait, facts))
-    yield from reach or footstep_problems(scenario, facts)
+    yield from reach or list(footstep_problems(scenario, facts)) or stair_problems(scenario, facts)
 
 
 def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:

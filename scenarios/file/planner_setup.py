@@ -12,6 +12,8 @@ from planner.planner import WalkingPlanner
 from planner.profiles.registry import PROFILES, Profile
 from planner.terrain import Terrain
 from planner.types import FeetState
+from scenarios.file.ground import start_height
+from scenarios.file.height import height_profile
 from scenarios.file.schema import Scenario
 
 if TYPE_CHECKING:
@@ -19,10 +21,10 @@ if TYPE_CHECKING:
 
 
 def square_stance(scenario: Scenario) -> FeetState:
-    """Where the feet stand at the start: side by side at the start position and heading."""
+    """Where the feet stand at the start: side by side at the start position and heading, on the ground there."""
     start = scenario.start
     left = 0.5 * scenario.gait.step_width * np.array([-math.sin(start.yaw), math.cos(start.yaw), 0.0])
-    origin = np.array([start.x, start.y, 0.0])
+    origin = np.array([start.x, start.y, start_height(scenario)])
     return FeetState(np.array([origin + left, origin - left]), np.full(2, start.yaw), (True, True))
 
 
@@ -83,5 +85,6 @@ def walking_planner(
         robot.sole_width,
         terrain,
         parameters,
-        profile=planner_profile(scenario),
+        height_profile(scenario),
+        planner_profile(scenario),
     )

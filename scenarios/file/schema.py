@@ -54,9 +54,15 @@ class TerrainSettings(Group):
     kind: Literal["flat", "stairs", "blocks", "slope"] = Field(default="flat", description="shape of the ground")
     riser: NonNegative = Field(default=0.1, description="height of a stair or block [m]")
     tread: Positive = Field(default=0.3, description="depth of a stair or block [m]")
-    count: Annotated[int, Field(ge=1, le=10_000)] = Field(default=5, description="number of stairs or blocks [-]")
+    count: Annotated[int, Field(ge=1, le=1000)] = Field(default=5, description="number of stairs or blocks [-]")
     direction: Literal["up", "down", "up_down"] = Field(default="up", description="which way the stairs go")
-    height_noise: NonNegative = Field(default=0.0, description="half range of the block heights [m]")
+    start: Finite | None = Field(
+        default=None, description="start to the first riser, null: the first footstep lands in mid-tread [m]"
+    )
+    landing: Positive | None = Field(default=None, description="depth between up and down, null: three treads [m]")
+    height_noise: NonNegative = Field(
+        default=0.0, description="half range by which each tread's true height differs from the planner's belief [m]"
+    )
     angle: Angle = Field(default=0.0, description="inclination of a slope [rad]")
     friction: Annotated[float, Field(ge=0, le=10, allow_inf_nan=False)] = Field(
         default=0.8, description="Coulomb coefficient of every surface [-]"
@@ -108,7 +114,12 @@ class PlannerSettings(Group):
     step_adaptation: Literal["none", "location", "timing"] = Field(
         default="location", description="what of the next footstep the planner may change"
     )
-    knee: Literal["stretched", "bent"] = Field(default="stretched", description="law of the vertical CoM motion")
+    knee: Literal["stretched", "bent"] = Field(
+        default="stretched", description="CoM height: the paper's rises, or constant and 0.08 m lower"
+    )
+    rise: Literal["single", "double"] | None = Field(
+        default=None, description="support phase in which the CoM climbs, null: double on a pendulum, single for legs"
+    )
     filter: Literal["none", "kalman", "zmp_only"] | None = Field(
         default=None, description="filter of the planner's state, null: kalman when ZMP or CoM are noisy, else none"
     )

@@ -11,9 +11,8 @@ _SENSED = ("zmp_noise", "com_noise")
 
 _AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
-    ("terrain", "kind"): ("flat",),
+    ("terrain", "kind"): ("flat", "stairs"),
     ("planner", "step_adaptation"): ("none", "location"),
-    ("planner", "knee"): ("stretched",),
     **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
 }
 

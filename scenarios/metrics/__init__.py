@@ -33,6 +33,7 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
     "com_error_rms": (_PLAN, balance.com_error_rms),
     "dcm_error_rms": (_PLAN, balance.dcm_error_rms),
     "footstep_error_max": (("/footstep",), walking.footstep_error_max),
+    "stair_edge_margin_min": (("/footstep",), walking.stair_edge_margin_min),
     "foot_slip_max": (_FEET, walking.foot_slip_max),
     "self_contact_time": (_BODY, walking.self_contact_time),
     "torque_ratio_max": (("/torque",), effort.torque_ratio_max),
@@ -123,6 +124,4 @@ def _plain(value: Any) -> Any:
 
 def describe_metric(name: str) -> str:
     """What a metric is, in a sentence: the first line of its function's documentation."""
-    if name not in _METRICS:
-        return "Least distance of a foothold from the edge of its stair [m]; not available in this version."
     return (_METRICS[name][1].__doc__ or "").split("\n", 1)[0]

@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from planner.polygon import sole_corners
+from planner.terrain import Box, Terrain
+from planner.types import Foot, Footstep
 from scenarios.metrics.view import Array, Mask, RunView
 
 FALLEN_HEIGHT = 0.6
@@ -67,6 +70,19 @@ def footstep_error_max(run: RunView) -> float | None:
     steps = run.log["/footstep"]
     errors = np.linalg.norm(steps.field("actual")[:, :3] - steps.field("planned")[:, :3], axis=1)
     return float(errors.max())
+
+
+def stair_edge_margin_min(run: RunView) -> float | None:
+    """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
+    boxes = [np.array(numbers) for numbers in run.constants.boxes]
+    if not boxes:
+        return None
+    terrain = Terrain(tuple(Box(n[:3], n[3:6], n[6:].reshape(3, 3)) for n in boxes))
+    half_size = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
+    landed = run.log["/footstep"].field("actual")
+    soles = [Footstep(Foot.LEFT, pose[:3], float(pose[3])) for pose in landed]
+    corners = np.array([sole_corners(sole, half_size) for sole in soles])
+    return float(terrain.edge_margins(landed[:, :2], corners).min())
 
 
 @dataclass(frozen=True, slots=True)

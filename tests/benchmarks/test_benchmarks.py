@@ -18,6 +18,7 @@ SHORT = ["--scenario", "stand", "--set", "duration=0.5"]
         ("control_tick.py", SHORT, "real-time factor"),
         ("qp_solvers.py", SHORT, "daqp"),
         ("log_reader.py", ["--tries", "1"], "median"),
+        ("planner_tick.py", ["--steps", "1"], "cached"),
     ],
 )
 def test_a_benchmark_runs(script, arguments, told):

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from planner.parameters import PlannerParameters
-from planner.swing import start_swing
+from planner.swing import SwingTimes, start_swing
 from planner.types import Foot
 
 pytestmark = pytest.mark.unit
@@ -11,9 +11,9 @@ START = np.array([1.0, 0.1, 0.0, 0.0])
 TARGET = np.array([1.4, 0.15, 0.0, 0.2])
 
 
-def swing(height=0.0, clearance=0.05):
+def swing(height=0.0, clearance=0.05, glide=(2.0, 2.4, 2.8)):
     target = TARGET + np.array([0.0, 0.0, height, 0.0])
-    return start_swing(Foot.LEFT, START, target, (2.0, 2.4, 2.8), clearance, PlannerParameters())
+    return start_swing(Foot.LEFT, START, target, SwingTimes(2.0, *glide, 2.8), clearance, PlannerParameters())
 
 
 @pytest.mark.parametrize("height", [0.0, 0.15, -0.15])
@@ -35,6 +35,20 @@ def test_acceleration_is_continuous_and_derivatives_are_right():
     np.testing.assert_allclose(np.gradient(motion[:, 0], step, axis=0)[1:-1], motion[1:-1, 1], atol=1e-4)
     np.testing.assert_allclose(np.gradient(motion[:, 1], step, axis=0)[1:-1], motion[1:-1, 2], atol=1e-2)
     assert np.abs(np.diff(motion[:, 2], axis=0)).max() < 0.05
+
+
+def test_the_foot_glides_within_its_time_only():
+    trajectory = swing(0.1, glide=(2.1, 2.5, 2.66))
+    for time, place in ((2.05, START), (2.0999, START), (2.66, TARGET), (2.75, TARGET)):
+        motion = trajectory.evaluate(time)[:, [0, 1, 3]]
+        np.testing.assert_allclose(motion, [place[[0, 1, 3]], np.zeros(3), np.zeros(3)], atol=1e-9)
+    motion = np.array([trajectory.evaluate(t) for t in np.arange(2.0, 2.7999, 1e-4)])
+    assert np.abs(np.diff(motion[:, 2], axis=0)).max() < 0.3
+    np.testing.assert_allclose(np.gradient(motion[:, 0], 1e-4, axis=0)[1:-1], motion[1:-1, 1], atol=1e-4)
+    for time in (2.04, 2.3, 2.72):
+        moved = trajectory.retargeted(time, TARGET + np.array([0.02, 0.01, 0.11, 0.0]))
+        np.testing.assert_allclose(moved.evaluate(time), trajectory.evaluate(time), atol=1e-9)
+        np.testing.assert_allclose(moved.evaluate(2.8 - 2e-9)[0], moved.target, atol=1e-6)
 
 
 def test_unchanged_target_is_continued_identically():

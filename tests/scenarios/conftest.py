@@ -17,6 +17,7 @@ JOINTS = ("left_hip", "left_knee", "right_hip", "right_knee")
 SIZES = channels.Sizes(nj=4, nq=11, nv=10, horizon=50)
 CHANNELS = (
     *(channels.measurement, channels.truth, channels.estimate, channels.contact, channels.reference),
+    channels.planner_state,
     *(channels.plan, channels.footstep, channels.wbc, channels.torque, channels.timing),
 )
 FOOT = 0.075
@@ -120,6 +121,8 @@ class _Loop:
         velocity[:, 0] = np.where((times >= 0.5 - 1e-9) & (times < 1.5 - 1e-9), self.motion.speed, 0.0)
         status = (0, [0, 0], 0, 0)
         flat = np.zeros((51, 2))
+        given = (self.com(time) + np.array([0.001, 0.0, 0.0]), velocity[0])
+        self.out["planner_state"].append(ns, *given, np.zeros(2), *given, np.zeros(2), np.zeros(2))
         self.out["plan"].append(ns, com, velocity, flat, flat, np.zeros((50, 2)), np.full(51, 3.13), *status)
 
 

@@ -32,6 +32,7 @@ def test_errors_are_the_offsets_that_were_put_in(metrics, motion):
     assert found["com_error_rms"] == pytest.approx([0.001, 0.002, 0.003])
     assert found["dcm_error_rms"] == pytest.approx([0.001, 0.002])
     assert found["estimation_error_rms"] == pytest.approx(0.001)
+    assert found["dcm_estimation_error_rms"] == pytest.approx([0.001, 0.0])
     assert found["footstep_error_max"] == pytest.approx(0.006)
 
 

@@ -1,0 +1,80 @@
+"""What a plan costs: prediction matrices in three forms, and a tick of both axes for every planner profile.
+
+    python benchmarks/planner_tick.py [--steps N]
+
+Run it with OMP_NUM_THREADS=1 on an idle core.
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from planner.gait import GaitParameters
+from planner.pendulum_walk import walk_pendulum
+from planner.planner import WalkingPlanner
+from planner.profiles.registry import PROFILES
+from planner.step_response import cached_response, literal_response, recursive_response
+from planner.types import FeetState
+
+T, N = 0.02, 50
+
+
+def median_time(function: Callable[[], object], tries: int) -> float:
+    spent = []
+    for _ in range(tries):
+        start = time.perf_counter()
+        function()
+        spent.append(time.perf_counter() - start)
+    return float(np.median(spent)) * 1e6
+
+
+def print_matrices() -> None:
+    stiffness = np.random.default_rng(0).uniform(7.0, 13.0, N)
+    A = np.tile([[1.0, T, T * T / 2], [0.0, 1.0, T], [0.0, 0.0, 1.0]], (N, 1, 1))
+    B = np.tile([T**3 / 6, T * T / 2, T], (N, 1))
+    C = np.stack([np.ones(N), np.zeros(N), -1.0 / stiffness], axis=1)
+    full, short = cached_response(T, tuple(range(N)), N), cached_response(T, (0, 1), N)
+    rows: tuple[tuple[str, Callable[[], object], int], ...] = (
+        ("literal double sum, any A(k), B(k), C(k)", lambda: literal_response(A, B, C), 3),
+        ("recursion, any A(k), B(k), C(k)", lambda: recursive_response(A, B, C), 50),
+        ("cached P_x - diag(1/λ) P_a, N_c 50", lambda: full.at(stiffness), 2000),
+        ("cached P_x - diag(1/λ) P_a, N_c 2", lambda: short.at(stiffness), 2000),
+    )
+    print(f"{'S_x, S_u1, S_u, N_p 50':<42} {'median us':>10}")
+    for name, function, tries in rows:
+        print(f"{name:<42} {median_time(function, tries):>10.1f}")
+
+
+def print_ticks(steps: int) -> None:
+    gait = GaitParameters(steps=steps, lateral_step=0.1)
+    side = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]])
+    print(f"\n{'WalkingPlanner.update, diagonal walk':<42} {'median us':>10} {'p90 us':>10} {'p99 us':>10}")
+    for name, profile in PROFILES.items():
+        feet = FeetState(side.copy(), np.zeros(2), (True, True))
+        planner, spent = WalkingPlanner(gait, feet, 0.075, 0.075, profile=profile), []
+        update = planner.update
+
+        def timed(state, feet, update=update, spent=spent):
+            start = time.perf_counter()
+            plan = update(state, feet)
+            spent.append(time.perf_counter() - start)
+            return plan
+
+        planner.update = timed
+        walk_pendulum(planner, feet, planner.schedule.last * T + 1.0, com=np.array([0.0, 0.0, 1.0]), substeps=2)
+        median, p90, p99 = np.percentile(spent, (50, 90, 99)) * 1e6
+        print(f"{name:<42} {median:>10.0f} {p90:>10.0f} {p99:>10.0f}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Microseconds of prediction matrices and of planner ticks.")
+    parser.add_argument("--steps", type=int, default=5, help="footsteps of the diagonal walk")
+    options = parser.parse_args()
+    print_matrices()
+    print_ticks(options.steps)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,63 @@
+"""The ground of a scenario: what the planner believes of it, and what is there."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from planner.stairs import Direction, Stairs, staircase
+from planner.terrain import Box, Terrain, flat
+from scenarios.file.schema import Scenario
+
+LANDING_TREADS = 3
+"""Depth of a landing whose depth is not given, in treads: the gait keeps its rhythm on it."""
+
+PLATFORM = 1.0
+"""Level ground kept before the first and after the last footstep on a platform of stairs [m]."""
+
+
+def terrain_of(scenario: Scenario) -> Terrain:
+    """The ground as the planner believes it to be."""
+    settings = scenario.terrain
+    if settings.kind != "stairs":
+        return flat(settings.friction)
+    start = scenario.start
+    return staircase(stairs_of(scenario), np.array([start.x, start.y]), start.yaw, settings.friction)
+
+
+def true_terrain_of(scenario: Scenario) -> Terrain:
+    """The ground as it is: every tread higher or lower than believed, by the seed; where the robot starts is known."""
+    terrain, noise = terrain_of(scenario), scenario.terrain.height_noise
+    if noise == 0.0:
+        return terrain
+    start = np.array([[scenario.start.x, scenario.start.y]])
+    errors = np.random.default_rng(scenario.seed).uniform(-noise, noise, len(terrain.boxes))
+    boxes = [
+        box if box.top(start)[1][0] >= 0.0 else _raised(box, error)
+        for box, error in zip(terrain.boxes, errors, strict=True)
+    ]
+    return replace(terrain, boxes=tuple(boxes))
+
+
+def start_height(scenario: Scenario) -> float:
+    """Height of the ground on which the robot starts [m]."""
+    return terrain_of(scenario).height(scenario.start.x, scenario.start.y)
+
+
+def stairs_of(scenario: Scenario) -> Stairs:
+    """The staircase of a scenario, from the middle of the start feet along the start heading."""
+    settings, gait = scenario.terrain, scenario.gait
+    fitted = gait.step_length - 0.5 * settings.tread
+    return Stairs(
+        riser=settings.riser,
+        tread=settings.tread,
+        count=settings.count,
+        direction=Direction(settings.direction),
+        start=fitted if settings.start is None else settings.start,
+        landing=LANDING_TREADS * settings.tread if settings.landing is None else settings.landing,
+        beyond=gait.steps * abs(gait.step_length) + PLATFORM,
+    )
+
+
+def _raised(box: Box, height: float) -> Box:
+    up = np.array([0.0, 0.0, 0.5 * height])
+    return replace(box, center=box.center + up, half_size=box.half_size + up)

@@ -60,24 +60,24 @@ class Sample:
         """Whether there is a run, and none failed."""
         return bool(self.runs) and not self.failures
 
-    def values(self, metric: str, element: int | None = None) -> list[float]:
-        """A metric, or one element of it, of every run that has it; shape (runs,)."""
+    def values(self, metric: str, element: int | str | None = None) -> list[float]:
+        """A metric, or one element or part of it, of every run that has it; shape (runs,)."""
         found = [outcome.metrics.get(metric) for outcome in self.runs]
         if element is not None:
             found = [None if value is None else value[element] for value in found]
         return [float(value) for value in found if value is not None]
 
-    def spread(self, metric: str, element: int | None = None) -> Spread | None:
+    def spread(self, metric: str, element: int | str | None = None) -> Spread | None:
         """Median and extremes of a metric; None when no run has it."""
         values = self.values(metric, element)
         return Spread(statistics.median(values), min(values), max(values)) if values else None
 
-    def median(self, metric: str, element: int | None = None) -> float | None:
+    def median(self, metric: str, element: int | str | None = None) -> float | None:
         """Median of a metric; None when no run has it."""
         spread = self.spread(metric, element)
         return None if spread is None else spread.median
 
-    def greatest(self, metric: str, element: int | None = None) -> float | None:
+    def greatest(self, metric: str, element: int | str | None = None) -> float | None:
         """Greatest value of a metric; None when no run has it."""
         spread = self.spread(metric, element)
         return None if spread is None else spread.greatest

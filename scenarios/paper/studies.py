@@ -106,7 +106,7 @@ BLOCKS = (
     Block((WALK, *STAIRS), CLAIMANTS, ("cart-table",)),
     Block((WALK,), ("paper", "repaired", "default", "lti"), ("full",)),
     Block((WIDE_WALK, BRISK_WALK), ("default",), ("full",)),
-    Block((STAIRS[0],), ("default", "lti"), ("full",)),
+    Block(STAIRS[:2], ("default", "lti"), ("full",)),
     Block((NOISE_WALK, NOISE_STAIRS), CLAIMANTS, ("pendulum",), 5),
     Block((NOISE_WALK, NOISE_STAIRS), ("paper", "repaired"), ("cart-table",)),
     Block((ZMP_ONLY,), ("repaired", "default"), ("pendulum",), 5),

@@ -48,6 +48,11 @@ def fell_text(sample: Sample) -> str:
     return f"{sample.falls} of {len(sample.runs)}, from {number(min(sample.values('fall_time')))} s on"
 
 
+def _fell_cell(sample: Sample) -> Cell:
+    first = f"from {number(min(sample.values('fall_time')))} s on" if sample.falls else ""
+    return Cell(f"{sample.falls} of {len(sample.runs)}", "short bad" if sample.falls else "short", None, first)
+
+
 def _balance_row(sample: Sample) -> tuple[Cell, ...]:
     head = (words(sample.profile), words(WORLD_NAMES[sample.world], "short"))
     if not sample.runs:
@@ -59,7 +64,7 @@ def _balance_row(sample: Sample) -> tuple[Cell, ...]:
     outside = excursion is not None and excursion.greatest > 0.0
     return (
         *head,
-        words(fell_text(sample), "bad" if sample.falls else ""),
+        _fell_cell(sample),
         spread_cell(share, PERCENT, "number" if share is None or share.least >= 1.0 else "number bad"),
         *(spread_cell(sample.spread("zmp_error_rms", axis), MM, kind) for axis in (0, 1)),
         *(spread_cell(sample.spread("zmp_error_max", axis), MM, kind) for axis in (0, 1)),

@@ -18,11 +18,13 @@ class Cell:
         text: as shown.
         kind: CSS classes.
         value: the number behind the text, in SI units; None for words.
+        below: a second, quiet line.
     """
 
     text: str
     kind: str = ""
     value: float | None = None
+    below: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,20 +54,23 @@ def number(value: float | None, scale: float = 1.0, digits: int = 3) -> str:
     if value is None:
         return MISSING
     shown = scale * value
-    return f"{shown:.0f}" if abs(shown) >= 10 ** (digits - 1) else f"{shown:.{digits}g}"
+    text = f"{shown:.0f}" if abs(shown) >= 10 ** (digits - 1) else f"{shown:.{digits}g}"
+    return text.replace("-", "\N{MINUS SIGN}")
 
 
 def spread_text(spread: Spread | None, scale: float = 1.0, digits: int = 3) -> str:
     """A median, with its range where that is another text."""
     if spread is None:
         return MISSING
-    median, least, greatest = (number(v, scale, digits) for v in (spread.median, spread.least, spread.greatest))
-    return median if least == greatest else f"{median} ({least} … {greatest})"
+    between = _range(spread, scale, digits)
+    return number(spread.median, scale, digits) + (f" ({between})" if between else "")
 
 
 def spread_cell(spread: Spread | None, scale: float = 1.0, kind: str = "number") -> Cell:
-    """The same as a cell."""
-    return Cell(spread_text(spread, scale), kind, None if spread is None else spread.median)
+    """The same as a cell, the range below the median."""
+    if spread is None:
+        return Cell(MISSING, kind)
+    return Cell(number(spread.median, scale), kind, spread.median, _range(spread, scale, 3))
 
 
 def words(text: str, kind: str = "") -> Cell:
@@ -112,4 +117,11 @@ def _group_html(heading: str, rows: Iterable[tuple[Cell, ...]], width: int) -> s
 
 def _cell_html(cell: Cell) -> str:
     value = "" if cell.value is None else repr(cell.value)
-    return tag("td", escape(cell.text), kind=cell.kind, data_value=value)
+    below = tag("small", escape(cell.below)) if cell.below else ""
+    return tag("td", escape(cell.text) + below, kind=cell.kind, data_value=value)
+
+
+def _range(spread: Spread, scale: float, digits: int) -> str:
+    """Least and greatest value; empty when both read the same."""
+    least, greatest = number(spread.least, scale, digits), number(spread.greatest, scale, digits)
+    return "" if least == greatest else f"{least} … {greatest}"

@@ -99,7 +99,7 @@ def _draw_column(axes: Sequence[Axes], column: Column, rows: Sequence[Row]) -> d
         for one in axes:
             note(one, str(missing))
         return {}
-    behind = background(views[0][1])
+    behind = background(max((view for _, view in views), key=lambda view: view.end))
     behind.shade(axes)
     entries: dict[str, object] = {"planned support, bounds": support_handle()}
     for one, row in zip(axes, rows, strict=True):

@@ -57,14 +57,14 @@ def height(axes: Axes, view: LogView) -> None:
 
 
 def zmp_of_several(axes: Axes, views: Sequence[tuple[str, LogView]], axis: int) -> None:
-    """True ZMP of several runs in the same axes, with the support and the reference of the first of them."""
-    first = views[0][1]
-    time, low, high = support_bounds(first, axis)
+    """True ZMP of several runs in the same axes, with the support and the reference of the longest of them."""
+    longest = max((view for _, view in views), key=lambda view: view.end)
+    time, low, high = support_bounds(longest, axis)
     axes.fill_between(time, low, high, step="post", color=SUPPORT, alpha=0.3, linewidth=0, zorder=1)
     for (label, view), color in zip(views, SEVERAL, strict=False):
         zmp = view.field("/contact", "zmp", 3)[:, axis]
         line(axes, view.time("/contact"), zmp, color, f"ZMP, {label}", linewidth=0.8)
-    reference = _reference(axes, first, axis)
+    reference = _reference(axes, longest, axis)
     margin = 0.06 + 0.08 * np.ptp(reference)
     axes.set_ylim(reference.min() - margin, reference.max() + margin)
 

@@ -62,10 +62,11 @@ def run_all(
     except KeyboardInterrupt:
         raise InterruptedRunsError from None
     finally:
-        stop.set()
-        for slot in slots:
-            if slot.ident is not None:
-                slot.join()
+        with _interrupts_ignored():
+            stop.set()
+            for slot in slots:
+                if slot.ident is not None:
+                    slot.join()
     return tuple(outcomes[experiment] for experiment in experiments)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.belief import with_com_raised, with_mass_scaled
-from models.pinocchio import pinocchio_model
+from models.pinocchio import limb_shapes, pinocchio_model
 from models.types import RobotDescription
 from planner.leg_chain import LegChain, Link
 from planner.parameters import LegInertia
@@ -69,6 +69,7 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
         leg_joints=body.leg_joints,
         control_period=1.0 / scenario.rates.control,
         parameters=WbcParameters(),
+        limbs=limb_shapes(robot, body.model),
     )
     parameters = planner_parameters(scenario, leg_inertia(body, posture))
     truth = controller.terms if actual is robot else RobotTerms(pinocchio_model(actual), body.frames)

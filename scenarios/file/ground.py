@@ -12,6 +12,9 @@ from scenarios.file.schema import Gait, Scenario
 LANDING_TREADS = 3
 """Depth of a landing whose depth is not given, in treads: the gait keeps its rhythm on it."""
 
+MOST_BEHIND = 0.03
+"""How far behind mid-tread a foot stands at most: shanks lean forward and must not touch the edge ahead [m]."""
+
 PLATFORM = 1.0
 """Level ground kept before the first and after the last footstep on a platform of stairs [m]."""
 
@@ -47,7 +50,7 @@ def start_height(scenario: Scenario) -> float:
 def stairs_of(scenario: Scenario) -> Stairs:
     """The staircase of a scenario, from the middle of the start feet along the start heading."""
     settings, gait = scenario.terrain, scenario.gait
-    fitted = gait.step_length - 0.5 * settings.tread
+    fitted = gait.step_length - 0.5 * settings.tread + _behind(scenario)
     return Stairs(
         riser=settings.riser,
         tread=settings.tread,
@@ -57,6 +60,12 @@ def stairs_of(scenario: Scenario) -> Stairs:
         landing=LANDING_TREADS * settings.tread if settings.landing is None else settings.landing,
         beyond=_way(gait) + PLATFORM,
     )
+
+
+def _behind(scenario: Scenario) -> float:
+    """How far behind mid-tread the feet stand: half of the room there, if the scenario says how long they are [m]."""
+    foot = scenario.robot_options.foot_length
+    return 0.0 if foot is None else min(MOST_BEHIND, max(0.0, 0.25 * (scenario.terrain.tread - foot)))
 
 
 def _way(gait: Gait) -> float:

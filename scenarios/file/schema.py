@@ -58,7 +58,9 @@ class TerrainSettings(Group):
     count: Annotated[int, Field(ge=1, le=1000)] = Field(default=5, description="number of stairs or blocks [-]")
     direction: Literal["up", "down", "up_down"] = Field(default="up", description="which way the stairs go")
     start: Finite | None = Field(
-        default=None, description="start to the first riser, null: the first footstep lands in mid-tread [m]"
+        default=None,
+        description="start to the first riser, null: footsteps land in mid-tread, a little behind it if the "
+        "foot_length that robot_options gives leaves room [m]",
     )
     landing: Positive | None = Field(default=None, description="depth between up and down, null: three treads [m]")
     height_noise: NonNegative = Field(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from planner.types import Foot
 
 _POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
-_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds")
+_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off")
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +30,7 @@ class GaitParameters:
         first_foot: the foot that swings first.
         apex_ss: rise of the CoM in the middle of single support (A_ss) [m].
         apex_ds: rise of the CoM in the middle of double support (A_ds) [m].
+        heel_off: greatest pitch of a foot about its toe edge after its stance, 0 keeps the feet level [rad].
 
     Raises:
         ValueError: a value is not finite, has the wrong sign or makes the swing higher than the CoM.
@@ -48,6 +49,7 @@ class GaitParameters:
     first_foot: Foot = Foot.LEFT
     apex_ss: float = 0.0135
     apex_ds: float = 0.00135
+    heel_off: float = 0.0
 
     def __post_init__(self) -> None:
         for field in fields(self):

@@ -48,6 +48,7 @@ def gait_parameters(scenario: Scenario) -> GaitParameters:
         initial_stand=gait.initial_stand,
         apex_ss=gait.apex_single,
         apex_ds=gait.apex_double,
+        heel_off=gait.heel_off,
     )
 
 

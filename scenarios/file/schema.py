@@ -90,6 +90,9 @@ class Gait(Group):
     apex_double: NonNegative = Field(
         default=0.00135, description="apex of the CoM rise in double support, A_ds of the paper [m]"
     )
+    heel_off: Annotated[float, Field(ge=0, le=1.0, allow_inf_nan=False)] = Field(
+        default=0.0, description="greatest pitch of a foot about its toes after its stance, 0: feet stay level [rad]"
+    )
 
 
 class PlannerSettings(Group):

@@ -78,6 +78,9 @@ class WbcReference:
         swing_velocity: its velocity, shape (3,) [m/s].
         swing_acceleration: its acceleration, shape (3,) [m/s^2].
         swing_yaw: (yaw, yaw rate, yaw acceleration) of the swing foot [rad, rad/s, rad/s^2].
+        rolling_foot: index of the foot that rolls about its toe edge, -1 for none; its `swing_position` is that of the
+            sole as if it were level.
+        roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
     """
 
     com: Array
@@ -99,6 +102,8 @@ class WbcReference:
     swing_velocity: Array
     swing_acceleration: Array
     swing_yaw: tuple[float, float, float]
+    rolling_foot: int = -1
+    roll: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     phase = plan.phase
     passed = phase.elapsed + sample.time - plan.time
     swing, rate, bend = sample.swing, sample.swing_velocity, sample.swing_acceleration
+    roll = plan.roll
     foot = -1 if sample.swing_foot is None else int(sample.swing_foot)
     yaw = [plan.footholds[0].yaw, plan.footholds[1].yaw]
     if foot >= 0:
@@ -40,6 +41,8 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         swing_velocity=rate[:3],
         swing_acceleration=bend[:3],
         swing_yaw=(float(swing[3]), float(rate[3]), float(bend[3])),
+        rolling_foot=-1 if roll is None or not roll.start < sample.time < roll.end else int(roll.foot),
+        roll=(0.0, 0.0, 0.0) if roll is None else roll.evaluate(sample.time),
     )
 
 

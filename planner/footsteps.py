@@ -21,12 +21,14 @@ class FootstepPlan:
         feet: which foot each row belongs to, length n + 2.
         position: sole centres, shape (n + 2, 3) [m].
         yaw: planned headings, unwrapped, shape (n + 2,) [rad]; landing errors do not enter, so heading does not drift.
+        normal: unit normals of the ground, shape (n + 2, 3) [-].
         increment: nominal displacement from the row before, shape (n + 2, 2) [m].
     """
 
     feet: tuple[Foot, ...]
     position: Array
     yaw: Array
+    normal: Array
     increment: Array
 
     @property
@@ -36,7 +38,7 @@ class FootstepPlan:
 
     def footstep(self, row: int) -> Footstep:
         """The foothold of a row."""
-        return Footstep(self.feet[row], self.position[row], float(self.yaw[row]))
+        return Footstep(self.feet[row], self.position[row], float(self.yaw[row]), self.normal[row])
 
     def moved(self, row: int, position: Array, terrain: Terrain) -> "FootstepPlan":
         """The plan with one foothold somewhere else and its successors at their nominal increments from it.
@@ -75,7 +77,7 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     Args:
         gait: the gait.
         feet: start feet in the world frame.
-        terrain: gives the heights of the footsteps.
+        terrain: gives heights and normals of the footsteps.
     """
     n = gait.steps
     rows = tuple(gait.step_foot(i - 1) for i in range(n + 2))
@@ -93,4 +95,4 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     position[2:, 2] = terrain.heights(position[2:, :2])
     increment = np.zeros((n + 2, 2))
     increment[1:] = np.diff(position[:, :2], axis=0)
-    return FootstepPlan(rows, position, yaw, increment)
+    return FootstepPlan(rows, position, yaw, terrain.normals(position[:, :2]), increment)

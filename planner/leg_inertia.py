@@ -114,7 +114,7 @@ def _unit_swing(samples: int, climb: float, course: SwingCourse, parameters: Pla
     """Progress, its second derivative, height and vertical acceleration at the samples of a swing, (4, samples)."""
     times = swing_times(0.0, samples, course, parameters)
     swing: SwingTrajectory = start_swing(
-        Foot.LEFT, np.zeros(4), np.array([1.0, 0.0, climb, 0.0]), times, course.height, parameters
+        Foot.LEFT, np.zeros(6), np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), times, course.height, parameters
     )
     states = [swing.evaluate(k * parameters.sample_time) for k in range(samples)]
     return np.array([(s[0, 0], s[2, 0], s[0, 2], s[2, 2]) for s in states]).T

@@ -157,7 +157,7 @@ class WholeBodyController:
             self._region_contacts = contacts.active
         acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
         self._tasks.write(terms, state.q, state.v, acceleration, reference)
-        self._hard.write(terms, state.q, state.v, contacts)
+        self._hard.write(terms, state.q, state.v, contacts, reference.ground_normal)
 
     def _solve(self, fail_solvers: bool) -> tuple[SolveStatus, QpSolution | None]:
         if not fail_solvers:

@@ -17,7 +17,7 @@ class ContactGains:
 
     Attributes:
         damping: decay of a sole's remaining velocity [1/s].
-        levelling: stiffness that turns an active sole flat on the ground [1/s^2].
+        levelling: stiffness that turns an active sole flat on the ground of its planned normal [1/s^2].
     """
 
     damping: float = 20.0
@@ -60,10 +60,10 @@ class HardConstraints:
         self._joint_lower, self._joint_upper = lower[6:nv], upper[6:nv]
         self._force_caps = upper[nv + 2 : n : 6]
 
-    def write(self, terms: RobotTerms, q: Array, v: Array, contacts: ContactState) -> None:
-        """Write the rows and bounds of this state; q (nq,), v (nv,)."""
+    def write(self, terms: RobotTerms, q: Array, v: Array, contacts: ContactState, ground_normal: Array) -> None:
+        """Write the rows and bounds of this state; q (nq,), v (nv,), ground_normal (2, 3) in the world frame."""
         self._motion(terms)
-        self._contacts(terms, contacts)
+        self._contacts(terms, contacts, ground_normal)
         self._joints.write(q[7:], v[6:], self._joint_lower, self._joint_upper)
 
     def _motion(self, terms: RobotTerms) -> None:
@@ -73,16 +73,14 @@ class HardConstraints:
         np.add(self._motion_lower, self._torque_span, out=self._motion_upper)
         self._motion_lower -= self._torque_span
 
-    def _contacts(self, terms: RobotTerms, contacts: ContactState) -> None:
+    def _contacts(self, terms: RobotTerms, contacts: ContactState, ground_normal: Array) -> None:
         target, levelling = self._target, self._gains.levelling
         np.multiply(terms.sole_velocity, -self._gains.damping, out=target)
         target -= terms.sole_bias
-        # Rotation vector, in the sole frame, that turns the sole's normal to the vertical.
-        R = terms.sole_rotation
-        target[0, 3] -= levelling * R[0, 2, 1]
-        target[0, 4] += levelling * R[0, 2, 0]
-        target[1, 3] -= levelling * R[1, 2, 1]
-        target[1, 4] += levelling * R[1, 2, 0]
+        # Rotation vector, in the sole frame, that turns the sole's normal to the ground's.
+        normal = np.matmul(ground_normal[:, None, :], terms.sole_rotation)[:, 0]
+        target[:, 3] -= levelling * normal[:, 1]
+        target[:, 4] += levelling * normal[:, 0]
         self._follow(0, terms, contacts.active[0])
         self._follow(1, terms, contacts.active[1])
         self._active = contacts.active

@@ -77,7 +77,10 @@ class WbcReference:
         swing_position: sole centre of the swing foot, shape (3,) [m].
         swing_velocity: its velocity, shape (3,) [m/s].
         swing_acceleration: its acceleration, shape (3,) [m/s^2].
-        swing_yaw: (yaw, yaw rate, yaw acceleration) of the swing foot [rad, rad/s, rad/s^2].
+        swing_rotation: orientation of its sole, shape (3, 3).
+        swing_angular_velocity: of its sole, shape (3,) [rad/s].
+        swing_angular_acceleration: of its sole, shape (3,) [rad/s^2].
+        ground_normal: unit normals of the ground on which the soles stand, or will land, shape (2, 3) [-].
     """
 
     com: Array
@@ -98,7 +101,10 @@ class WbcReference:
     swing_position: Array
     swing_velocity: Array
     swing_acceleration: Array
-    swing_yaw: tuple[float, float, float]
+    swing_rotation: Array
+    swing_angular_velocity: Array
+    swing_angular_acceleration: Array
+    ground_normal: Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from pydantic.fields import FieldInfo
 
 from scenarios.display import unit
 from scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
-from scenarios.file.schema import Fault, PushSettings, Scenario
+from scenarios.file.schema import Fault, FootstepSettings, PushSettings, Scenario, VelocitySettings
 from scenarios.log import channels
 from scenarios.log.channels import Sizes
 from scenarios.log.spec import ChannelSpec
@@ -37,20 +37,17 @@ CHANNELS = (
 )
 SIZES = Sizes(nj=1009, nq=1013, nv=1019, horizon=1031)
 _SYMBOLS = {1009: "nj", 1013: "nq", 1019: "nv", 1031: "N", 1032: "N+1"}
-_LISTS = {"pushes": PushSettings, "faults": Fault}
+_LISTS: dict[str, type[BaseModel]] = {
+    "pushes": PushSettings,
+    "faults": Fault,
+    "gait.velocity": VelocitySettings,
+    "gait.footsteps": FootstepSettings,
+}
 
 
 def keys_table() -> str:
     """Every key of a scenario with its default and meaning."""
-    lines = ["| key | default | meaning |", "|---|---|---|"]
-    for name, field in Scenario.model_fields.items():
-        inner = _LISTS.get(name) or field.annotation
-        if isinstance(inner, type) and issubclass(inner, BaseModel):
-            prefix = f"{name}[]." if name in _LISTS else f"{name}."
-            lines += [_key_row(prefix + key, sub) for key, sub in inner.model_fields.items()]
-        else:
-            lines.append(_key_row(name, field))
-    return "\n".join(lines)
+    return "\n".join(["| key | default | meaning |", "|---|---|---|", *_key_rows("", Scenario)])
 
 
 def channels_table() -> str:
@@ -85,6 +82,19 @@ def main() -> None:
     for name, (page, table) in TABLES.items():
         path = FOLDER / page
         path.write_text(updated(path.read_text(encoding="utf-8"), name, table()), encoding="utf-8")
+
+
+def _key_rows(prefix: str, group: type[BaseModel]) -> list[str]:
+    """Rows of a group's keys; a group inside is followed key by key, and a list of groups by those of an element."""
+    rows: list[str] = []
+    for name, field in group.model_fields.items():
+        element = _LISTS.get(prefix + name)
+        inner = element or field.annotation
+        if isinstance(inner, type) and issubclass(inner, BaseModel):
+            rows += _key_rows(f"{prefix}{name}{'[]' if element else ''}.", inner)
+        else:
+            rows.append(_key_row(prefix + name, field))
+    return rows
 
 
 def _key_row(name: str, field: FieldInfo) -> str:

@@ -1,6 +1,8 @@
 """The Pinocchio model of a robot, from the very text that MuJoCo compiles."""
 
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -37,9 +39,24 @@ def pinocchio_model(description: RobotDescription) -> pin.Model:
     return model
 
 
+def limb_shapes(description: RobotDescription, model: pin.Model) -> pin.GeometryModel:
+    """The robot's contact shapes, with the pairs that it must keep apart as collision pairs."""
+    with _file(description.mjcf) as path:
+        geometry = pin.buildGeomFromMJCF(model, path, pin.GeometryType.COLLISION)
+    for one, other in description.kept_apart:
+        geometry.addCollisionPair(pin.CollisionPair(geometry.getGeometryId(one), geometry.getGeometryId(other)))
+    return geometry
+
+
 def _read(mjcf: str) -> pin.Model:
-    """Pinocchio reads MJCF from files only."""
+    with _file(mjcf) as path:
+        return pin.buildModelFromMJCF(path)
+
+
+@contextmanager
+def _file(mjcf: str) -> Iterator[str]:
+    """The text as a file: Pinocchio reads MJCF from files only."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.xml"
         path.write_text(mjcf, encoding="utf-8")
-        return pin.buildModelFromMJCF(str(path))
+        yield str(path)

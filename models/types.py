@@ -56,6 +56,7 @@ class RobotDescription:
         nominal_joint_positions: mild crouch with relaxed arms, the start of an IK, shape (nj,) [rad].
         com_height: nominal CoM height above the soles in walking [m].
         bodies: all body names.
+        kept_apart: pairs of named contact shapes of different limbs that the controller keeps apart.
     """
 
     name: str
@@ -77,3 +78,4 @@ class RobotDescription:
     nominal_joint_positions: Array
     com_height: float
     bodies: tuple[str, ...]
+    kept_apart: tuple[tuple[str, str], ...]

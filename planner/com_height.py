@@ -184,7 +184,8 @@ def _on_levels(place: Rise, schedule: Schedule, bump: Array) -> HeightShape:
     index, changes = np.empty_like(schedule.index), np.zeros((2, *bump.shape))
     for phase in schedule.phases:
         span = slice(phase.start, phase.end if phase.samples else None)
-        index[span] = phase.step - 1 if phase.kind is PhaseKind.SINGLE else phase.step
+        reached = phase.kind is PhaseKind.SINGLE or phase.samples == 0
+        index[span] = max(phase.support - reached, 0)
         if phase.kind is PhaseKind.SINGLE:
             for change, share in zip(changes, (_CLIMB_SHARE, _DESCENT_SHARE), strict=True):
                 change[:, span] = _early_rise(phase, share, schedule.sample_time)

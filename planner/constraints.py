@@ -113,8 +113,9 @@ def step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Arra
     if steps.free[0] and steps.swing is not None:
         travel = parameters.swing_speed * steps.time_left / np.sqrt(2.0)
         here = steps.swing - steps.increment[0]
-        low = np.maximum(lower[0], np.minimum(here - travel, upper[0]))
-        upper[0] = np.minimum(upper[0], np.maximum(here + travel, lower[0]))
+        # The nominal footstep is never out of reach: a fast gait's swing is faster than that speed by itself.
+        low = np.maximum(lower[0], np.minimum(np.minimum(here - travel, 0.0), upper[0]))
+        upper[0] = np.minimum(upper[0], np.maximum(np.maximum(here + travel, 0.0), lower[0]))
         lower[0] = low
     return lower, upper
 

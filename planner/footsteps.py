@@ -3,9 +3,10 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planner.frames import frame_rotation, wrap_angle
-from planner.gait import GaitParameters
+from planner.gait import GaitParameters, support_rows
 from planner.terrain import Terrain
 from planner.types import Array, FeetState, Foot, Footstep
 
@@ -23,6 +24,7 @@ class FootstepPlan:
         yaw: planned headings, unwrapped, shape (n + 2,) [rad]; landing errors do not enter, so heading does not drift.
         normal: unit normals of the ground, shape (n + 2, 3) [-].
         increment: nominal displacement from the row before, shape (n + 2, 2) [m].
+        supports: rows between which each support point lies, shape (m, 2) (see `planner.gait.support_rows`).
     """
 
     feet: tuple[Foot, ...]
@@ -30,6 +32,7 @@ class FootstepPlan:
     yaw: Array
     normal: Array
     increment: Array
+    supports: NDArray[np.intp]
 
     @property
     def steps(self) -> int:
@@ -60,39 +63,43 @@ class FootstepPlan:
         return replace(self, position=moved)
 
     def support_points(self) -> Array:
-        """Support points 0..n+1 of the ZMP reference (see `Schedule`), shape (n + 2, 3) [m]."""
-        points = self.position.copy()
-        points[0] = 0.5 * (self.position[0] + self.position[1])
-        points[-1] = 0.5 * (self.position[-2] + self.position[-1])
-        return points
+        """Support points of the ZMP reference (see `Schedule`), shape (m, 3) [m]."""
+        return np.asarray(self.between_rows(self.position))
+
+    def between_rows(self, values: Array) -> Array:
+        """What rows of values, shape (n + 2, k), are at the support points: means of two rows, shape (m, k)."""
+        return np.asarray(0.5 * (values[self.supports[:, 0]] + values[self.supports[:, 1]]))
 
 
 def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
     """Footsteps of a gait from where the feet stand.
 
-    The path starts midway between the feet with their mean heading. Step i advances it by (`step_length`,
-    `lateral_step`) along the mean of its old and new heading and turns it by `turn`; the foot of step i lands beside
-    the path's new point, half a step width to its side. The last step does not advance the path: it ends square.
+    The path starts midway between the feet with their mean heading. Each stride advances it by (`length`, `lateral`)
+    along the mean of its old and new heading and turns it; the foot lands beside the path's new point, half the
+    stride's width to its side. Where the width changes, the path first moves to lie half the new width beside the
+    stance foot: so where a foot lands from its stance foot is a matter of the stride alone.
 
     Args:
         gait: the gait.
         feet: start feet in the world frame.
         terrain: gives heights and normals of the footsteps.
     """
-    n = gait.steps
+    n, strides = gait.steps, gait.strides
     rows = tuple(gait.step_foot(i - 1) for i in range(n + 2))
     start_yaw = float(feet.yaw[Foot.RIGHT] + 0.5 * wrap_angle(feet.yaw[Foot.LEFT] - feet.yaw[Foot.RIGHT]))
-    advance = np.minimum(np.arange(1, n + 1), max(n - 1, 0))
-    yaw = start_yaw + gait.turn * np.concatenate(([0.0, 0.0], advance))
+    yaw = start_yaw + np.cumsum([0.0, 0.0, *(stride.turn for stride in strides)])
     path = np.array(0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2]))
+    width = gait.step_width
     position = np.empty((n + 2, 3))
     position[0], position[1] = feet.position[rows[0]], feet.position[rows[1]]
-    for row in range(2, n + 2):
-        if row < n + 1:
-            path = path + frame_rotation(0.5 * (yaw[row - 1] + yaw[row])) @ (gait.step_length, gait.lateral_step)
-        side = 0.5 * gait.step_width * (1.0 if rows[row] is Foot.LEFT else -1.0)
-        position[row, :2] = path + frame_rotation(yaw[row]) @ (0.0, side)
+    for row, stride in enumerate(strides, 2):
+        side = 0.5 if rows[row] is Foot.LEFT else -0.5
+        path = path + frame_rotation(yaw[row - 1]) @ (0.0, side * (stride.width - width))
+        path = path + frame_rotation(0.5 * (yaw[row - 1] + yaw[row])) @ (stride.length, stride.lateral)
+        width = stride.width
+        position[row, :2] = path + frame_rotation(yaw[row]) @ (0.0, side * width)
     position[2:, 2] = terrain.heights(position[2:, :2])
     increment = np.zeros((n + 2, 2))
     increment[1:] = np.diff(position[:, :2], axis=0)
-    return FootstepPlan(rows, position, yaw, terrain.normals(position[:, :2]), increment)
+    normal = terrain.normals(position[:, :2])
+    return FootstepPlan(rows, position, yaw, normal, increment, support_rows(gait.walk))

@@ -1,18 +1,20 @@
-"""What the legs' own motion adds to the ZMP: the pendulum with two point masses at the soles.
+"""What the body's own motion adds to the ZMP: the pendulum with legs that have mass.
 
 The paper's pendulum carries all mass in the CoM. A real leg weighs a sixth of the body, and swinging it turns angular
-momentum over at up to tens of N·m, which moves the ZMP by centimetres. With the mass μ m of each leg reduced to its
-sole r_k, the angular momentum about the CoM is L = Σ μ m (r_k - c) x (r_k' - c'), and the moment balance about the ZMP,
-(c - p) x m (c'' + g e_z) + L' = 0, gives per horizontal axis (with h = c_z - p_z, λ = (g + z'') / h, the other sole at
-rest)
+momentum L over at up to hundreds of N·m, which moves the ZMP by decimetres. The moment balance about the ZMP,
+(c - p) x m (c'' + g e_z) + L' = 0, gives with h = c_z - p_z and λ = (g + z'') / h
 
-    p = c - (1 + 2 μ) c'' / λ + o,      o = (μ / λ) [ a (c_z - r_z) / h + (r + ℓ - p_ref) a_z / h ],
+    p_x = c_x - c_x'' / λ - L_y' / (m (g + z'')),      p_y = c_y - c_y'' / λ + L_x' / (m (g + z'')).
 
-where r and a are position and acceleration of the swing sole, r_z its height, and ℓ, ahead of the sole, stands for the
-knee, which moves forward when the sole moves up. Terms in z'' times μ are left out, and the CoM stands over p_ref in
-the small last term. So the motion is again a pendulum c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP
-less the known offset o.
-(Multi-mass ZMP models: Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
+L' follows from the planned soles and a CoM motion near the one that will be planned (see `planner.leg_chain`). What
+still depends on the CoM is kept to first order: with point masses μ m at both soles at rest, L' = -2 μ m h c'' e_y, so
+that
+
+    p = c - (1 + 2 μ) c'' / λ + o
+
+defines an offset o that the CoM's own deviations hardly change. So the motion is again a pendulum,
+c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP less the known offset o. (Multi-mass ZMP models:
+Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 """
 
 from collections.abc import Sequence
@@ -21,11 +23,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.com_height import HeightPreview
 from planner.footsteps import FootstepPlan
+from planner.leg_chain import LegChain
+from planner.nominal import NominalMotion
 from planner.parameters import LegInertia, PlannerParameters
 from planner.schedule import Schedule
 from planner.swing import SwingCourse, SwingTrajectory, start_swing, swing_times
-from planner.types import Array, Foot, PhaseKind
+from planner.types import GRAVITY, Array, Foot, PhaseKind
 
 
 def softening(leg: LegInertia) -> float:
@@ -35,21 +40,17 @@ def softening(leg: LegInertia) -> float:
 
 @dataclass(frozen=True, slots=True)
 class SwingShape:
-    """Swing motion of a whole walk for unit steps; zero where no foot swings. K samples.
+    """Where both feet are in a whole walk, for unit steps. K samples.
 
     Attributes:
-        row: row of the stance foot of the sample's swing, shape (K,).
-        progress: share of the step done, shape (K,).
-        acceleration: its second derivative, shape (K,) [1/s^2].
-        height: height of the swing sole above its lift-off, shape (K,) [m].
-        vertical: its second derivative, shape (K,) [m/s^2].
+        row: row of a foot that stands, shape (K,); the other foot goes from the row before to the row after.
+        progress: share of that way done, shape (K,).
+        height: of its sole above the row before, shape (K,) [m].
     """
 
     row: NDArray[np.intp]
     progress: Array
-    acceleration: Array
     height: Array
-    vertical: Array
 
 
 def swing_shape(
@@ -57,64 +58,86 @@ def swing_shape(
 ) -> SwingShape:
     """Tabulate the swings of a schedule to nominal footsteps, each on its course."""
     count = len(schedule.phase_index)
-    rows = np.zeros(count, dtype=np.intp)
-    values = np.zeros((4, count))
+    rows = np.empty(count, dtype=np.intp)
+    values = np.zeros((2, count))
     tables: dict[tuple[int, float, SwingCourse], Array] = {}
     for phase in schedule.phases:
+        span = slice(phase.start, phase.end if phase.samples else count)
+        rows[span] = phase.step + (phase.kind is not PhaseKind.SINGLE)
         if phase.kind is PhaseKind.SINGLE:
             climb = float(footsteps.position[phase.step + 1, 2] - footsteps.position[phase.step - 1, 2])
             key = (phase.samples, round(climb, 6), courses[phase.step - 1])
             if key not in tables:
                 tables[key] = _unit_swing(*key, parameters)
-            rows[phase.start : phase.end] = phase.step
-            values[:, phase.start : phase.end] = tables[key]
+            values[:, span] = tables[key]
     return SwingShape(rows, *values)
 
 
-def zmp_offset(
-    shape: SwingShape,
-    footsteps: FootstepPlan,
-    frame: tuple[Array, Array],
-    window: slice,
-    reference: Array,
-    stiffness: Array,
-    height: Array,
-    leg: LegInertia,
-) -> Array:
-    """Offset o of the module's equation over a window, with nominal footsteps, in the plan frame.
+def sole_positions(
+    shape: SwingShape, footsteps: FootstepPlan, frame: tuple[Array, Array], samples: NDArray[np.intp]
+) -> tuple[Array, Array]:
+    """Nominal soles in the plan frame, and the heading between them.
 
     Args:
         shape: swing motion of the walk.
         footsteps: footholds in the world frame.
         frame: the plan frame's rotation to the world, shape (2, 2), and origin, shape (2,) [m].
-        window: samples.
-        reference: ZMP reference, x, y in the plan frame and height, shape (n, 3) [m].
-        stiffness: λ of the point-mass pendulum, shape (n,) [1/s^2].
-        height: CoM height over the ZMP, shape (n,) [m].
-        leg: the reduced leg.
+        samples: which, shape (n,).
+
+    Returns:
+        Left and right sole, shape (2, n, 3) [m]; heading, shape (n,) [rad].
+    """
+    rotation, origin = frame
+    points = np.column_stack(((footsteps.position[:, :2] - origin) @ rotation, footsteps.position[:, 2], footsteps.yaw))
+    row, progress = shape.row[samples], shape.progress[samples, None]
+    before, after = points[row - 1], points[np.minimum(row + 1, len(points) - 1)]
+    stance, swing = points[row], before + progress * (after - before)
+    swing[:, 2] = before[:, 2] + shape.height[samples]
+    left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row, None]
+    soles = np.stack((np.where(left, stance, swing), np.where(left, swing, stance)))
+    turned = 0.5 * (stance[:, 3] + swing[:, 3]) - np.arctan2(rotation[1, 0], rotation[0, 0])
+    return soles[..., :3], turned
+
+
+def zmp_offset(
+    chain: LegChain, soles: Array, heading: Array, motion: NominalMotion, height: HeightPreview, softened: Array
+) -> Array:
+    """Offset o of the module's equation over a window, in the plan frame.
+
+    Args:
+        chain: the body.
+        soles: left and right sole at the window's n samples and the one before, shape (2, n + 1, 3) [m].
+        heading: of the body at the same samples, shape (n + 1,) [rad].
+        motion: horizontal CoM motion, near the one to be planned.
+        height: CoM height.
+        softened: λ', shape (n,) [1/s^2].
 
     Returns:
         Shape (n, 2) [m].
     """
-    rotation, origin = frame
-    points = (footsteps.position[:, :2] - origin) @ rotation
-    row = shape.row[window]
-    lift = points.take(np.maximum(row - 1, 0), axis=0)
-    step = points.take(np.minimum(row + 1, len(points) - 1), axis=0) - lift
-    sole = lift + shape.progress[window, None] * step
-    sole[:, 0] += leg.lever
-    above = footsteps.position[:, 2].take(np.maximum(row - 1, 0)) + shape.height[window] - reference[:, 2]
-    lever = (shape.acceleration[window] * (1.0 - above / height))[:, None]
-    lift_rate = (shape.vertical[window] / height)[:, None]
-    moving = lever * step + lift_rate * (sole - reference[:, :2])
-    return np.asarray((leg.mass_ratio / stiffness)[:, None] * moving)
+    n = len(softened)
+    com = np.empty((n + 1, 3))
+    com[1:, :2], com[1:, 2] = motion.com[0], height.height[0]
+    t = motion.sample_time
+    com[0, :2] = _before(motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
+    com[0, 2] = _before(height.height[:, 0], t)
+    rate = chain.momentum_rate(com, soles, heading, t)
+    pressing = GRAVITY + height.height[2]
+    offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]
+    offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / pressing[:-1, None])
+    offset[-1] = offset[-2]
+    return np.asarray(offset)
+
+
+def _before(state: Array, time: float) -> Array:
+    """Position some time before a state of position, velocity and acceleration."""
+    return np.asarray(state[0] - state[1] * time + 0.5 * state[2] * time**2)
 
 
 def _unit_swing(samples: int, climb: float, course: SwingCourse, parameters: PlannerParameters) -> Array:
-    """Progress, its second derivative, height and vertical acceleration at the samples of a swing, (4, samples)."""
+    """Progress of the sole and its height above lift-off at the samples of a swing, shape (2, samples)."""
     times = swing_times(0.0, samples, course, parameters)
     swing: SwingTrajectory = start_swing(
         Foot.LEFT, np.zeros(6), np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), times, course.height, parameters
     )
-    states = [swing.evaluate(k * parameters.sample_time) for k in range(samples)]
-    return np.array([(s[0, 0], s[2, 0], s[0, 2], s[2, 2]) for s in states]).T
+    return np.array([swing.evaluate(k * parameters.sample_time)[0, [0, 2]] for k in range(samples)]).T

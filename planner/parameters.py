@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, fields
 from enum import Enum
 
+from planner.leg_chain import LegChain
 from planner.moves import BLOCK_STARTS
 
 
@@ -16,25 +17,22 @@ class StepAdaptation(Enum):
 
 @dataclass(frozen=True, slots=True)
 class LegInertia:
-    """A leg reduced to a point mass at its sole (see `planner.leg_inertia`).
+    """What the legs' inertia does to the pendulum (see `planner.leg_inertia`); the default is legs without any.
 
     Attributes:
-        mass_ratio: μ, mass of one reduced leg over the total mass [-].
-        lever: ℓ, how far ahead of the sole it seems to be when the sole moves vertically [m].
+        mass_ratio: μ, mass over the total mass of one leg reduced to a point mass at its sole [-].
+        chain: the legs with their links, for the ZMP offset of their motion; None leaves it out.
 
     Raises:
         ValueError: the mass is negative or no number, or both legs would outweigh the body.
     """
 
     mass_ratio: float = 0.0
-    lever: float = 0.0
+    chain: LegChain | None = None
 
     def __post_init__(self) -> None:
-        if not (0.0 <= self.mass_ratio < 0.5 and math.isfinite(self.lever)):
-            raise ValueError(
-                f"planner.leg has mass ratio {self.mass_ratio:g} and lever {self.lever:g} m, but the ratio must be"
-                " within 0 to 0.5 and the lever finite."
-            )
+        if not 0.0 <= self.mass_ratio < 0.5:
+            raise ValueError(f"planner.leg has mass ratio {self.mass_ratio:g}, but it must be within 0 to 0.5.")
 
 
 @dataclass(frozen=True, slots=True)

@@ -117,8 +117,9 @@ class WalkingPlanner:
         self._fix_imminent_footstep(state.time)
         support = present_support(self._support, stepper, self._half_size, p.foot_margin)
         self._support = support
-        window = self._outlook.window(stepper.sample, support, stepper.footsteps)
-        problem = self._problem(state, feet, support, window)
+        local = self._local_state(state, support)
+        window = self._outlook.window(stepper.sample, support, stepper.footsteps, local[:, 0])
+        problem = self._problem(local, feet, support, window)
         motion = self._law.plan(problem)
         self.motion = motion
         footsteps = stepper.upcoming(state.time, motion.shifts @ support.rotation.T)
@@ -130,12 +131,12 @@ class WalkingPlanner:
         )
         return self._plan
 
-    def _problem(self, state: CentroidalState, feet: FeetState, support: Support, window: Window) -> MotionProblem:
+    def _problem(self, local: Array, feet: FeetState, support: Support, window: Window) -> MotionProblem:
         jerk = np.zeros((self.parameters.horizon + 1, 2))
         if self._plan is not None:
             jerk[:-1] = self._plan.jerk @ support.rotation
         return MotionProblem(
-            state=self._local_state(state, support),
+            state=local,
             stiffness=window.stiffness,
             omega=window.omega,
             reference=window.driving,

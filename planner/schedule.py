@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.gait import GaitParameters, samples
+from planner.gait import GaitParameters, samples, support_rows
 from planner.types import Array, Foot, PhaseKind
 
 
@@ -19,6 +19,8 @@ class Phase:
         samples: length in samples; the last phase of a schedule has 0, which means for ever.
         step: number of the step that this phase swings (single support) or has just landed (otherwise); 0 before.
         stance: the only supporting foot of a single support, otherwise None.
+        support: support point (see `Schedule`) on which the ZMP reference stands, or which it leaves.
+        rest: samples of a double support before it leaves.
     """
 
     kind: PhaseKind
@@ -26,6 +28,8 @@ class Phase:
     samples: int
     step: int
     stance: Foot | None
+    support: int
+    rest: int = 0
 
     @property
     def end(self) -> int:
@@ -37,9 +41,10 @@ class Phase:
 class Schedule:
     """Phases and what follows from them at every sample; the arrays hold `preview` samples beyond the last change.
 
-    The support point moves along the polyline of support points 0 (between the start feet), 1..n (the stance feet of
-    the n steps), n + 1 (between the last feet): at sample k it is the fraction `fraction[k]` of the way from point
-    `index[k]` to the next.
+    The ZMP reference moves along the polyline of the support points (`planner.gait.support_rows`): a point between the
+    feet before each bout and at the end, and the stance foot of each step. At sample k it is the fraction `fraction[k]`
+    of the way from point `index[k]` to the next. It rests while the robot stands, and on the stance foot in single
+    support; in every double support it goes on to exactly the next point.
 
     Attributes:
         phases: in order, without gaps; the last one never ends.
@@ -71,9 +76,9 @@ class Schedule:
 def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule:
     """Lay the gait's phases on the clock.
 
-    Stand, a first double support of twice the usual length that rests for its first half (so that the DCM is
-    consistent when the weight shift begins), then single and double supports in turn, then standing for ever. The last
-    double support brings the ZMP back between the feet.
+    Each bout: stand, a first double support of twice the usual length that rests for its first half (so that the DCM is
+    consistent when the weight shift begins), then single and double supports in turn. The last double support brings
+    the ZMP back between the feet, where the robot stands until the next bout, in the end for ever.
 
     Args:
         gait: the gait.
@@ -94,38 +99,37 @@ def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule
     for i, phase in enumerate(phases):
         span = slice(phase.start, phase.end if phase.samples else count)
         phase_index[span] = i
-        index[span] = _support_index(phase, gait.steps)
+        index[span] = phase.support
         if phase.kind is PhaseKind.DOUBLE:
-            ramp = phase.samples if phase.step else phase.samples // 2
+            ramp = phase.samples - phase.rest
             ramp_span = slice(phase.end - ramp, phase.end)
             fraction[ramp_span] = np.arange(ramp) / ramp
             rate[ramp_span] = 1.0 / (ramp * sample_time)
         if phase.stance is not None:
             contacts[span, phase.stance.other] = False
-    on_left = np.array([0.5, *(float(gait.step_foot(i - 1) == Foot.LEFT) for i in range(1, gait.steps + 1)), 0.5, 0.5])
-    load_left = (1.0 - fraction) * on_left[index] + fraction * on_left[index + 1]
+    on_left = np.array([float(gait.step_foot(row - 1) is Foot.LEFT) for row in range(gait.steps + 2)])
+    share = on_left[support_rows(gait.walk)].mean(axis=1)
+    load_left = (1.0 - fraction) * share[index] + fraction * share[np.minimum(index + 1, len(share) - 1)]
     for array in (phase_index, index, fraction, rate, load_left, contacts):
         array.flags.writeable = False
     return Schedule(phases, phase_index, index, fraction, rate, load_left, contacts, sample_time, last)
 
 
 def _phases(gait: GaitParameters, sample_time: float) -> tuple[Phase, ...]:
-    stand = samples("gait.initial_stand", gait.initial_stand, sample_time)
-    single = samples("gait.single_support", gait.single_support, sample_time)
-    double = samples("gait.double_support", gait.double_support, sample_time)
-    if gait.steps == 0:
-        return (Phase(PhaseKind.STAND, 0, 0, 0, None),)
-    phases = [Phase(PhaseKind.STAND, 0, stand, 0, None)] if stand else []
-    phases.append(Phase(PhaseKind.DOUBLE, stand, 2 * double, 0, None))
-    for step in range(1, gait.steps + 1):
-        stance = gait.step_foot(step).other
-        phases.append(Phase(PhaseKind.SINGLE, phases[-1].end, single, step, stance))
-        phases.append(Phase(PhaseKind.DOUBLE, phases[-1].end, double, step, None))
-    phases.append(Phase(PhaseKind.STAND, phases[-1].end, 0, gait.steps, None))
+    names = ("initial_stand", "single_support", "double_support")
+    _, single, double = (samples(f"gait.{name}", getattr(gait, name), sample_time) for name in names)
+    phases: list[Phase] = []
+    start = step = support = 0
+    for bout in gait.walk:
+        stand = samples("The standing before a bout", bout.stand, sample_time)
+        if stand:
+            phases.append(Phase(PhaseKind.STAND, start, stand, step, None, support))
+        phases.append(Phase(PhaseKind.DOUBLE, start + stand, 2 * double, step, None, support, rest=double))
+        for _ in bout.strides:
+            step, support = step + 1, support + 1
+            stance = gait.step_foot(step).other
+            phases.append(Phase(PhaseKind.SINGLE, phases[-1].end, single, step, stance, support))
+            phases.append(Phase(PhaseKind.DOUBLE, phases[-1].end, double, step, None, support))
+        start, support = phases[-1].end, support + 1
+    phases.append(Phase(PhaseKind.STAND, start, 0, step, None, support))
     return tuple(phases)
-
-
-def _support_index(phase: Phase, steps: int) -> int:
-    if phase.kind is PhaseKind.STAND and phase.samples == 0:
-        return steps + 1
-    return phase.step

@@ -22,7 +22,7 @@ class Support:
         rotation: plan frame to world, shape (2, 2).
         origin: origin of the plan frame, shape (2,) [m].
         table: support points of the walk in the plan frame.
-        heights: heights of the support points, shape (n + 2,) [m].
+        heights: heights of the support points, shape (m,) [m].
         outer: support polygon of the planned soles, shape (v, 2) [m].
         inner: support polygon of the soles shrunk to the ZMP margin, shape (v, 2) [m].
         footholds: where the left and the right foot stand, or stood last.

@@ -23,6 +23,7 @@ def build_problem(
     reference: ZmpReference,
     constraints: Constraints,
     last_jerk: Array,
+    move_range: tuple[Array, Array] | None = None,
 ) -> tuple[Qp, Qp]:
     """The QPs of the plan frame's x and y axis; they share P and G.
 
@@ -43,6 +44,7 @@ def build_problem(
         reference: ZMP reference, at least N + 1 samples.
         constraints: bounds of this tick.
         last_jerk: jerk applied now, shape (2,) [m/s^3]; enters only with a finite rate limit.
+        move_range: bounds of the moves, shape (axis, m) each [m/s^3]; the jerk limit on both sides by default.
     """
     errors = _linear_errors(prediction, state, stiffness, reference, constraints)
     m = prediction.basis.shape[1]
@@ -50,7 +52,7 @@ def build_problem(
     G, h = _inequalities(constraints, errors, m)
     if np.isfinite(parameters.jerk_rate_limit):
         G, h = _with_rate_limit(G, h, m, parameters.jerk_rate_limit, last_jerk)
-    lower, upper = _bounds(parameters, constraints, m)
+    lower, upper = _bounds(constraints, m, move_range or (-parameters.jerk_limit, parameters.jerk_limit))
     x, y = (Qp(P, q[i], G, h[i], lower[i], upper[i]) for i in range(2))
     return x, y
 
@@ -117,9 +119,9 @@ def _diagonal_cost(parameters: PlannerParameters, m: int) -> Array:
     return cost
 
 
-def _bounds(parameters: PlannerParameters, constraints: Constraints, m: int) -> tuple[Array, Array]:
+def _bounds(constraints: Constraints, m: int, moves: tuple[Array, Array] | tuple[float, float]) -> tuple[Array, Array]:
     lower, upper = np.zeros((2, m + _EXTRA)), np.full((2, m + _EXTRA), np.inf)
-    lower[:, :m], upper[:, :m] = -parameters.jerk_limit, parameters.jerk_limit
+    lower[:, :m], upper[:, :m] = moves
     lower[:, m : m + 2], upper[:, m : m + 2] = constraints.step_lower.T, constraints.step_upper.T
     return lower, upper
 

@@ -7,7 +7,9 @@ import numpy as np
 from planner.com_height import HeightPreview, HeightShape, preview_height
 from planner.dcm import natural_frequency
 from planner.footsteps import FootstepPlan
-from planner.leg_inertia import SwingShape, softening, zmp_offset
+from planner.leg_chain import LegChain
+from planner.leg_inertia import SwingShape, softening, sole_positions, zmp_offset
+from planner.nominal import nominal_motion
 from planner.parameters import LegInertia
 from planner.schedule import Schedule
 from planner.support import Support
@@ -56,28 +58,40 @@ class Outlook:
     leg: LegInertia
     count: int
 
-    def window(self, sample: int, support: Support, footsteps: FootstepPlan) -> Window:
-        """The window that begins at a sample."""
+    def window(self, sample: int, support: Support, footsteps: FootstepPlan, position: Array) -> Window:
+        """The window that begins at a sample.
+
+        Args:
+            sample: the first.
+            support: what carries the robot now, with the plan frame.
+            footsteps: footholds in the world frame.
+            position: CoM now in the plan frame, shape (2,) [m].
+        """
         reference = zmp_reference(self.schedule, support.table, sample, self.count)
         height = preview_height(self.height, sample, self.count, support.heights, reference.height)
-        offset = self._offset(sample, support, footsteps, reference, height)
         stiffness = softening(self.leg) * height.stiffness
         omega = natural_frequency(stiffness, self.schedule.sample_time)
+        if self.leg.chain is None:
+            offset = np.zeros_like(reference.point)
+        else:
+            samples = np.maximum(np.arange(sample - 1, sample + self.count), 0)
+            soles = sole_positions(self.swing, footsteps, (support.rotation, support.origin), samples)
+            offset = self._offset(self.leg.chain, soles, position, reference.point, height, stiffness)
         driving = replace(reference, point=reference.point - offset)
         return Window(sample, reference, driving, offset, height, stiffness, omega)
 
     def _offset(
-        self, sample: int, support: Support, footsteps: FootstepPlan, reference: ZmpReference, height: HeightPreview
+        self,
+        chain: LegChain,
+        soles: tuple[Array, Array],
+        position: Array,
+        reference: Array,
+        height: HeightPreview,
+        stiffness: Array,
     ) -> Array:
-        if self.leg.mass_ratio == 0.0:
-            return np.zeros_like(reference.point)
-        return zmp_offset(
-            self.swing,
-            footsteps,
-            (support.rotation, support.origin),
-            slice(sample, sample + self.count),
-            np.column_stack((reference.point, reference.height)),
-            height.stiffness,
-            height.height[0] - reference.height,
-            self.leg,
-        )
+        """ZMP offset for a CoM on the nominal motion, which itself depends on it: two passes leave a millimetre."""
+        offset = np.zeros_like(reference)
+        for _ in range(2):
+            motion = nominal_motion(position, reference - offset, stiffness, self.schedule.sample_time)
+            offset = zmp_offset(chain, *soles, motion, height, stiffness)
+        return offset

@@ -12,12 +12,12 @@ from planner.types import Array
 
 @dataclass(frozen=True, slots=True)
 class SupportTable:
-    """Support points 0..n+1 seen from the plan frame, with what each of them does to reference and box.
+    """Support points (see `Schedule`) seen from the plan frame, with what each of them does to reference and box.
 
     Attributes:
         values: columns x, y [m], gain of the next two footstep shifts [-], box half sizes x, y [m], height [m];
-            shape (n + 2, 7).
-        steps: difference to the next row, zero in the last one, shape (n + 2, 7).
+            shape (m, 7).
+        steps: difference to the next row, zero in the last one, shape (m, 7).
     """
 
     values: Array
@@ -59,16 +59,11 @@ def support_table(plan: FootstepPlan, stance_row: int, free: tuple[bool, bool], 
     rows = np.arange(len(plan.feet))
     points = plan.support_points()
     rotation = frame_rotation(float(plan.yaw[stance_row]))
-    values = np.empty((len(rows), 7))
+    values = np.empty((len(points), 7))
     values[:, :2] = (points[:, :2] - plan.position[stance_row, :2]) @ rotation
-    for j in range(2):
-        shifted = (rows > stance_row + j) * float(free[j])
-        values[:, 2 + j] = shifted
-        values[-1, 2 + j] = 0.5 * (shifted[-2] + shifted[-1])
-    boxes = _inscribed_boxes(plan.yaw - plan.yaw[stance_row], half_size)
-    values[:, 4:6] = boxes
-    values[0, 4:6] = 0.5 * (boxes[0] + boxes[1])
-    values[-1, 4:6] = 0.5 * (boxes[-2] + boxes[-1])
+    shifted = np.where(rows[:, None] > stance_row + np.arange(2), np.array(free, dtype=np.float64), 0.0)
+    values[:, 2:4] = plan.between_rows(shifted)
+    values[:, 4:6] = plan.between_rows(_inscribed_boxes(plan.yaw - plan.yaw[stance_row], half_size))
     values[:, 6] = points[:, 2]
     steps = np.zeros_like(values)
     steps[:-1] = np.diff(values, axis=0)

@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from scenarios.file.commands import EQUAL_STEPS, commanded
 from scenarios.file.criteria import BODY_METRICS, Bound
-from scenarios.file.schema import Scenario
+from scenarios.file.schema import Gait, Scenario
 from scenarios.file.timeline import gait_duration
 
 _NO_CONTACT = (("terrain", "friction"), ("start", "angle_noise"), ("errors", "friction"))
@@ -40,6 +41,9 @@ def _skipped(scenario: Scenario) -> Iterator[str]:
 
 
 def _without_effect(scenario: Scenario) -> Iterator[str]:
+    for name in EQUAL_STEPS if commanded(scenario.gait) else ():
+        if getattr(scenario.gait, name) != Gait.model_fields[name].default:
+            yield f"gait.{name} has no effect beside gait.{'velocity' if scenario.gait.velocity else 'footsteps'}"
     point = scenario.fidelity == "pendulum"
     for group, name in _NO_CONTACT if point else _POINT_ONLY:
         settings = getattr(scenario, group)

@@ -13,6 +13,7 @@ from scenarios.errors import LogError, ScenarioError, SetupError
 from scenarios.file.ground import true_terrain_of
 from scenarios.file.robots import describe
 from scenarios.file.schema import Scenario
+from scenarios.file.timeline import step_count
 from scenarios.log import AttachedFile, LogWriter, read
 from scenarios.progress import End, OnProgress, Progress
 from scenarios.provenance import versions
@@ -98,7 +99,7 @@ def run_constants(scenario: Scenario, robot: "RobotDescription") -> RunConstants
         scenario=scenario.name,
         fidelity=scenario.fidelity,
         seed=scenario.seed,
-        steps_planned=scenario.gait.steps,
+        steps_planned=step_count(scenario.gait),
         mass=float(robot.mass) / scenario.errors.mass_scale,
         com_height=scenario.gait.com_height - scenario.errors.com_height,
         foot_length=float(robot.sole_length),

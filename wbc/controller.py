@@ -8,13 +8,15 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from wbc.arm_swing import ArmSwing, shoulder_pitches
 from wbc.balance import BalanceGains, SupportRegion, com_acceleration
 from wbc.cone import CONE_ROWS, wrench_cone
 from wbc.contacts import ContactParameters, ContactSchedule, ContactState
 from wbc.dynamics import ContactGains, HardConstraints
 from wbc.limits import JointLimits
 from wbc.model import BodyFrames, RobotTerms
-from wbc.qp import QpData, QpLayout, allocate
+from wbc.qp import UNBOUNDED, QpData, QpLayout, allocate
+from wbc.separation import Separation, SeparationParameters
 from wbc.solvers import QpSolution, equalities_only, make_solver
 from wbc.tasks import TaskGains, TaskStack, TaskWeights
 from wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
@@ -44,8 +46,10 @@ class WbcParameters:
         balance: gains of the CoM law.
         contact: gains of the rigid contacts.
         schedule: thresholds of the contact schedule.
+        separation: when limbs keep away from each other.
         solver: the solver tried first, chosen by ``benchmarks/qp_solvers.py``.
         second_solver: the one tried when the first fails.
+        arm_swing: swing of the shoulders per stride [rad/m].
     """
 
     weights: TaskWeights = field(default_factory=TaskWeights)
@@ -53,8 +57,10 @@ class WbcParameters:
     balance: BalanceGains = field(default_factory=BalanceGains)
     contact: ContactGains = field(default_factory=ContactGains)
     schedule: ContactParameters = field(default_factory=ContactParameters)
+    separation: SeparationParameters = field(default_factory=SeparationParameters)
     solver: str = "equality-first"
     second_solver: str = "proxqp"
+    arm_swing: float = 0.6
 
 
 class WholeBodyController:
@@ -75,6 +81,7 @@ class WholeBodyController:
         leg_joints: NDArray[np.bool_],
         control_period: float,
         parameters: WbcParameters,
+        limbs: pin.GeometryModel | None = None,
     ) -> None:
         """Build the QP for a robot.
 
@@ -87,15 +94,22 @@ class WholeBodyController:
             leg_joints: which joints are leg joints, bool, shape (nj,).
             control_period: time between two updates [s].
             parameters: weights and gains.
+            limbs: shapes with the collision pairs that are kept apart; None looks at none.
         """
         self.terms = RobotTerms(model, frames)
-        self.layout = QpLayout(model.nv, CONE_ROWS)
+        self._separation = Separation(model, limbs, parameters.separation) if limbs is not None else None
+        self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
         self.qp: QpData = allocate(self.layout)
+        shoulders = shoulder_pitches(tuple(model.names)[2:])
+        arms = ArmSwing(shoulders, parameters.arm_swing) if shoulders and parameters.arm_swing else None
         share = sole.cop_share
         cone = wrench_cone(share * sole.half_length, share * sole.half_width, sole.friction / np.sqrt(2.0))
+        gaps = self.layout.separation
+        self._gap_rows = self.qp.A[gaps, : model.nv]
+        self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
         self._hard = HardConstraints(self.qp, self.layout, cone, limits, parameters.contact)
         self._tasks = TaskStack(
-            self.qp, self.layout, self.terms.mass, parameters.weights, parameters.gains, posture, leg_joints
+            self.qp, self.layout, self.terms.mass, parameters.weights, parameters.gains, posture, leg_joints, arms
         )
         self._contacts = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
@@ -158,6 +172,8 @@ class WholeBodyController:
         acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
         self._tasks.write(terms, state.q, state.v, acceleration, reference)
         self._hard.write(terms, state.q, state.v, contacts, reference.ground_normal)
+        if self._separation is not None:
+            self._separation.write(terms.data, state.v, self._gap_rows, self._gap_lower, UNBOUNDED)
 
     def _solve(self, fail_solvers: bool) -> tuple[SolveStatus, QpSolution | None]:
         if not fail_solvers:

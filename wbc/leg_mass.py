@@ -1,4 +1,4 @@
-"""A leg reduced to a point mass at its sole: what a pendulum planner needs to know of the full model."""
+"""The body reduced to what a pendulum planner needs of it: legs of three links under a trunk that does not turn."""
 
 from dataclasses import dataclass
 
@@ -9,61 +9,138 @@ from numpy.typing import NDArray
 from wbc.model import BodyFrames
 from wbc.types import Array
 
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class LinkMass:
+    """A straight link of a leg.
+
+    Attributes:
+        length: from its upper to its lower joint [m].
+        mass: over the total mass [-].
+        centre: where its CoM is, as a share of the length from the upper joint [-].
+        inertia: pitch inertia about its CoM over the total mass [m^2].
+    """
+
+    length: float
+    mass: float
+    centre: float
+    inertia: float
+
 
 @dataclass(frozen=True, slots=True)
 class LegMass:
-    """The reduced leg.
+    """The reduced body; both legs alike, vectors forward, left and up.
 
     Attributes:
-        ratio: μ, point mass at each sole over the total mass [-].
-        lever: how much further ahead the point mass seems when the sole moves up or down, because the knee then moves
-            forward or back [m].
+        ratio: μ, over the total mass, of a point mass at each sole with the pitching momentum of a stepping leg [-].
+        hip_half_width: hip centre from the middle between the hips [m].
+        trunk: CoM of everything but the legs, from that middle [m].
+        thigh, shank: the links.
+        foot_mass: over the total mass [-].
+        foot_centre: CoM of the foot, from the ankle [m].
+        ankle: from the sole's centre [m].
     """
 
     ratio: float
-    lever: float
+    hip_half_width: float
+    trunk: Vector
+    thigh: LinkMass
+    shank: LinkMass
+    foot_mass: float
+    foot_centre: Vector
+    ankle: Vector
 
 
 def leg_mass(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray[np.bool_]) -> LegMass:
-    """Reduce the legs by the angular momentum about the CoM that a stepping sole brings with it.
+    """Reduce the body in a standing configuration.
 
-    One sole moves at 1 m/s forward, then upward, without turning, while the pelvis rests. Point masses μ m at both
-    soles r_k have the pitching momentum L = Σ μ m [(r_k - c)_z (r_k' - c')_x - (r_k - c)_x (r_k' - c')_z]: solved for μ
-    in the forward motion, and for the lever ahead of the sole in the upward one. Mean of both legs. In the upward
-    motion c' is left out, so that the lever makes up for four fifths of the knee's momentum only.
+    The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
+    the thigh, what is below the next joint to the foot. Lateral offsets within a leg are left out.
 
     Args:
         model: the robot.
-        frames: its soles.
+        frames: its soles, left and right.
         q: standing configuration, shape (nq,), soles level and side by side.
         leg_joints: which joints are leg joints, bool, shape (nj,).
     """
-    joints = 6 + np.flatnonzero(leg_joints)
-    legs = []
-    for name in frames.soles:
-        forward_pitch, forward, height, _ = _step_momentum(model, name, q, joints, upward=False)
-        ratio = -forward_pitch / (height * (1.0 - 2.0 * forward))
-        upward_pitch, _, _, ahead = _step_momentum(model, name, q, joints, upward=True)
-        legs.append((ratio, -upward_pitch / ratio - ahead))
-    mean = np.mean(legs, axis=0)
-    return LegMass(float(mean[0]), float(mean[1]))
-
-
-def _step_momentum(
-    model: pin.Model, sole: str, q: Array, joints: NDArray[np.intp], *, upward: bool
-) -> tuple[float, float, float, float]:
-    """Pitching momentum over mass [m^2/s] and CoM speed for one sole at 1 m/s; CoM over sole, sole ahead of CoM [m]."""
     data = model.createData()
     pin.computeJointJacobians(model, data, q)
     pin.updateFramePlacements(model, data)
+    com = pin.centerOfMass(model, data, q)
     heading = data.oMi[1].rotation[:, 0]
+    R = np.column_stack((heading, np.cross([0.0, 0.0, 1.0], heading), (0.0, 0.0, 1.0)))
+    total, joints = pin.computeTotalMass(model), 6 + np.flatnonzero(leg_joints)
+    left, right = (_leg(model, data, name, leg_joints) for name in frames.soles)
+    legs = left.thigh.mass + left.shank.mass + left.foot.mass
+    below = sum(part.mass * part.lever for leg in (left, right) for part in (leg.thigh, leg.shank, leg.foot))
+    trunk = (total * com - below) / (total - 2.0 * legs)
+    middle = 0.5 * (left.hip + right.hip)
+    return LegMass(
+        ratio=float(np.mean([_point_mass(model, name, q, joints) for name in frames.soles])),
+        hip_half_width=0.5 * float(np.linalg.norm(left.hip - right.hip)),
+        trunk=_mirrored((trunk - middle) @ R),
+        thigh=_link(left.thigh, left.hip, left.knee, R[:, 1], total),
+        shank=_link(left.shank, left.knee, left.ankle, R[:, 1], total),
+        foot_mass=left.foot.mass / total,
+        foot_centre=_mirrored((left.foot.lever - left.ankle) @ R),
+        ankle=_mirrored((left.ankle - left.sole) @ R),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Leg:
+    """Joints and link inertias of a leg in the world frame."""
+
+    hip: Array
+    knee: Array
+    ankle: Array
+    sole: Array
+    thigh: pin.Inertia
+    shank: pin.Inertia
+    foot: pin.Inertia
+
+
+def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.bool_]) -> _Leg:
     frame = model.getFrameId(sole)
+    chain = [j for j in model.supports[model.frames[frame].parentJoint] if j > 1 and leg_joints[j - 2]]
+    at = [data.oMi[j].translation.copy() for j in chain]
+    apart = np.linalg.norm(np.diff(at, axis=0), axis=1)
+    knee = 1 + int(np.argmax(apart[1:] * apart[:-1]))
+    parts = [_lumped(model, data, joints) for joints in (chain[:knee], chain[knee : knee + 1], chain[knee + 1 :])]
+    return _Leg(at[knee - 1], at[knee], at[knee + 1], data.oMf[frame].translation.copy(), *parts)
+
+
+def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:
+    total = pin.Inertia.Zero()
+    for joint in joints:
+        total += data.oMi[joint].act(model.inertias[joint])
+    return total
+
+
+def _link(part: pin.Inertia, upper: Array, lower: Array, pitch: Array, total: float) -> LinkMass:
+    along, length = lower - upper, float(np.linalg.norm(lower - upper))
+    centre = float((part.lever - upper) @ along) / length**2
+    return LinkMass(length, part.mass / total, centre, float(pitch @ part.inertia @ pitch) / total)
+
+
+def _mirrored(vector: Array) -> Vector:
+    """A vector of both legs' mean: nothing to the left."""
+    return float(vector[0]), 0.0, float(vector[2])
+
+
+def _point_mass(model: pin.Model, sole: str, q: Array, joints: NDArray[np.intp]) -> float:
+    """μ whose momentum L = Σ μ m (r_k - c)_z (r_k' - c')_x is that of one sole at 1 m/s forward [-]."""
+    data = model.createData()
+    pin.computeJointJacobians(model, data, q)
+    pin.updateFramePlacements(model, data)
+    heading, frame = data.oMi[1].rotation[:, 0], model.getFrameId(sole)
     J = pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)[:, joints]
-    direction = np.array([0.0, 0.0, 1.0]) if upward else heading
     v = np.zeros(model.nv)
-    v[joints] = np.linalg.lstsq(J, np.concatenate([direction, np.zeros(3)]), rcond=None)[0]
+    v[joints] = np.linalg.lstsq(J, np.concatenate([heading, np.zeros(3)]), rcond=None)[0]
     momentum = pin.computeCentroidalMomentum(model, data, q, v)
     mass = pin.computeTotalMass(model)
-    offset = data.oMf[frame].translation - data.com[0]
     pitch = momentum.angular @ np.cross([0.0, 0.0, 1.0], heading) / mass
-    return float(pitch), float(momentum.linear @ heading / mass), float(-offset[2]), float(offset @ heading)
+    height = float(data.com[0][2] - data.oMf[frame].translation[2])
+    return float(-pitch / (height * (1.0 - 2.0 * (momentum.linear @ heading) / mass)))

@@ -19,17 +19,19 @@ class QpLayout:
 
     Variables ``x = [q̈ (nv), w_left (6), w_right (6)]`` with sole wrenches in the sole frames; rows: contact of the left
     and of the right foot (6 each), equations of motion (6 of the floating base, then nj joint torques), wrench cones
-    (2 x cone_rows).
+    (2 x cone_rows), distances between limbs (separation_rows).
 
     Attributes:
         nv: size of the generalised acceleration.
         cone_rows: rows of one wrench cone.
+        separation_rows: rows of distances between limbs.
         wrench_unit: unit of the wrench variables [N, N·m]. With forces in units near their size over that of the
             accelerations, H has a condition number of about 1e5; in newtons it had 1e8.
     """
 
     nv: int
     cone_rows: int
+    separation_rows: int = 0
     wrench_unit: float = 100.0
 
     @property
@@ -45,7 +47,7 @@ class QpLayout:
     @property
     def rows(self) -> int:
         """Number of constraint rows, equalities first."""
-        return EQUALITY_ROWS + self.joints + 2 * self.cone_rows
+        return EQUALITY_ROWS + self.joints + 2 * self.cone_rows + self.separation_rows
 
     @property
     def motion_rows(self) -> slice:
@@ -56,6 +58,12 @@ class QpLayout:
     def torque_rows(self) -> slice:
         """Rows of the joint torques."""
         return slice(EQUALITY_ROWS, EQUALITY_ROWS + self.joints)
+
+    @property
+    def separation(self) -> slice:
+        """Rows of distances between limbs."""
+        first = self.torque_rows.stop + 2 * self.cone_rows
+        return slice(first, first + self.separation_rows)
 
     def wrench(self, foot: int) -> slice:
         """Variables of one sole wrench."""

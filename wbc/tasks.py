@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from wbc.arm_swing import ArmSwing
 from wbc.model import RobotTerms
 from wbc.qp import QpData, QpLayout
 from wbc.types import GRAVITY, Array, WbcReference
@@ -37,8 +38,8 @@ class TaskWeights:
     orientation: float = 1.0
     swing: float = 10.0
     upper_posture: float = 0.5
-    leg_posture: float = 1e-3
-    acceleration: float = 1e-4
+    leg_posture: float = 1e-5
+    acceleration: float = 1e-5
     force: float = 1e-6
     moment: float = 1e-4
 
@@ -82,6 +83,7 @@ class TaskStack:
         gains: TaskGains,
         posture: Array,
         leg_joints: NDArray[np.bool_],
+        arms: ArmSwing | None = None,
     ) -> None:
         """Prepare what never changes.
 
@@ -93,7 +95,9 @@ class TaskStack:
             gains: of the tasks.
             posture: joint positions to return to, shape (nj,) [rad].
             leg_joints: which joints are leg joints, bool, shape (nj,).
+            arms: how the arms swing; None for arms that keep the posture.
         """
+        self._arms = arms
         self._gains, self._unit, self._force_weight = gains, layout.wrench_unit, weights.force
         scale = self._scale = np.sqrt(_row_weights(weights))
         self._unscale = np.divide(1.0, scale, out=np.zeros(TASK_ROWS), where=scale > 0.0)
@@ -185,9 +189,16 @@ class TaskStack:
         np.multiply(self._stiffness, q[7:], out=linear)
         np.subtract(self._pull, linear, out=linear)
         linear -= self._damping * v[6:]
+        if self._arms is not None:
+            self._swing_arms(self._arms, terms)
         # The diagonal weighs forces in wrench units, their targets are shares of the weight.
         weight = self._force_weight * self._unit * terms.mass * GRAVITY
         self._loads[:] = (weight * reference.load_share[0], weight * reference.load_share[1])
+
+    def _swing_arms(self, arms: ArmSwing, terms: RobotTerms) -> None:
+        angle, rate = arms.offset(terms)
+        for joint, sign in zip(arms.joints, (1.0, -1.0), strict=True):
+            self._linear[6 + joint] += sign * float(self._stiffness[joint] * angle + self._damping[joint] * rate)
 
 
 def _angular(gains: tuple[float, float], R: Array, velocity: Array, desired: Array, feedforward: Array) -> Vector:

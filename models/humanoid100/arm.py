@@ -70,8 +70,14 @@ def _forearm(side: str) -> Body:
             Geom("ellipsoid", (0.042, 0.022, 0.055), (0.0, 0.0, wrist - 0.06), material="joint"),
             Geom("capsule", (0.014,), ends=(0.012, 0.0, wrist - 0.08, 0.018, 0.0, wrist - 0.135), material="joint"),
             Geom("capsule", (0.014,), ends=(-0.012, 0.0, wrist - 0.08, -0.008, 0.0, wrist - 0.135), material="joint"),
-            Geom("sphere", (0.045,), (0.0, 0.0, wrist - 0.08), role=Role.COLLISION),
+            Geom("sphere", (0.045,), (0.0, 0.0, wrist - 0.08), role=Role.COLLISION, name=f"{side}_hand_shape"),
             Geom("sphere", (0.045,), role=Role.COLLISION),
-            Geom("capsule", (0.038,), ends=(0.0, 0.0, -0.04, 0.0, 0.0, wrist), role=Role.COLLISION),
+            Geom(
+                "capsule",
+                (0.038,),
+                ends=(0.0, 0.0, -0.04, 0.0, 0.0, wrist),
+                role=Role.COLLISION,
+                name=f"{side}_forearm_shape",
+            ),
         ),
     )

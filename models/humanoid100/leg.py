@@ -41,6 +41,11 @@ def _mirrored(inner: float, outer: float, outward: float) -> tuple[float, float]
     return (inner, outer) if outward > 0 else (-outer, -inner)
 
 
+def _shape(link: str, radius: float, ends: tuple[float, float, float, float, float, float]) -> Geom:
+    """The capsule by which a link touches others."""
+    return Geom("capsule", (radius,), ends=ends, role=Role.COLLISION, name=f"{link}_shape")
+
+
 def _thigh(side: str, outward: float, shank: Body) -> Body:
     knee = (0.0, 0.0, -dim.THIGH)
     return Body(
@@ -54,7 +59,7 @@ def _thigh(side: str, outward: float, shank: Body) -> Body:
             Geom("capsule", (0.05,), ends=(0.0, 0.0, -0.16, 0.0, 0.0, -0.36)),
             Geom("ellipsoid", (0.045, 0.05, 0.11), (0.042, 0.006 * outward, -0.19), material="trim"),
             Geom("sphere", (0.06,), knee, role=Role.COLLISION),
-            Geom("capsule", (0.065,), ends=(0.005, 0.0, -0.1, 0.0, 0.0, -0.37), role=Role.COLLISION),
+            _shape(f"{side}_thigh", 0.065, (0.005, 0.0, -0.1, 0.0, 0.0, -0.37)),
         ),
         children=(shank,),
     )
@@ -71,7 +76,7 @@ def _shank(side: str, foot_body: Body) -> Body:
             Geom("ellipsoid", (0.03, 0.042, 0.055), (0.038, 0.0, 0.005), material="accent"),
             Geom("ellipsoid", (0.056, 0.05, 0.13), (-0.018, 0.0, -0.15)),
             Geom("capsule", (0.036,), ends=(0.012, 0.0, -0.07, 0.0, 0.0, -0.35)),
-            Geom("capsule", (0.048,), ends=(-0.01, 0.0, -0.06, 0.0, 0.0, -0.36), role=Role.COLLISION),
+            _shape(f"{side}_shank", 0.048, (-0.01, 0.0, -0.06, 0.0, 0.0, -0.36)),
         ),
         children=(foot_body,),
     )

@@ -34,6 +34,13 @@ _NEIGHBOURS = (
 )
 """Bodies with small links between them, whose shapes overlap at the joint."""
 
+_KEPT_APART = (
+    *((f"left_{part}", f"right_{part}") for part in ("thigh_shape", "shank_shape", "sole_box")),
+    *((f"{side}_sole_box", f"{other}_shank_shape") for side, other in (("left", "right"), ("right", "left"))),
+    *((f"{side}_{part}_shape", f"{side}_thigh_shape") for side in ("left", "right") for part in ("forearm", "hand")),
+)
+"""Contact shapes of different limbs that can meet in walking."""
+
 
 def describe(options: RobotOptions) -> RobotDescription:
     """The robot with the chosen feet and payload.
@@ -65,6 +72,7 @@ def describe(options: RobotOptions) -> RobotDescription:
         nominal_joint_positions=_mild_crouch(tuple(joint.name for joint in joints)),
         com_height=1.0,
         bodies=tuple(body.name for body in bodies),
+        kept_apart=_KEPT_APART,
     )
 
 

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.belief import with_com_raised, with_mass_scaled
-from models.pinocchio import pinocchio_model
+from models.pinocchio import limb_shapes, pinocchio_model
 from models.types import RobotDescription
+from planner.leg_chain import LegChain, Link
 from planner.parameters import LegInertia
 from planner.planner import WalkingPlanner
 from scenarios.closed_loop.start_pose import Body, body_of, disturbed, feet_at, pressed, start_posture
@@ -18,7 +19,7 @@ from scenarios.file.timeline import push_time
 from sim.pushes import Push
 from sim.world import World
 from wbc.controller import Sole, WbcParameters, WholeBodyController
-from wbc.leg_mass import leg_mass
+from wbc.leg_mass import LinkMass, leg_mass
 from wbc.model import RobotTerms
 from wbc.statics import standing_torque
 
@@ -68,6 +69,7 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
         leg_joints=body.leg_joints,
         control_period=1.0 / scenario.rates.control,
         parameters=WbcParameters(),
+        limbs=limb_shapes(robot, body.model),
     )
     parameters = planner_parameters(scenario, leg_inertia(body, posture))
     truth = controller.terms if actual is robot else RobotTerms(pinocchio_model(actual), body.frames)
@@ -91,7 +93,20 @@ def believed_friction(scenario: Scenario) -> float:
 def leg_inertia(body: Body, q: Array) -> LegInertia:
     """The robot's legs as the planner sees them, from its start posture q, shape (nq,)."""
     leg = leg_mass(body.model, body.frames, q, body.leg_joints)
-    return LegInertia(leg.ratio, leg.lever)
+    chain = LegChain(
+        hip_half_width=leg.hip_half_width,
+        trunk=leg.trunk,
+        thigh=_link(leg.thigh),
+        shank=_link(leg.shank),
+        foot_mass=leg.foot_mass,
+        foot_centre=leg.foot_centre,
+        ankle=leg.ankle,
+    )
+    return LegInertia(leg.ratio, chain)
+
+
+def _link(link: LinkMass) -> Link:
+    return Link(link.length, link.mass, link.centre, link.inertia)
 
 
 def pushes(scenario: Scenario, robot: RobotDescription) -> tuple[Push, ...]:

@@ -54,6 +54,9 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
 
 def _lifting_foot(plan: WalkPlan) -> int:
     """The foot that leaves the ground when the present double support ends, -1 if none does."""
-    if plan.phase.kind is not PhaseKind.DOUBLE or not plan.footsteps:
+    phase = plan.phase
+    if phase.kind is not PhaseKind.DOUBLE or not plan.footsteps:
         return -1
-    return int(plan.footsteps[0].footstep.foot)
+    end = round((phase.duration - phase.elapsed) / plan.sample_time)
+    stands = end < len(plan.contacts) and bool(plan.contacts[end].all())
+    return -1 if stands else int(plan.footsteps[0].footstep.foot)

@@ -4,17 +4,24 @@ import math
 from collections.abc import Iterator
 
 from scenarios.errors import Problem, nearest
+from scenarios.file.command_checks import command_problems, commanded_step_problems
+from scenarios.file.commands import commanded, uncommanded
 from scenarios.file.criteria import ELEMENTS
 from scenarios.file.reach import longest_step
 from scenarios.file.robots import RobotFacts, Robots
 from scenarios.file.schema import Gait, PushSettings, Scenario
 from scenarios.file.stair_checks import stair_problems
+from scenarios.file.timeline import step_count
 from scenarios.file.walk_checks import FEWEST_SWING_SAMPLES, footstep_problems, swing_too_short, walk_problems
 
 
 def check(scenario: Scenario, robots: Robots) -> list[Problem]:
     """List what does not fit together."""
+    commands = command_problems(scenario)
+    if commands:
+        scenario = scenario.model_copy(update={"gait": uncommanded(scenario.gait)})
     return [
+        *commands,
         *_rates(scenario),
         *_durations(scenario),
         *_pushes(scenario),
@@ -70,7 +77,7 @@ def _pushes(scenario: Scenario) -> Iterator[Problem]:
 
 
 def _within_gait(scenario: Scenario, push: PushSettings, index: int) -> Iterator[Problem]:
-    steps = scenario.gait.steps
+    steps = step_count(scenario.gait)
     if push.step is not None and push.step > steps:
         what = f"a push in step {push.step} of a gait of {steps} steps"
         yield Problem(("pushes", index, "step"), what, f"give a step of at most {steps}")
@@ -110,7 +117,8 @@ def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
         if body is not None and body not in facts.bodies:
             yield Problem(key, f"unknown body '{body}' of {scenario.robot}", nearest(body, facts.bodies))
     reach = list(_reach(scenario.gait, facts))
-    yield from reach or list(footstep_problems(scenario, facts)) or stair_problems(scenario, facts)
+    steps = commanded_step_problems if commanded(scenario.gait) else footstep_problems
+    yield from reach or list(steps(scenario, facts)) or stair_problems(scenario, facts)
 
 
 def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:
@@ -124,6 +132,6 @@ def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:
         highest = facts.com_above_hip + math.sqrt(facts.leg_length**2 - sideways**2)
         what = f"gait.com_height {gait.com_height} m is out of reach with feet {gait.step_width} m apart"
         yield Problem(("gait", "com_height"), what, f"use less than {highest:.3f} m")
-    elif gait.steps and abs(gait.step_length) > longest:
+    elif gait.steps and not commanded(gait) and abs(gait.step_length) > longest:
         what = f"gait.step_length {gait.step_length} m is out of reach at com_height {gait.com_height} m"
         yield Problem(("gait", "step_length"), what, f"use at most {longest:.3f} m, or lower gait.com_height")

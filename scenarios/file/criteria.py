@@ -11,6 +11,7 @@ METRIC_NAMES = (
     "steps_planned",
     "steps_taken",
     "standing_time_final",
+    "standing_time_between",
     "zmp_inside_fraction",
     "cop_ratio_p99",
     "cop_ratio_max",
@@ -27,6 +28,9 @@ METRIC_NAMES = (
     "knee_angle_mean",
     "cost_of_transport",
     "speed_mean",
+    "path_length",
+    "displacement",
+    "heading_change",
     "com_height_range",
     "estimation_error_rms",
     "planner_infeasible_fraction",
@@ -58,7 +62,13 @@ BODY_METRICS = (
 TIMED = ("planner_time", "wbc_time")
 """Metrics that are a median and a 99th percentile."""
 
-ELEMENTS = {"zmp_error_rms": 2, "com_error_rms": 3, "dcm_error_rms": 2, "dcm_estimation_error_rms": 2}
+ELEMENTS = {
+    "zmp_error_rms": 2,
+    "com_error_rms": 3,
+    "dcm_error_rms": 2,
+    "dcm_estimation_error_rms": 2,
+    "displacement": 2,
+}
 """Number of elements of the list-valued metrics."""
 
 BOUNDABLE = tuple(

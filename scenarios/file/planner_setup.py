@@ -12,12 +12,17 @@ from planner.planner import WalkingPlanner
 from planner.profiles.registry import PROFILES, Profile
 from planner.terrain import Terrain
 from planner.types import FeetState
+from scenarios.file.commands import commanded, gait_of, longest_landing, step_region
 from scenarios.file.ground import start_height
 from scenarios.file.height import height_profile
-from scenarios.file.schema import Scenario
+from scenarios.file.schema import Gait, Scenario
 
 if TYPE_CHECKING:
     from models.types import RobotDescription
+
+
+SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
+"""Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait [m]."""
 
 
 def square_stance(scenario: Scenario) -> FeetState:
@@ -30,26 +35,18 @@ def square_stance(scenario: Scenario) -> FeetState:
 
 def gait_parameters(scenario: Scenario) -> GaitParameters:
     """The scenario's gait in the planner's terms."""
-    gait = scenario.gait
-    return GaitParameters(
-        steps=gait.steps,
-        step_length=gait.step_length,
-        step_width=gait.step_width,
-        lateral_step=gait.lateral_step,
-        turn=gait.turn,
-        single_support=gait.single_support,
-        double_support=gait.double_support,
-        swing_height=gait.swing_height,
-        com_height=gait.com_height,
-        initial_stand=gait.initial_stand,
-        apex_ss=gait.apex_single,
-        apex_ds=gait.apex_double,
-    )
+    return gait_of(scenario.gait)
 
 
 def planner_profile(scenario: Scenario) -> Profile:
     """The formulation that the scenario asks for."""
     return PROFILES[scenario.planner.profile]
+
+
+def step_reach(gait: Gait) -> float:
+    """How far ahead of its stance foot the planner may place a footstep: a decimetre beyond the gait's own [m]."""
+    own = longest_landing(gait) if commanded(gait) else abs(gait.step_length)
+    return min(max(own + 0.1, SHORTEST_REACH), LONGEST_REACH)
 
 
 def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters:
@@ -65,6 +62,7 @@ def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters
         planner_profile(scenario).parameters,
         sample_time=settings.sample_time,
         leg=leg,
+        reach_length=step_reach(scenario.gait),
         step_adaptation=StepAdaptation(settings.step_adaptation),
         **{name: value for name, value in chosen.items() if value is not None},
     )
@@ -73,18 +71,14 @@ def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters
 def walking_planner(
     scenario: Scenario, robot: "RobotDescription", terrain: Terrain, feet: FeetState, parameters: PlannerParameters
 ) -> WalkingPlanner:
-    """The planner of a scenario for start feet.
+    """The planner of a scenario for start feet; its adaptation leaves at least half the planned gap between soles.
 
     Raises:
         ValueError: it cannot plan this gait; one sentence says why.
     """
-    return WalkingPlanner(
-        gait_parameters(scenario),
-        feet,
-        robot.sole_length,
-        robot.sole_width,
-        terrain,
-        parameters,
-        height_profile(scenario),
-        planner_profile(scenario),
-    )
+    sole = (robot.sole_length, robot.sole_width)
+    region = step_region(parameters, sole)
+    gait = gait_of(scenario.gait, region)
+    near, far = parameters.reach_width
+    adapting = replace(parameters, reach_width=(max(near, robot.sole_width + 0.5 * region.gap), far))
+    return WalkingPlanner(gait, feet, *sole, terrain, adapting, height_profile(scenario), planner_profile(scenario))

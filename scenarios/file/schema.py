@@ -19,6 +19,7 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 FootSize = Annotated[float, Field(ge=0.01, le=0.5)]
 Angle = Annotated[float, Field(ge=-6.3, le=6.3, allow_inf_nan=False)]
 Place = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
+Speed = Annotated[float, Field(ge=-10, le=10, allow_inf_nan=False)]
 Noise = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000)]
@@ -57,7 +58,9 @@ class TerrainSettings(Group):
     count: Annotated[int, Field(ge=1, le=1000)] = Field(default=5, description="number of stairs or blocks [-]")
     direction: Literal["up", "down", "up_down"] = Field(default="up", description="which way the stairs go")
     start: Finite | None = Field(
-        default=None, description="start to the first riser, null: the first footstep lands in mid-tread [m]"
+        default=None,
+        description="start to the first riser, null: footsteps land in mid-tread, a little behind it if the "
+        "foot_length that robot_options gives leaves room [m]",
     )
     landing: Positive | None = Field(default=None, description="depth between up and down, null: three treads [m]")
     height_noise: NonNegative = Field(
@@ -66,6 +69,26 @@ class TerrainSettings(Group):
     angle: Angle = Field(default=0.0, description="inclination of a slope [rad]")
     friction: Annotated[float, Field(ge=0, le=10, allow_inf_nan=False)] = Field(
         default=0.8, description="Coulomb coefficient of every surface [-]"
+    )
+
+
+class VelocitySettings(Group):
+    """A velocity command, in force from its time until the next one; all zero is standing."""
+
+    time: Annotated[float, Field(ge=0, le=LONGEST_RUN, allow_inf_nan=False)] = Field(description="from when on [s]")
+    v_x: Speed = Field(default=0.0, description="forward velocity of the path [m/s]")
+    v_y: Speed = Field(default=0.0, description="velocity to the left [m/s]")
+    yaw_rate: Speed = Field(default=0.0, description="rate of its heading, left positive [rad/s]")
+
+
+class FootstepSettings(Group):
+    """A footstep, in the frame between the start feet, x along their heading."""
+
+    foot: Literal["left", "right"] = Field(description="foot that steps; they must take turns")
+    x: Place = Field(description="sole centre, forward [m]")
+    y: Place = Field(description="sole centre, to the left [m]")
+    yaw: Annotated[float, Field(ge=-1e3, le=1e3, allow_inf_nan=False)] = Field(
+        default=0.0, description="heading of the sole, whole turns counted [rad]"
     )
 
 
@@ -89,6 +112,12 @@ class Gait(Group):
     )
     apex_double: NonNegative = Field(
         default=0.00135, description="apex of the CoM rise in double support, A_ds of the paper [m]"
+    )
+    velocity: Annotated[tuple[VelocitySettings, ...], BeforeValidator(_tuple)] = Field(
+        default=(), description="velocity commands over time, in place of equal steps; the last one must stop"
+    )
+    footsteps: Annotated[tuple[FootstepSettings, ...], BeforeValidator(_tuple)] = Field(
+        default=(), description="every footstep, in place of equal steps"
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from planner.footsteps import FootstepPlan, plan_footsteps
 from planner.polygon import sole_corners
 from scenarios.errors import Problem
+from scenarios.file.commands import commanded
 from scenarios.file.ground import terrain_of
 from scenarios.file.height import standing_height
 from scenarios.file.planner_setup import gait_parameters, square_stance
@@ -25,6 +26,9 @@ def stair_problems(scenario: Scenario, facts: RobotFacts) -> list[Problem]:
     """List what makes a staircase impossible for a robot and its gait."""
     if scenario.terrain.kind != "stairs":
         return []
+    if scenario.gait.velocity:
+        what = "gait.velocity on stairs, whose treads its footsteps would not meet"
+        return [Problem(("gait", "velocity"), what, "give equal steps or gait.footsteps")]
     return list(_geometry(scenario)) or list(_reach(scenario, facts)) or list(_edges(scenario, facts))
 
 
@@ -47,7 +51,9 @@ def _reach(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
 
 
 def _edges(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
-    gait = replace(gait_parameters(scenario), steps=min(scenario.gait.steps, MOST_STEPS))
+    gait = gait_parameters(scenario)
+    if not commanded(scenario.gait):
+        gait = replace(gait, steps=min(gait.steps, MOST_STEPS))
     terrain, half_size = terrain_of(scenario), 0.5 * np.array([facts.foot_length, facts.foot_width])
     plan: FootstepPlan = plan_footsteps(gait, square_stance(scenario), terrain)
     soles = [plan.footstep(row) for row in range(plan.steps + 2)]

@@ -11,7 +11,7 @@ from planner.parameters import PlannerParameters
 from planner.terrain import flat
 from planner.types import GRAVITY, Foot
 from scenarios.errors import Problem
-from scenarios.file.planner_setup import gait_parameters, planner_profile, square_stance
+from scenarios.file.planner_setup import gait_parameters, planner_profile, square_stance, step_reach
 from scenarios.file.robots import RobotFacts
 from scenarios.file.schema import Gait, Scenario
 from scenarios.file.timeline import gait_duration
@@ -91,7 +91,7 @@ def _displacements(scenario: Scenario) -> Iterator[tuple[int, Foot, float, float
 def _footstep_problem(
     gait: Gait, facts: RobotFacts, number: int, foot: Foot, ahead: float, left: float, turn: float
 ) -> Problem | None:
-    low, high = reach_box(PlannerParameters(), 1.0)
+    low, high = reach_box(PlannerParameters(reach_length=step_reach(gait)), 1.0)
     beside = left if foot is Foot.LEFT else -left
     if not low[0] - 1e-9 <= ahead <= high[0] + 1e-9:
         what = f"footstep {number} would land {ahead:.3f} m ahead of its stance foot"

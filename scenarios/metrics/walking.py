@@ -58,11 +58,16 @@ def steps_taken(run: RunView) -> int:
 
 def standing_time_final(run: RunView) -> float:
     """How long the run ends with the CoM still and both feet loaded [s]."""
-    speed = np.linalg.norm(run.field("/truth", "com_velocity"), axis=1)
-    still = (speed < STILL_SPEED) & (run.field("/contact", "felt") != 0).all(axis=1)
-    moving = np.flatnonzero(~still)
+    moving = np.flatnonzero(~_still(run))
     first = moving[-1] + 1 if len(moving) else 0
     return (run.ticks - int(first)) / run.constants.control_rate
+
+
+def standing_time_between(run: RunView) -> float:
+    """Longest time between two steps with the CoM still and both feet loaded, 0 when the walk never stops [s]."""
+    return (
+        max((end - start for start, end in runs_of(_still(run)[run.walking])), default=0) / run.constants.control_rate
+    )
 
 
 def footstep_error_max(run: RunView) -> float | None:
@@ -150,9 +155,49 @@ def speed_mean(run: RunView) -> float | None:
     return float(np.linalg.norm(com[-1] - com[0]) / (time[-1] - time[0])) if len(time) > 1 else None
 
 
+def path_length(run: RunView) -> float:
+    """Length of the way from one middle of the feet to the next, over all touchdowns [m]."""
+    if not run.has("/footstep"):
+        return 0.0
+    touchdowns, _ = run.rows_at("/truth", run.log["/footstep"].time_ns)
+    middles = _middles(run)[np.minimum(np.concatenate(([0], touchdowns)), run.ticks - 1)]
+    return float(np.linalg.norm(np.diff(middles, axis=0), axis=1).sum())
+
+
+def displacement(run: RunView) -> list[float]:
+    """Way of the feet's middle from start to end, ahead and to the left in the start heading [m]."""
+    middles, yaw = _middles(run), float(_heading(run)[0])
+    x, y = middles[-1] - middles[0]
+    c, s = np.cos(yaw), np.sin(yaw)
+    return [float(c * x + s * y), float(c * y - s * x)]
+
+
+def heading_change(run: RunView) -> float:
+    """Change of the feet's mean heading from start to end, whole turns counted, left positive [rad]."""
+    heading = _heading(run)
+    return float(heading[-1] - heading[0])
+
+
 def com_height_range(run: RunView) -> float:
     """Highest minus lowest CoM [m]."""
     return float(np.ptp(run.field("/truth", "com")[:, 2]))
+
+
+def _still(run: RunView) -> Mask:
+    speed = np.linalg.norm(run.field("/truth", "com_velocity"), axis=1)
+    return np.asarray((speed < STILL_SPEED) & (run.field("/contact", "felt") != 0).all(axis=1))
+
+
+def _middles(run: RunView) -> Array:
+    """Middle of both soles at each tick, shape (n, 2) [m]."""
+    return np.asarray(run.soles[:, :, :2].mean(axis=1))
+
+
+def _heading(run: RunView) -> Array:
+    """Mean heading of both soles at each tick, without jumps, shape (n,) [rad]."""
+    left, right = np.unwrap(run.sole_yaw, axis=0).T
+    apart = (left[0] - right[0] + np.pi) // (2.0 * np.pi) * 2.0 * np.pi
+    return np.asarray(0.5 * (left - apart + right))
 
 
 def _lying(run: RunView) -> Mask:

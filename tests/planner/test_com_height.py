@@ -10,7 +10,7 @@ from planner.com_height import (
     check_height,
     preview_height,
 )
-from planner.gait import GaitParameters
+from planner.gait import Bout, GaitParameters, Stride, support_rows
 from planner.schedule import schedule
 from planner.types import GRAVITY, PhaseKind
 
@@ -128,3 +128,20 @@ def test_a_step_too_high_for_its_support_is_refused(rise, name):
     check_height(shape, plan, np.array([0.0, 0.0, 0.05, 0.05]))
     with pytest.raises(ValueError, match=rf"falls off with -1\d\.\d m/s\^2.*{name}_support\.$"):
         check_height(shape, plan, np.array([0.0, 0.0, 0.2, 0.2]))
+
+
+@pytest.mark.parametrize("place", list(Rise))
+def test_a_stop_on_a_tread_leaves_the_level_alone(place):
+    """Up two treads, closing the stance on the second, and on after a stop: the height is smooth and ends on top."""
+    stride, closing = Stride(0.2, 0.0, 0.0, 0.2), Stride(0.0, 0.0, 0.0, 0.2)
+    gait = GaitParameters(steps=5, bouts=(Bout(1.0, (stride, stride, closing)), Bout(1.0, (stride, closing))))
+    plan = schedule(gait, 0.02, 150)
+    feet = np.array([0.0, 0.0, 0.1, 0.2, 0.2, 0.3, 0.3])
+    supports = feet[support_rows(gait.walk)].mean(axis=1)
+    height = SmoothHeight(place).shape(gait, plan).height(slice(0, plan.last + 100), supports)
+    assert np.abs(np.diff(height[0])).max() < 0.02 * 0.4
+    assert np.abs(np.diff(height[1])).max() < 0.02 * 5.0
+    for phase in plan.phases:
+        if phase.kind is PhaseKind.STAND and phase.step:
+            level = feet[phase.step + 1]
+            np.testing.assert_allclose(height[0, phase.start], gait.com_height + level, atol=1e-12)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from planner.footsteps import plan_footsteps
-from planner.gait import GaitParameters
+from planner.gait import Bout, GaitParameters, Stride
 from planner.terrain import Box, Terrain, flat
 from planner.types import Foot
 
@@ -41,3 +41,28 @@ def test_plan_is_equivariant_under_start_pose(stand):
     here = plan_footsteps(gait, stand(), flat()).position[:, :2]
     there = plan_footsteps(gait, stand(origin=(100.0, -3.0), yaw=np.pi / 2), flat()).position[:, :2]
     np.testing.assert_allclose(there, here @ np.array([[0.0, 1.0], [-1.0, 0.0]]) + [100.0, -3.0], atol=1e-12)
+
+
+def test_a_change_of_width_leaves_the_stance_foot_alone(stand):
+    """Where a foot lands from its stance foot is a matter of its own stride alone."""
+    strides = tuple(Stride(0.1, 0.02, 0.2, width) for width in (0.2, 0.3, 0.3, 0.25, 0.2))
+    steps = plan_footsteps(GaitParameters(steps=5, bouts=(Bout(1.0, strides),)), stand(), flat())
+    for row, stride in enumerate(strides, 2):
+        alone = plan_footsteps(
+            GaitParameters(steps=1, bouts=(Bout(1.0, (stride,)),), step_width=stride.width, first_foot=steps.feet[row]),
+            stand(stride.width),
+            flat(),
+        )
+        turn = steps.yaw[row - 1]
+        rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+        np.testing.assert_allclose(steps.increment[row], rotation @ alone.increment[2], atol=1e-12)
+
+
+def test_support_points_of_a_stop_lie_between_the_feet(stand):
+    bout = Bout(1.0, (Stride(0.2, 0.0, 0.0, 0.2), Stride(0.0, 0.0, 0.0, 0.2)))
+    steps = plan_footsteps(GaitParameters(steps=4, bouts=(bout, bout)), stand(), flat())
+    np.testing.assert_allclose(
+        steps.support_points()[:, :2],
+        [[0, 0], [0, -0.1], [0.2, 0.1], [0.2, 0], [0.2, -0.1], [0.4, 0.1], [0.4, 0]],
+        atol=1e-12,
+    )

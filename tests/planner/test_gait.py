@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from planner.gait import GaitParameters, samples
+from planner.gait import Bout, GaitParameters, Stride, samples
 from planner.parameters import PlannerParameters
 from planner.types import Foot
 
@@ -33,3 +33,21 @@ def test_duration_must_be_a_multiple_and_the_nearest_is_named():
 def test_bad_planner_parameter_is_refused_by_name(name, value):
     with pytest.raises(ValueError, match=rf"planner\.{name} is"):
         PlannerParameters(**{name: value})
+
+
+def test_bad_stride_and_bout_are_refused():
+    stride = Stride(0.2, 0.0, 0.0, 0.2)
+    for values in ((math.nan, 0.0, 0.0, 0.2), (0.2, 0.0, 0.0, 0.0), (0.2, 0.0, math.inf, 0.2)):
+        with pytest.raises(ValueError, match=r"of a stride is"):
+            Stride(*values)
+    with pytest.raises(ValueError, match=r"standing before a bout is -1 s"):
+        Bout(-1.0, (stride,))
+    with pytest.raises(ValueError, match=r"at least one"):
+        Bout(1.0, ())
+    with pytest.raises(ValueError, match=r"gait\.steps is 5, but its bouts have 2 strides"):
+        GaitParameters(bouts=(Bout(1.0, (stride, stride)),))
+
+
+def test_standing_has_no_strides():
+    assert GaitParameters(steps=0).walk == ()
+    assert GaitParameters(steps=0).strides == ()

@@ -39,7 +39,8 @@ class FakeRobots:
 class Motion:
     """What the fake loop writes; the defaults meet the default criteria of a scenario of two steps.
 
-    Each half second: stand, step on the left foot, step on the right foot, stand.
+    Each half second: stand, step on the left foot, step on the right foot, stand. The soles turn from the first yaw by
+    the second over the run; the pause holds the CoM on both feet from 1 s on.
     """
 
     duration: float = 4.0
@@ -47,6 +48,8 @@ class Motion:
     speed: float = 0.4
     zmp_offset: tuple[float, float] = (0.003, -0.004)
     plan_offset: tuple[float, float, float] = (0.001, 0.002, 0.003)
+    yaw: tuple[float, float] = (0.0, 0.0)
+    pause: float = 0.0
     fall_at: float = np.inf
     stop_at: float = np.inf
     end: End = field(default_factory=lambda: End("completed", 4.0))
@@ -88,10 +91,13 @@ class _Loop:
         single = 0.5 <= time < 1.5
         stance = (0 if time < 1.0 else 1) if single else -1
         com = self.com(time)
-        velocity = np.array([self.motion.speed if single else 0.0, 0.0, 0.0])
+        paused = 1.0 <= time < 1.0 + self.motion.pause
+        velocity = np.array([self.motion.speed if single and not paused else 0.0, 0.0, 0.0])
+        yaw = self.motion.yaw[0] + self.motion.yaw[1] * time / self.motion.duration
+        facing = (0.0, 0.0, np.sin(0.5 * yaw), np.cos(0.5 * yaw))
         offset = np.array(self.motion.zmp_offset)
-        soles = [np.array([com[0], y, 0, 0, 0, 0, 1.0]) for y in (0.125, -0.125)]
-        loaded = [stance in (-1, 0), stance in (-1, 1)]
+        soles = [np.array([com[0], y, 0, *facing]) for y in (0.125, -0.125)]
+        loaded = [paused or stance in (-1, 0), paused or stance in (-1, 1)]
         center = np.array([com[0], {-1: 0.0, 0: 0.125, 1: -0.125}[stance]])
         half = np.array([FOOT / 2, FOOT / 2 + (0.125 if stance == -1 else 0.0)])
         box = center + np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half

@@ -48,6 +48,23 @@ def test_walk(metrics, motion):
     assert found["com_height_range"] == 0.0
 
 
+def test_way_and_heading(metrics, motion):
+    """The feet's middle goes 0.2 m to either touchdown; the invented robot turns with its feet, starting aslant."""
+    found = metrics(motion(speed=0.4))
+    assert found["path_length"] == pytest.approx(0.4)
+    assert found["displacement"] == pytest.approx([0.4, 0.0])
+    assert found["heading_change"] == pytest.approx(0.0)
+    found = metrics(motion(speed=0.4, yaw=(3.0, 4.0)))
+    assert found["heading_change"] == pytest.approx(4.0 * (1.0 - 1 / 2000))
+    assert found["displacement"] == pytest.approx([0.4 * np.cos(3.0), -0.4 * np.sin(3.0)])
+
+
+def test_standing_between_steps(metrics, motion):
+    """From 0.5 s to 1.5 s the invented robot walks; it pauses for the time given, from 1 s on."""
+    assert metrics(motion())["standing_time_between"] == 0.0
+    assert metrics(motion(pause=0.3))["standing_time_between"] == pytest.approx(0.3)
+
+
 def test_effort(metrics, motion):
     found = metrics(motion())
     assert found["torque_ratio_max"] == pytest.approx(0.4)

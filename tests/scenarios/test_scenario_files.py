@@ -61,7 +61,7 @@ CASES = {
     "gait: {com_height: 1.2}": "f.yaml:1:20: gait.com_height 1.2 m is out of reach",
     "gait: {step_width: 3.0}": "f.yaml:1:20: gait.step_width 3.0 m is out of reach",
     "gait: {step_width: 0.25, lateral_step: 0.3}": "f.yaml:1:40: footstep 1 would land 0.550 m beside its stance",
-    "gait: {step_length: 0.45, com_height: 0.8}": "f.yaml:1:21: footstep 1 would land 0.450 m ahead of its stance foot",
+    "gait: {step_length: 0.85, com_height: 0.8}": "f.yaml:1:21: footstep 1 would land 0.850 m ahead of its stance foot",
     "gait: {step_width: 0.25, turn: 2.0}": "f.yaml:1:32: footstep 2 would land -0.095 m beside its stance foot",
     "gait: {step_width: 0.07}": "f.yaml:1:20: gait.step_width 0.07 m lets feet 0.075 m wide touch; use more than",
     "gait: {lateral_step: 0.12}\nrobot_options: {foot_width: 0.14}": "m beside its stance foot and touch it; keep the",

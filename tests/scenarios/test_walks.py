@@ -1,7 +1,7 @@
 """Walks in full physics: the catalogue, and variations of one walk with nothing else changed."""
 
 import pytest
-from variations import SCENARIO, VARIATIONS
+from variations import COMMANDED, COMMANDS, SCENARIO, VARIATIONS
 
 from scenarios import catalogue
 from scenarios.file.load import load_scenario
@@ -9,6 +9,11 @@ from scenarios.run import run_scenario
 
 EVERY_CHANGE = [variation for variation in VARIATIONS if variation.every_change and variation.overrides]
 ON_DEMAND = [variation for variation in VARIATIONS if not variation.every_change]
+LONG_SCENARIOS = ("walk-turn", "walk-curve", "walk-backward")
+SOUND = "criteria={fell: false, steps_taken: steps_planned, standing_time_final: {min: 1}, cop_ratio_p99: {max: 1},\
+ footstep_error_max: {max: 0.01}, foot_slip_max: {max: 0.01}, self_contact_time: {max: 0}, wbc_fallbacks: {max: 0},\
+ torque_at_limit_fraction: {max: 0.01}}"
+"""What any walk must meet, wherever its command leads."""
 
 
 def verdict(tmp_path, name, overrides=()):
@@ -16,9 +21,21 @@ def verdict(tmp_path, name, overrides=()):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("name", catalogue.names())
+@pytest.mark.parametrize("name", [name for name in catalogue.names() if name not in LONG_SCENARIOS])
 def test_catalogue(tmp_path, name):
     assert verdict(tmp_path, name).reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", LONG_SCENARIOS)
+def test_long_scenario(tmp_path, name):
+    assert verdict(tmp_path, name).reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("variation", COMMANDS, ids=lambda variation: variation.name)
+def test_commanded_walk(tmp_path, variation):
+    assert verdict(tmp_path, COMMANDED, (*variation.overrides, SOUND)).reasons == ()
 
 
 @pytest.mark.physics

@@ -35,6 +35,39 @@ VARIATIONS = (
     *(Variation(f"start noise, seed {v}", (*START_NOISE, f"seed={v}"), v in (0, 1)) for v in range(10)),
 )
 
+COMMANDED = "stop-and-go"
+
+
+def _velocity(*rows: tuple[float, ...]) -> str:
+    """Override of the velocity by rows of time, v_x, v_y and yaw rate, of which the last ones may be left out."""
+    names = ("time", "v_x", "v_y", "yaw_rate")
+    commands = [", ".join(f"{name}: {value}" for name, value in zip(names, row, strict=False)) for row in rows]
+    return f"gait.velocity=[{', '.join('{' + command + '}' for command in commands)}]"
+
+
+COMMANDS = (
+    Variation("at 0.6 m/s, with a stop", (_velocity((0, 0.6), (5,), (8.5, 0.6), (12,)),)),
+    Variation("from 0.6 m/s forward to 0.6 m/s backward", (_velocity((0, 0.6), (4, -0.6), (8,)),)),
+    Variation("stops for a moment", (_velocity((0, 0.5), (5,), (5.5, 0.5), (9,)),)),
+    Variation("four short stops", (_velocity((0, 0.3), (2,), (4, 0.3), (5,), (7, 0.3), (8,), (10, 0.3), (12,)),)),
+    Variation(
+        "forward, sideways, turning, a backward curve",
+        (_velocity((0, 0.4), (4, 0, 0.2), (7, 0, 0, -0.7), (9,), (11, -0.3, 0, 0.3), (14,)),),
+    ),
+    Variation("sideways there and back", (_velocity((0, 0, 0.2), (5, 0, -0.2), (10,)),)),
+    Variation("a circle of 1 m at 0.5 m/s", (_velocity((0, 0.5, 0, 0.5), (13,)),)),
+    Variation("a circle to the right, crabwise", (_velocity((0, 0.3, 0.1, -0.3), (10,)),)),
+    Variation("a backward curve", (_velocity((0, -0.25, 0, 0.25), (10,)),)),
+    Variation("fast turns to and fro", (_velocity((0, 0, 0, 0.75), (5, 0, 0, -0.75), (9,)),)),
+    Variation("backward at 0.5 m/s", (_velocity((0, -0.5), (10,)),)),
+    Variation("feet 7.5 cm square", ("robot_options.foot_length=null", "robot_options.foot_width=null")),
+    *(
+        Variation(f"start noise, seed {v}", ("start.position_noise=0.005", "start.angle_noise=0.005", f"seed={v}"))
+        for v in range(5)
+    ),
+)
+"""Variations of `stop-and-go`: other commands than its own, of which only a sound walk is asked."""
+
 
 def run(variation: Variation) -> dict[str, object]:
     """Metrics of one variation, computed from its log."""

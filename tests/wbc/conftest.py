@@ -39,10 +39,12 @@ class Robot:
     def ik(self) -> PostureIk:
         return PostureIk(self.model, self.frames, self.limits, self.nominal)
 
-    def controller(self, parameters: WbcParameters | None = None) -> WholeBodyController:
+    def controller(
+        self, parameters: WbcParameters | None = None, limbs: pin.GeometryModel | None = None
+    ) -> WholeBodyController:
         return WholeBodyController(
             self.model, self.frames, Sole(HALF_SOLE, HALF_SOLE, 0.8), self.limits, self.standing[7:], self.leg_joints,
-            PERIOD, parameters or WbcParameters(),
+            PERIOD, parameters or WbcParameters(), limbs,
         )  # fmt: skip
 
     def moved(self, rng: np.random.Generator, offset: float = 0.05, speed: float = 0.3) -> RobotState:

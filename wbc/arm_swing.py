@@ -1,0 +1,43 @@
+"""Arms that swing against the legs: a posture that moves with the stride and takes up the legs' yaw momentum."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wbc.model import RobotTerms
+
+
+@dataclass(frozen=True, slots=True)
+class ArmSwing:
+    """Shoulder pitch that follows the stride.
+
+    An arm goes back while the foot of its side is ahead of the other: q = q_0 ± a s with the stride s, how far the left
+    sole is ahead of the right one along the pelvis. It needs no phase: it starts, stops and turns with the feet.
+
+    Attributes:
+        joints: indices of the left and right shoulder pitch among the actuated joints; positive angles swing back.
+        gain: a [rad/m].
+    """
+
+    joints: tuple[int, int]
+    gain: float
+
+    def offset(self, terms: RobotTerms) -> tuple[float, float]:
+        """Angle of the left shoulder from the posture and its rate [rad, rad/s]; the right one mirrors it."""
+        forward = terms.base_rotation[:, 0]
+        x, y = forward[:2].tolist()
+        length = float(np.hypot(x, y))
+        left, right = terms.sole_position
+        dx, dy, _ = (left - right).tolist()
+        velocity = [terms.sole_rotation[k] @ terms.sole_velocity[k, :3] for k in (0, 1)]
+        vx, vy, _ = (velocity[0] - velocity[1]).tolist()
+        scale = self.gain / max(length, 1e-3)
+        return scale * (x * dx + y * dy), scale * (x * vx + y * vy)
+
+
+def shoulder_pitches(names: tuple[str, ...]) -> tuple[int, int] | None:
+    """Indices of the left and right joint called so; None for a robot that has none."""
+    found = [index for index, name in enumerate(names) if "shoulder_pitch" in name]
+    left = [index for index in found if "left" in names[index]]
+    right = [index for index in found if "right" in names[index]]
+    return (left[0], right[0]) if left and right else None

@@ -1,0 +1,87 @@
+"""Distances between the robot's own limbs as bounds on the joint accelerations of one tick."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from wbc.types import Array
+
+_WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+
+
+@dataclass(frozen=True, slots=True)
+class SeparationParameters:
+    """When limbs keep away from each other.
+
+    Attributes:
+        clearance: distance that must remain [m].
+        attention: distance from which a pair is looked at; an approach of up to attention / horizon can be stopped [m].
+        horizon: T of the critically damped approach [s].
+        slots: pairs that are looked at in one tick, the nearest ones.
+    """
+
+    clearance: float = 0.003
+    attention: float = 0.04
+    horizon: float = 0.05
+    slots: int = 3
+
+
+class Separation:
+    """Rows J q̈ >= lower that keep pairs of shapes apart.
+
+    The distance d between the nearest points a and b of two shapes, with the normal n from b to a, has the rate
+    d' = n·(a' - b') = J v, and d'' = J q̈ but for products of velocities (the points slide, the normal turns): below
+    1 m/s^2 in walking, against (d - clearance) / T² of 8 m/s^2 at two centimetres. The approach is that of the joint
+    limits, T² d'' + 2 T d' + (d - clearance) >= 0, which never comes closer than the clearance. A pair inside it is not
+    pushed apart (its last term counts as zero), because two standing feet could not obey, and one that touches is left
+    to the contact forces. (Faverjon and Tournassoud,
+    ICRA 1987, is the first such damper on distances.)
+    """
+
+    def __init__(self, model: pin.Model, geometry: pin.GeometryModel, parameters: SeparationParameters) -> None:
+        """Take the shapes whose collision pairs are to be kept apart."""
+        self._model, self._geometry, self._parameters = model, geometry, parameters
+        self._data = pin.GeometryData(geometry)
+        self._joints = [
+            tuple(geometry.geometryObjects[shape].parentJoint for shape in (pair.first, pair.second))
+            for pair in geometry.collisionPairs
+        ]
+
+    def write(self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
+        """Write the rows of the nearest pairs; unused ones become zero rows without a bound.
+
+        Args:
+            data: Pinocchio's terms of the state, with joint Jacobians.
+            v: generalised velocity, shape (nv,).
+            rows: shape (slots, nv).
+            lower: lower bounds of the rows, shape (slots,).
+            unbounded: value of an absent bound.
+        """
+        p = self._parameters
+        pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
+        pin.computeDistances(self._geometry, self._data)
+        distances = [result.min_distance for result in self._data.distanceResults]
+        near = [k for k, distance in enumerate(distances) if 0.0 < distance < p.attention]
+        near.sort(key=distances.__getitem__)
+        for slot in range(p.slots):
+            if slot >= len(near):
+                rows[slot:], lower[slot:] = 0.0, -unbounded
+                return
+            row = self._gradient(data, near[slot])
+            gap = max(distances[near[slot]] - p.clearance, 0.0)
+            rows[slot] = row
+            lower[slot] = -2.0 / p.horizon * float(row @ v) - gap / p.horizon**2
+
+    def _gradient(self, data: pin.Data, pair: int) -> Array:
+        """Jacobian of a distance, shape (nv,)."""
+        result = self._data.distanceResults[pair]
+        normal = -np.asarray(result.normal)
+        row = np.zeros(self._model.nv)
+        for sign, joint, point in zip(
+            (1.0, -1.0), self._joints[pair], (result.getNearestPoint1(), result.getNearestPoint2()), strict=True
+        ):
+            arm = point - data.oMi[joint].translation
+            jacobian = pin.getJointJacobian(self._model, data, joint, _WORLD_AXES)
+            row += sign * (normal @ jacobian[:3] + np.cross(arm, normal) @ jacobian[3:])
+        return row

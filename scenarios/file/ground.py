@@ -58,6 +58,8 @@ def true_terrain_of(scenario: Scenario) -> Terrain:
 
 def start_height(scenario: Scenario) -> float:
     """Height of the ground on which the robot starts [m]."""
+    if scenario.terrain.kind == "blocks":
+        return blocks_of(scenario).middle
     return terrain_of(scenario).height(scenario.start.x, scenario.start.y)
 
 

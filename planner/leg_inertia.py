@@ -160,6 +160,6 @@ def _unit_swing(samples: int, climb: float, course: SwingCourse, parameters: Pla
     """Progress of the sole and its height above lift-off at the samples of a swing, shape (2, samples)."""
     times = swing_times(0.0, samples, course, parameters)
     swing: SwingTrajectory = start_swing(
-        Foot.LEFT, np.zeros(4), np.array([1.0, 0.0, climb, 0.0]), times, course.height, parameters
+        Foot.LEFT, np.zeros(6), np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), times, course.height, parameters
     )
     return np.array([swing.evaluate(k * parameters.sample_time)[0, [0, 2]] for k in range(samples)]).T

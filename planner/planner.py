@@ -14,6 +14,7 @@ from planner.heel_off import FootRoll, roll_plan
 from planner.leg_inertia import swing_shape
 from planner.motion import Motion, MotionProblem
 from planner.moves import block_moves
+from planner.orientation import sole_pose
 from planner.parameters import PlannerParameters
 from planner.plan import WalkPlan
 from planner.prediction import predict, trajectory
@@ -181,10 +182,12 @@ class WalkingPlanner:
         if foot is None:
             self._swing = None
             return
-        target = np.append(footsteps[0].footstep.position, footsteps[0].footstep.yaw)
+        following = footsteps[0].footstep
+        target = sole_pose(following.position, following.yaw, following.normal)
         if self._swing is None:
             yaw = float(stepper.footsteps.yaw[stepper.row - 1])
-            pose = np.append(feet.position[foot], yaw + wrap_angle(float(feet.yaw[foot]) - yaw))
+            yaw += wrap_angle(float(feet.yaw[foot]) - yaw)
+            pose = sole_pose(feet.position[foot], yaw, stepper.footsteps.normal[stepper.row - 1])
             course = self._courses[phase.step - 1]
             times = swing_times(time, phase.samples, course, self.parameters)
             self._swing = start_swing(foot, pose, target, times, course.height, self.parameters)

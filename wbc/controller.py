@@ -181,7 +181,7 @@ class WholeBodyController:
             self._region_contacts = holding
         acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
         self._tasks.write(terms, state.q, state.v, acceleration, reference)
-        self._hard.write(terms, state.q, state.v, contacts, reference.roll[1:])
+        self._hard.write(terms, state.q, state.v, contacts, reference.ground_normal, reference.roll[1:])
         if self._separation is not None:
             self._separation.write(terms.data, state.v, self._gap_rows, self._gap_lower, UNBOUNDED)
 

@@ -17,7 +17,7 @@ class ContactGains:
 
     Attributes:
         damping: decay of a sole's remaining velocity [1/s].
-        levelling: stiffness that turns an active sole flat on the ground [1/s^2].
+        levelling: stiffness that turns an active sole flat on the ground of its planned normal [1/s^2].
     """
 
     damping: float = 20.0
@@ -66,15 +66,21 @@ class HardConstraints:
         self._force_caps = upper[nv + 2 : n : 6]
 
     def write(
-        self, terms: RobotTerms, q: Array, v: Array, contacts: ContactState, roll: tuple[float, float] = (0.0, 0.0)
+        self,
+        terms: RobotTerms,
+        q: Array,
+        v: Array,
+        contacts: ContactState,
+        ground_normal: Array,
+        roll: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        """Write the rows and bounds of this state; q (nq,), v (nv,).
+        """Write the rows and bounds of this state; q (nq,), v (nv,), ground_normal (2, 3) in the world frame.
 
         A rolling foot is seen from its toe edge (see ``RobotTerms.shift_foot``), which neither slides nor lifts; its
         pitch follows the planned ``roll``, rate and acceleration [rad/s, rad/s^2], and its CoP lies on the edge.
         """
         self._motion(terms)
-        self._contacts(terms, contacts, roll)
+        self._contacts(terms, contacts, ground_normal, roll)
         self._joints.write(q[7:], v[6:], self._joint_lower, self._joint_upper)
 
     def _motion(self, terms: RobotTerms) -> None:
@@ -84,16 +90,16 @@ class HardConstraints:
         np.add(self._motion_lower, self._torque_span, out=self._motion_upper)
         self._motion_lower -= self._torque_span
 
-    def _contacts(self, terms: RobotTerms, contacts: ContactState, roll: tuple[float, float]) -> None:
+    def _contacts(
+        self, terms: RobotTerms, contacts: ContactState, ground_normal: Array, roll: tuple[float, float]
+    ) -> None:
         target, levelling = self._target, self._gains.levelling
         np.multiply(terms.sole_velocity, -self._gains.damping, out=target)
         target -= terms.sole_bias
-        # Rotation vector, in the sole frame, that turns the sole's normal to the vertical.
-        R = terms.contact_rotation
-        target[0, 3] -= levelling * R[0, 2, 1]
-        target[0, 4] += levelling * R[0, 2, 0]
-        target[1, 3] -= levelling * R[1, 2, 1]
-        target[1, 4] += levelling * R[1, 2, 0]
+        # Rotation vector, in the sole frame, that turns the sole's normal to the ground's.
+        normal = np.matmul(ground_normal[:, None, :], terms.contact_rotation)[:, 0]
+        target[:, 3] -= levelling * normal[:, 1]
+        target[:, 4] += levelling * normal[:, 0]
         if contacts.rolling != self._rolling:
             self._roll(contacts.rolling)
         if contacts.rolling >= 0:

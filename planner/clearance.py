@@ -3,9 +3,10 @@
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planner.footsteps import FootstepPlan
-from planner.frames import frame_rotation
+from planner.orientation import sole_pose, sole_rotation
 from planner.parameters import PlannerParameters
 from planner.polynomial import quintic
 from planner.schedule import Schedule
@@ -59,7 +60,7 @@ def swing_courses(
         if phase.kind is not PhaseKind.SINGLE:
             continue
         row = phase.step + 1
-        start, end = (np.append(footsteps.position[r], footsteps.yaw[r]) for r in (row - 2, row))
+        start, end = (sole_pose(footsteps.position[r], footsteps.yaw[r], footsteps.normal[r]) for r in (row - 2, row))
         ground = _ground(start, end, terrain, half_size + EDGE_DISTANCE)
         course: SwingCourse | None = plain
         if np.ptp(ground) > _LEVEL:
@@ -74,20 +75,27 @@ def swing_courses(
 
 
 def _ground(start: Array, end: Array, terrain: Terrain, half_size: Array) -> Array:
-    """Least height of the sole's centre around each point of its way, shape (81,) [m]."""
+    """Least height of the sole's centre around each point of its way, on which it turns too, shape (81,) [m]."""
     sides = (-1.0, -0.5, 0.0, 0.5, 1.0)
     outline = half_size * np.array([(u, v) for u, v in product(sides, sides) if max(abs(u), abs(v)) == 1.0])
     poses = start + _WAY[:, None] * (end - start)
-    points = np.concatenate([pose[:2] + outline @ frame_rotation(float(pose[3])).T for pose in poses])
-    heights = terrain.heights(points).reshape(len(_WAY), -1)
-    highest = heights.max(axis=1)
-    at_home = np.ptp(heights, axis=1) < _LEVEL
-    at_home &= np.minimum(abs(highest - start[2]), abs(highest - end[2])) < _LEVEL
-    needed = np.where(at_home, highest, highest + EDGE_CLEARANCE)
+    spread = np.array([outline @ sole_rotation(*pose[3:].tolist())[:, :2].T for pose in poses])
+    points = poses[:, None, :2] + spread[:, :, :2]
+    heights = terrain.heights(points.reshape(-1, 2)).reshape(spread.shape[:2])
+    needed = np.max(heights - spread[:, :, 2], axis=1)
+    at_home = _on_face(points, heights, start) | _on_face(points, heights, end)
+    needed = np.where(at_home, needed, needed + EDGE_CLEARANCE)
     # An edge may lie anywhere between two points.
     around = np.maximum(needed, np.maximum(np.append(needed[1:], -np.inf), np.append(-np.inf, needed[:-1])))
     around[[0, -1]] = start[2], end[2]
     return np.asarray(around)
+
+
+def _on_face(points: Array, heights: Array, pose: Array) -> NDArray[np.bool_]:
+    """Whether all ground under a sole, points (n, k, 2) of heights (n, k), is the plane of the sole's pose, (n,)."""
+    normal = sole_rotation(*pose[3:].tolist())[:, 2]
+    above = heights - pose[2] + (points - pose[:2]) @ (normal[:2] / normal[2])
+    return np.asarray(np.max(np.abs(above), axis=1) < _LEVEL)
 
 
 def _gentlest(

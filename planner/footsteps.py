@@ -22,6 +22,7 @@ class FootstepPlan:
         feet: which foot each row belongs to, length n + 2.
         position: sole centres, shape (n + 2, 3) [m].
         yaw: planned headings, unwrapped, shape (n + 2,) [rad]; landing errors do not enter, so heading does not drift.
+        normal: unit normals of the ground, shape (n + 2, 3) [-].
         increment: nominal displacement from the row before, shape (n + 2, 2) [m].
         supports: rows between which each support point lies, shape (m, 2) (see `planner.gait.support_rows`).
     """
@@ -29,6 +30,7 @@ class FootstepPlan:
     feet: tuple[Foot, ...]
     position: Array
     yaw: Array
+    normal: Array
     increment: Array
     supports: NDArray[np.intp]
 
@@ -39,7 +41,7 @@ class FootstepPlan:
 
     def footstep(self, row: int) -> Footstep:
         """The foothold of a row."""
-        return Footstep(self.feet[row], self.position[row], float(self.yaw[row]))
+        return Footstep(self.feet[row], self.position[row], float(self.yaw[row]), self.normal[row])
 
     def moved(self, row: int, position: Array, terrain: Terrain) -> "FootstepPlan":
         """The plan with one foothold somewhere else and its successors at their nominal increments from it.
@@ -80,7 +82,7 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     Args:
         gait: the gait.
         feet: start feet in the world frame.
-        terrain: gives the heights of the footsteps.
+        terrain: gives heights and normals of the footsteps.
     """
     n, strides = gait.steps, gait.strides
     rows = tuple(gait.step_foot(i - 1) for i in range(n + 2))
@@ -99,4 +101,5 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     position[2:, 2] = terrain.heights(position[2:, :2])
     increment = np.zeros((n + 2, 2))
     increment[1:] = np.diff(position[:, :2], axis=0)
-    return FootstepPlan(rows, position, yaw, increment, support_rows(gait.walk))
+    normal = terrain.normals(position[:, :2])
+    return FootstepPlan(rows, position, yaw, normal, increment, support_rows(gait.walk))

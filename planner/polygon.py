@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from planner.frames import frame_rotation
+from planner.orientation import sole_angles, sole_rotation
 from planner.types import Array, Footstep
 
 
@@ -15,7 +15,8 @@ def sole_corners(footstep: Footstep, half_size: Array) -> Array:
         half_size: half of its length and width, shape (2,) [m].
     """
     signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
-    return np.asarray(footstep.position[:2] + (signs * half_size) @ frame_rotation(footstep.yaw).T)
+    rotation = sole_rotation(footstep.yaw, *sole_angles(footstep.normal, footstep.yaw))
+    return np.asarray(footstep.position[:2] + (signs * half_size) @ rotation[:2, :2].T)
 
 
 def convex_hull(points: Array) -> Array:

@@ -28,9 +28,9 @@ class PlanSample:
         load_left: planned share of the weight on the left foot [-].
         load_left_rate: its rate [1/s].
         swing_foot: the swinging foot, or None; the swing arrays are zero without one.
-        swing: swing sole x, y, z [m] and yaw [rad], shape (4,).
-        swing_velocity: shape (4,) [m/s, rad/s].
-        swing_acceleration: shape (4,) [m/s^2, rad/s^2].
+        swing: swing sole x, y, z [m], yaw, pitch, roll [rad], shape (6,).
+        swing_velocity: shape (6,) [m/s, rad/s].
+        swing_acceleration: shape (6,) [m/s^2, rad/s^2].
     """
 
     time: float
@@ -87,53 +87,54 @@ class PlanSampler:
         t2 = t * t
         t3 = t2 * t
         values = np.array((1.0, t, t2, t3, t3 * t, t3 * t2)) @ self._table
-        com, velocity, acceleration = values[0:3], values[7:10], values[14:17]
-        omega, stiffness, load = values[25:].tolist()
-        pendulum_zmp = values[0:2] - values[14:16] / stiffness
+        com, velocity, acceleration = values[7:10], values[16:19], values[25:28]
+        omega, stiffness, load = values[4:7].tolist()
+        pendulum_zmp = com[:2] - acceleration[:2] / stiffness
         return PlanSample(
             time,
             com,
             velocity,
             acceleration,
-            pendulum_zmp + values[23:25],
+            pendulum_zmp + values[2:4],
             pendulum_zmp,
-            values[21:23],
-            values[0:2] + values[7:9] / omega,
+            values[:2],
+            com[:2] + velocity[:2] / omega,
             omega,
             stiffness,
             self._contacts,
             load,
             self._load_rate,
             self._swing_foot,
-            values[3:7],
-            values[10:14],
-            values[17:21],
+            values[10:16],
+            values[19:25],
+            values[28:],
         )
 
     def _enter(self, i: int) -> None:
-        """Prepare an interval: 7 polynomials, their two derivatives, and 7 linear functions as columns."""
+        """Prepare an interval: 7 linear functions, 9 polynomials and their two derivatives as columns."""
         plan, t = self.plan, self.plan.sample_time
         self._interval, self._start = i, plan.time + i * t
         table = np.zeros((6, _COLUMNS))
-        table[0, :2], table[1, :2] = plan.com[i, :2], plan.com_velocity[i, :2]
-        table[2, :2], table[3, :2] = 0.5 * plan.com_acceleration[i, :2], plan.jerk[i] / 6.0
+        linear, motion, rates, bends = table[:, :7], table[:, 7:16], table[:, 16:25], table[:, 25:]
+        for row, k in enumerate((i, i + 1)):
+            linear[row, :2], linear[row, 2:4] = plan.zmp_reference[k], plan.zmp_offset[k]
+            linear[row, 4:] = plan.omega[k], plan.stiffness[k], plan.load_left[k]
+        linear[1] = (linear[1] - linear[0]) / t
+        motion[0, :2], motion[1, :2] = plan.com[i, :2], plan.com_velocity[i, :2]
+        motion[2, :2], motion[3, :2] = 0.5 * plan.com_acceleration[i, :2], plan.jerk[i] / 6.0
         heights = np.stack(
             (plan.com[i : i + 2, 2], plan.com_velocity[i : i + 2, 2], plan.com_acceleration[i : i + 2, 2])
         )
-        table[:, 2] = quintic(heights[:, :1], heights[:, 1:], t)[:, 0]
+        motion[:, 2] = quintic(heights[:, :1], heights[:, 1:], t)[:, 0]
         left, right = plan.contacts[i].tolist()
         self._contacts, self._swing_foot = (left, right), None
         if plan.swing is not None and not plan.contacts[i, plan.swing.foot]:
             self._swing_foot = plan.swing.foot
-            table[:, 3:7] = plan.swing.coefficients(self._start)
-        table[:5, 7:14] = _DERIVATIVE * table[1:, :7]
-        table[:4, 14:21] = _DERIVATIVE[:4] * table[1:5, 7:14]
-        for row, k in enumerate((i, i + 1)):
-            table[row, 21:23], table[row, 23:25] = plan.zmp_reference[k], plan.zmp_offset[k]
-            table[row, 25:] = plan.omega[k], plan.stiffness[k], plan.load_left[k]
-        table[1, 21:] = (table[1, 21:] - table[0, 21:]) / t
-        self._table, self._load_rate = table, float(table[1, 27])
+            motion[:, 3:] = plan.swing.coefficients(self._start)
+        rates[:5] = _DERIVATIVE * motion[1:]
+        bends[:4] = _DERIVATIVE[:4] * rates[1:5]
+        self._table, self._load_rate = table, float(linear[1, 6])
 
 
-_COLUMNS = 28
+_COLUMNS = 34
 _DERIVATIVE = np.arange(1.0, 6.0)[:, None]

@@ -1,6 +1,7 @@
 """The walk's clock and the footholds taken so far."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from planner.footsteps import FootstepPlan
 from planner.parameters import PlannerParameters, StepAdaptation
 from planner.schedule import Phase, Schedule
 from planner.terrain import Terrain
-from planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
+from planner.types import Array, FeetState, Foot, PhaseInfo, PhaseKind, PlannedFootstep
 
 _SAME_GROUND = 1e-3
 """Footstep shift up to which the ground height is not looked up again [m]."""
@@ -122,7 +123,7 @@ class Stepper:
             position[:2] += shift
             if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND:
                 position[2] = self._terrain.height(float(position[0]), float(position[1]))
-            footstep = Footstep(steps.feet[row], position, float(steps.yaw[row]))
+            footstep = replace(steps.footstep(row), position=position)
             planned.append(PlannedFootstep(row - 1, footstep, time + self.time_to_touchdown(row - 1)))
         return tuple(planned)
 

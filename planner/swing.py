@@ -11,32 +11,35 @@ from planner.types import Array, Foot
 _NOW = 1e-9
 """Times of ticks carry rounding; a piece begins this much early [s]."""
 
+_GLIDING = [0, 1, 3, 4, 5]
+"""Columns of all but z."""
+
 _LEAST_GLIDE = 0.1
 """A new target is reached by touchdown instead of by the end of the glide when less than this is left of it [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class SwingTrajectory:
-    """Motion of a swing foot; columns are x, y, z [m] and yaw [rad] in the world frame.
+    """Motion of a swing foot; columns are x, y, z [m], yaw, pitch, roll [rad] in the world frame.
 
-    x, y and yaw are one quintic from the state at the last change of target to rest at the target, so that an unchanged
-    target is continued identically; before and after this glide they rest. z is one quintic up to the apex and one down
-    to the touchdown height, joined with continuous acceleration. After the touchdown time x, y, yaw hold and z goes on
-    downwards from the touchdown speed, gaining speed up to the search speed: a jump in speed there would shake the ZMP
-    of the stance foot.
+    All but z are one quintic from the state at the last change of target to rest at the target, so that an unchanged
+    target is continued identically; before and after this glide they rest, so that the sole leaves and meets tilted
+    ground flat on it. z is one quintic up to the apex and one down to the touchdown height, joined with continuous
+    acceleration. After the touchdown time all but z hold and z goes on downwards from the touchdown speed, gaining it
+    up to the search speed: a jump there would shake the ZMP of the stance foot.
 
     Attributes:
         foot: the foot that swings.
-        start_time: local time zero of x, y, yaw, before which they rest [s].
-        glide_end: when x, y, yaw come to rest [s].
+        start_time: local time zero of the glide, before which all but z rest [s].
+        glide_end: when they come to rest [s].
         apex_time: when the sole is highest [s].
         touchdown_time: when it is planned to land [s].
-        target: touchdown position and yaw, shape (4,).
+        target: touchdown position and angles, shape (6,).
         clearance: height of the apex above the higher of lift-off and touchdown [m].
         touchdown_speed: downward speed at touchdown [m/s].
         search_speed: greatest downward speed after it [m/s].
         search_acceleration: at which that speed is gained [m/s^2].
-        level: coefficients of x, y, yaw from `start_time`, shape (6, 3).
+        level: coefficients of all but z from `start_time`, shape (6, 5).
         rise_start: local time zero of the rise [s].
         rise: coefficients of z until the apex, shape (6, 1).
         fall_start: local time zero of the fall [s].
@@ -60,8 +63,8 @@ class SwingTrajectory:
     fall: Array
 
     def coefficients(self, time: float) -> Array:
-        """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 4)."""
-        result = np.zeros((6, 4))
+        """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 6)."""
+        result = np.zeros((6, 6))
         if time >= self.touchdown_time - _NOW:
             result[0] = self.target
             result[:3, 2] = self._search(time - self.touchdown_time)
@@ -69,10 +72,9 @@ class SwingTrajectory:
         if time >= self.glide_end - _NOW:
             result[0] = self.target
         elif time >= self.start_time - _NOW:
-            level = shifted(self.level, time - self.start_time)
-            result[:, :2], result[:, 3] = level[:, :2], level[:, 2]
+            result[:, _GLIDING] = shifted(self.level, time - self.start_time)
         else:
-            result[0, :2], result[0, 3] = self.level[0, :2], self.level[0, 2]
+            result[0, _GLIDING] = self.level[0]
         if time >= self.apex_time - _NOW:
             result[:, 2] = shifted(self.fall, time - self.fall_start)[:, 0]
         else:
@@ -90,7 +92,7 @@ class SwingTrajectory:
         return height - (top - speed) * (since - gaining), -top, 0.0
 
     def evaluate(self, time: float) -> Array:
-        """Position, velocity and acceleration at an instant after the start, shape (3, 4)."""
+        """Position, velocity and acceleration at an instant after the start, shape (3, 6)."""
         return np.asarray(self.coefficients(time)[:3] * _FACTORIAL)
 
     def retargeted(self, time: float, target: Array) -> "SwingTrajectory":
@@ -98,12 +100,12 @@ class SwingTrajectory:
 
         Args:
             time: instant of the change, before the touchdown [s].
-            target: new touchdown position and yaw, shape (4,).
+            target: new touchdown position and angles, shape (6,).
         """
         state = self.evaluate(time)
         start = max(time, self.start_time)
         end = self.glide_end if time < self.glide_end - _LEAST_GLIDE else self.touchdown_time
-        level = _to_rest(state[:, [0, 1, 3]], target[[0, 1, 3]], end - start)
+        level = _to_rest(state[:, _GLIDING], target[_GLIDING], end - start)
         moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target))
         if target[2] == self.target[2]:
             return moved
@@ -170,13 +172,13 @@ def start_swing(
 
     Args:
         foot: the foot that swings.
-        pose: lift-off position and yaw, shape (4,).
-        target: touchdown position and yaw, shape (4,).
+        pose: lift-off position and angles, shape (6,).
+        target: touchdown position and angles, shape (6,).
         times: of the swing.
         clearance: height of the apex above the higher of both ends [m].
         parameters: give the speeds of touchdown and search.
     """
-    rest = np.zeros((3, 4))
+    rest = np.zeros((3, 6))
     rest[0] = pose
     trajectory = SwingTrajectory(
         foot=foot,
@@ -189,7 +191,7 @@ def start_swing(
         touchdown_speed=parameters.touchdown_speed,
         search_speed=parameters.search_speed,
         search_acceleration=parameters.search_acceleration,
-        level=_to_rest(rest[:, [0, 1, 3]], target[[0, 1, 3]], times.glide_end - times.glide_start),
+        level=_to_rest(rest[:, _GLIDING], target[_GLIDING], times.glide_end - times.glide_start),
         rise_start=times.lift,
         rise=np.zeros((6, 1)),
         fall_start=times.apex,
@@ -215,6 +217,6 @@ def _fall(state: Array, height: float, speed: float, duration: float) -> Array:
 
 
 def _to_rest(state: Array, target: Array, duration: float) -> Array:
-    end = np.zeros((3, 3))
+    end = np.zeros((3, state.shape[1]))
     end[0] = target
     return quintic(state, end, duration)

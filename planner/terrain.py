@@ -61,6 +61,20 @@ class Terrain:
             highest = np.where(inside >= 0.0, np.maximum(highest, top), highest)
         return highest
 
+    def normal(self, x: float, y: float) -> NDArray[np.float64]:
+        """Unit normal of the ground at the world point (x, y), shape (3,) [-]."""
+        return np.asarray(self.normals(np.array([[x, y]]))[0])
+
+    def normals(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Unit normals of the faces that carry world points x, y, shape (k, 2) [m]; shape (k, 3) [-]."""
+        highest, normals = np.zeros(len(points)), np.tile([0.0, 0.0, 1.0], (len(points), 1))
+        for box in self.boxes:
+            top, inside = box.top(points)
+            carrying = (inside >= 0.0) & (top > highest)
+            highest[carrying] = top[carrying]
+            normals[carrying] = box.rotation[:, 2]
+        return normals
+
     def edge_margins(self, centers: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:
         """Least distance of each sole's corners from the edge of the face that carries the sole's centre.
 

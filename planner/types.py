@@ -1,6 +1,6 @@
 """Values that cross the planner's boundary. World frame, SI units; arrays are float64."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
@@ -32,6 +32,10 @@ class PhaseKind(IntEnum):
     SINGLE = 2
 
 
+def _upwards() -> Array:
+    return np.array([0.0, 0.0, 1.0])
+
+
 @dataclass(frozen=True, slots=True)
 class Footstep:
     """A foothold.
@@ -40,11 +44,13 @@ class Footstep:
         foot: the foot that stands here.
         position: sole centre in the world frame, shape (3,) [m].
         yaw: heading of the sole about the world's z axis [rad].
+        normal: unit normal of the ground that the sole lies flat on, in the world frame, shape (3,) [-].
     """
 
     foot: Foot
     position: Array
     yaw: float
+    normal: Array = field(default_factory=_upwards)
 
 
 @dataclass(frozen=True, slots=True)

@@ -84,6 +84,7 @@ class TaskStack:
         posture: Array,
         leg_joints: NDArray[np.bool_],
         arms: ArmSwing | None = None,
+        toe: float = 0.0,
     ) -> None:
         """Prepare what never changes.
 
@@ -96,15 +97,16 @@ class TaskStack:
             posture: joint positions to return to, shape (nj,) [rad].
             leg_joints: which joints are leg joints, bool, shape (nj,).
             arms: how the arms swing; None for arms that keep the posture.
+            toe: toe edge from the sole's centre [m].
         """
-        self._arms = arms
+        self._arms, self._toe = arms, toe
         self._gains, self._unit, self._force_weight = gains, layout.wrench_unit, weights.force
         scale = self._scale = np.sqrt(_row_weights(weights))
         self._unscale = np.divide(1.0, scale, out=np.zeros(TASK_ROWS), where=scale > 0.0)
         self._orientation_scale, self._swing_scale = float(scale[9]), float(scale[12])
         self._rows, self._target = np.zeros((TASK_ROWS, layout.variables)), np.zeros(TASK_ROWS)
         self._rows[PELVIS, 3:6] = np.diag(scale[PELVIS])
-        self._upright, self._turned = np.eye(3), np.eye(3)
+        self._upright = np.eye(3)
         self._from_origin = np.diag(scale[:6] * (self._unit / mass))
         self._moment_scale = float(self._from_origin[5, 5])
         posture_weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
@@ -157,7 +159,8 @@ class TaskStack:
         """Rows of the torso; returns the targets of pelvis and torso."""
         np.multiply(terms.torso_jacobian, self._orientation_scale, out=self._torso_rows)
         _turn(self._upright, reference.heading)
-        gains, turn = self._gains.orientation, (reference.heading_rate, 0.0)
+        gains = self._gains.orientation
+        turn = np.array((0.0, 0.0, gains[1] * reference.heading_rate))
         pelvis = _angular(gains, terms.base_rotation, terms.base_angular_velocity, self._upright, turn)
         x, y, z = _angular(gains, terms.torso_rotation, terms.torso_velocity, self._upright, turn)
         bx, by, bz = terms.torso_bias.tolist()
@@ -170,19 +173,22 @@ class TaskStack:
             self._swing_rows[:] = 0.0
             return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         np.multiply(terms.sole_jacobian[k], self._swing_scale, out=self._swing_rows)
-        (stiffness, damping), R, velocity = self._gains.swing, terms.sole_rotation[k], terms.sole_velocity[k]
-        wanted = reference.swing_position - terms.sole_position[k]
+        (stiffness, damping), R, velocity = self._gains.swing, terms.contact_rotation[k], terms.sole_velocity[k]
+        wanted = reference.swing_position - terms.contact_position[k]
+        pitching = 0.0
+        if k == reference.rolling_foot:
+            wanted += self._toe * reference.swing_rotation[:, 0]
+            pitching = damping * reference.roll[1] + reference.roll[2]
         wanted *= stiffness
         wanted += damping * reference.swing_velocity
         wanted += reference.swing_acceleration
         x, y, z = (wanted @ R).tolist()
-        yaw, *turn = reference.swing_yaw
-        _turn(self._turned, yaw)
-        ax, ay, az = _angular(self._gains.swing, R, velocity[3:], self._turned, (turn[0], turn[1]))
+        turning = reference.swing_angular_acceleration + damping * reference.swing_angular_velocity
+        ax, ay, az = _angular(self._gains.swing, R, velocity[3:], reference.swing_rotation, turning)
         vx, vy, vz = velocity[:3].tolist()
         bx, by, bz, px, py, pz = terms.sole_bias[k].tolist()
         linear = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
-        return (*linear, ax - px, ay - py, az - pz)
+        return (*linear, ax - px, ay + pitching - py, az - pz)
 
     def _regularisation(self, terms: RobotTerms, q: Array, v: Array, reference: WbcReference) -> None:
         linear = self._joint_linear
@@ -201,19 +207,16 @@ class TaskStack:
             self._linear[6 + joint] += sign * float(self._stiffness[joint] * angle + self._damping[joint] * rate)
 
 
-def _angular(
-    gains: tuple[float, float], R: Array, velocity: Array, desired: Array, turn: tuple[float, float]
-) -> Vector:
-    """Angular acceleration, in the frame of R, towards ``desired``, which turns upright at (rate, acceleration)."""
+def _angular(gains: tuple[float, float], R: Array, velocity: Array, desired: Array, feedforward: Array) -> Vector:
+    """Angular acceleration, in the frame of R, towards ``desired``; feedforward, shape (3,) [rad/s^2], in the world."""
     stiffness, damping = gains
     ex, ey, ez = pin.log3(R.T @ desired).tolist()
     wx, wy, wz = velocity.tolist()
-    ux, uy, uz = R[2].tolist()
-    about = turn[1] + damping * turn[0]
+    ux, uy, uz = (feedforward @ R).tolist()
     return (
-        stiffness * ex - damping * wx + about * ux,
-        stiffness * ey - damping * wy + about * uy,
-        stiffness * ez - damping * wz + about * uz,
+        stiffness * ex - damping * wx + ux,
+        stiffness * ey - damping * wy + uy,
+        stiffness * ez - damping * wz + uz,
     )
 
 

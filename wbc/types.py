@@ -77,7 +77,13 @@ class WbcReference:
         swing_position: sole centre of the swing foot, shape (3,) [m].
         swing_velocity: its velocity, shape (3,) [m/s].
         swing_acceleration: its acceleration, shape (3,) [m/s^2].
-        swing_yaw: (yaw, yaw rate, yaw acceleration) of the swing foot [rad, rad/s, rad/s^2].
+        swing_rotation: orientation of its sole, shape (3, 3).
+        swing_angular_velocity: of its sole, shape (3,) [rad/s].
+        swing_angular_acceleration: of its sole, shape (3,) [rad/s^2].
+        ground_normal: unit normals of the ground on which the soles stand, or will land, shape (2, 3) [-].
+        rolling_foot: index of the foot that rolls about its toe edge, -1 for none; its `swing_position` is that of the
+            sole as if it lay flat.
+        roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
     """
 
     com: Array
@@ -98,7 +104,12 @@ class WbcReference:
     swing_position: Array
     swing_velocity: Array
     swing_acceleration: Array
-    swing_yaw: tuple[float, float, float]
+    swing_rotation: Array
+    swing_angular_velocity: Array
+    swing_angular_acceleration: Array
+    ground_normal: Array
+    rolling_foot: int = -1
+    roll: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

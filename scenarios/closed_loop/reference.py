@@ -2,6 +2,9 @@
 
 import math
 
+import numpy as np
+
+from planner.orientation import sole_rates, sole_rotation
 from planner.plan import WalkPlan
 from planner.sampling import PlanSample
 from planner.types import PhaseKind
@@ -16,10 +19,14 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     phase = plan.phase
     passed = phase.elapsed + sample.time - plan.time
     swing, rate, bend = sample.swing, sample.swing_velocity, sample.swing_acceleration
+    roll = plan.roll
     foot = -1 if sample.swing_foot is None else int(sample.swing_foot)
     yaw = [plan.footholds[0].yaw, plan.footholds[1].yaw]
+    normal = np.array([plan.footholds[0].normal, plan.footholds[1].normal])
     if foot >= 0:
         yaw[foot] = float(swing[3])
+        normal[foot] = plan.footsteps[0].footstep.normal
+    turning, bending = sole_rates(swing[3:], rate[3:], bend[3:])
     return WbcReference(
         com=sample.com,
         com_velocity=sample.com_velocity,
@@ -39,7 +46,12 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         swing_position=swing[:3],
         swing_velocity=rate[:3],
         swing_acceleration=bend[:3],
-        swing_yaw=(float(swing[3]), float(rate[3]), float(bend[3])),
+        swing_rotation=sole_rotation(*swing[3:].tolist()),
+        swing_angular_velocity=turning,
+        swing_angular_acceleration=bending,
+        ground_normal=normal,
+        rolling_foot=-1 if roll is None or not roll.start < sample.time < roll.end else int(roll.foot),
+        roll=(0.0, 0.0, 0.0) if roll is None else roll.evaluate(sample.time),
     )
 
 

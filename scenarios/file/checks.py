@@ -9,6 +9,7 @@ from scenarios.file.commands import commanded, uncommanded
 from scenarios.file.criteria import ELEMENTS
 from scenarios.file.reach import longest_step
 from scenarios.file.robots import RobotFacts, Robots
+from scenarios.file.rough_checks import rough_problems
 from scenarios.file.schema import Gait, PushSettings, Scenario
 from scenarios.file.stair_checks import stair_problems
 from scenarios.file.timeline import step_count
@@ -118,7 +119,14 @@ def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
             yield Problem(key, f"unknown body '{body}' of {scenario.robot}", nearest(body, facts.bodies))
     reach = list(_reach(scenario.gait, facts))
     steps = commanded_step_problems if commanded(scenario.gait) else footstep_problems
-    yield from reach or list(steps(scenario, facts)) or stair_problems(scenario, facts)
+    yield from (
+        reach
+        or list(steps(scenario, facts))
+        or [
+            *stair_problems(scenario, facts),
+            *rough_problems(scenario, facts),
+        ]
+    )
 
 
 def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:

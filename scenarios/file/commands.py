@@ -61,6 +61,7 @@ def gait_of(gait: Gait, region: StepRegion | None = None) -> GaitParameters:
         initial_stand=gait.initial_stand,
         apex_ss=gait.apex_single,
         apex_ds=gait.apex_double,
+        heel_off=gait.heel_off,
     )
     if gait.velocity:
         bouts = velocity_bouts(timeline_of(gait.velocity), plain)

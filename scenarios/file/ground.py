@@ -1,11 +1,15 @@
 """The ground of a scenario: what the planner believes of it, and what is there."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
+from planner.footsteps import FootstepPlan, plan_footsteps
+from planner.rough import Blocks, Slope, block_field, slope
 from planner.stairs import Direction, Stairs, staircase
 from planner.terrain import Box, Terrain, flat
+from planner.types import FeetState
 from scenarios.file.commands import commanded, gait_of
 from scenarios.file.schema import Gait, Scenario
 
@@ -15,17 +19,27 @@ LANDING_TREADS = 3
 MOST_BEHIND = 0.03
 """How far behind mid-tread a foot stands at most: shanks lean forward and must not touch the edge ahead [m]."""
 
+BLOCK_GAP = 0.02
+"""Between blocks for the left and the right foot [m]."""
+
+_STREAM = 2
+"""Random numbers of the blocks, apart from those of other things with the same seed."""
+
 PLATFORM = 1.0
 """Level ground kept before the first and after the last footstep on a platform of stairs [m]."""
 
 
 def terrain_of(scenario: Scenario) -> Terrain:
     """The ground as the planner believes it to be."""
-    settings = scenario.terrain
-    if settings.kind != "stairs":
-        return flat(settings.friction)
-    start = scenario.start
-    return staircase(stairs_of(scenario), np.array([start.x, start.y]), start.yaw, settings.friction)
+    settings, start = scenario.terrain, scenario.start
+    origin = np.array([start.x, start.y])
+    if settings.kind == "stairs":
+        return staircase(stairs_of(scenario), origin, start.yaw, settings.friction)
+    if settings.kind == "slope":
+        return slope(slope_of(scenario), origin, start.yaw, settings.friction)
+    if settings.kind == "blocks":
+        return block_field(blocks_of(scenario), _footsteps(scenario), _random(scenario), settings.friction)
+    return flat(settings.friction)
 
 
 def true_terrain_of(scenario: Scenario) -> Terrain:
@@ -53,6 +67,8 @@ def landing_search(scenario: Scenario) -> dict[str, float]:
 
 def start_height(scenario: Scenario) -> float:
     """Height of the ground on which the robot starts [m]."""
+    if scenario.terrain.kind == "blocks":
+        return blocks_of(scenario).middle
     return terrain_of(scenario).height(scenario.start.x, scenario.start.y)
 
 
@@ -69,6 +85,32 @@ def stairs_of(scenario: Scenario) -> Stairs:
         landing=LANDING_TREADS * settings.tread if settings.landing is None else settings.landing,
         beyond=_way(gait) + PLATFORM,
     )
+
+
+def slope_of(scenario: Scenario) -> Slope:
+    """The slope of a scenario, along the start heading; by default its edge is half a step ahead of the start."""
+    settings, gait = scenario.terrain, scenario.gait
+    start = 0.5 * gait.step_length if settings.start is None else settings.start
+    return Slope(settings.angle, start, _way(gait) + PLATFORM, PLATFORM)
+
+
+def blocks_of(scenario: Scenario) -> Blocks:
+    """The blocks of a scenario; left and right ones stand side by side with a gap between them."""
+    settings = scenario.terrain
+    return Blocks(settings.riser, settings.angle, settings.tread, scenario.gait.step_width - BLOCK_GAP)
+
+
+def _footsteps(scenario: Scenario) -> FootstepPlan:
+    """The footsteps of a scenario on level ground."""
+    start = scenario.start
+    left = 0.5 * scenario.gait.step_width * np.array([-math.sin(start.yaw), math.cos(start.yaw), 0.0])
+    origin = np.array([start.x, start.y, 0.0])
+    feet = FeetState(np.array([origin + left, origin - left]), np.full(2, start.yaw), (True, True))
+    return plan_footsteps(gait_of(scenario.gait), feet, flat())
+
+
+def _random(scenario: Scenario) -> np.random.Generator:
+    return np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(_STREAM,)))
 
 
 def _behind(scenario: Scenario) -> float:

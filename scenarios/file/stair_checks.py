@@ -7,6 +7,8 @@ import numpy as np
 
 from planner.footsteps import FootstepPlan, plan_footsteps
 from planner.polygon import sole_corners
+from planner.terrain import Terrain
+from planner.types import Array
 from scenarios.errors import Problem
 from scenarios.file.commands import commanded
 from scenarios.file.ground import terrain_of
@@ -29,7 +31,7 @@ def stair_problems(scenario: Scenario, facts: RobotFacts) -> list[Problem]:
     if scenario.gait.velocity:
         what = "gait.velocity on stairs, whose treads its footsteps would not meet"
         return [Problem(("gait", "velocity"), what, "give equal steps or gait.footsteps")]
-    return list(_geometry(scenario)) or list(_reach(scenario, facts)) or list(_edges(scenario, facts))
+    return list(_geometry(scenario)) or list(climb_problems(scenario, facts)) or list(_edges(scenario, facts))
 
 
 def _geometry(scenario: Scenario) -> Iterator[Problem]:
@@ -41,23 +43,32 @@ def _geometry(scenario: Scenario) -> Iterator[Problem]:
         yield Problem(("terrain", "height_noise"), what, "use less than terrain.riser")
 
 
-def _reach(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
-    """The hips are at their height above the lower foot while the other leg folds on the tread above."""
+def climb_problems(scenario: Scenario, facts: RobotFacts, risers: int = 1) -> Iterator[Problem]:
+    """List a terrain.riser of which a step goes up so many at once, which the legs cannot.
+
+    The hips are at their height above the lower foot while the other leg folds on the tread above.
+    """
     hips = standing_height(scenario) - facts.com_above_hip
-    highest = hips - FOLDED * facts.leg_length
+    highest = (hips - FOLDED * facts.leg_length) / risers
     if scenario.terrain.riser > highest:
         what = f"terrain.riser {scenario.terrain.riser} m is out of reach of legs {facts.leg_length:.3f} m long"
         yield Problem(("terrain", "riser"), what, f"use at most {highest:.3f} m")
 
 
-def _edges(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
+def planned_soles(scenario: Scenario, facts: RobotFacts, terrain: Terrain) -> tuple[FootstepPlan, Array]:
+    """The footsteps, and the corners of their soles, start feet first, shape (n + 2, 4, 2) [m]."""
     gait = gait_parameters(scenario)
     if not commanded(scenario.gait):
         gait = replace(gait, steps=min(gait.steps, MOST_STEPS))
-    terrain, half_size = terrain_of(scenario), 0.5 * np.array([facts.foot_length, facts.foot_width])
-    plan: FootstepPlan = plan_footsteps(gait, square_stance(scenario), terrain)
+    plan = plan_footsteps(gait, square_stance(scenario), terrain)
+    half_size = 0.5 * np.array([facts.foot_length, facts.foot_width])
     soles = [plan.footstep(row) for row in range(plan.steps + 2)]
-    corners = np.array([sole_corners(sole, half_size) for sole in soles])
+    return plan, np.array([sole_corners(sole, half_size) for sole in soles])
+
+
+def _edges(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
+    terrain = terrain_of(scenario)
+    plan, corners = planned_soles(scenario, facts, terrain)
     margins = terrain.edge_margins(plan.position[:, :2], corners)
     beyond = np.flatnonzero(margins < -1e-9)
     if not len(beyond):

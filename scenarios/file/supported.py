@@ -11,7 +11,7 @@ _SENSED = ("zmp_noise", "com_noise")
 
 _AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
-    ("terrain", "kind"): ("flat", "stairs"),
+    ("terrain", "kind"): ("flat", "stairs", "slope", "blocks"),
     ("planner", "step_adaptation"): ("none", "location"),
     **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
 }

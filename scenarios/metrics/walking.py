@@ -85,7 +85,8 @@ def stair_edge_margin_min(run: RunView) -> float | None:
     terrain = Terrain(tuple(Box(n[:3], n[3:6], n[6:].reshape(3, 3)) for n in boxes))
     half_size = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
     landed = run.log["/footstep"].field("actual")
-    soles = [Footstep(Foot.LEFT, pose[:3], float(pose[3])) for pose in landed]
+    normals = terrain.normals(landed[:, :2])
+    soles = [Footstep(Foot.LEFT, pose[:3], float(pose[3]), up) for pose, up in zip(landed, normals, strict=True)]
     corners = np.array([sole_corners(sole, half_size) for sole in soles])
     return float(terrain.edge_margins(landed[:, :2], corners).min())
 

@@ -70,4 +70,6 @@ class Outlines:
         """Corners of a sole."""
         x, y, z = footstep.position.tolist()
         c, s = math.cos(footstep.yaw), math.sin(footstep.yaw)
-        return [(x + c * a - s * b, y + s * a + c * b, z + LIFT) for a, b in self._corners]
+        slope_x, slope_y = (-footstep.normal[:2] / footstep.normal[2]).tolist()
+        offsets = [(c * a - s * b, s * a + c * b) for a, b in self._corners]
+        return [(x + u, y + v, z + slope_x * u + slope_y * v + LIFT) for u, v in offsets]

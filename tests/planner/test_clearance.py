@@ -4,6 +4,7 @@ import pytest
 from planner.clearance import EDGE_CLEARANCE, swing_courses
 from planner.footsteps import plan_footsteps
 from planner.gait import GaitParameters
+from planner.orientation import sole_pose
 from planner.parameters import PlannerParameters
 from planner.polygon import sole_corners
 from planner.schedule import schedule
@@ -32,7 +33,7 @@ def courses_of(plan, terrain, half_size, samples=75):
 
 def swings(plan, courses, samples):
     for row, course in enumerate(courses, start=2):
-        ends = [np.append(plan.position[r], plan.yaw[r]) for r in (row - 2, row)]
+        ends = [sole_pose(plan.position[r], plan.yaw[r], plan.normal[r]) for r in (row - 2, row)]
         times = swing_times(0.0, samples, course, PARAMETERS)
         yield ends, times, start_swing(Foot.LEFT, *ends, times, course.height, PARAMETERS)
 

@@ -86,7 +86,8 @@ def standing_reference(**changes: object) -> WbcReference:
         zmp_offset=np.zeros(2), omega=np.sqrt(9.81), stiffness=9.81, heading=0.0, heading_rate=0.0,
         planned_contact=(True, True), load_share=(0.5, 0.5),
         time_to_switch=np.inf, lifting_foot=-1, swing_foot=-1, swing_progress=0.0, swing_position=zero,
-        swing_velocity=zero, swing_acceleration=zero, swing_yaw=(0.0, 0.0, 0.0),
+        swing_velocity=zero, swing_acceleration=zero, swing_rotation=np.eye(3),
+        swing_angular_velocity=zero, swing_angular_acceleration=zero, ground_normal=np.tile([0.0, 0.0, 1.0], (2, 1)),
     )  # fmt: skip
     return replace(reference, **changes)
 
@@ -97,7 +98,8 @@ def swing_reference(**changes: object) -> WbcReference:
         "zmp": np.array([0.0, WIDTH / 2]), "com": np.array([0.0, 0.08, HEIGHT]), "planned_contact": (True, False),
         "load_share": (1.0, 0.0), "swing_foot": 1, "swing_progress": 0.3, "time_to_switch": 0.5,
         "swing_position": np.array([0.1, -WIDTH / 2, 0.05]), "swing_velocity": np.array([0.4, 0.0, 0.1]),
-        "swing_acceleration": np.array([0.5, -0.2, -1.0]), "swing_yaw": (0.1, 0.2, -0.3),
+        "swing_acceleration": np.array([0.5, -0.2, -1.0]), "swing_rotation": pin.utils.rotate("z", 0.1),
+        "swing_angular_velocity": np.array([0.0, 0.0, 0.2]), "swing_angular_acceleration": np.array([0.0, 0.0, -0.3]),
     }  # fmt: skip
     return standing_reference(**(swing | changes))
 

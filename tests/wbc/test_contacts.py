@@ -18,7 +18,8 @@ def reference(**changes) -> WbcReference:
         zmp_offset=np.zeros(2), omega=3.13, stiffness=9.81, heading=0.0, heading_rate=0.0,
         planned_contact=(True, True), load_share=(0.5, 0.5),
         time_to_switch=np.inf, lifting_foot=-1, swing_foot=-1, swing_progress=0.0, swing_position=zero,
-        swing_velocity=zero, swing_acceleration=zero, swing_yaw=(0.0, 0.0, 0.0),
+        swing_velocity=zero, swing_acceleration=zero, swing_rotation=np.eye(3),
+        swing_angular_velocity=zero, swing_angular_acceleration=zero, ground_normal=np.tile([0.0, 0.0, 1.0], (2, 1)),
     )  # fmt: skip
     return replace(standing, **changes)
 

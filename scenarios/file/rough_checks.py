@@ -1,0 +1,91 @@
+"""Checks of slopes and stepping blocks: what friction holds, and whole soles on every face."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from planner.footsteps import FootstepPlan
+from planner.terrain import Terrain
+from planner.types import Array
+from scenarios.errors import Problem
+from scenarios.file.ground import BLOCK_GAP, terrain_of
+from scenarios.file.robots import RobotFacts
+from scenarios.file.schema import Scenario
+from scenarios.file.stair_checks import climb_problems, planned_soles
+
+STEEPEST = 0.35
+"""Inclination beyond which no ground is made; the ankle has to turn as far [rad]."""
+
+_FLUSH = 1e-3
+"""How far a neighbouring block may rise above the plane of a sole [m]."""
+
+MOST_BLOCKS = 200
+"""Blocks of a field, since every look at the ground goes through all of them [-]."""
+
+
+def rough_problems(scenario: Scenario, facts: RobotFacts) -> list[Problem]:
+    """List what makes a slope or a field of blocks impossible for a robot and its gait."""
+    kind = scenario.terrain.kind
+    if kind not in ("slope", "blocks"):
+        return []
+    return list(_steepness(scenario)) or list(_extent(scenario, facts)) or list(_edges(scenario, facts))
+
+
+def _steepness(scenario: Scenario) -> Iterator[Problem]:
+    terrain = scenario.terrain
+    tilt, key = abs(terrain.angle), ("terrain", "angle")
+    if terrain.kind == "slope" and tilt == 0.0:
+        yield Problem(key, "terrain.angle 0 makes no slope", "use more or less than 0 rad, or kind flat")
+    elif terrain.kind == "blocks" and terrain.angle < 0.0:
+        yield Problem(key, f"terrain.angle {terrain.angle} rad is no half range", "use at least 0 rad")
+    elif tilt > STEEPEST:
+        yield Problem(key, f"terrain.angle {terrain.angle} rad is too steep", f"use at most {STEEPEST} rad")
+    elif math.tan(tilt) >= terrain.friction:
+        what = f"terrain.angle {terrain.angle} rad is steeper than terrain.friction {terrain.friction} holds"
+        yield Problem(key, what, f"use less than {math.atan(terrain.friction):.3f} rad, or more friction")
+
+
+def _extent(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
+    terrain, gait = scenario.terrain, scenario.gait
+    if terrain.kind == "slope":
+        if terrain.height_noise > 0.0:
+            what = "terrain.height_noise on a slope, which has one face only"
+            yield Problem(("terrain", "height_noise"), what, "use 0, or kind stairs or blocks")
+        return
+    if gait.velocity:
+        what = "gait.velocity on blocks, which are laid under given footsteps"
+        yield Problem(("gait", "velocity"), what, "give equal steps or gait.footsteps")
+    elif max(gait.steps, len(gait.footsteps)) > MOST_BLOCKS:
+        yield Problem(("gait", "steps"), "a field of so many blocks", f"take at most {MOST_BLOCKS} steps")
+    elif gait.step_width <= BLOCK_GAP:
+        what = f"gait.step_width {gait.step_width} m leaves no width for blocks"
+        yield Problem(("gait", "step_width"), what, f"use more than {BLOCK_GAP} m")
+    else:
+        yield from climb_problems(scenario, facts, risers=2)
+
+
+def _edges(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
+    terrain = terrain_of(scenario)
+    plan, corners = planned_soles(scenario, facts, terrain)
+    margins = terrain.edge_margins(plan.position[:, :2], corners)
+    beyond = np.flatnonzero((margins < -1e-9) | (_buried(terrain, plan, corners) > _FLUSH))
+    if not len(beyond):
+        return
+    step = int(beyond[0]) - 1
+    who = f"footstep {step}" if step > 0 else "a start foot"
+    if scenario.terrain.kind == "slope":
+        what = f"{who} would stand across the edge of the slope"
+        yield Problem(("terrain", "start"), what, "put the edge between two footsteps, or behind the last one")
+        return
+    what = f"{who} would not have the whole sole on its block"
+    right = f"use more than the foot's {facts.foot_length:g} m and less than the way between two steps of a foot"
+    yield Problem(("terrain", "tread"), what, f"{right}, or a wider gait.step_width")
+
+
+def _buried(terrain: Terrain, plan: FootstepPlan, corners: Array) -> Array:
+    """How far the ground is above each sole's plane at the worst of its corners, shape (n + 2,) [m]."""
+    heights = terrain.heights(corners.reshape(-1, 2)).reshape(corners.shape[:2])
+    tilt = plan.normal[:, :2] / plan.normal[:, 2:]
+    offsets = np.einsum("nkj,nj->nk", corners - plan.position[:, None, :2], tilt)
+    return np.asarray(np.max(heights - plan.position[:, 2:] + offsets, axis=1))

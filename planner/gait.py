@@ -61,7 +61,7 @@ class Bout:
 
 
 _POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
-_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds")
+_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +87,7 @@ class GaitParameters:
         first_foot: the foot that swings first.
         apex_ss: rise of the CoM in the middle of single support (A_ss) [m].
         apex_ds: rise of the CoM in the middle of double support (A_ds) [m].
+        heel_off: greatest pitch of a foot about its toe edge after its stance, 0 keeps the feet level [rad].
         bouts: the walk stride by stride; empty for equal strides. Feet alternate throughout, across stops too.
 
     Raises:
@@ -106,6 +107,7 @@ class GaitParameters:
     first_foot: Foot = Foot.LEFT
     apex_ss: float = 0.0135
     apex_ds: float = 0.00135
+    heel_off: float = 0.0
     bouts: tuple[Bout, ...] = ()
 
     def __post_init__(self) -> None:

@@ -64,7 +64,15 @@ class LegChain:
     foot_centre: Vector
     ankle: Vector
 
-    def momentum_rate(self, com: Array, soles: Array, heading: Array, sample_time: float) -> Array:
+    def momentum_rate(
+        self,
+        com: Array,
+        soles: Array,
+        heading: Array,
+        sample_time: float,
+        pitch: Array | None = None,
+        toe: float = 0.0,
+    ) -> Array:
         """Rate of angular momentum about the CoM over the body's mass, by second differences.
 
         Args:
@@ -72,18 +80,30 @@ class LegChain:
             soles: centres of the left and the right sole, shape (2, n, 3) [m].
             heading: of trunk, knees and feet, shape (n,) [rad].
             sample_time: between the samples [s].
+            pitch: of the soles about their toe edges, heel up positive, shape (2, n) [rad]; level by default. `soles`
+                are where they would be without it.
+            toe: toe edge from the sole's centre [m].
 
         Returns:
             At all samples but the first and the last, shape (n - 2, 3) [m^2/s^2].
         """
         frame = _headings(heading)
-        ankles = soles - com + _turned(frame, self.ankle)
+        offsets = self._rolled(frame, pitch, toe)
+        ankles = soles - com + offsets[0]
+        foot = ankles + offsets[1]
         hips, knees = self._posture(ankles, frame)
-        foot = ankles + _turned(frame, self.foot_centre)
         trunk = 0.5 * (hips[0] + hips[1]) + _turned(frame, self.trunk)
         points = np.concatenate((hips, knees, ankles, foot, trunk[None]))
         bend = np.diff(points, 2, axis=1) / sample_time**2
         return _crossed(points[:, 1:-1], np.tensordot(self._masses(), bend, 1))
+
+    def _rolled(self, frame: Array, pitch: Array | None, toe: float) -> tuple[Array, Array]:
+        """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, n, 3) or (n, 3)."""
+        if pitch is None or not pitch.any():
+            return _turned(frame, self.ankle), _turned(frame, self.foot_centre)
+        edge = np.array([toe, 0.0, 0.0])
+        lever = _pitched(frame, np.array(self.ankle) - edge, pitch)
+        return _turned(frame, edge) + lever, _pitched(frame, np.array(self.foot_centre), pitch)
 
     def _posture(self, ankles: Array, frame: Array) -> tuple[Array, Array]:
         """Hips and knees from the CoM, shape (2, n, 3) each, for ankles from the CoM."""
@@ -141,6 +161,14 @@ def _headings(heading: Array) -> Array:
 
 def _turned(frame: Array, vector: Vector | Array) -> Array:
     return np.asarray(np.asarray(vector) @ frame)
+
+
+def _pitched(frame: Array, vector: Array, pitch: Array) -> Array:
+    """A vector of a foot that is pitched heel up, shape (2, n, 3)."""
+    c, s = np.cos(pitch), np.sin(pitch)
+    x, y, z = vector
+    rolled = np.stack((c * x + s * z, np.full_like(c, y), c * z - s * x), axis=-1)
+    return np.asarray(np.einsum("kni,nij->knj", rolled, frame))
 
 
 def _crossed(points: Array, rates: Array) -> Array:

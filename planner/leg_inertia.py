@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from planner.com_height import HeightPreview
 from planner.footsteps import FootstepPlan
+from planner.heel_off import RollPlan
 from planner.leg_chain import LegChain
 from planner.nominal import NominalMotion
 from planner.parameters import LegInertia, PlannerParameters
@@ -39,6 +40,23 @@ def softening(leg: LegInertia) -> float:
 
 
 @dataclass(frozen=True, slots=True)
+class Feet:
+    """Nominal motion of both feet over n samples, in the plan frame.
+
+    Attributes:
+        soles: centres of the left and the right sole as if they were level, shape (2, n, 3) [m].
+        pitch: of the soles about their toe edges, shape (2, n) [rad].
+        heading: mean of both, shape (n,) [rad].
+        toe: toe edge from the sole's centre [m].
+    """
+
+    soles: Array
+    pitch: Array
+    heading: Array
+    toe: float
+
+
+@dataclass(frozen=True, slots=True)
 class SwingShape:
     """Where both feet are in a whole walk, for unit steps. K samples.
 
@@ -46,15 +64,23 @@ class SwingShape:
         row: row of a foot that stands, shape (K,); the other foot goes from the row before to the row after.
         progress: share of that way done, shape (K,).
         height: of its sole above the row before, shape (K,) [m].
+        pitch: of its sole about the toe edge, shape (K,) [rad].
+        toe: toe edge from the sole's centre [m].
     """
 
     row: NDArray[np.intp]
     progress: Array
     height: Array
+    pitch: Array
+    toe: float
 
 
 def swing_shape(
-    schedule: Schedule, footsteps: FootstepPlan, courses: Sequence[SwingCourse], parameters: PlannerParameters
+    schedule: Schedule,
+    footsteps: FootstepPlan,
+    courses: Sequence[SwingCourse],
+    rolls: RollPlan,
+    parameters: PlannerParameters,
 ) -> SwingShape:
     """Tabulate the swings of a schedule to nominal footsteps, each on its course."""
     count = len(schedule.phase_index)
@@ -70,22 +96,20 @@ def swing_shape(
             if key not in tables:
                 tables[key] = _unit_swing(*key, parameters)
             values[:, span] = tables[key]
-    return SwingShape(rows, *values)
+    progress, height = values
+    return SwingShape(rows, progress, height, rolls.pitch(schedule), rolls.toe)
 
 
-def sole_positions(
+def nominal_feet(
     shape: SwingShape, footsteps: FootstepPlan, frame: tuple[Array, Array], samples: NDArray[np.intp]
-) -> tuple[Array, Array]:
-    """Nominal soles in the plan frame, and the heading between them.
+) -> Feet:
+    """Nominal feet in the plan frame.
 
     Args:
         shape: swing motion of the walk.
         footsteps: footholds in the world frame.
         frame: the plan frame's rotation to the world, shape (2, 2), and origin, shape (2,) [m].
         samples: which, shape (n,).
-
-    Returns:
-        Left and right sole, shape (2, n, 3) [m]; heading, shape (n,) [rad].
     """
     rotation, origin = frame
     points = np.column_stack(((footsteps.position[:, :2] - origin) @ rotation, footsteps.position[:, 2], footsteps.yaw))
@@ -93,21 +117,19 @@ def sole_positions(
     before, after = points[row - 1], points[np.minimum(row + 1, len(points) - 1)]
     stance, swing = points[row], before + progress * (after - before)
     swing[:, 2] = before[:, 2] + shape.height[samples]
-    left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row, None]
-    soles = np.stack((np.where(left, stance, swing), np.where(left, swing, stance)))
+    left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row]
+    soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
+    pitch = shape.pitch[samples] * np.stack((~left, left))
     turned = 0.5 * (stance[:, 3] + swing[:, 3]) - np.arctan2(rotation[1, 0], rotation[0, 0])
-    return soles[..., :3], turned
+    return Feet(soles[..., :3], pitch, turned, shape.toe)
 
 
-def zmp_offset(
-    chain: LegChain, soles: Array, heading: Array, motion: NominalMotion, height: HeightPreview, softened: Array
-) -> Array:
+def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: HeightPreview, softened: Array) -> Array:
     """Offset o of the module's equation over a window, in the plan frame.
 
     Args:
         chain: the body.
-        soles: left and right sole at the window's n samples and the one before, shape (2, n + 1, 3) [m].
-        heading: of the body at the same samples, shape (n + 1,) [rad].
+        feet: at the window's n samples and the one before.
         motion: horizontal CoM motion, near the one to be planned.
         height: CoM height.
         softened: λ', shape (n,) [1/s^2].
@@ -121,7 +143,7 @@ def zmp_offset(
     t = motion.sample_time
     com[0, :2] = _before(motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
     com[0, 2] = _before(height.height[:, 0], t)
-    rate = chain.momentum_rate(com, soles, heading, t)
+    rate = chain.momentum_rate(com, feet.soles, feet.heading, t, feet.pitch, feet.toe)
     pressing = GRAVITY + height.height[2]
     offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]
     offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / pressing[:-1, None])

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from numpy import bool_
 from numpy.typing import NDArray
 
+from planner.heel_off import FootRoll
 from planner.swing import SwingTrajectory
 from planner.types import Array, Footstep, PhaseInfo, PlannedFootstep, PlanStatus
 
@@ -32,7 +33,9 @@ class WalkPlan:
         inner_polygon: the same of the soles shrunk to the ZMP margin (90 %), shape (v, 2) [m].
         footholds: where the left and the right foot stand now, or stood last.
         footsteps: the next footsteps, at most three.
-        swing: trajectory of the swing foot in single support, otherwise None.
+        swing: trajectory of the swing foot in single support, otherwise None. It is that of the sole as if it were
+            level: a foot that rolls turns about its toe edge.
+        roll: pitch of the foot that leaves the ground next or has just left it, None for one that stays level.
         status: how the plan was made.
     """
 
@@ -55,4 +58,5 @@ class WalkPlan:
     footholds: tuple[Footstep, Footstep]
     footsteps: tuple[PlannedFootstep, ...]
     swing: SwingTrajectory | None
+    roll: FootRoll | None
     status: PlanStatus

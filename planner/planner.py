@@ -10,6 +10,7 @@ from planner.constraints import StepContext, check_reach
 from planner.footsteps import FootstepPlan, plan_footsteps
 from planner.frames import wrap_angle
 from planner.gait import GaitParameters
+from planner.heel_off import FootRoll, roll_plan
 from planner.leg_inertia import swing_shape
 from planner.motion import Motion, MotionProblem
 from planner.moves import block_moves
@@ -23,7 +24,7 @@ from planner.stepper import Stepper
 from planner.support import Support, present_support
 from planner.swing import SwingTrajectory, start_swing, swing_times
 from planner.terrain import Terrain, flat
-from planner.types import Array, CentroidalState, FeetState, Foot, PlannedFootstep, PlanStatus, SolverStatus
+from planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind, PlannedFootstep, PlanStatus, SolverStatus
 from planner.window import Outlook, Window
 from planner.world_plan import world_plan
 
@@ -85,7 +86,8 @@ class WalkingPlanner:
         shape = (height_profile or profile.height or SmoothHeight()).shape(gait, self.schedule)
         check_height(shape, self.schedule, footsteps.support_points()[:, 2])
         self._courses = swing_courses(footsteps, self.schedule, terrain, self._half_size, gait.swing_height, p)
-        swings = swing_shape(self.schedule, footsteps, self._courses, p)
+        self._rolls = roll_plan(self.schedule, footsteps, gait.heel_off, float(self._half_size[0]))
+        swings = swing_shape(self.schedule, footsteps, self._courses, self._rolls, p)
         self._stepper = Stepper(self.schedule, footsteps, terrain, p)
         self._outlook = Outlook(self.schedule, shape, swings, p.leg, p.horizon + p.preview + 1)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
@@ -126,8 +128,9 @@ class WalkingPlanner:
         self._update_swing(state.time, feet, footsteps, motion.solver)
         moving = trajectory(self._prediction, problem.state, window.stiffness[: p.horizon + 1], motion.jerk)
         status = self._status(motion)
+        roll = self._roll(state.time)
         self._plan = world_plan(
-            state.time, stepper, support, window, moving, motion.shifts, footsteps, self._swing, status
+            state.time, stepper, support, window, moving, motion.shifts, footsteps, self._swing, roll, status
         )
         return self._plan
 
@@ -192,6 +195,12 @@ class WalkingPlanner:
         decided = stepper.fixed or solver is SolverStatus.HELD
         if not decided and np.abs(target - self._swing.target).max() > _SAME_TARGET:
             self._swing = self._swing.retargeted(time, target)
+
+    def _roll(self, time: float) -> FootRoll | None:
+        stepper = self._stepper
+        step = stepper.phase.step + (stepper.phase.kind is not PhaseKind.SINGLE)
+        foot = self.gait.step_foot(step)
+        return self._rolls.of_step(step, foot, time, stepper.tick, self.parameters.sample_time)
 
     def _status(self, motion: Motion) -> PlanStatus:
         age = 0

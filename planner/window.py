@@ -8,7 +8,7 @@ from planner.com_height import HeightPreview, HeightShape, preview_height
 from planner.dcm import natural_frequency
 from planner.footsteps import FootstepPlan
 from planner.leg_chain import LegChain
-from planner.leg_inertia import SwingShape, softening, sole_positions, zmp_offset
+from planner.leg_inertia import Feet, SwingShape, nominal_feet, softening, zmp_offset
 from planner.nominal import nominal_motion
 from planner.parameters import LegInertia
 from planner.schedule import Schedule
@@ -75,15 +75,15 @@ class Outlook:
             offset = np.zeros_like(reference.point)
         else:
             samples = np.maximum(np.arange(sample - 1, sample + self.count), 0)
-            soles = sole_positions(self.swing, footsteps, (support.rotation, support.origin), samples)
-            offset = self._offset(self.leg.chain, soles, position, reference.point, height, stiffness)
+            feet = nominal_feet(self.swing, footsteps, (support.rotation, support.origin), samples)
+            offset = self._offset(self.leg.chain, feet, position, reference.point, height, stiffness)
         driving = replace(reference, point=reference.point - offset)
         return Window(sample, reference, driving, offset, height, stiffness, omega)
 
     def _offset(
         self,
         chain: LegChain,
-        soles: tuple[Array, Array],
+        feet: Feet,
         position: Array,
         reference: Array,
         height: HeightPreview,
@@ -93,5 +93,5 @@ class Outlook:
         offset = np.zeros_like(reference)
         for _ in range(2):
             motion = nominal_motion(position, reference - offset, stiffness, self.schedule.sample_time)
-            offset = zmp_offset(chain, *soles, motion, height, stiffness)
+            offset = zmp_offset(chain, feet, motion, height, stiffness)
         return offset

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from planner.heel_off import FootRoll
 from planner.plan import WalkPlan
 from planner.prediction import Trajectory
 from planner.stepper import Stepper
@@ -20,6 +21,7 @@ def world_plan(
     shifts: Array,
     footsteps: tuple[PlannedFootstep, ...],
     swing: SwingTrajectory | None,
+    roll: FootRoll | None,
     status: PlanStatus,
 ) -> WalkPlan:
     """The plan of a tick.
@@ -33,6 +35,7 @@ def world_plan(
         shifts: shifts of the next two footsteps in the plan frame, shape (2, 2) [m].
         footsteps: the next footsteps.
         swing: trajectory of the swing foot.
+        roll: of the foot that leaves the ground.
         status: how the plan was made.
     """
     reference, schedule = window.reference, stepper.schedule
@@ -63,5 +66,6 @@ def world_plan(
         footholds=support.footholds,
         footsteps=footsteps,
         swing=swing,
+        roll=roll,
         status=status,
     )

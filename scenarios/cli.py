@@ -213,6 +213,29 @@ def replay(
 
 
 @app.command()
+def paper(
+    out: Annotated[Path, typer.Option(help="Directory for the page and its runs.")] = Path("runs/paper"),
+    jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
+) -> None:
+    """Run the paper's experiments and write what holds as one HTML page; begun again, it goes on where it stopped."""
+    from scenarios.paper.command import cores
+    from scenarios.paper.command import paper as run_paper
+    from scenarios.paper.runner import InterruptedRunsError
+
+    try:
+        written = run_paper(out, jobs or cores())
+    except InterruptedRunsError:
+        typer.echo(f"interrupted; finished runs are kept in {out}, the same command goes on from there", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    for name in written.failures:
+        typer.echo(f"could not run: {name}", err=True)
+    verdicts = ", ".join(f"{count} {verdict}" for verdict, count in written.verdicts.items() if count)
+    typer.echo(f"{written.runs} runs, {written.falls} falls, {len(written.failures)} could not run; claims: {verdicts}")
+    typer.echo(str(written.page))
+    raise typer.Exit(MISSED if written.failures else 0)
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors."""
     from scenarios.file.schema import Scenario

@@ -9,6 +9,7 @@ from scenarios.file.criteria import Bound
 _UNITS: dict[str, tuple[float, str]] = {
     **dict.fromkeys(("zmp_error_rms", "com_error_rms", "dcm_error_rms"), (1e3, "mm")),
     **dict.fromkeys(("estimation_error_rms", "dcm_estimation_error_rms"), (1e3, "mm")),
+    **dict.fromkeys(("zmp_error_max", "zmp_excursion_max"), (1e3, "mm")),
     **dict.fromkeys(("footstep_error_max", "foot_slip_max", "stair_edge_margin_min", "com_height_range"), (1e3, "mm")),
     **dict.fromkeys(
         ("fall_time", "duration", "standing_time_final", "standing_time_between", "self_contact_time"), (1.0, "s")
@@ -21,6 +22,7 @@ _UNITS: dict[str, tuple[float, str]] = {
     "torque_ratio_max": (1e2, "% of the limit"),
     "torque_at_limit_fraction": (1e2, "% of the time"),
     **dict.fromkeys(("path_length", "displacement"), (1.0, "m")),
+    "knee_torque_rms": (1.0, "N m"),
     "speed_mean": (1.0, "m/s"),
     "real_time_factor": (1.0, "times real time"),
     "log_bytes": (1e-6, "MB"),

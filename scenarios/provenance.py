@@ -1,11 +1,16 @@
 """Where a run comes from: versions of the packages, of the interpreter and of the code."""
 
+import hashlib
 import platform
 import subprocess
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "quadprog", "numpy", "scipy", "mcap")
+CODE = ("planner", "wbc", "sim", "models", "scenarios")
+READERS = ("scenarios/paper", "scenarios/report", "scenarios/replay")
+"""Folders of the code, and those in it that only read logs: no run depends on them."""
+
 ABSENT = "not installed"
 """Version of a package that is not there, as of a source tree that was never installed."""
 
@@ -17,7 +22,22 @@ def versions() -> dict[str, str]:
         "python": platform.python_version(),
         "machine": f"{platform.system()} {platform.machine()}",
         "git_revision": _git_revision(),
+        "source_digest": source_digest(Path(__file__).parents[1]),
     }
+
+
+def source_digest(root: Path) -> str:
+    """Digest of the code that makes runs, as it is on the disk: tells apart what a revision with ``-dirty`` cannot.
+
+    Args:
+        root: folder that holds the code's folders.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(path for folder in CODE for path in (root / folder).rglob("*.py")):
+        name = path.relative_to(root).as_posix()
+        if not name.startswith(READERS):
+            digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
 
 
 def _version(package: str) -> str:

@@ -29,7 +29,7 @@ class ArmSwing:
         length = float(np.hypot(x, y))
         left, right = terms.sole_position
         dx, dy, _ = (left - right).tolist()
-        velocity = [terms.sole_rotation[k] @ terms.sole_velocity[k, :3] for k in (0, 1)]
+        velocity = [terms.contact_rotation[k] @ terms.sole_velocity[k, :3] for k in (0, 1)]
         vx, vy, _ = (velocity[0] - velocity[1]).tolist()
         scale = self.gain / max(length, 1e-3)
         return scale * (x * dx + y * dy), scale * (x * vx + y * vy)

@@ -39,9 +39,14 @@ class SupportRegion:
         self._corners = corners * (share * np.array([half_length, half_width]))
         self._edges: list[_Edge] = []
 
-    def rebuild(self, positions: Array, rotations: Array, active: tuple[bool, bool]) -> None:
-        """Hull of the active soles; positions (2, 3), rotations (2, 3, 3) in the world frame."""
-        soles = [positions[k, :2] + self._corners @ rotations[k, :2, :2].T for k in (0, 1) if active[k]]
+    def rebuild(self, positions: Array, rotations: Array, active: tuple[bool, bool], rolling: int = -1) -> None:
+        """Hull of the active soles; positions (2, 3), rotations (2, 3, 3) in the world frame.
+
+        Of a rolling foot, the toe edge alone, which is where its frame is.
+        """
+        edge = self._corners * np.array([0.0, 1.0])
+        corners = [edge if k == rolling else self._corners for k in (0, 1)]
+        soles = [positions[k, :2] + corners[k] @ rotations[k, :2, :2].T for k in (0, 1) if active[k]]
         points = np.concatenate(soles)
         vertices = points[ConvexHull(points).vertices].tolist()
         self._edges = [_edge(*start, *end) for start, end in zip(vertices, vertices[1:] + vertices[:1], strict=True)]

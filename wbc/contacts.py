@@ -36,11 +36,13 @@ class ContactState:
         active: held by the QP as rigid contacts.
         felt: loaded, as the feet feel it.
         force_cap: largest normal force the QP may ask of each [N].
+        rolling: index of the foot of which only the toe edge is in contact, -1 for none.
     """
 
     active: tuple[bool, bool]
     felt: tuple[bool, bool]
     force_cap: tuple[float, float]
+    rolling: int = -1
 
 
 class ContactSchedule:
@@ -51,6 +53,7 @@ class ContactSchedule:
       until its planned touchdown, whether or not it feels it: lifting and landing again would only shake the ZMP. The
       plan's clock does not move.
     - A foot is released when the plan lifts it, unless it would be the last contact.
+    - A foot that the plan rolls keeps its toe edge on the ground, while the other foot carries as well.
     - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in
       force.
     """
@@ -78,7 +81,8 @@ class ContactSchedule:
             elif not planned[k] and not early and self._active[1 - k]:
                 self._active[k] = False
         active = (self._active[0], self._active[1])
-        return ContactState(active, felt, (self._cap(0, reference), self._cap(1, reference)))
+        rolling = reference.rolling_foot if active[0] and active[1] else -1
+        return ContactState(active, felt, (self._cap(0, reference), self._cap(1, reference)), rolling)
 
     def _feel(self, k: int, normal_force: float) -> bool:
         touches = normal_force > self._parameters.felt_force

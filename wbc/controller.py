@@ -25,6 +25,10 @@ ACCEPTED_VIOLATION = 1e-3
 """A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""
 
 
+TOE_DEPTH = 0.003
+"""Half length of the strip that stands for a toe edge in its wrench cone [m]."""
+
+
 @dataclass(frozen=True, slots=True)
 class Sole:
     """The sole's contact: half sizes [m] and the friction coefficient that the controller counts on [-]."""
@@ -103,17 +107,20 @@ class WholeBodyController:
         shoulders = shoulder_pitches(tuple(model.names)[2:])
         arms = ArmSwing(shoulders, parameters.arm_swing) if shoulders and parameters.arm_swing else None
         share = sole.cop_share
-        cone = wrench_cone(share * sole.half_length, share * sole.half_width, sole.friction / np.sqrt(2.0))
         gaps = self.layout.separation
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
-        self._hard = HardConstraints(self.qp, self.layout, cone, limits, parameters.contact)
-        self._tasks = TaskStack(
-            self.qp, self.layout, self.terms.mass, parameters.weights, parameters.gains, posture, leg_joints, arms
-        )
+        friction = sole.friction / np.sqrt(2.0)
+        cone = wrench_cone(share * sole.half_length, share * sole.half_width, friction)
+        edge = wrench_cone(TOE_DEPTH, share * sole.half_width, friction)
+        self._hard = HardConstraints(self.qp, self.layout, (cone, edge), limits, parameters.contact)
+        mass, weights, gains = self.terms.mass, parameters.weights, parameters.gains
+        self._toe = sole.half_length
+        self._tasks = TaskStack(self.qp, self.layout, mass, weights, gains, posture, leg_joints, arms, self._toe)
         self._contacts = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
-        self._region_contacts: tuple[bool, bool] | None = None
+        self._region_contacts: tuple[tuple[bool, bool], int] | None = None
+        self._edge: tuple[int, Array] | None = None
         self._balance = parameters.balance
         self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
         self._limits = limits
@@ -165,13 +172,16 @@ class WholeBodyController:
         )
 
     def _assemble(self, state: RobotState, reference: WbcReference, contacts: ContactState) -> None:
-        terms = self.terms
-        if contacts.active != self._region_contacts and np.isfinite(terms.sole_position).all():
-            self._region.rebuild(terms.sole_position, terms.sole_rotation, contacts.active)
-            self._region_contacts = contacts.active
+        terms, rolling, self._edge = self.terms, reference.rolling_foot, None
+        if rolling >= 0 and (rolling == contacts.rolling or not contacts.active[rolling]):
+            self._edge = rolling, terms.shift_foot(rolling, self._toe, reference.roll[0])
+        holding = (contacts.active, contacts.rolling)
+        if holding != self._region_contacts and np.isfinite(terms.sole_position).all():
+            self._region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
+            self._region_contacts = holding
         acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
         self._tasks.write(terms, state.q, state.v, acceleration, reference)
-        self._hard.write(terms, state.q, state.v, contacts, reference.ground_normal)
+        self._hard.write(terms, state.q, state.v, contacts, reference.ground_normal, reference.roll[1:])
         if self._separation is not None:
             self._separation.write(terms.data, state.v, self._gap_rows, self._gap_lower, UNBOUNDED)
 
@@ -192,6 +202,9 @@ class WholeBodyController:
         self._clip()
         self._acceleration[:] = x[:nv]
         np.multiply(x[nv:], self.layout.wrench_unit, out=self._wrench_flat)
+        if self._edge is not None:
+            foot, to_sole = self._edge
+            self._wrench[foot] = to_sole @ self._wrench[foot]
         self._task_error[:] = self._tasks.residual(x)
 
     def _clip(self) -> None:

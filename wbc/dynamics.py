@@ -33,8 +33,10 @@ class HardConstraints:
     Torque: τ = M_a q̈ + h_a - Σ J_aᵀ w within the limits, with the torque itself eliminated.
     """
 
-    def __init__(self, qp: QpData, layout: QpLayout, cone: Array, limits: JointLimits, gains: ContactGains) -> None:
-        """Write the rows that never change: the cones, shape (rows, 6), in the sole frames."""
+    def __init__(
+        self, qp: QpData, layout: QpLayout, cones: tuple[Array, Array], limits: JointLimits, gains: ContactGains
+    ) -> None:
+        """Write the rows that change with the contacts only; cones of the sole and of its toe edge, shape (rows, 6)."""
         self._gains, self._unit = gains, layout.wrench_unit
         self._joints = AccelerationBounds(limits)
         self._torque_span = np.concatenate([np.zeros(6), limits.torque])
@@ -42,8 +44,9 @@ class HardConstraints:
         n, first = layout.variables, layout.torque_rows.stop
         for k in (0, 1):
             rows = slice(first + k * layout.cone_rows, first + (k + 1) * layout.cone_rows)
-            qp.A[rows, layout.wrench(k)] = cone
+            qp.A[rows, layout.wrench(k)] = cones[0]
             qp.bounds_upper[n + rows.start : n + rows.stop] = 0.0
+        self._cones, self._rolling = cones, -1
         self._bind(qp, layout)
         self._release(0)
         self._release(1)
@@ -56,14 +59,28 @@ class HardConstraints:
         self._motion_lower, self._motion_upper = (b[n + motion.start : n + motion.stop] for b in (lower, upper))
         self._contact_lower, self._contact_upper = (b[contact].reshape(2, FOOT_ROWS) for b in (lower, upper))
         self._contact_rows = [qp.A[layout.contact_rows(k), :nv] for k in (0, 1)]
+        first, rows = layout.torque_rows.stop, layout.cone_rows
+        self._cone_rows = [qp.A[first + k * rows : first + (k + 1) * rows, layout.wrench(k)] for k in (0, 1)]
         self._no_wrench_rows = [qp.A[layout.contact_rows(k), layout.wrench(k)] for k in (0, 1)]
         self._joint_lower, self._joint_upper = lower[6:nv], upper[6:nv]
         self._force_caps = upper[nv + 2 : n : 6]
 
-    def write(self, terms: RobotTerms, q: Array, v: Array, contacts: ContactState, ground_normal: Array) -> None:
-        """Write the rows and bounds of this state; q (nq,), v (nv,), ground_normal (2, 3) in the world frame."""
+    def write(
+        self,
+        terms: RobotTerms,
+        q: Array,
+        v: Array,
+        contacts: ContactState,
+        ground_normal: Array,
+        roll: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        """Write the rows and bounds of this state; q (nq,), v (nv,), ground_normal (2, 3) in the world frame.
+
+        A rolling foot is seen from its toe edge (see ``RobotTerms.shift_foot``), which neither slides nor lifts; its
+        pitch follows the planned ``roll``, rate and acceleration [rad/s, rad/s^2], and its CoP lies on the edge.
+        """
         self._motion(terms)
-        self._contacts(terms, contacts, ground_normal)
+        self._contacts(terms, contacts, ground_normal, roll)
         self._joints.write(q[7:], v[6:], self._joint_lower, self._joint_upper)
 
     def _motion(self, terms: RobotTerms) -> None:
@@ -73,14 +90,20 @@ class HardConstraints:
         np.add(self._motion_lower, self._torque_span, out=self._motion_upper)
         self._motion_lower -= self._torque_span
 
-    def _contacts(self, terms: RobotTerms, contacts: ContactState, ground_normal: Array) -> None:
+    def _contacts(
+        self, terms: RobotTerms, contacts: ContactState, ground_normal: Array, roll: tuple[float, float]
+    ) -> None:
         target, levelling = self._target, self._gains.levelling
         np.multiply(terms.sole_velocity, -self._gains.damping, out=target)
         target -= terms.sole_bias
         # Rotation vector, in the sole frame, that turns the sole's normal to the ground's.
-        normal = np.matmul(ground_normal[:, None, :], terms.sole_rotation)[:, 0]
+        normal = np.matmul(ground_normal[:, None, :], terms.contact_rotation)[:, 0]
         target[:, 3] -= levelling * normal[:, 1]
         target[:, 4] += levelling * normal[:, 0]
+        if contacts.rolling != self._rolling:
+            self._roll(contacts.rolling)
+        if contacts.rolling >= 0:
+            target[contacts.rolling, 4] += self._gains.damping * roll[0] + roll[1]
         self._follow(0, terms, contacts.active[0])
         self._follow(1, terms, contacts.active[1])
         self._active = contacts.active
@@ -98,6 +121,11 @@ class HardConstraints:
         if self._active[k]:
             self._release(k)
         self._target[k] = 0.0
+
+    def _roll(self, foot: int) -> None:
+        for k in (0, 1):
+            self._cone_rows[k][:] = self._cones[1 if k == foot else 0]
+        self._rolling = foot
 
     def _release(self, k: int) -> None:
         self._contact_rows[k][:] = 0.0

@@ -31,6 +31,9 @@ class RobotTerms:
     constraint, the swing task and the map from sole wrenches to generalised forces. Every array is a buffer that
     ``update`` overwrites.
 
+    A foot may be seen from another frame fixed to it (see ``shift_foot``): the arrays that begin with ``contact_``, the
+    sole Jacobians, velocities and biases, and the wrench map, are then of that frame.
+
     Attributes:
         mass: total mass [kg].
         mass_matrix: M, shape (nv, nv).
@@ -39,6 +42,7 @@ class RobotTerms:
         base_rotation, torso_rotation: orientation in the world, shape (3, 3).
         base_angular_velocity: in the base frame, shape (3,).
         sole_position: shape (2, 3); sole_rotation: shape (2, 3, 3); sole_pose: x y z qx qy qz qw, shape (2, 7).
+        contact_position: shape (2, 3); contact_rotation: shape (2, 3, 3): those of the soles unless shifted.
         sole_jacobian: shape (2, 6, nv); contact_jacobian: the same memory, shape (12, nv).
         sole_velocity, sole_bias: shape (2, 6).
         sole_wrench_map: from both sole wrenches to their force and moment about the world's origin, shape (6, 12).
@@ -74,6 +78,7 @@ class RobotTerms:
         self.com_velocity, self.base_angular_velocity = np.zeros(3), np.zeros(3)
         self.sole_position, self.sole_rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
         self.sole_pose = np.zeros((2, 7))
+        self.contact_position, self.contact_rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
         self.contact_jacobian = np.zeros((12, nv))
         self.sole_jacobian = self.contact_jacobian.reshape(2, 6, nv)
         self.sole_velocity, self.sole_bias = np.zeros((2, 6)), np.zeros((2, 6))
@@ -96,11 +101,48 @@ class RobotTerms:
         placement = pin.updateFramePlacement(model, data, frame)
         self.sole_position[k] = placement.translation
         self.sole_rotation[k] = placement.rotation
+        self.contact_position[k], self.contact_rotation[k] = self.sole_position[k], self.sole_rotation[k]
         self.sole_pose[k] = pin.SE3ToXYZQUAT(placement)
         self.sole_wrench_map[:, 6 * k : 6 * k + 6] = placement.toDualActionMatrix()
         self.sole_jacobian[k] = pin.getFrameJacobian(model, data, frame, _LOCAL)
         self.sole_velocity[k] = pin.getFrameVelocity(model, data, frame, _LOCAL).vector
         self.sole_bias[k] = pin.getFrameClassicalAcceleration(model, data, frame, _LOCAL).vector
+
+    def level_soles(self, toe: float) -> Array:
+        """Where the soles' centres would be if each foot turned level about its toe edge, shape (2, 3) [m].
+
+        Args:
+            toe: toe edge from the sole's centre [m].
+        """
+        ahead = self.sole_rotation[:, :, 0]
+        level = ahead * np.array([1.0, 1.0, 0.0])
+        level /= np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-9)
+        return np.asarray(self.sole_position + toe * (ahead - level))
+
+    def shift_foot(self, k: int, forward: float, pitch: float) -> Array:
+        """See foot k from a frame at a point ahead of its sole's centre, turned back by a pitch, until the next update.
+
+        Args:
+            k: foot.
+            forward: from the sole's centre along its x axis [m].
+            pitch: angle by which the foot is to be turned, heel up; the frame of a foot turned so is level [rad].
+
+        Returns:
+            What takes a wrench from the new frame to the sole's, shape (6, 6).
+        """
+        turned = pin.SE3(pin.utils.rotate("y", -pitch), np.array([forward, 0.0, 0.0]))
+        action = turned.toActionMatrixInverse()
+        spin = self.sole_velocity[k, 3:]
+        centripetal = np.cross(spin, np.cross(spin, turned.translation))
+        self.sole_jacobian[k] = action @ self.sole_jacobian[k]
+        self.sole_velocity[k] = action @ self.sole_velocity[k]
+        self.sole_bias[k] = action @ self.sole_bias[k]
+        self.sole_bias[k, :3] += turned.rotation.T @ centripetal
+        placement = pin.SE3(self.sole_rotation[k], self.sole_position[k]) * turned
+        self.contact_position[k], self.contact_rotation[k] = placement.translation, placement.rotation
+        self.sole_wrench_map[:, 6 * k : 6 * k + 6] = placement.toDualActionMatrix()
+        to_sole: Array = turned.toDualActionMatrix()
+        return to_sole
 
     def _update_torso(self) -> None:
         model, data, frame = self.model, self.data, self._torso

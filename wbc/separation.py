@@ -23,7 +23,7 @@ class SeparationParameters:
 
     clearance: float = 0.003
     attention: float = 0.04
-    horizon: float = 0.05
+    horizon: float = 0.02
     slots: int = 3
 
 

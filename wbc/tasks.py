@@ -84,6 +84,7 @@ class TaskStack:
         posture: Array,
         leg_joints: NDArray[np.bool_],
         arms: ArmSwing | None = None,
+        toe: float = 0.0,
     ) -> None:
         """Prepare what never changes.
 
@@ -96,8 +97,9 @@ class TaskStack:
             posture: joint positions to return to, shape (nj,) [rad].
             leg_joints: which joints are leg joints, bool, shape (nj,).
             arms: how the arms swing; None for arms that keep the posture.
+            toe: toe edge from the sole's centre [m].
         """
-        self._arms = arms
+        self._arms, self._toe = arms, toe
         self._gains, self._unit, self._force_weight = gains, layout.wrench_unit, weights.force
         scale = self._scale = np.sqrt(_row_weights(weights))
         self._unscale = np.divide(1.0, scale, out=np.zeros(TASK_ROWS), where=scale > 0.0)
@@ -171,8 +173,12 @@ class TaskStack:
             self._swing_rows[:] = 0.0
             return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         np.multiply(terms.sole_jacobian[k], self._swing_scale, out=self._swing_rows)
-        (stiffness, damping), R, velocity = self._gains.swing, terms.sole_rotation[k], terms.sole_velocity[k]
-        wanted = reference.swing_position - terms.sole_position[k]
+        (stiffness, damping), R, velocity = self._gains.swing, terms.contact_rotation[k], terms.sole_velocity[k]
+        wanted = reference.swing_position - terms.contact_position[k]
+        pitching = 0.0
+        if k == reference.rolling_foot:
+            wanted += self._toe * reference.swing_rotation[:, 0]
+            pitching = damping * reference.roll[1] + reference.roll[2]
         wanted *= stiffness
         wanted += damping * reference.swing_velocity
         wanted += reference.swing_acceleration
@@ -182,7 +188,7 @@ class TaskStack:
         vx, vy, vz = velocity[:3].tolist()
         bx, by, bz, px, py, pz = terms.sole_bias[k].tolist()
         linear = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
-        return (*linear, ax - px, ay - py, az - pz)
+        return (*linear, ax - px, ay + pitching - py, az - pz)
 
     def _regularisation(self, terms: RobotTerms, q: Array, v: Array, reference: WbcReference) -> None:
         linear = self._joint_linear

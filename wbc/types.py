@@ -81,6 +81,9 @@ class WbcReference:
         swing_angular_velocity: of its sole, shape (3,) [rad/s].
         swing_angular_acceleration: of its sole, shape (3,) [rad/s^2].
         ground_normal: unit normals of the ground on which the soles stand, or will land, shape (2, 3) [-].
+        rolling_foot: index of the foot that rolls about its toe edge, -1 for none; its `swing_position` is that of the
+            sole as if it lay flat.
+        roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
     """
 
     com: Array
@@ -105,6 +108,8 @@ class WbcReference:
     swing_angular_velocity: Array
     swing_angular_acceleration: Array
     ground_normal: Array
+    rolling_foot: int = -1
+    roll: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -74,6 +74,7 @@ class ClosedLoop:
         self._fallen_height = FALLEN_HEIGHT * (scenario.gait.com_height - scenario.errors.com_height)
         self._zero_torque = np.zeros(layout.joints)
         self._landed = (True, True)
+        self._toe = 0.5 * robot.sole_length if scenario.gait.heel_off else 0.0
 
     @property
     def phase(self) -> PhaseInfo:
@@ -134,7 +135,7 @@ class ClosedLoop:
 
     def _replan(self, tick: int, now_ns: int, terms: RobotTerms, measurement: Measurement) -> None:
         R = terms.sole_rotation
-        feet = FeetState(terms.sole_position.copy(), np.arctan2(R[:, 1, 0], R[:, 0, 0]), self._landed)
+        feet = FeetState(terms.level_soles(self._toe), np.arctan2(R[:, 1, 0], R[:, 0, 0]), self._landed)
         state = CentroidalState(tick / self._rate, terms.com.copy(), terms.com_velocity.copy())
         zmp = np.array(measured_zmp(measurement.wrench, terms.sole_position, R)[:2])
         self._planning.update(tick, now_ns, state, zmp, feet)

@@ -92,10 +92,11 @@ class PendulumLoop:
         state = self._sense(now, tick)
         planning = self._planning
         state_time = watch.lap()
+        planner_time = 0.0
         if planning.due(tick):
             planning.update(tick, now_ns, self._believed(state), self._plant.zmp, self._feet.state)
+            planner_time = watch.lap()
         sample = planning.sampler.sample(now)
-        planner_time = watch.lap()
         force = mean_force(self._pushes, now, period)
         support = self._support_of(sample.contacts)
         self._recorder.state(now_ns, state, self._feet.state, force)

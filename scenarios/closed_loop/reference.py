@@ -19,6 +19,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     phase = plan.phase
     passed = phase.elapsed + sample.time - plan.time
     swing, rate, bend = sample.swing, sample.swing_velocity, sample.swing_acceleration
+    roll = plan.roll
     foot = -1 if sample.swing_foot is None else int(sample.swing_foot)
     yaw = [plan.footholds[0].yaw, plan.footholds[1].yaw]
     normal = np.array([plan.footholds[0].normal, plan.footholds[1].normal])
@@ -49,6 +50,8 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         swing_angular_velocity=turning,
         swing_angular_acceleration=bending,
         ground_normal=normal,
+        rolling_foot=-1 if roll is None or not roll.start < sample.time < roll.end else int(roll.foot),
+        roll=(0.0, 0.0, 0.0) if roll is None else roll.evaluate(sample.time),
     )
 
 

@@ -24,6 +24,9 @@ from scenarios.file.schema import FootstepSettings, Gait, VelocitySettings
 EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
 
+SHANKS_APART = 0.11
+"""Distance beside at which upright shanks, a decimetre thick, keep a centimetre apart; soles may be narrower [m]."""
+
 
 def commanded(gait: Gait) -> bool:
     """Whether the gait is given by a velocity or by footsteps."""
@@ -58,6 +61,7 @@ def gait_of(gait: Gait, region: StepRegion | None = None) -> GaitParameters:
         initial_stand=gait.initial_stand,
         apex_ss=gait.apex_single,
         apex_ds=gait.apex_double,
+        heel_off=gait.heel_off,
     )
     if gait.velocity:
         bouts = velocity_bouts(timeline_of(gait.velocity), plain)
@@ -98,5 +102,6 @@ def step_region(
     parameters: PlannerParameters, sole: tuple[float, float], leg_span: float = math.inf, hip_width: float = 0.0
 ) -> StepRegion:
     """Where commanded steps may land: within the planner's reach, and the legs' if they are given."""
-    reach = (parameters.reach_length, parameters.reach_width)
-    return StepRegion(*reach, sole, leg_span=leg_span, hip_width=hip_width)
+    near, far = parameters.reach_width
+    width = (max(near, SHANKS_APART), far)
+    return StepRegion(parameters.reach_length, width, sole, leg_span=leg_span, hip_width=hip_width)

@@ -13,7 +13,7 @@ from planner.profiles.registry import PROFILES, Profile
 from planner.terrain import Terrain
 from planner.types import FeetState
 from scenarios.file.commands import commanded, gait_of, longest_landing, step_region
-from scenarios.file.ground import start_height
+from scenarios.file.ground import landing_search, start_height
 from scenarios.file.height import height_profile
 from scenarios.file.schema import Gait, Scenario
 
@@ -57,6 +57,7 @@ def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters
         "moves": None if settings.control_horizon is None else tuple(range(settings.control_horizon)),
         "jerk_limit": settings.jerk_limit,
         "jerk_rate_limit": settings.jerk_rate_limit,
+        **landing_search(scenario),
     }
     return replace(
         planner_profile(scenario).parameters,

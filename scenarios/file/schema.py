@@ -119,6 +119,9 @@ class Gait(Group):
     footsteps: Annotated[tuple[FootstepSettings, ...], BeforeValidator(_tuple)] = Field(
         default=(), description="every footstep, in place of equal steps"
     )
+    heel_off: Annotated[float, Field(ge=0, le=1.0, allow_inf_nan=False)] = Field(
+        default=0.0, description="greatest pitch of a foot about its toes after its stance, 0: feet stay level [rad]"
+    )
 
 
 class PlannerSettings(Group):

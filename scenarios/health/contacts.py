@@ -77,7 +77,7 @@ def late_touchdowns(run: RunView) -> Finding:
 
 def zmp_at_edge(run: RunView) -> Finding:
     """Share of ticks with the ZMP outside the support polygon of feet shrunk to 90 %."""
-    outside = run.reduced(balance.zmp_inside)[: _standing(run)] == 0
+    outside = ~balance.zmp_inside(run)[: _standing(run)]
     share = float(outside.mean()) if len(outside) else 0.0
     if not share:
         return judged("zmp_margin", False, None, share, "")

@@ -26,9 +26,11 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
     "standing_time_final": (_FEET, walking.standing_time_final),
     "standing_time_between": ((*_FEET, "/reference"), walking.standing_time_between),
     "zmp_inside_fraction": ((*_FEET, "/reference"), balance.zmp_inside_fraction),
+    "zmp_excursion_max": ((*_FEET, "/reference"), balance.zmp_excursion_max),
     "cop_ratio_p99": (("/contact", "/reference"), balance.cop_ratio_p99),
     "cop_ratio_max": (("/contact", "/reference"), balance.cop_ratio_max),
     "zmp_error_rms": (("/contact", "/reference"), balance.zmp_error_rms),
+    "zmp_error_max": (("/contact", "/reference"), balance.zmp_error_max),
     "com_error_rms": (_PLAN, balance.com_error_rms),
     "dcm_error_rms": (_PLAN, balance.dcm_error_rms),
     "footstep_error_max": (("/footstep",), walking.footstep_error_max),
@@ -37,6 +39,7 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
     "self_contact_time": (_BODY, walking.self_contact_time),
     "torque_ratio_max": (("/torque",), effort.torque_ratio_max),
     "torque_at_limit_fraction": (("/torque",), effort.torque_at_limit_fraction),
+    "knee_torque_rms": (("/torque", "/reference"), effort.knee_torque_rms),
     "joint_limit_margin_min": (("/measurement",), effort.joint_limit_margin_min),
     "knee_angle_mean": (("/measurement", "/reference"), walking.knee_angle_mean),
     "cost_of_transport": (("/truth", "/measurement"), effort.cost_of_transport),
@@ -60,10 +63,11 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
 _REDUCTIONS: tuple[tuple[tuple[str, ...], Callable[[RunView], Any]], ...] = (
     (("/torque",), effort.torque_ratio),
     (("/torque",), effort.strained_joint),
+    (("/torque",), effort.knee_torque_squared),
     (("/measurement",), effort.joint_limit_margin),
     (("/measurement",), effort.joint_power),
     (("/measurement",), walking.knee_flexion),
-    (("/truth", "/contact", "/reference"), balance.zmp_inside),
+    (("/truth", "/contact", "/reference"), balance.zmp_depth),
     (("/plan",), balance.predicted),
 )
 """What wide channels are reduced to while the log is read, and the topics it needs."""

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.metrics.view import Array, RunView
+from scenarios.metrics.view import Array, Mask, RunView
 
 Rows = NDArray[np.intp]
 
@@ -14,11 +14,11 @@ PREDICTION = 0.2
 """Age of the plan that the true state is compared with [s]."""
 
 
-def zmp_inside(run: RunView) -> Array:
-    """Whether the measured ZMP is inside the planned support polygon of feet shrunk to 90 % at each tick, shape (n,).
+def zmp_depth(run: RunView) -> Array:
+    """How deep the measured ZMP is inside the planned support polygon of feet shrunk to 90 %, shape (n,) [m].
 
     A hull of shrunk feet is the hull of the feet with each edge moved in by a tenth of the foot's half extent along
-    the edge's normal; exact for parallel feet, and on the safe side for others. Flight counts as outside.
+    the edge's normal; exact for parallel feet, and on the safe side for others. Negative outside, NaN in flight.
     """
     zmp = run.field("/contact", "zmp")[:, None, :2]
     vertices = run.field("/reference", "support")
@@ -27,13 +27,25 @@ def zmp_inside(run: RunView) -> Array:
     normals = np.stack([-edges[..., 1], edges[..., 0]], axis=2) / np.where(lengths > 0, lengths, 1.0)[..., None]
     normals *= np.sign(_signed_area(vertices))[:, None, None]
     depth = np.sum(normals * (zmp - vertices), axis=2)
-    inside = (depth >= (1 - MARGIN) * _half_extent(run, normals) - 1e-9) | (lengths < 1e-9)
-    return np.asarray(inside.all(axis=1))
+    depth -= (1 - MARGIN) * _half_extent(run, normals)
+    return np.asarray(np.where(lengths < 1e-9, np.inf, depth).min(axis=1))
+
+
+def zmp_inside(run: RunView) -> Mask:
+    """Whether the ZMP is inside the planned support polygon of feet shrunk to 90 %, shape (n,); not so in flight."""
+    return np.asarray(run.reduced(zmp_depth) >= -1e-9)
 
 
 def zmp_inside_fraction(run: RunView) -> float:
     """Share of ticks at which `zmp_inside` holds."""
-    return float(np.mean(run.reduced(zmp_inside)))
+    return float(np.mean(zmp_inside(run)))
+
+
+def zmp_excursion_max(run: RunView) -> float | None:
+    """Farthest that the ZMP came out of the planned support polygon of feet shrunk to 90 %, negative inside [m]."""
+    depth = run.reduced(zmp_depth)
+    depth = depth[np.isfinite(depth)]
+    return float(-depth.min()) if len(depth) else None
 
 
 def cop_ratios(run: RunView) -> Array:
@@ -60,6 +72,13 @@ def cop_ratio_max(run: RunView) -> float | None:
 def zmp_error_rms(run: RunView) -> list[float] | None:
     """Measured ZMP minus the ZMP reference that the footsteps define, RMS, x and y [m]."""
     return rms(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
+
+
+def zmp_error_max(run: RunView) -> list[float] | None:
+    """Measured ZMP minus the ZMP reference that the footsteps define, largest in size, x and y [m]."""
+    error = np.abs(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
+    error = error[np.isfinite(error).all(axis=1)]
+    return [float(value) for value in error.max(axis=0)] if len(error) else None
 
 
 def predicted(run: RunView) -> Array:

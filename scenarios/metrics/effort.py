@@ -25,6 +25,14 @@ def strained_joint(run: RunView) -> Array:
     return np.asarray(np.argmax(ratio, axis=1).astype(np.uint8))
 
 
+def knee_torque_squared(run: RunView) -> Array:
+    """Mean square of the commanded knee torques at each tick, shape (n,) [N² m²]; NaN without knees."""
+    knees = [i for i, name in enumerate(run.constants.joint_names) if "knee" in name]
+    if not knees:
+        return np.full(len(run.log["/torque"]), np.nan)
+    return np.asarray(np.mean(run.log["/torque"].field("command")[:, knees] ** 2, axis=1))
+
+
 def joint_limit_margin(run: RunView) -> Array:
     """Least distance of a joint from its limits at each tick, shape (n,) [rad]."""
     position = run.field("/measurement", "joint_position")
@@ -47,6 +55,13 @@ def torque_ratio_max(run: RunView) -> float:
 def torque_at_limit_fraction(run: RunView) -> float:
     """Share of ticks at which some joint's commanded torque is at its limit [-]."""
     return float(np.mean(run.reduced(torque_ratio) >= AT_LIMIT))
+
+
+def knee_torque_rms(run: RunView) -> float | None:
+    """Commanded knee torque, RMS over both knees from the first lift-off to the last touchdown, or the run [N m]."""
+    squared = run.reduced(knee_torque_squared)[: run.ticks]
+    value = float(np.sqrt(np.mean(squared[run.walking if run.walking.stop else slice(None)])))
+    return value if np.isfinite(value) else None
 
 
 def joint_limit_margin_min(run: RunView) -> float:

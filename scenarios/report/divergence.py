@@ -83,7 +83,10 @@ def compare_channels(a: Log, b: Log, tolerance: float) -> tuple[ChannelDifferenc
     opened = [(_open(a, topic), _open(b, topic)) for topic in common]
     pairs = [(first, second) for first, second in opened if first is not None and second is not None]
     reach = min(_last([first for first, _ in pairs]), _last([second for _, second in pairs]))
-    return tuple(sorted((_compare(first, second, tolerance, reach) for first, second in pairs), key=_order))
+    whole = not (a.truncated or b.truncated)
+    reaches = [reach if whole else min(reach, _last([first]), _last([second])) for first, second in pairs]
+    found = (_compare(*pair, tolerance, end) for pair, end in zip(pairs, reaches, strict=True))
+    return tuple(sorted(found, key=_order))
 
 
 def unreadable(log: Log, topics: tuple[str, ...]) -> tuple[str, ...]:
@@ -99,7 +102,7 @@ def _open(log: Log, topic: str) -> ChannelData | None:
 
 
 def _last(channels: list[ChannelData]) -> int:
-    """Time of the last message of all [ns]; the tick at which a killed run stopped may lack some channels."""
+    """Time of the last message of all [ns]; a truncated log has channels that end up to a chunk earlier than others."""
     return max((int(channel.time_ns[-1]) for channel in channels if len(channel)), default=0)
 
 

@@ -41,8 +41,8 @@ REFUSED = {
     "gait: {velocity: [{v_x: 0}]}": "gait.velocity.0 lacks element time; give 'time'",
     "gait: {single_support: .3, double_support: .1, velocity: [{time: 0}, {time: 80000}]}": "lasts 80000 s; 40000 s",
     FOOTSTEPS % "{foot: left, x: 0.2, y: 0.1}, {foot: left, x: 0.4, y: 0.1}": "gait.footsteps.1 moves the left foot a",
-    FOOTSTEPS % "{foot: left, x: 0.1, y: -0.2}": "footstep 1 crosses its stance foot, -0.100 m beside it; 0.085 m is",
-    FOOTSTEPS % "{foot: left, x: 0, y: -0.03}": "footstep 1 would touch its stance foot, 0.070 m beside it; 0.085 m",
+    FOOTSTEPS % "{foot: left, x: 0.1, y: -0.2}": "footstep 1 crosses its stance foot, -0.100 m beside it; 0.110 m is",
+    FOOTSTEPS % "{foot: left, x: 0, y: -0.03}": "footstep 1 would touch its stance foot, 0.070 m beside it; 0.110 m",
     FOOTSTEPS
     % "{foot: left, x: 0.1, y: 0.1}, {foot: right, x: 0.6, y: -0.1}": "footstep 2 lands 0.500 m from where the"
     " legs stand upright; 0.496 m is the most",

@@ -7,8 +7,6 @@ import pytest
 from scenarios.file.load import load_scenario
 from scenarios.run import run_scenario
 
-pytestmark = pytest.mark.long
-
 NOISE = ("start.position_noise=0.001", f"start.angle_noise={math.radians(1.0)}")
 VARIED = (
     *(f"gait.step_length={v}" for v in (0.45, 0.5, 0.55)),
@@ -19,8 +17,20 @@ VARIED = (
 )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("overrides", [*((v,) for v in VARIED), *((*NOISE, f"seed={v}") for v in range(4))], ids=str)
 def test_neighbours_walk(tmp_path, overrides):
     criteria = "criteria.speed_mean={min: 0.8}"
     verdict = run_scenario(load_scenario("walk-fast", [*overrides, criteria]), tmp_path).verdict
     assert verdict.reasons == ()
+
+
+@pytest.mark.physics
+def test_heel_off_saves_work_and_torque(tmp_path):
+    overrides = ("gait.steps=7", "gait.initial_stand=0.2", "criteria.speed_mean={min: 0.8}")
+    flat, rolled = (
+        run_scenario(load_scenario("walk-fast", [*overrides, f"gait.heel_off={angle}"]), tmp_path).verdict
+        for angle in (0.0, 0.6)
+    )
+    assert flat.reasons == rolled.reasons == ()
+    assert rolled.metrics["cost_of_transport"] < 0.85 * flat.metrics["cost_of_transport"]

@@ -68,6 +68,7 @@ def test_standing_between_steps(metrics, motion):
 def test_effort(metrics, motion):
     found = metrics(motion())
     assert found["torque_ratio_max"] == pytest.approx(0.4)
+    assert found["knee_torque_rms"] == pytest.approx(np.sqrt((40.0**2 + 0.0**2) / 2))
     assert found["joint_limit_margin_min"] == pytest.approx(0.1)
     work, way = 4 * 10.0 * 0.5 * 4.0, 0.4
     assert found["cost_of_transport"] == pytest.approx(work / (100.0 * 9.81 * way))
@@ -98,6 +99,21 @@ def test_centre_of_pressure_of_the_stance_foot(metrics, motion):
 def test_zmp_inside_the_hull_of_the_feet_shrunk_to_90_percent(metrics, motion, offset, inside):
     """Soles of 0.075 m, 0.25 m apart: 0.03375 m is 90 % of half a sole; a quarter of the run is single support."""
     assert metrics(motion(zmp_offset=offset))["zmp_inside_fraction"] == pytest.approx(inside)
+
+
+@pytest.mark.parametrize(
+    ("offset", "excursion"), [((0.01, 0.0), -0.02375), ((0.04, 0.0), 0.00625), ((0.0, -0.05), 0.01625)]
+)
+def test_largest_error_and_excursion_of_the_zmp(metrics, motion, offset, excursion):
+    found = metrics(motion(zmp_offset=offset))
+    assert found["zmp_error_max"] == pytest.approx([abs(value) for value in offset])
+    assert found["zmp_excursion_max"] == pytest.approx(excursion)
+
+
+def test_flight_is_no_excursion(metrics, motion):
+    found = metrics(motion(zmp_offset=(np.nan, np.nan)))
+    assert found["zmp_excursion_max"] is None
+    assert found["zmp_error_max"] is None
 
 
 def test_a_fall_is_found_with_its_time(metrics, motion):

@@ -1,0 +1,1 @@
+"""``surefoot paper``: the experiments of the paper, run, measured and written as one page."""

@@ -1,0 +1,140 @@
+"""The page: the claims, the tables and the figures of a set of outcomes, as one file that needs no network."""
+
+from collections import Counter
+from collections.abc import Sequence
+from importlib.resources import files
+
+from scenarios.paper import studies
+from scenarios.paper.claim import Claim, Finding, Verdict
+from scenarios.paper.claims import CLAIMS
+from scenarios.paper.energy import ENERGY_CLAIMS
+from scenarios.paper.experiment import Study
+from scenarios.paper.figures.grid import svg
+from scenarios.paper.figures.plates import PLATES, Plate
+from scenarios.paper.prose import Section, sections
+from scenarios.paper.provenance import provenance, runs_table
+from scenarios.paper.results import Results
+from scenarios.paper.tables import balance_table, knee_table, shove_table
+from scenarios.paper.text import Table, escape, listing, paragraphs, table_html, tag
+
+TITLE = "A Robust Closed-Loop Biped Locomotion Planner Based on Time Varying Model Predictive Control, measured"
+
+_KINDS: dict[Verdict, str] = {
+    "holds": "holds",
+    "holds with a change": "change",
+    "does not hold": "not",
+    "not measured": "unknown",
+}
+
+Judged = Sequence[tuple[Claim, Finding]]
+
+
+def judged(results: Results) -> Judged:
+    """Every claim with what was found about it."""
+    return [(claim, claim.judge(results)) for claim in (*CLAIMS, *ENERGY_CLAIMS)]
+
+
+def tables(results: Results) -> dict[str, tuple[Table, ...]]:
+    """Every table of numbers, by the section that it stands in."""
+
+    def balance(name: str, *chosen: Study) -> Table:
+        return balance_table(name, results.samples(chosen))
+
+    plain = (
+        studies.WALK,
+        studies.WIDE_WALK,
+        studies.STEP_LAW,
+        studies.BRISK_WALK,
+        *studies.STAIRS,
+        studies.BRISK_STAIRS,
+    )
+    return {
+        "profiles": (balance("profiles-table", *plain),),
+        "noise": (balance("noise-table", studies.NOISE_WALK, studies.NOISE_STAIRS, studies.ZMP_ONLY),),
+        "height-error": (balance("height-table", *studies.HEIGHTS),),
+        "pushes": (balance("push-table", *studies.PUSHES), shove_table(results)),
+        "energy": (knee_table(results),),
+    }
+
+
+def page(results: Results) -> str:
+    """The whole page as HTML."""
+    claims, numbers = judged(results), tables(results)
+    content = {
+        "claims": _claims_table(claims),
+        "runs": provenance(results) + runs_table(results),
+    }
+    every = sections()
+    written = [_section(section, content.get(section.name, ""), numbers, results) for section in every]
+    style = (files(__package__) / "style.css").read_text(encoding="utf-8")
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(TITLE)}</title>'
+    body = "\n".join((_top(results, claims), _contents(every), *written))
+    return (
+        f'<!doctype html>\n<html lang="en"><head>{head}\n<style>\n{style}</style></head>\n'
+        f"<body><main>\n{body}\n</main></body></html>\n"
+    )
+
+
+def tally(claims: Judged) -> dict[Verdict, int]:
+    """How many claims have which verdict."""
+    counts = Counter(finding.verdict for _, finding in claims)
+    return {verdict: counts[verdict] for verdict in _KINDS}
+
+
+def _top(results: Results, claims: Judged) -> str:
+    runs = len(results.outcomes)
+    fell = sum(bool(outcome.metrics.get("fell")) for outcome in results.outcomes)
+    boxes = [(str(count), f"claims: {verdict}") for verdict, count in tally(claims).items() if count]
+    boxes += [(str(runs), "runs"), (str(fell), "falls"), (str(len(results.failures)), "could not run")]
+    shown = "".join(tag("div", f"<b>{count}</b>{tag('span', escape(label))}") for count, label in boxes)
+    lead = (
+        "The experiments of M. Kasaei, N. Lau and A. Pereira, run by Surefoot: on the paper's own plant, on a true "
+        "pendulum and in full physics. Every number and every curve on this page is read from the logs of these runs."
+    )
+    return tag("h1", escape(TITLE)) + tag("p", lead, kind="lead") + tag("div", shown, kind="tally")
+
+
+def _contents(every: Sequence[Section]) -> str:
+    links = (tag("a", escape(section.title), href=f"#{section.name}") for section in every)
+    return tag("nav", tag("ol", "".join(tag("li", link) for link in links)))
+
+
+def _section(section: Section, content: str, numbers: dict[str, tuple[Table, ...]], results: Results) -> str:
+    parts = [tag("h2", escape(section.title), id=section.name), paragraphs(section.text), content]
+    if section.points:
+        parts.insert(2, listing(section.points))
+    parts += [_figure(plate, results) for plate in PLATES.get(section.name, ())]
+    parts += [table_html(table) for table in numbers.get(section.name, ())]
+    return tag("section", "\n".join(part for part in parts if part))
+
+
+def _figure(plate: Plate, results: Results) -> str:
+    picture = svg(plate.draw(results)).replace("<svg ", f'<svg role="img" aria-label="{escape(plate.caption)}" ', 1)
+    caption = tag("figcaption", escape(plate.caption))
+    return tag("figure", f"{picture}\n{caption}", id=plate.name, kind="half" if plate.half else "")
+
+
+def _claims_table(claims: Judged) -> str:
+    heads = ("the paper says", "the pendulum shows", "full physics shows", "verdict")
+    head = tag("tr", "".join(tag("th", text, scope="col") for text in heads))
+    rows = "\n".join(_claim_row(claim, finding) for claim, finding in claims)
+    table = tag("table", f"<thead>{head}</thead>\n<tbody>\n{rows}\n</tbody>", kind="claims", id="claims-table")
+    return tag("div", table, kind="wide")
+
+
+def _claim_row(claim: Claim, finding: Finding) -> str:
+    rule = tag("details", tag("summary", "rule") + escape(claim.rule))
+    section = tag("span", f"section {escape(claim.section)}", kind="section")
+    verdict = tag("span", finding.verdict, kind=f"verdict {_KINDS[finding.verdict]}")
+    cells = (
+        f"{escape(claim.text)} {section}{rule}",
+        _sentences(finding.pendulum),
+        _sentences(finding.full),
+        verdict,
+    )
+    return tag("tr", "".join(tag("td", cell) for cell in cells), id=claim.name)
+
+
+def _sentences(text: str) -> str:
+    """Sentences on lines of their own."""
+    return "<br>".join(escape(part.strip()) for part in text.split(". "))

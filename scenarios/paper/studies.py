@@ -1,0 +1,129 @@
+"""The experiments as data: what the paper ran, and what its claims leave open."""
+
+from scenarios.paper.experiment import Block, Experiment, Study
+
+PROFILES = ("paper", "repaired", "default", "lti", "preview", "dcm")
+CLAIMANTS = ("paper", "repaired", "default")
+"""Profiles that the paper's own experiments are run with: as printed, repaired, robust."""
+
+START = "start.position_noise=0.001"
+"""A start up to 1 mm beside the middle, so that runs without noise have a spread over seeds too."""
+
+NOISE = ("sensing.zmp_noise=0.01", "sensing.com_noise=0.002")
+"""Gaussian, cut at two standard deviations: the paper's ±0.02 m of the ZMP; of the CoM as the findings had it."""
+
+BRISK = ("gait.single_support=0.7", "gait.double_support=0.3")
+
+WALK = Study("walk", "Diagonal walk", "paper-walk", (START,), "the paper's walk on flat ground")
+WIDE_WALK = Study(
+    "walk-wide", "Diagonal walk, feet 0.22 m apart", "diagonal-walk", (START,), "with sideways steps of up to 0.32 m"
+)
+BRISK_WALK = Study("walk-brisk", "Diagonal walk, 0.7 + 0.3 s", "paper-brisk", (START,), "at twice the cadence")
+STEP_LAW = Study(
+    "walk-step-law", "Diagonal walk, footsteps by the DCM", "paper-walk", (START, "planner.step_adaptation=location"),
+    "the adaptive ZMP planner, without any push",
+)  # fmt: skip
+
+
+def _stairs(name: str, title: str, riser: float, *settings: str) -> Study:
+    shows = f"what previewing the changing dynamics is worth on stairs of {riser:.2f} m"
+    return Study(name, title, "stair-climbing", (f"terrain.riser={riser}", START, *settings), shows)
+
+
+STAIRS = tuple(_stairs(f"stairs-{100 * r:.0f}", f"Stairs of {r:.2f} m", r) for r in (0.10, 0.15, 0.18))
+BRISK_STAIRS = _stairs("stairs-brisk", "Stairs of 0.10 m, 0.7 + 0.3 s", 0.10, *BRISK)
+
+NOISE_WALK = Study("noise-walk", "Diagonal walk, noise", "paper-noise", (), "noise of ±0.02 m on the ZMP")
+NOISE_STAIRS = Study("noise-stairs", "Stairs of 0.10 m, noise", "stair-climbing", NOISE, "the same on stairs")
+ZMP_ONLY = Study(
+    "noise-zmp-only", "Diagonal walk, noise, ZMP-only filter", "paper-noise", ("planner.filter=zmp_only",),
+    "the Kalman filter as the paper has it, which sees the ZMP alone",
+)  # fmt: skip
+
+
+def signed(value: float) -> str:
+    """A signed number in the letters that a scenario's name may have."""
+    return f"{'minus' if value < 0 else 'plus'}-{abs(value):g}"
+
+
+HEIGHT_ERRORS = (-0.2, -0.1, 0.1, 0.2)
+HEIGHTS = tuple(
+    Study(
+        f"height-{signed(error)}", f"CoM height error {error:+.1f} m", "paper-height-error",
+        (f"errors.com_height={error}",),        "the planner's CoM height is wrong",
+    )
+    for error in HEIGHT_ERRORS
+)  # fmt: skip
+
+PUSH_FORCES = (-75, -50, 75, 50)
+PUSHES = tuple(
+    Study(
+        f"push-{signed(force)}", f"Push {force:+d} N", "paper-push",
+        (f"pushes=[{{time: 2.2, duration: 0.01, force: [{force}, {force}, 0]}}]",),
+        "10 ms at 2.2 s in x and y, with noise",
+    )
+    for force in PUSH_FORCES
+)  # fmt: skip
+
+SHOVE_IMPULSES = (11, 12, 13, 14)
+SHOVE_DIRECTIONS = {"forward": (1, 0), "backward": (-1, 0), "left": (0, 1), "right": (0, -1)}
+ADAPTATIONS = ("none", "location")
+
+
+def shove(impulse: int, direction: str, adaptation: str) -> Study:
+    """A push of 0.1 s soon after the second lift-off, with or without adaptation of the footsteps."""
+    x, y = (10 * impulse * axis for axis in SHOVE_DIRECTIONS[direction])
+    push = f"pushes=[{{step: 2, phase: single, fraction: 0.13, duration: 0.1, force: [{x}, {y}, 0]}}]"
+    settings = (push, f"planner.step_adaptation={adaptation}")
+    title = f"Shove of {impulse} N s {direction}, adaptation {adaptation}"
+    name = f"shove-{adaptation}-{direction}-{impulse}"
+    return Study(name, title, "paper-walk", settings, "what moving the next footstep is worth in a strong push")
+
+
+SHOVES = tuple(
+    shove(impulse, direction, adaptation)
+    for adaptation in ADAPTATIONS
+    for direction in SHOVE_DIRECTIONS
+    for impulse in SHOVE_IMPULSES
+)
+
+GAITS = {"slow": "paper-walk", "fast": "walk"}
+KNEES = ("stretched", "bent")
+
+
+def knee_study(gait: str, knee: str) -> Study:
+    """A gait with stretched or with bent knees."""
+    shows = "what stretched knees save at the same speed"
+    return Study(f"knee-{gait}-{knee}", f"{gait.capitalize()} gait, {knee} knees", GAITS[gait],
+                 (f"planner.knee={knee}",), shows)  # fmt: skip
+
+
+KNEE_STUDIES = tuple(knee_study(gait, knee) for gait in GAITS for knee in KNEES)
+
+BLOCKS = (
+    Block((WALK, BRISK_WALK, *STAIRS, BRISK_STAIRS), PROFILES, ("pendulum",), 3),
+    Block((WIDE_WALK, STEP_LAW), CLAIMANTS, ("pendulum",)),
+    Block((WALK, *STAIRS), CLAIMANTS, ("cart-table",)),
+    Block((WALK,), ("paper", "repaired", "default", "lti"), ("full",)),
+    Block((WIDE_WALK, BRISK_WALK), ("default",), ("full",)),
+    Block(STAIRS[:2], ("default", "lti"), ("full",)),
+    Block((NOISE_WALK, NOISE_STAIRS), CLAIMANTS, ("pendulum",), 5),
+    Block((NOISE_WALK, NOISE_STAIRS), ("paper", "repaired"), ("cart-table",)),
+    Block((ZMP_ONLY,), ("repaired", "default"), ("pendulum",), 5),
+    Block((ZMP_ONLY,), ("repaired",), ("cart-table",), 3),
+    Block((NOISE_WALK,), ("default",), ("full",), 3),
+    Block((NOISE_STAIRS,), ("default",), ("full",)),
+    Block(HEIGHTS, CLAIMANTS, ("pendulum",)),
+    Block(HEIGHTS, ("paper", "repaired"), ("cart-table",)),
+    Block(HEIGHTS, ("default",), ("full",)),
+    Block(PUSHES, CLAIMANTS, ("pendulum",), 3),
+    Block(PUSHES, ("paper",), ("cart-table",)),
+    Block(PUSHES, ("default",), ("full",), 2),
+    Block(SHOVES, ("default",), ("pendulum",)),
+    Block(KNEE_STUDIES, ("default",), ("full",)),
+)
+
+
+def experiments() -> tuple[Experiment, ...]:
+    """Every run of the page, none twice."""
+    return tuple(dict.fromkeys(experiment for block in BLOCKS for experiment in block.experiments()))

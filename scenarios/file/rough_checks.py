@@ -69,6 +69,10 @@ def _edges(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
     terrain = terrain_of(scenario)
     plan, corners = planned_soles(scenario, facts, terrain)
     margins = terrain.edge_margins(plan.position[:, :2], corners)
+    if np.any(plan.normal[:2, 2] < 1.0):
+        right = f"use at least {0.5 * facts.foot_length:.3f} m, so that both feet stand level"
+        yield Problem(("terrain", "start"), "the walk would start on the slope", right)
+        return
     beyond = np.flatnonzero((margins < -1e-9) | (_buried(terrain, plan, corners) > _FLUSH))
     if not len(beyond):
         return

@@ -58,6 +58,20 @@ def test_held_soles_only_settle_and_level(robot, answer):
         np.testing.assert_allclose(motion, expected, atol=1e-8)
 
 
+def test_held_soles_turn_flat_on_the_ground_of_the_plan(robot, references, loaded):
+    """At rest each sole turns by the rotation vector from its own normal to the planned one."""
+    normals = np.array([[-0.1, 0.05, 1.0], [0.08, 0.02, 1.0]])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    controller, standing = robot.controller(), references[0]
+    controller.observe(RobotState(robot.standing, np.zeros(robot.nv)))
+    report = controller.update(standing(ground_normal=normals), loaded)
+    terms = controller.terms
+    for k in (0, 1):
+        motion = terms.sole_jacobian[k] @ report.acceleration + terms.sole_bias[k]
+        towards = np.cross(terms.sole_rotation[k][:, 2], normals[k])
+        np.testing.assert_allclose(terms.sole_rotation[k] @ motion[3:], 100.0 * towards, atol=1e-6)
+
+
 def test_wrenches_lie_in_their_cones_and_lifted_feet_carry_nothing(answer):
     _, _, report = answer
     cone = wrench_cone(COP_SHARE * HALF_SOLE, COP_SHARE * HALF_SOLE, FRICTION / np.sqrt(2))

@@ -73,9 +73,9 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     """Footsteps of a gait from where the feet stand.
 
     The path starts midway between the feet with their mean heading, or where the terrain says. Each stride advances it
-    by (`length`, `lateral`) along the mean of its old and new heading and turns it; the foot lands beside the path's new
-    point, half the stride's width to its side. Where the width changes, the path first moves to lie half the new width
-    beside the stance foot: so where a foot lands from its stance foot is a matter of the stride alone.
+    by (`length`, `lateral`) along the mean of its old and new heading and turns it; the foot lands beside the path's
+    new point, half the stride's width to its side. Where the width changes, the path first moves to lie half the new
+    width beside the stance foot: so where a foot lands from its stance foot is a matter of the stride alone.
 
     Args:
         gait: the gait.

@@ -44,8 +44,8 @@ class Terrain:
     Attributes:
         boxes: solids on the plane; the highest top face under a point carries it.
         friction: Coulomb coefficient of every surface [-].
-        path_start: x, y [m] and heading [rad] from which footsteps are laid, wherever exactly the feet stand; None where
-            any other place is as good.
+        path_start: x, y [m] and heading [rad] from which footsteps are laid, wherever exactly the feet stand; None
+            where any other place is as good.
     """
 
     boxes: tuple[Box, ...] = ()

@@ -25,7 +25,7 @@ from planner.support import Support, present_support
 from planner.swing import SwingTrajectory, start_swing, swing_times
 from planner.terrain import Terrain, flat
 from planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind, PlannedFootstep, PlanStatus, SolverStatus
-from planner.window import Outlook, Window
+from planner.window import OffsetTable, Outlook, Window
 from planner.world_plan import world_plan
 
 _SAME_TARGET = 1e-4
@@ -93,6 +93,7 @@ class WalkingPlanner:
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
         self._law = profile.law(p, float(shape.bump[0, 0]))
         self._support: Support | None = None
+        self._offsets: OffsetTable | None = None
         self._swing: SwingTrajectory | None = None
         self._plan: WalkPlan | None = None
         self.motion: Motion | None = None
@@ -120,7 +121,8 @@ class WalkingPlanner:
         support = present_support(self._support, stepper, self._half_size, p.foot_margin)
         self._support = support
         local = self._local_state(state, support)
-        window = self._outlook.window(stepper.sample, support, stepper.footsteps, local[:, 0])
+        window = self._outlook.window(stepper.sample, support, stepper.footsteps, local[:, 0], self._offsets)
+        self._offsets = window.table
         problem = self._problem(local, feet, support, window)
         motion = self._law.plan(problem)
         self.motion = motion

@@ -278,8 +278,8 @@ def check_height(shape: HeightShape, schedule: Schedule, support_height: Array) 
         raise ValueError(f"The CoM comes within {lowest:.2f} m of the ground under it, but it must stay above it.")
     fall = float(np.min(height[2]))
     if fall < -_FALL_LIMIT * GRAVITY and not shape.impulsive:
-        name = "double" if shape.levels is own_levels else "single"
+        remedy = "double_support, or planner.rise single" if shape.levels is own_levels else "single_support"
         raise ValueError(
             f"The CoM height falls off with {fall:.1f} m/s^2, but {-_FALL_LIMIT * GRAVITY:.1f} m/s^2 is the limit:"
-            f" the height step between two footsteps needs a longer gait.{name}_support."
+            f" the height step between two footsteps needs a longer gait.{remedy}."
         )

@@ -74,21 +74,20 @@ class FootstepPlan:
 def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
     """Footsteps of a gait from where the feet stand.
 
-    The path starts midway between the feet with their mean heading. Each stride advances it by (`length`, `lateral`)
-    along the mean of its old and new heading and turns it; the foot lands beside the path's new point, half the
-    stride's width to its side. Where the width changes, the path first moves to lie half the new width beside the
-    stance foot: so where a foot lands from its stance foot is a matter of the stride alone.
+    The path starts midway between the feet with their mean heading, or where the terrain says. Each stride advances it
+    by (`length`, `lateral`) along the mean of its old and new heading and turns it; the foot lands beside the path's
+    new point, half the stride's width to its side. Where the width changes, the path first moves to lie half the new
+    width beside the stance foot: so where a foot lands from its stance foot is a matter of the stride alone.
 
     Args:
         gait: the gait.
         feet: start feet in the world frame.
-        terrain: gives heights and normals of the footsteps.
+        terrain: gives heights and normals of the footsteps, and the start of the path where they belong on treads.
     """
     n, strides = gait.steps, gait.strides
     rows = tuple(gait.step_foot(i - 1) for i in range(n + 2))
-    start_yaw = float(feet.yaw[Foot.RIGHT] + 0.5 * wrap_angle(feet.yaw[Foot.LEFT] - feet.yaw[Foot.RIGHT]))
+    path, start_yaw = _path_start(feet, terrain)
     yaw = start_yaw + np.cumsum([0.0, 0.0, *(stride.turn for stride in strides)])
-    path = np.array(0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2]))
     width = gait.step_width
     position = np.empty((n + 2, 3))
     position[0], position[1] = feet.position[rows[0]], feet.position[rows[1]]
@@ -103,3 +102,13 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     increment[1:] = np.diff(position[:, :2], axis=0)
     normal = terrain.normals(position[:, :2])
     return FootstepPlan(rows, position, yaw, normal, increment, support_rows(gait.walk))
+
+
+def _path_start(feet: FeetState, terrain: Terrain) -> tuple[Array, float]:
+    """Where the path starts, shape (2,) [m], and its heading there, unwrapped from the right foot's [rad]."""
+    right = float(feet.yaw[Foot.RIGHT])
+    if terrain.path_start is not None:
+        x, y, yaw = terrain.path_start
+        return np.array([x, y]), right + wrap_angle(yaw - right)
+    middle = 0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2])
+    return np.asarray(middle), right + 0.5 * wrap_angle(float(feet.yaw[Foot.LEFT]) - right)

@@ -73,4 +73,4 @@ def staircase(stairs: Stairs, origin: NDArray[np.float64], yaw: float, friction:
         center = rotation @ (0.5 * (begin + end), 0.0, 0.5 * height)
         center[:2] += origin
         boxes.append(Box(center, np.array([0.5 * (end - begin), HALF_WIDTH, 0.5 * height]), rotation))
-    return Terrain(tuple(boxes), friction)
+    return Terrain(tuple(boxes), friction, (float(origin[0]), float(origin[1]), yaw))

@@ -44,10 +44,13 @@ class Terrain:
     Attributes:
         boxes: solids on the plane; the highest top face under a point carries it.
         friction: Coulomb coefficient of every surface [-].
+        path_start: x, y [m] and heading [rad] from which footsteps are laid, wherever exactly the feet stand; None
+            where any other place is as good.
     """
 
     boxes: tuple[Box, ...] = ()
     friction: float = 0.8
+    path_start: tuple[float, float, float] | None = None
 
     def height(self, x: float, y: float) -> float:
         """Ground height [m] at the world point (x, y)."""

@@ -229,8 +229,9 @@ def paper(
         raise typer.Exit(INTERRUPTED) from None
     for name in written.failures:
         typer.echo(f"could not run: {name}", err=True)
-    verdicts = ", ".join(f"{count} {verdict}" for verdict, count in written.verdicts.items() if count)
-    typer.echo(f"{written.runs} runs, {written.falls} falls, {len(written.failures)} could not run; claims: {verdicts}")
+    verdicts = ", ".join(f"{verdict}: {count}" for verdict, count in written.verdicts.items() if count)
+    typer.echo(f"{written.runs} runs, {written.falls} falls, {len(written.failures)} could not run")
+    typer.echo(f"claims: {verdicts}")
     typer.echo(str(written.page))
     raise typer.Exit(MISSED if written.failures else 0)
 

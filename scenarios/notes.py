@@ -8,7 +8,12 @@ from scenarios.file.criteria import BODY_METRICS, Bound
 from scenarios.file.schema import Gait, Scenario
 from scenarios.file.timeline import gait_duration
 
-_NO_CONTACT = (("terrain", "friction"), ("start", "angle_noise"), ("errors", "friction"))
+_NO_CONTACT = (
+    ("terrain", "friction"),
+    ("terrain", "height_noise"),
+    ("start", "angle_noise"),
+    ("errors", "friction"),
+)
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
 
 _POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))

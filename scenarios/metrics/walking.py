@@ -109,12 +109,19 @@ class Slip:
 
 
 def stance_slips(run: RunView) -> list[Slip]:
-    """The slip of every stance, planned and felt."""
+    """The slip of every stance, planned and felt.
+
+    A foot that rolls moves its sole's centre but not its toe edge, so that of the two counts which moved less.
+    """
     contact = (run.field("/contact", "planned") != 0) & (run.field("/contact", "felt") != 0)
-    soles, slips = run.soles, []
+    centre, slips = run.soles[..., :2], []
+    x, y, z, w = np.moveaxis(run.soles[..., 3:], -1, 0)
+    forward = np.stack((1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)), axis=-1)
+    toe = centre + 0.5 * run.constants.foot_length * forward
     for foot in range(2):
         for start, end in runs_of(contact[:, foot]):
-            distance = np.linalg.norm(soles[start:end, foot, :2] - soles[start, foot, :2], axis=1)
+            moved = [np.linalg.norm(at[start:end, foot] - at[start, foot], axis=1) for at in (centre, toe)]
+            distance = np.minimum(*moved)
             farthest = int(np.argmax(distance))
             slips.append(Slip(foot, start, start + farthest, float(distance[farthest])))
     return slips

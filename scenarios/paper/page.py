@@ -50,7 +50,9 @@ def tables(results: Results) -> dict[str, tuple[Table, ...]]:
     )
     return {
         "profiles": (balance("profiles-table", *plain),),
-        "noise": (balance("noise-table", studies.NOISE_WALK, studies.NOISE_STAIRS, studies.ZMP_ONLY),),
+        "noise": (
+            balance("noise-table", studies.NOISE_WALK, studies.NOISE_STAIRS, studies.NOISE_ALONE, studies.ZMP_ONLY),
+        ),
         "height-error": (balance("height-table", *studies.HEIGHTS),),
         "pushes": (balance("push-table", *studies.PUSHES), shove_table(results)),
         "energy": (knee_table(results),),

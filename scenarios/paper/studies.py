@@ -35,9 +35,15 @@ BRISK_STAIRS = _stairs("stairs-brisk", "Stairs of 0.10 m, 0.7 + 0.3 s", 0.10, *B
 
 NOISE_WALK = Study("noise-walk", "Diagonal walk, noise", "paper-noise", (), "noise of ±0.02 m on the ZMP")
 NOISE_STAIRS = Study("noise-stairs", "Stairs of 0.10 m, noise", "stair-climbing", NOISE, "the same on stairs")
+ALONE = ("pendulum.feedback=0",)
+"""No low level that holds the true DCM to the plan: the planner alone closes the loop, as in the paper."""
+
+NOISE_ALONE = Study(
+    "noise-alone", "Diagonal walk, noise, planner alone", "paper-noise", ALONE, "without the low level's DCM feedback"
+)
 ZMP_ONLY = Study(
-    "noise-zmp-only", "Diagonal walk, noise, ZMP-only filter", "paper-noise", ("planner.filter=zmp_only",),
-    "the Kalman filter as the paper has it, which sees the ZMP alone",
+    "noise-zmp-only", "Diagonal walk, noise, planner alone, ZMP-only filter", "paper-noise",
+    (*ALONE, "planner.filter=zmp_only"), "the Kalman filter as the paper has it, which sees the ZMP alone",
 )  # fmt: skip
 
 
@@ -46,10 +52,15 @@ def signed(value: float) -> str:
     return f"{'minus' if value < 0 else 'plus'}-{abs(value):g}"
 
 
+def with_sign(value: float) -> str:
+    """A signed number for people."""
+    return f"{value:+g}".replace("-", "\N{MINUS SIGN}")
+
+
 HEIGHT_ERRORS = (-0.2, -0.1, 0.1, 0.2)
 HEIGHTS = tuple(
     Study(
-        f"height-{signed(error)}", f"CoM height error {error:+.1f} m", "paper-height-error",
+        f"height-{signed(error)}", f"CoM height error {with_sign(error)} m", "paper-height-error",
         (f"errors.com_height={error}",),        "the planner's CoM height is wrong",
     )
     for error in HEIGHT_ERRORS
@@ -58,7 +69,7 @@ HEIGHTS = tuple(
 PUSH_FORCES = (-75, -50, 75, 50)
 PUSHES = tuple(
     Study(
-        f"push-{signed(force)}", f"Push {force:+d} N", "paper-push",
+        f"push-{signed(force)}", f"Push {with_sign(force)} N", "paper-push",
         (f"pushes=[{{time: 2.2, duration: 0.01, force: [{force}, {force}, 0]}}]",),
         "10 ms at 2.2 s in x and y, with noise",
     )
@@ -109,7 +120,7 @@ BLOCKS = (
     Block(STAIRS[:2], ("default", "lti"), ("full",)),
     Block((NOISE_WALK, NOISE_STAIRS), CLAIMANTS, ("pendulum",), 5),
     Block((NOISE_WALK, NOISE_STAIRS), ("paper", "repaired"), ("cart-table",)),
-    Block((ZMP_ONLY,), ("repaired", "default"), ("pendulum",), 5),
+    Block((NOISE_ALONE, ZMP_ONLY), ("repaired", "default"), ("pendulum",), 5),
     Block((ZMP_ONLY,), ("repaired",), ("cart-table",), 3),
     Block((NOISE_WALK,), ("default",), ("full",), 3),
     Block((NOISE_STAIRS,), ("default",), ("full",)),

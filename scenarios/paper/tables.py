@@ -1,5 +1,7 @@
 """The tables of the page: rows are samples, numbers are the metrics of their logs."""
 
+import math
+import statistics
 from collections.abc import Iterable
 
 from scenarios.paper.experiment import World
@@ -74,15 +76,14 @@ def _balance_row(sample: Sample) -> tuple[Cell, ...]:
 
 
 def preview_gain(without: Sample, previewed: Sample) -> float | None:
-    """How many times lower the ZMP error is with previewed dynamics: ratio of `error_norm` [-]; None without runs."""
-    before, after = error_norm(without), error_norm(previewed)
-    return before / after if before is not None and after else None
+    """How many times lower the ZMP error is with previewed dynamics: ratio of medians of `error_norms` [-], or None."""
+    before, after = error_norms(without), error_norms(previewed)
+    return statistics.median(before) / statistics.median(after) if before and after else None
 
 
-def error_norm(sample: Sample) -> float | None:
-    """Median over seeds of the norm of the ZMP error's RMS in x and y [m]."""
-    x, y = (sample.median("zmp_error_rms", axis) for axis in (0, 1))
-    return None if x is None or y is None else float((x * x + y * y) ** 0.5)
+def error_norms(sample: Sample) -> list[float]:
+    """Norm of the ZMP error's RMS in x and y, of each run [m]."""
+    return [math.hypot(*errors) for errors in zip(*(sample.values("zmp_error_rms", i) for i in (0, 1)), strict=True)]
 
 
 def knee_table(results: Results) -> Table:
@@ -98,7 +99,7 @@ def knee_table(results: Results) -> Table:
             fell = words(fell_text(sample) if sample.runs else "could not run", "bad" if sample.falls else "")
             columns = (
                 ("speed_mean", 1.0),
-                ("knee_angle_mean", 57.29577951308232),
+                ("knee_angle_mean", 180.0 / math.pi),
                 ("cost_of_transport", 1.0),
                 ("knee_torque_rms", 1.0),
                 ("torque_ratio_max", PERCENT),

@@ -45,6 +45,18 @@ def test_footsteps_land_in_the_middle_of_one_tread_after_the_other(direction, ex
     np.testing.assert_allclose(margins[:-2].min(), 0.15 - HALF_SIZE[0])
 
 
+def test_feet_that_start_elsewhere_step_on_the_same_treads():
+    terrain = staircase(stairs(Direction.UP), np.array([1.0, 2.0]), 0.3, 0.8)
+    gait = GaitParameters(steps=4, step_length=0.3)
+    plans = []
+    for shift, turn in ((0.0, 0.0), (0.03, 0.05)):
+        position = np.array([[1.0 + shift, 2.1, 0.0], [1.0, 1.9 + shift, 0.0]])
+        plans.append(plan_footsteps(gait, FeetState(position, np.array([0.3 + turn, 0.3]), (True, True)), terrain))
+    np.testing.assert_allclose(plans[1].position[2:], plans[0].position[2:], atol=1e-12)
+    np.testing.assert_allclose(plans[1].yaw, plans[0].yaw, atol=1e-12)
+    assert plans[1].position[0, 0] == pytest.approx(1.03)
+
+
 def test_margin_is_negative_for_a_sole_over_an_edge_and_infinite_on_bare_ground():
     terrain = staircase(stairs(Direction.UP), np.zeros(2), 0.0, 0.8)
     centers = np.array([[0.5, 0.0], [0.4, 0.0], [0.0, 0.0], [0.1, 0.0], [0.3, 0.98]])

@@ -33,4 +33,5 @@ def test_heel_off_saves_work_and_torque(tmp_path):
         for angle in (0.0, 0.6)
     )
     assert flat.reasons == rolled.reasons == ()
+    assert rolled.metrics["foot_slip_max"] < 0.003
     assert rolled.metrics["cost_of_transport"] < 0.85 * flat.metrics["cost_of_transport"]

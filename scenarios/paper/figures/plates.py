@@ -70,7 +70,7 @@ def _heights(results: Results) -> Figure:
         Column(
             f"{profile}, {WORLD_NAMES[world]}",
             tuple(
-                (f"error {error:+.1f} m", results.sample(study, profile, world))
+                (f"error {studies.with_sign(error)} m", results.sample(study, profile, world))
                 for error, study in zip(studies.HEIGHT_ERRORS, studies.HEIGHTS, strict=True)
             ),
         )
@@ -81,7 +81,7 @@ def _heights(results: Results) -> Figure:
 
 def _pushes(results: Results, profile: str, world: World) -> Figure:
     columns = [
-        Column(f"{force:+d} N in x and y", (("", results.sample(study, profile, world)),))
+        Column(f"{studies.with_sign(force)} N in x and y", (("", results.sample(study, profile, world)),))
         for force, study in zip(studies.PUSH_FORCES, studies.PUSHES, strict=True)
     ]
     return grid(columns, POSITIONS)
@@ -100,7 +100,7 @@ PLATES: dict[str, tuple[Plate, ...]] = {
         Plate(
             "figure-stairs",
             "Stairs of 0.10 m: CoM height with single and double support shaded, ZMP and CoM in x and y. "
-            "The axes of the paper's figure 4.",
+            "The axes of the paper's figure 3.",
             partial(_study, study=studies.STAIRS[0], runs=ON_STAIRS, rows=(HEIGHT, *POSITIONS)),
         ),
         Plate(
@@ -115,26 +115,26 @@ PLATES: dict[str, tuple[Plate, ...]] = {
         Plate(
             "figure-noise-walk",
             "Diagonal walk with noise of ±0.02 m on the measured ZMP and 2 mm on the CoM. "
-            "First row of the paper's figure 5.",
+            "First row of the paper's figure 4.",
             partial(_study, study=studies.NOISE_WALK, runs=SIDE_BY_SIDE, rows=POSITIONS),
         ),
         Plate(
             "figure-noise-stairs",
-            "Stairs of 0.10 m with the same noise. Second row of the paper's figure 5.",
+            "Stairs of 0.10 m with the same noise. Second row of the paper's figure 4.",
             partial(_study, study=studies.NOISE_STAIRS, runs=ON_STAIRS, rows=POSITIONS),
         ),
     ),
     "height-error": (
         Plate(
             "figure-height",
-            "True ZMP when the planner's CoM height is wrong by −0.2, −0.1, +0.1 and +0.2 m. The paper's figure 6.",
+            "True ZMP when the planner's CoM height is wrong by −0.2, −0.1, +0.1 and +0.2 m. The paper's figure 5.",
             _heights,
         ),
     ),
     "pushes": tuple(
         Plate(
             f"figure-push-{profile}",
-            f"{profile}, {WORLD_NAMES[world]}: pushes of 10 ms at 2.2 s, with noise. The axes of the paper's figure 7.",
+            f"{profile}, {WORLD_NAMES[world]}: pushes of 10 ms at 2.2 s, with noise. The axes of the paper's figure 6.",
             partial(_pushes, profile=profile, world=world),
         )
         for profile, world in SIDE_BY_SIDE

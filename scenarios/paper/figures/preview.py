@@ -2,8 +2,9 @@
 
 from matplotlib.figure import Figure
 
-from scenarios.paper.results import Results, Sample
+from scenarios.paper.results import Results
 from scenarios.paper.studies import STAIRS, WALK
+from scenarios.paper.tables import error_norms
 from scenarios.report.figures.style import BLUE, GREEN, PURPLE, VERMILLION, canvas, in_style
 
 RISERS = (0.0, 0.10, 0.15, 0.18)
@@ -16,7 +17,7 @@ def preview_chart(results: Results) -> Figure:
         figure, (area,) = canvas(7.0, (2.8,))
         axes = area.subplots()
         for profile, color in _SHOWN.items():
-            rows = [(riser, norms(results.sample(study, profile, "pendulum")))
+            rows = [(riser, error_norms(results.sample(study, profile, "pendulum")))
                     for riser, study in zip(RISERS, (WALK, *STAIRS), strict=True)]  # fmt: skip
             drawn = [(riser, sorted(values)) for riser, values in rows if values]
             x = [riser for riser, _ in drawn]
@@ -30,9 +31,3 @@ def preview_chart(results: Results) -> Figure:
         axes.set_ylim(bottom=0.0)
         axes.legend(loc="upper left")
     return figure
-
-
-def norms(sample: Sample) -> list[float]:
-    """Norm of the ZMP error's RMS in x and y, of each run that did not fall [m]."""
-    errors = [outcome.metrics["zmp_error_rms"] for outcome in sample.runs if not outcome.metrics["fell"]]
-    return [float((x * x + y * y) ** 0.5) for x, y in errors]

@@ -60,9 +60,10 @@ def landing_search(scenario: Scenario) -> dict[str, float]:
     """How a swing foot that has not felt the ground goes on downwards, in the planner's parameters.
 
     Where the ground has steps its heights are believed less: the foot hurries after a tread that lies lower, since
-    waiting for it costs balance. On level ground that haste would only shake the ZMP of small feet at every touchdown.
+    waiting for it costs balance. On a plane that haste would only shake the ZMP of small feet at every touchdown.
     """
-    return {} if scenario.terrain.kind == "flat" else {"search_speed": 0.4, "search_acceleration": 8.0}
+    stepped = scenario.terrain.kind in ("stairs", "blocks")
+    return {"search_speed": 0.4, "search_acceleration": 8.0} if stepped else {}
 
 
 def start_height(scenario: Scenario) -> float:

@@ -53,20 +53,25 @@ class TerrainSettings(Group):
     """The ground."""
 
     kind: Literal["flat", "stairs", "blocks", "slope"] = Field(default="flat", description="shape of the ground")
-    riser: NonNegative = Field(default=0.1, description="height of a stair or block [m]")
-    tread: Positive = Field(default=0.3, description="depth of a stair or block [m]")
-    count: Annotated[int, Field(ge=1, le=1000)] = Field(default=5, description="number of stairs or blocks [-]")
+    riser: NonNegative = Field(
+        default=0.1, description="height of a stair, or how much higher or lower a block may be [m]"
+    )
+    tread: Positive = Field(default=0.3, description="depth of a stair, or length of a block [m]")
+    count: Annotated[int, Field(ge=1, le=1000)] = Field(default=5, description="number of stairs [-]")
     direction: Literal["up", "down", "up_down"] = Field(default="up", description="which way the stairs go")
     start: Finite | None = Field(
         default=None,
         description="start to the first riser, null: footsteps land in mid-tread, a little behind it if the "
-        "foot_length that robot_options gives leaves room [m]",
+        "foot_length that robot_options gives leaves room; or to the edge of a slope, null: half a step [m]",
     )
     landing: Positive | None = Field(default=None, description="depth between up and down, null: three treads [m]")
     height_noise: NonNegative = Field(
-        default=0.0, description="half range by which each tread's true height differs from the planner's belief [m]"
+        default=0.0,
+        description="half range by which the true height of each tread or block differs from the planner's belief [m]",
     )
-    angle: Angle = Field(default=0.0, description="inclination of a slope [rad]")
+    angle: Angle = Field(
+        default=0.0, description="inclination of a slope, negative downhill, or largest pitch and roll of a block [rad]"
+    )
     friction: Annotated[float, Field(ge=0, le=10, allow_inf_nan=False)] = Field(
         default=0.8, description="Coulomb coefficient of every surface [-]"
     )

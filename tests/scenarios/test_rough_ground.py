@@ -1,11 +1,15 @@
 """Slopes and stepping blocks: what a scenario makes of them, what is refused, and walks in full physics."""
 
+import math
+
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from scenarios.errors import ScenarioError
 from scenarios.file.ground import start_height, terrain_of, true_terrain_of
 from scenarios.file.load import load_scenario, read_scenario
+from scenarios.log import read
 from scenarios.run import run_scenario
 
 FAST = "robot_options: {foot_length: 0.22, foot_width: 0.11}\n"
@@ -74,6 +78,16 @@ def test_the_soles_lie_flat_on_a_slope(tmp_path, angle):
     overrides = (f"terrain.angle={angle}", "gait.steps=4")
     result = run_scenario(load_scenario("slope", overrides), tmp_path)
     assert result.verdict.reasons == ()
+    truth = read(result.log)["/truth"]
+    for sole in ("left_sole", "right_sole"):
+        R = Rotation.from_quat(truth.field(sole)[-500:, 3:]).as_matrix()
+        normal = [-math.sin(angle), 0.0, math.cos(angle)]
+        np.testing.assert_allclose(R[:, :, 2], np.tile(normal, (500, 1)), atol=1e-3)
+
+
+@pytest.mark.physics
+def test_blocks_are_walked(tmp_path):
+    assert run_scenario(load_scenario("blocks", ("gait.steps=7", "seed=4")), tmp_path).verdict.reasons == ()
 
 
 @pytest.mark.long

@@ -17,7 +17,7 @@ from planner.types import Array
 from planner.zmp_reference import ZmpReference, zmp_reference
 
 _TICKS = 5
-"""Ticks for which an offset of the legs serves: it follows from nominal motions and costs more than the rest of a plan."""
+"""Ticks for which an offset of the legs serves; making it costs more than the rest of a plan."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,9 +1,10 @@
 """Parameters of the planner itself, apart from the gait."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from enum import Enum
 
+from planner.ground_search import GroundSearch
 from planner.leg_chain import LegChain
 from planner.moves import BLOCK_STARTS
 
@@ -65,9 +66,7 @@ class PlannerParameters:
         apex_share: share of single support after which the swing sole is highest; a late apex keeps the sole high while
             the leg is stretched furthest, shortly before touchdown [-].
         touchdown_lead: the swing ends this long before single support does, so that the foot is felt in time [s].
-        touchdown_speed: downward speed of the swing foot at the planned touchdown [m/s].
-        search_speed: greatest downward speed of the swing foot after it, while it feels no ground [m/s].
-        search_acceleration: at which that speed is gained [m/s^2].
+        search: speed of the swing foot at the planned touchdown, and how it goes on while it feels no ground.
         solvers: QP solvers of qpsolvers, in the order in which they are tried.
 
     Raises:
@@ -97,27 +96,23 @@ class PlannerParameters:
     late_touchdown: float = 0.3
     apex_share: float = 0.5
     touchdown_lead: float = 0.03
-    touchdown_speed: float = 0.005
-    search_speed: float = 0.15
-    search_acceleration: float = 1.0
+    search: GroundSearch = field(default_factory=GroundSearch)
     solvers: tuple[str, str] = ("daqp", "quadprog")
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
+        for entry in fields(self):
+            value = getattr(self, entry.name)
             if not isinstance(value, int | float):
                 continue
-            may_be_zero = field.name in (
+            may_be_zero = entry.name in (
                 "late_touchdown",
                 "freeze_time",
                 "touchdown_lead",
-                "touchdown_speed",
-                "search_speed",
                 "terminal_weight",
                 "jerk_weight",
                 "compliance_margin",
             )
             if not (value > 0 or (may_be_zero and value == 0)):
-                raise ValueError(f"planner.{field.name} is {value:g}, but it must be greater than 0.")
-            if not math.isfinite(value) and field.name != "jerk_rate_limit":
-                raise ValueError(f"planner.{field.name} is {value:g}, but it must be finite.")
+                raise ValueError(f"planner.{entry.name} is {value:g}, but it must be greater than 0.")
+            if not math.isfinite(value) and entry.name != "jerk_rate_limit":
+                raise ValueError(f"planner.{entry.name} is {value:g}, but it must be finite.")

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from planner.ground_search import GroundSearch
 from planner.parameters import PlannerParameters
 from planner.polynomial import quintic, shifted
 from planner.types import Array, Foot
@@ -25,8 +26,7 @@ class SwingTrajectory:
     All but z are one quintic from the state at the last change of target to rest at the target, so that an unchanged
     target is continued identically; before and after this glide they rest, so that the sole leaves and meets tilted
     ground flat on it. z is one quintic up to the apex and one down to the touchdown height, joined with continuous
-    acceleration. After the touchdown time all but z hold and z goes on downwards from the touchdown speed, gaining it
-    up to the search speed: a jump there would shake the ZMP of the stance foot.
+    acceleration. After the touchdown time all but z hold and z goes on downwards in search of the ground.
 
     Attributes:
         foot: the foot that swings.
@@ -36,9 +36,7 @@ class SwingTrajectory:
         touchdown_time: when it is planned to land [s].
         target: touchdown position and angles, shape (6,).
         clearance: height of the apex above the higher of lift-off and touchdown [m].
-        touchdown_speed: downward speed at touchdown [m/s].
-        search_speed: greatest downward speed after it [m/s].
-        search_acceleration: at which that speed is gained [m/s^2].
+        search: how it goes on after the touchdown time, if it feels no ground.
         level: coefficients of all but z from `start_time`, shape (6, 5).
         rise_start: local time zero of the rise [s].
         rise: coefficients of z until the apex, shape (6, 1).
@@ -53,9 +51,7 @@ class SwingTrajectory:
     touchdown_time: float
     target: Array
     clearance: float
-    touchdown_speed: float
-    search_speed: float
-    search_acceleration: float
+    search: GroundSearch
     level: Array
     rise_start: float
     rise: Array
@@ -67,7 +63,8 @@ class SwingTrajectory:
         result = np.zeros((6, 6))
         if time >= self.touchdown_time - _NOW:
             result[0] = self.target
-            result[:3, 2] = self._search(time - self.touchdown_time)
+            way, speed, bend = self.search.motion(time - self.touchdown_time)
+            result[:3, 2] = self.target[2] - way, -speed, -0.5 * bend
             return result
         if time >= self.glide_end - _NOW:
             result[0] = self.target
@@ -80,16 +77,6 @@ class SwingTrajectory:
         else:
             result[:, 2] = shifted(self.rise, time - self.rise_start)[:, 0]
         return result
-
-    def _search(self, since: float) -> tuple[float, float, float]:
-        """Height [m], speed [m/s] and half the acceleration [m/s^2] of the search, `since` the touchdown time."""
-        speed, bend = self.touchdown_speed, self.search_acceleration
-        gaining = max(0.0, (self.search_speed - speed) / bend)
-        height = float(self.target[2]) - speed * since - 0.5 * bend * min(since, gaining) ** 2
-        if since < gaining:
-            return height, -speed - bend * since, -0.5 * bend
-        top = max(speed, self.search_speed)
-        return height - (top - speed) * (since - gaining), -top, 0.0
 
     def evaluate(self, time: float) -> Array:
         """Position, velocity and acceleration at an instant after the start, shape (3, 6)."""
@@ -112,7 +99,7 @@ class SwingTrajectory:
         if time < self.apex_time - _NOW:
             height = state[:, 2:3]
             return _with_height(moved, time, height, max(float(height[0, 0]), float(target[2])) + self.clearance)
-        fall = _fall(state[:, 2:3], float(target[2]), self.touchdown_speed, self.touchdown_time - time)
+        fall = _fall(state[:, 2:3], float(target[2]), self.search.touchdown_speed, self.touchdown_time - time)
         return replace(moved, fall_start=time, fall=fall)
 
 
@@ -176,7 +163,7 @@ def start_swing(
         target: touchdown position and angles, shape (6,).
         times: of the swing.
         clearance: height of the apex above the higher of both ends [m].
-        parameters: give the speeds of touchdown and search.
+        parameters: give the search for the ground.
     """
     rest = np.zeros((3, 6))
     rest[0] = pose
@@ -188,9 +175,7 @@ def start_swing(
         touchdown_time=times.touchdown,
         target=np.array(target),
         clearance=clearance,
-        touchdown_speed=parameters.touchdown_speed,
-        search_speed=parameters.search_speed,
-        search_acceleration=parameters.search_acceleration,
+        search=parameters.search,
         level=_to_rest(rest[:, _GLIDING], target[_GLIDING], times.glide_end - times.glide_start),
         rise_start=times.lift,
         rise=np.zeros((6, 1)),
@@ -206,7 +191,7 @@ def _with_height(trajectory: SwingTrajectory, time: float, state: Array, apex: f
     end = float(trajectory.target[2])
     bend = -4.0 * min((apex - float(state[0, 0])) / up**2, (apex - end) / down**2)
     top = np.array([[apex], [0.0], [bend]])
-    fall = _fall(top, end, trajectory.touchdown_speed, down)
+    fall = _fall(top, end, trajectory.search.touchdown_speed, down)
     return replace(
         trajectory, rise_start=time, rise=quintic(state, top, up), fall_start=trajectory.apex_time, fall=fall
     )

@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from planner.footsteps import FootstepPlan, plan_footsteps
+from planner.ground_search import GroundSearch
+from planner.parameters import PlannerParameters
 from planner.rough import Blocks, Slope, block_field, slope
 from planner.stairs import Direction, Stairs, staircase
 from planner.terrain import Box, Terrain, flat
@@ -56,14 +58,14 @@ def true_terrain_of(scenario: Scenario) -> Terrain:
     return replace(terrain, boxes=tuple(boxes))
 
 
-def landing_search(scenario: Scenario) -> dict[str, float]:
-    """How a swing foot that has not felt the ground goes on downwards, in the planner's parameters.
+def landing_search(scenario: Scenario) -> GroundSearch:
+    """How a swing foot that has not felt the ground goes on downwards.
 
-    Where the ground has steps its heights are believed less: the foot hurries after a tread that lies lower, since
-    waiting for it costs balance. On a plane that haste would only shake the ZMP of small feet at every touchdown.
+    Where the ground has steps its heights are believed less: a foot that finds no tread by the end of single support
+    hurries after one that lies lower, since waiting for it costs balance.
     """
     stepped = scenario.terrain.kind in ("stairs", "blocks")
-    return {"search_speed": 0.4, "search_acceleration": 8.0} if stepped else {}
+    return GroundSearch(hurry_after=PlannerParameters().touchdown_lead) if stepped else GroundSearch()
 
 
 def start_height(scenario: Scenario) -> float:

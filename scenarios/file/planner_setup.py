@@ -57,7 +57,7 @@ def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters
         "moves": None if settings.control_horizon is None else tuple(range(settings.control_horizon)),
         "jerk_limit": settings.jerk_limit,
         "jerk_rate_limit": settings.jerk_rate_limit,
-        **landing_search(scenario),
+        "search": landing_search(scenario),
     }
     return replace(
         planner_profile(scenario).parameters,

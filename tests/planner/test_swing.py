@@ -23,7 +23,9 @@ def test_swing_leaves_rest_clears_both_heights_and_touches_down_softly(height):
     start, end = trajectory.evaluate(2.0), trajectory.evaluate(2.8 - 1e-9 - 1e-10)
     np.testing.assert_allclose(start, [START, np.zeros(6), np.zeros(6)], atol=1e-12)
     np.testing.assert_allclose(end[0], TARGET + np.array([0.0, 0.0, height, 0.0, 0.0, 0.0]), atol=1e-8)
-    np.testing.assert_allclose(end[1], [0.0, 0.0, -PlannerParameters().touchdown_speed, 0.0, 0.0, 0.0], atol=1e-6)
+    np.testing.assert_allclose(
+        end[1], [0.0, 0.0, -PlannerParameters().search.touchdown_speed, 0.0, 0.0, 0.0], atol=1e-6
+    )
     z = np.array([trajectory.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.8, 801)])
     assert z.max() == pytest.approx(max(0.0, height) + 0.05, abs=1e-6)
     assert np.all(np.diff(z[:400]) >= -1e-12)
@@ -74,6 +76,6 @@ def test_without_ground_the_sole_searches_downwards_without_a_jump_in_speed():
     motion = np.array([swing().evaluate(t) for t in 2.8 + step * np.arange(1000)])
     np.testing.assert_array_equal(motion[:, 0, GLIDING], np.tile(TARGET[GLIDING], (1000, 1)))
     np.testing.assert_allclose(np.gradient(motion[:, 0, 2], step)[1:-1], motion[1:-1, 1, 2], atol=1e-6 + step)
-    assert motion[0, 1, 2] == pytest.approx(-parameters.touchdown_speed, abs=1e-6)
-    assert motion[-1, 1, 2] == pytest.approx(-parameters.search_speed)
-    assert np.abs(np.diff(motion[:, 1, 2])).max() <= parameters.search_acceleration * step + 1e-9
+    assert motion[0, 1, 2] == pytest.approx(-parameters.search.touchdown_speed, abs=1e-6)
+    assert motion[-1, 1, 2] == pytest.approx(-parameters.search.speed)
+    assert np.abs(np.diff(motion[:, 1, 2])).max() <= parameters.search.acceleration * step + 1e-9

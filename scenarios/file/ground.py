@@ -114,9 +114,16 @@ def _random(scenario: Scenario) -> np.random.Generator:
 
 
 def _behind(scenario: Scenario) -> float:
-    """How far behind mid-tread the feet stand: half of the room there, if the scenario says how long they are [m]."""
+    """How far behind mid-tread the feet stand: half of the room there, if the scenario says how long they are [m].
+
+    Going down alone needs none of it: there is no edge ahead of the shank, but one behind the heel.
+    """
     foot = scenario.robot_options.foot_length
-    return 0.0 if foot is None else min(MOST_BEHIND, max(0.0, 0.25 * (scenario.terrain.tread - foot)))
+    return (
+        0.0
+        if foot is None or scenario.terrain.direction == "down"
+        else min(MOST_BEHIND, max(0.0, 0.25 * (scenario.terrain.tread - foot)))
+    )
 
 
 def _way(gait: Gait) -> float:

@@ -59,8 +59,8 @@ class TerrainSettings(Group):
     direction: Literal["up", "down", "up_down"] = Field(default="up", description="which way the stairs go")
     start: Finite | None = Field(
         default=None,
-        description="start to the first riser, null: footsteps land in mid-tread, on the way up a little "
-        "behind it if the foot_length that robot_options gives leaves room [m]",
+        description="start to the first riser, null: footsteps land in mid-tread, a little behind it if the "
+        "foot_length that robot_options gives leaves room [m]",
     )
     landing: Positive | None = Field(default=None, description="depth between up and down, null: three treads [m]")
     height_noise: NonNegative = Field(

@@ -17,7 +17,7 @@ from planner.types import Array, PhaseKind
 EDGE_CLEARANCE = 0.02
 """Height of every part of the sole above ground that is neither its lift-off nor its landing place [m]."""
 
-EDGE_DISTANCE = 0.005
+EDGE_DISTANCE = 0.003
 """The sole is taken as larger by this on every side, so that it passes risers at a distance [m]."""
 
 _STARTS = (0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35)

@@ -27,6 +27,9 @@ BLOCK_GAP = 0.02
 _STREAM = 2
 """Random numbers of the blocks, apart from those of other things with the same seed."""
 
+HEEL_ROOM = 0.015
+"""Distance of the heel from the riser behind it on the way down [m]."""
+
 PLATFORM = 1.0
 """Level ground kept before the first and after the last footstep on a platform of stairs [m]."""
 
@@ -117,9 +120,16 @@ def _random(scenario: Scenario) -> np.random.Generator:
 
 
 def _behind(scenario: Scenario) -> float:
-    """How far behind mid-tread the feet stand: half of the room there, if the scenario says how long they are [m]."""
+    """How far behind mid-tread the feet stand: half of the room there, if the scenario says how long they are [m].
+
+    Going down the heel also keeps its distance from the riser behind it, or the swing would have to go over that.
+    """
     foot = scenario.robot_options.foot_length
-    return 0.0 if foot is None else min(MOST_BEHIND, max(0.0, 0.25 * (scenario.terrain.tread - foot)))
+    if foot is None:
+        return 0.0
+    room = 0.5 * (scenario.terrain.tread - foot)
+    behind = min(MOST_BEHIND, max(0.0, 0.5 * room))
+    return behind if scenario.terrain.direction != "down" else min(behind, max(0.0, room - HEEL_ROOM))
 
 
 def _way(gait: Gait) -> float:

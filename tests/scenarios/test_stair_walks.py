@@ -50,7 +50,7 @@ def test_the_rise_of_the_paper_is_out_of_reach_of_legs(tmp_path):
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    ("riser", "direction", "single"), product((0.05, 0.08, 0.10, 0.12, 0.15), ("up", "down"), (1.5, 0.7))
+    ("riser", "direction", "single"), tuple(product((0.05, 0.08, 0.10, 0.12, 0.15), ("up", "down"), (1.5, 0.7)))
 )
 def test_small_feet(tmp_path, riser, direction, single):
     overrides = (f"terrain.riser={riser}", f"terrain.direction={direction}", f"gait.single_support={single}")
@@ -59,20 +59,20 @@ def test_small_feet(tmp_path, riser, direction, single):
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    ("tread", "riser", "direction"), product((0.24, 0.28, 0.30), (0.10, 0.15, 0.185), ("up", "down"))
+    ("tread", "riser", "direction"), tuple(product((0.24, 0.28, 0.30), (0.10, 0.15, 0.185), ("up", "down")))
 )
 def test_human_size_feet(tmp_path, tread, riser, direction):
     assert reasons(tmp_path, "stair-climbing", *stairs(tread, riser, direction)) == ()
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("direction", "single"), product(("up", "down"), (0.9, 0.96, 1.1)))
+@pytest.mark.parametrize(("direction", "single"), tuple(product(("up", "down"), (0.9, 0.96, 1.1))))
 def test_steps_as_high_as_the_fields_best(tmp_path, direction, single):
     high = (*stairs(0.32, 0.235, direction, single, 0.14), "gait.com_height=1.015")
     assert reasons(tmp_path, "stair-climbing", *high) == ()
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("name", "seed"), product(("stairs-up", "stairs-down"), range(10)))
+@pytest.mark.parametrize(("name", "seed"), tuple(product(("stairs-up", "stairs-down"), range(10))))
 def test_every_seed_of_treads_off_their_belief(tmp_path, name, seed):
     assert reasons(tmp_path, name, "terrain.height_noise=0.02", f"seed={seed}") == ()

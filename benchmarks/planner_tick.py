@@ -8,15 +8,20 @@ Run it with OMP_NUM_THREADS=1 on an idle core.
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from planner.gait import GaitParameters
+from planner.parameters import LegInertia
 from planner.pendulum_walk import walk_pendulum
 from planner.planner import WalkingPlanner
 from planner.profiles.registry import PROFILES
 from planner.step_response import cached_response, literal_response, recursive_response
 from planner.types import FeetState
+from scenarios.closed_loop.assembly import assemble
+from scenarios.file.load import load_scenario
+from scenarios.file.robots import describe
 
 T, N = 0.02, 50
 
@@ -47,13 +52,21 @@ def print_matrices() -> None:
         print(f"{name:<42} {median_time(function, tries):>10.1f}")
 
 
+def robot_legs() -> LegInertia:
+    scenario = load_scenario("diagonal-walk")
+    return assemble(scenario, describe(scenario)).planner.parameters.leg
+
+
 def print_ticks(steps: int) -> None:
     gait = GaitParameters(steps=steps, lateral_step=0.1)
     side = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]])
     print(f"\n{'WalkingPlanner.update, diagonal walk':<42} {'median us':>10} {'p90 us':>10} {'p99 us':>10}")
-    for name, profile in PROFILES.items():
+    rows = [(name, profile, profile.parameters) for name, profile in PROFILES.items()]
+    default = PROFILES["default"]
+    rows.insert(1, ("default, legs as links (full physics)", default, replace(default.parameters, leg=robot_legs())))
+    for name, profile, parameters in rows:
         feet = FeetState(side.copy(), np.zeros(2), (True, True))
-        planner, spent = WalkingPlanner(gait, feet, 0.075, 0.075, profile=profile), []
+        planner, spent = WalkingPlanner(gait, feet, 0.075, 0.075, parameters=parameters, profile=profile), []
         update = planner.update
 
         def timed(state, feet, update=update, spent=spent):

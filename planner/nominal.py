@@ -8,7 +8,7 @@ So the optimiser plans only what differs from this motion.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_banded
+from scipy.linalg import lapack
 
 from planner.types import Array
 
@@ -50,14 +50,15 @@ def nominal_motion(position: Array, zmp: Array, stiffness: Array, sample_time: f
     right = np.empty_like(zmp)
     right[1:-1] = -pull[2:] - 4.0 * pull[1:-1] - pull[:-2]
     right[0], right[-1] = position, zmp[-1]
-    bands = np.array((1.0 - share, -2.0 - 4.0 * share, 1.0 - share))
-    bands[1, [0, -1]], bands[0, 1], bands[2, -2] = 1.0, 0.0, 0.0
-    c = solve_banded((1, 1), bands, right)
-    a = stiffness[:, None] * (c - zmp)
-    v = np.empty_like(c)
-    v[:-1] = np.diff(c, axis=0) / t - t / 6.0 * (2.0 * a[:-1] + a[1:])
+    lower, diagonal, upper = 1.0 - share[:-1], -2.0 - 4.0 * share, 1.0 - share[1:]
+    diagonal[0], diagonal[-1], upper[0], lower[-1] = 1.0, 1.0, 0.0, 0.0
+    motion = np.empty((3, *zmp.shape))
+    c, v, a = motion
+    c[:] = lapack.dgtsv(lower, diagonal, upper, right)[3]
+    np.multiply(stiffness[:, None], c - zmp, out=a)
+    v[:-1] = (c[1:] - c[:-1]) / t - t / 6.0 * (2.0 * a[:-1] + a[1:])
     v[-1] = v[-2] + 0.5 * t * (a[-2] + a[-1])
-    return NominalMotion(np.stack((c, v, a)), zmp, np.diff(a, axis=0) / t, t)
+    return NominalMotion(motion, zmp, (a[1:] - a[:-1]) / t, t)
 
 
 def no_motion(count: int, sample_time: float) -> NominalMotion:

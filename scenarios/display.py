@@ -10,7 +10,10 @@ _UNITS: dict[str, tuple[float, str]] = {
     **dict.fromkeys(("zmp_error_rms", "com_error_rms", "dcm_error_rms"), (1e3, "mm")),
     **dict.fromkeys(("estimation_error_rms", "dcm_estimation_error_rms"), (1e3, "mm")),
     **dict.fromkeys(("zmp_error_max", "zmp_excursion_max"), (1e3, "mm")),
-    **dict.fromkeys(("footstep_error_max", "foot_slip_max", "stair_edge_margin_min", "com_height_range"), (1e3, "mm")),
+    **dict.fromkeys(
+        ("footstep_error_max", "foot_slip_max", "stair_edge_margin_min", "swing_clearance_min", "com_height_range"),
+        (1e3, "mm"),
+    ),
     **dict.fromkeys(
         ("fall_time", "duration", "standing_time_final", "standing_time_between", "self_contact_time"), (1.0, "s")
     ),

@@ -3,7 +3,8 @@
     python docs/images/gait_map.py [--jobs N]
 
 Human-size feet in full physics, six steps, a fifth of each step in double support, the CoM as high as the legs reach
-(at most 0.99 m). On stairs a step is a tread. A cell takes a few seconds, the whole map about ten minutes on two cores.
+(at most 0.99 m; a lower one walks faster, see docs/fast-walking.md). On stairs a step is a tread. A cell takes a few
+seconds, the whole map about five minutes on two cores.
 """
 
 import argparse
@@ -25,7 +26,7 @@ RISERS = (0.0, 0.1, 0.185)
 LENGTHS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
 TIMES = (0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
 HEIGHTS = tuple(round(0.99 - 0.03 * i, 2) for i in range(6))
-OUTCOMES = ("walks", "leg length", "torque", "ZMP", "fall")
+OUTCOMES = ("walks", "refused", "torque", "ZMP", "fall")
 COLOURS = ("#2a9d5c", "#b9c0c9", "#e9a23b", "#8f6bb5", "#c8452f")
 PICTURE = Path(__file__).with_name("gait-map.png")
 
@@ -103,7 +104,7 @@ def draw(answers: dict[Cell, Answer]) -> None:
                     axis.text(column, row, text, ha="center", va="center", fontsize=6.5, color="white")
     axes[0].set_ylabel("step time [s]")
     patches = [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in COLOURS]
-    names = ["walks", "stopped by: leg length", "torque", "ZMP", "fall"]
+    names = ["walks", "refused (reach, sole on tread, swing)", "stopped by torque", "by ZMP", "by a fall"]
     figure.legend(patches, names, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
     figure.suptitle("Where the robot walks (speed, and largest torque in % of its limit)", fontsize=11)
     figure.savefig(PICTURE, dpi=110)

@@ -22,6 +22,7 @@ METRIC_NAMES = (
     "dcm_error_rms",
     "footstep_error_max",
     "stair_edge_margin_min",
+    "swing_clearance_min",
     "foot_slip_max",
     "self_contact_time",
     "torque_ratio_max",
@@ -49,6 +50,7 @@ METRIC_NAMES = (
 
 BODY_METRICS = (
     "footstep_error_max",
+    "swing_clearance_min",
     "foot_slip_max",
     "self_contact_time",
     "torque_ratio_max",

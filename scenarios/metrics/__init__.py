@@ -35,6 +35,7 @@ _METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
     "dcm_error_rms": (_PLAN, balance.dcm_error_rms),
     "footstep_error_max": (("/footstep",), walking.footstep_error_max),
     "stair_edge_margin_min": (("/footstep",), walking.stair_edge_margin_min),
+    "swing_clearance_min": (("/truth", "/reference"), walking.swing_clearance_min),
     "foot_slip_max": (_FEET, walking.foot_slip_max),
     "self_contact_time": (_BODY, walking.self_contact_time),
     "torque_ratio_max": (("/torque",), effort.torque_ratio_max),

@@ -18,6 +18,9 @@ FALLEN_TILT = np.deg2rad(60.0)
 LOST_DISTANCE = 1.0
 """Distance of a pendulum's DCM from its ZMP beyond which no foot could catch it: it has fallen [m]."""
 
+_CLEARANCE_TICKS = 5
+"""Every how many control ticks the clearance of a swing is looked at."""
+
 STILL_SPEED = 0.02
 """CoM speed of a robot that stands still [m/s]."""
 
@@ -79,16 +82,51 @@ def footstep_error_max(run: RunView) -> float | None:
 
 def stair_edge_margin_min(run: RunView) -> float | None:
     """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
-    boxes = [np.array(numbers) for numbers in run.constants.boxes]
-    if not boxes:
+    terrain = _terrain(run)
+    if not terrain.boxes:
         return None
-    terrain = Terrain(tuple(Box(n[:3], n[3:6], n[6:].reshape(3, 3)) for n in boxes))
     half_size = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
     landed = run.log["/footstep"].field("actual")
     normals = terrain.normals(landed[:, :2])
     soles = [Footstep(Foot.LEFT, pose[:3], float(pose[3]), up) for pose, up in zip(landed, normals, strict=True)]
     corners = np.array([sole_corners(sole, half_size) for sole in soles])
     return float(terrain.edge_margins(landed[:, :2], corners).min())
+
+
+def swing_clearance_min(run: RunView) -> float | None:
+    """Least height of a swing sole's corner over the ground, but for the first and last quarter of each swing [m]."""
+    stance, least = run.field("/reference", "stance"), []
+    for foot in range(2):
+        for start, end in runs_of(run.single_support & (stance == 1 - foot)):
+            edge = (end - start) // 4
+            least.append(_clearance(run, run.soles[start + edge : end - edge : _CLEARANCE_TICKS, foot]))
+    return min(least, default=None)
+
+
+def _clearance(run: RunView, poses: Array) -> float:
+    """Least height of the corners of soles with these poses, shape (n, 7), over the ground [m]."""
+    along, across = 0.5 * run.constants.foot_length, 0.5 * run.constants.foot_width
+    corners = np.array([[a, b, 0.0] for a in (along, -along) for b in (across, -across)])
+    points = poses[:, None, :3] + np.einsum("nij,kj->nki", _rotations(poses[:, 3:]), corners)
+    flat = points.reshape(-1, 3)
+    return float((flat[:, 2] - _terrain(run).heights(flat[:, :2])).min(initial=np.inf))
+
+
+def _rotations(quaternions: Array) -> Array:
+    """Rotation matrices of quaternions x y z w, shape (n, 3, 3)."""
+    x, y, z, w = quaternions.T
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return np.moveaxis(np.array(rows), -1, 0)
+
+
+def _terrain(run: RunView) -> Terrain:
+    """The true ground."""
+    boxes = [np.array(numbers) for numbers in run.constants.boxes]
+    return Terrain(tuple(Box(n[:3], n[3:6], n[6:].reshape(3, 3)) for n in boxes))
 
 
 @dataclass(frozen=True, slots=True)

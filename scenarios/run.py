@@ -67,7 +67,7 @@ def run_scenario(
     """
     simulate = simulate or closed_loop(scenario.fidelity)
     robot = robot or describe(scenario)
-    folder = _folder(out / f"{scenario.name}-{scenario.seed}")
+    folder = made_folder(out / f"{scenario.name}-{scenario.seed}")
     one_thread = threadpool_limits(1)  # matrices of this size lose more in waiting than they gain in sharing
     with one_thread, LogWriter(folder / LOG_NAME, _metadata(scenario, robot), _attachments(scenario, robot)) as writer:
         (folder / VERDICT_NAME).unlink(missing_ok=True)
@@ -162,7 +162,12 @@ def _attachments(scenario: Scenario, robot: "RobotDescription") -> list[Attached
     ]
 
 
-def _folder(path: Path) -> Path:
+def made_folder(path: Path) -> Path:
+    """The directory, made where it was missing.
+
+    Raises:
+        LogError: it cannot be made.
+    """
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:

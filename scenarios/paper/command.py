@@ -5,7 +5,6 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from scenarios.errors import LogError
 from scenarios.paper.claim import Verdict
 from scenarios.paper.page import judged, page, tally
 from scenarios.paper.progress import ExperimentBar
@@ -13,6 +12,7 @@ from scenarios.paper.results import Results
 from scenarios.paper.runner import run_all
 from scenarios.paper.studies import experiments
 from scenarios.replay.files import write_whole
+from scenarios.run import made_folder
 
 PAGE_NAME, NUMBERS_NAME, RUNS_NAME = "paper.html", "paper.json", "runs"
 
@@ -52,7 +52,7 @@ def paper(out: Path, jobs: int) -> Written:
         LogError: the directory or the page cannot be written.
         InterruptedRunsError: the user stopped it; what was run is kept.
     """
-    runs = _folder(out / RUNS_NAME)
+    runs = made_folder(out / RUNS_NAME)
     every = experiments()
     with ExperimentBar(len(every)) as bar:
         results = Results(run_all(every, runs, jobs, bar))
@@ -86,12 +86,3 @@ def _numbers(results: Results) -> dict[str, object]:
         for outcome in results.outcomes
     ]  # fmt: skip
     return {"claims": claims, "runs": runs}
-
-
-def _folder(path: Path) -> Path:
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{path}: cannot be created, {reason}; choose another directory with --out") from None
-    return path

@@ -5,7 +5,7 @@ from typing import Any
 
 from scenarios.file.commands import EQUAL_STEPS, commanded
 from scenarios.file.criteria import BODY_METRICS, Bound
-from scenarios.file.schema import Gait, Scenario
+from scenarios.file.schema import Gait, Scenario, TerrainSettings
 from scenarios.file.timeline import gait_duration
 
 _NO_CONTACT = (
@@ -15,6 +15,14 @@ _NO_CONTACT = (
     ("errors", "friction"),
 )
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
+
+_SHAPED: Mapping[str, tuple[str, ...]] = {
+    "flat": (),
+    "stairs": ("riser", "tread", "count", "direction", "start", "landing", "height_noise"),
+    "slope": ("angle", "start", "height_noise"),
+    "blocks": ("riser", "angle", "tread", "height_noise"),
+}
+"""Keys that shape each kind of terrain; friction is of all."""
 
 _POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
 """Keys of the pendulum alone."""
@@ -49,11 +57,19 @@ def _without_effect(scenario: Scenario) -> Iterator[str]:
     for name in EQUAL_STEPS if commanded(scenario.gait) else ():
         if getattr(scenario.gait, name) != Gait.model_fields[name].default:
             yield f"gait.{name} has no effect beside gait.{'velocity' if scenario.gait.velocity else 'footsteps'}"
+    yield from _unshaped(scenario.terrain)
     point = scenario.fidelity == "pendulum"
     for group, name in _NO_CONTACT if point else _POINT_ONLY:
         settings = getattr(scenario, group)
         if getattr(settings, name) != type(settings).model_fields[name].default:
             yield f"{group}.{name} has no effect on a {'pendulum' if point else 'whole body'}"
+
+
+def _unshaped(terrain: TerrainSettings) -> Iterator[str]:
+    for name, field in TerrainSettings.model_fields.items():
+        elsewhere = name not in ("kind", "friction", *_SHAPED[terrain.kind])
+        if elsewhere and getattr(terrain, name) != field.default:
+            yield f"terrain.{name} has no effect on terrain.kind {terrain.kind}"
 
 
 def _cut_short(scenario: Scenario) -> Iterator[str]:

@@ -10,18 +10,18 @@ from unittest.mock import patch
 
 from threadpoolctl import threadpool_limits
 
-from planner.planner import WalkingPlanner
-from planner.sampling import PlanSampler
-from scenarios.closed_loop.loop import ClosedLoop
-from scenarios.file.load import load_scenario
-from scenarios.file.robots import describe
-from scenarios.file.timeline import run_duration
-from scenarios.log import LogWriter
-from scenarios.recording.recorder import Recorder
-from scenarios.recording.walk_recorder import WalkRecorder
-from scenarios.viewer.body_view import BodyView
-from sim.world import World
-from wbc.controller import WholeBodyController
+from surefoot.planner.plan import PlanSampler
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.loop.full import ClosedLoop
+from surefoot.scenarios.record.body import Recorder
+from surefoot.scenarios.record.foxglove.views import BodyView
+from surefoot.scenarios.record.walk import WalkRecorder
+from surefoot.scenarios.setup.gait import run_duration
+from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.robot import describe
+from surefoot.sim.world import World
+from surefoot.wbc.controller import WholeBodyController
 
 PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "measure": ((World, "measure"),),

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 from bare_walk import BareWalk
 
-from scenarios.file.load import load_scenario
-from scenarios.log import read
-from scenarios.run import run_scenario
+from surefoot.scenarios.log import read
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.load import load_scenario
 
 CHANNEL_PARTS = ("state", "wbc_build", "wbc_solve", "planner", "log", "physics", "tick")
 

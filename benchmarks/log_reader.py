@@ -11,8 +11,8 @@ from statistics import median
 
 import numpy as np
 
-from scenarios.log import LogWriter, read
-from scenarios.log.spec import ChannelSpec, FieldSpec
+from surefoot.scenarios.log import LogWriter, read
+from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
 
 MESSAGES, VALUES, CHANNELS, PERIOD_NS = 20_000, 60, 5, 2_000_000
 

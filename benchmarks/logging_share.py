@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from scenarios.closed_loop.loop import ClosedLoop
-from scenarios.file.load import load_scenario
-from scenarios.file.robots import describe
-from scenarios.log import LogWriter
+from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.loop.full import ClosedLoop
+from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.robot import describe
 
 TURN = 450
 """Ticks of a turn: a whole number of chunks, plans and pictures."""

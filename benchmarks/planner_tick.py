@@ -12,16 +12,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from planner.gait import GaitParameters
-from planner.parameters import LegInertia
-from planner.pendulum_walk import walk_pendulum
-from planner.planner import WalkingPlanner
-from planner.profiles.registry import PROFILES
-from planner.step_response import cached_response, literal_response, recursive_response
-from planner.types import FeetState
-from scenarios.closed_loop.assembly import assemble
-from scenarios.file.load import load_scenario
-from scenarios.file.robots import describe
+from surefoot.planner.laws.profiles import PROFILES
+from surefoot.planner.model.step_response import cached_response, literal_response, recursive_response
+from surefoot.planner.parameters import LegInertia
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import walk_pendulum
+from surefoot.planner.types import FeetState
+from surefoot.planner.walk.gait import GaitParameters
+from surefoot.scenarios.loop.full import assemble
+from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.robot import describe
 
 T, N = 0.02, 50
 

@@ -17,8 +17,8 @@ import numpy as np
 from bare_walk import BareWalk
 from scipy.optimize import nnls
 
-from wbc.qp import EQUALITY_ROWS, QpData
-from wbc.solvers import Daqp, EqualityFirst, ProxQp, QpSolution, QpSolver, Quadprog
+from surefoot.wbc.qp import EQUALITY_ROWS, QpData
+from surefoot.wbc.solvers import Daqp, EqualityFirst, ProxQp, QpSolution, QpSolver, Quadprog
 
 
 class DaqpModel:

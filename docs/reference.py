@@ -13,13 +13,13 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from scenarios.display import unit
-from scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
-from scenarios.file.schema import Fault, FootstepSettings, PushSettings, Scenario, VelocitySettings
-from scenarios.log import channels
-from scenarios.log.channels import Sizes
-from scenarios.log.spec import ChannelSpec
-from scenarios.metrics import describe_metric
+from surefoot.scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
+from surefoot.scenarios.file.schema import Fault, FootstepSettings, PushSettings, Scenario, VelocitySettings
+from surefoot.scenarios.judge.metric import describe_metric
+from surefoot.scenarios.log.spec import ChannelSpec
+from surefoot.scenarios.record import channels
+from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.show.console import shown_unit
 
 FOLDER = Path(__file__).parent
 CHANNELS = (
@@ -58,7 +58,7 @@ def channels_table() -> str:
 def metrics_table() -> str:
     """Every metric with its meaning."""
     rows = [
-        f"| `{name}` | {unit(name)} | {'' if name in BODY_METRICS else 'yes'} | {describe_metric(name)} |"
+        f"| `{name}` | {shown_unit(name)} | {'' if name in BODY_METRICS else 'yes'} | {describe_metric(name)} |"
         for name in METRIC_NAMES
     ]
     return "\n".join(["| metric | shown in | pendulum | meaning |", "|---|---|---|---|", *rows])

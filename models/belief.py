@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from xml.etree import ElementTree
 
-from models.mjcf import numbers
-from models.types import RobotDescription, RobotError
+from surefoot.models.mjcf import numbers
+from surefoot.models.types import RobotDescription, RobotError
 
 
 def with_com_raised(description: RobotDescription, height: float) -> RobotDescription:

@@ -6,14 +6,9 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 
-from models.convert import (
-    Array,
-    mujoco_acceleration_to_pinocchio,
-    pinocchio_to_mujoco,
-    velocity_map,
-)
-from models.pinocchio import pinocchio_model
-from models.types import RobotDescription
+from surefoot.models.convert import Array, mujoco_acceleration_to_pinocchio, pinocchio_to_mujoco, velocity_map
+from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.types import RobotDescription
 
 
 @dataclass(frozen=True, slots=True)

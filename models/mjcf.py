@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Mapping
 from xml.etree import ElementTree
 
-from models.tree import AXES, Body, Geom, Joint, Role
+from surefoot.models.tree import AXES, Body, Geom, Joint, Role
 
 
 def numbers(values: Iterable[float]) -> str:

@@ -4,8 +4,8 @@ import difflib
 import math
 from dataclasses import replace
 
-from models.tree import Body
-from models.types import RobotError, RobotOptions
+from surefoot.models.tree import Body
+from surefoot.models.types import RobotError, RobotOptions
 
 
 def nearest(name: str, valid: tuple[str, ...]) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from models.types import RobotDescription, RobotError
+from surefoot.models.types import RobotDescription, RobotError
 
 
 def pinocchio_model(description: RobotDescription) -> pin.Model:

@@ -1,10 +1,10 @@
 """The robots by name."""
 
-import models.humanoid100
-from models.options import nearest
-from models.types import RobotDescription, RobotOptions
+from surefoot.models import humanoid100
+from surefoot.models.options import nearest
+from surefoot.models.types import RobotDescription, RobotOptions
 
-_ROBOTS = {"humanoid100": models.humanoid100.describe}
+_ROBOTS = {"humanoid100": humanoid100.describe}
 
 
 class UnknownRobotError(LookupError):

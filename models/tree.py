@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from models.actuator import Actuator
-from models.inertia import Inertial, Vector
+from surefoot.models.actuator import Actuator
+from surefoot.models.inertia import Inertial, Vector
 
 AXES: dict[str, Vector] = {"roll": (1.0, 0.0, 0.0), "pitch": (0.0, 1.0, 0.0), "yaw": (0.0, 0.0, 1.0)}
 """Joint axes in the body frame; positive angles follow the right-hand rule."""

@@ -1,13 +1,15 @@
-"""What the planner hands over at every tick."""
+"""What the planner hands over at every tick, and the references that follow from it at any instant."""
 
 from dataclasses import dataclass
 
+import numpy as np
 from numpy import bool_
 from numpy.typing import NDArray
 
-from planner.heel_off import FootRoll
-from planner.swing import SwingTrajectory
-from planner.types import Array, Footstep, PhaseInfo, PlannedFootstep, PlanStatus
+from surefoot.planner.geometry import quintic
+from surefoot.planner.swing.heel_off import FootRoll
+from surefoot.planner.swing.trajectory import SwingTrajectory
+from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PlannedFootstep, PlanStatus
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +24,7 @@ class WalkPlan:
         com_acceleration: shape (N + 1, 3) [m/s^2].
         jerk: horizontal CoM jerk of each sample, shape (N, 2) [m/s^3].
         zmp: ZMP that this motion has, shape (N + 1, 2) [m].
-        zmp_offset: what the swing leg adds to it (see `planner.leg_inertia`), shape (N + 1, 2) [m].
+        zmp_offset: what the swing leg adds to it (see `planner.references.leg_offset`), shape (N + 1, 2) [m].
         zmp_reference: ZMP that the footsteps define, shape (N + 1, 2) [m].
         stiffness: λ of c'' = λ (c - (zmp - zmp_offset)), shape (N + 1,) [1/s^2].
         omega: ω of the DCM, ω' = ω² - λ, shape (N + 1,) [1/s].
@@ -60,3 +62,134 @@ class WalkPlan:
     swing: SwingTrajectory | None
     roll: FootRoll | None
     status: PlanStatus
+
+
+@dataclass(frozen=True, slots=True)
+class PlanSample:
+    """References at one instant; world frame, arrays are fresh at every call.
+
+    Attributes:
+        time: instant [s].
+        com: CoM position, shape (3,) [m].
+        com_velocity: shape (3,) [m/s].
+        com_acceleration: shape (3,) [m/s^2].
+        zmp: ZMP of this motion, shape (2,) [m].
+        pendulum_zmp: the ZMP less what the swing leg adds: c - c''/λ, which drives the CoM, shape (2,) [m].
+        zmp_reference: ZMP that the footsteps define, shape (2,) [m].
+        dcm: ξ = c + c'/ω, shape (2,) [m].
+        omega: ω [1/s].
+        stiffness: λ [1/s^2].
+        contacts: planned contacts (left, right).
+        load_left: planned share of the weight on the left foot [-].
+        load_left_rate: its rate [1/s].
+        swing_foot: the swinging foot, or None; the swing arrays are zero without one.
+        swing: swing sole x, y, z [m], yaw, pitch, roll [rad], shape (6,).
+        swing_velocity: shape (6,) [m/s, rad/s].
+        swing_acceleration: shape (6,) [m/s^2, rad/s^2].
+    """
+
+    time: float
+    com: Array
+    com_velocity: Array
+    com_acceleration: Array
+    zmp: Array
+    pendulum_zmp: Array
+    zmp_reference: Array
+    dcm: Array
+    omega: float
+    stiffness: float
+    contacts: tuple[bool, bool]
+    load_left: float
+    load_left_rate: float
+    swing_foot: Foot | None
+    swing: Array
+    swing_velocity: Array
+    swing_acceleration: Array
+
+
+class PlanSampler:
+    """Evaluates a plan between its samples.
+
+    The horizontal CoM is the exact cubic of the sample's jerk, its height the quintic through both samples' z, z', z'';
+    ω, λ, ZMP reference, ZMP offset and load are linear. Each interval's polynomials are prepared when it is entered.
+    After the end of the horizon the last sample is held.
+
+    Attributes:
+        plan: the plan.
+    """
+
+    def __init__(self, plan: WalkPlan) -> None:
+        self.plan = plan
+        self._last = len(plan.jerk) - 1
+        self._interval = -1
+        self._start = plan.time
+        self._table = np.zeros((6, _COLUMNS))
+        self._load_rate = 0.0
+        self._contacts = (True, True)
+        self._swing_foot: Foot | None = None
+
+    def sample(self, time: float) -> PlanSample:
+        """References at an instant.
+
+        Args:
+            time: instant, not before the plan [s].
+        """
+        step = self.plan.sample_time
+        interval = min(max(int((time - self.plan.time) / step + 1e-6), 0), self._last)
+        if interval != self._interval:
+            self._enter(interval)
+        t = min(max(time - self._start, 0.0), step)
+        t2 = t * t
+        t3 = t2 * t
+        values = np.array((1.0, t, t2, t3, t3 * t, t3 * t2)) @ self._table
+        com, velocity, acceleration = values[7:10], values[16:19], values[25:28]
+        omega, stiffness, load = values[4:7].tolist()
+        pendulum_zmp = com[:2] - acceleration[:2] / stiffness
+        return PlanSample(
+            time,
+            com,
+            velocity,
+            acceleration,
+            pendulum_zmp + values[2:4],
+            pendulum_zmp,
+            values[:2],
+            com[:2] + velocity[:2] / omega,
+            omega,
+            stiffness,
+            self._contacts,
+            load,
+            self._load_rate,
+            self._swing_foot,
+            values[10:16],
+            values[19:25],
+            values[28:],
+        )
+
+    def _enter(self, i: int) -> None:
+        """Prepare an interval: 7 linear functions, 9 polynomials and their two derivatives as columns."""
+        plan, t = self.plan, self.plan.sample_time
+        self._interval, self._start = i, plan.time + i * t
+        table = np.zeros((6, _COLUMNS))
+        linear, motion, rates, bends = table[:, :7], table[:, 7:16], table[:, 16:25], table[:, 25:]
+        for row, k in enumerate((i, i + 1)):
+            linear[row, :2], linear[row, 2:4] = plan.zmp_reference[k], plan.zmp_offset[k]
+            linear[row, 4:] = plan.omega[k], plan.stiffness[k], plan.load_left[k]
+        linear[1] = (linear[1] - linear[0]) / t
+        motion[0, :2], motion[1, :2] = plan.com[i, :2], plan.com_velocity[i, :2]
+        motion[2, :2], motion[3, :2] = 0.5 * plan.com_acceleration[i, :2], plan.jerk[i] / 6.0
+        heights = np.stack(
+            (plan.com[i : i + 2, 2], plan.com_velocity[i : i + 2, 2], plan.com_acceleration[i : i + 2, 2])
+        )
+        motion[:, 2] = quintic(heights[:, :1], heights[:, 1:], t)[:, 0]
+        left, right = plan.contacts[i].tolist()
+        self._contacts, self._swing_foot = (left, right), None
+        if plan.swing is not None and not plan.contacts[i, plan.swing.foot]:
+            self._swing_foot = plan.swing.foot
+            motion[:, 3:] = plan.swing.coefficients(self._start)
+        rates[:5] = _DERIVATIVE * motion[1:]
+        bends[:4] = _DERIVATIVE[:4] * rates[1:5]
+        self._table, self._load_rate = table, float(linear[1, 6])
+
+
+_COLUMNS = 34
+_DERIVATIVE = np.arange(1.0, 6.0)[:, None]

@@ -4,29 +4,94 @@ import math
 
 import numpy as np
 
-from planner.clearance import swing_courses
-from planner.com_height import HeightProfile, SmoothHeight, check_height
-from planner.constraints import StepContext, check_reach
-from planner.footsteps import FootstepPlan, plan_footsteps
-from planner.frames import wrap_angle
-from planner.gait import GaitParameters
-from planner.heel_off import FootRoll, roll_plan
-from planner.leg_inertia import swing_shape
-from planner.motion import Motion, MotionProblem
-from planner.moves import block_moves
-from planner.orientation import sole_pose
-from planner.parameters import PlannerParameters
-from planner.plan import WalkPlan
-from planner.prediction import predict, trajectory
-from planner.profiles.registry import PROFILES, Profile
-from planner.schedule import schedule
-from planner.stepper import Stepper
-from planner.support import Support, present_support
-from planner.swing import SwingTrajectory, start_swing, swing_times
-from planner.terrain import Terrain, flat
-from planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind, PlannedFootstep, PlanStatus, SolverStatus
-from planner.window import OffsetTable, Outlook, Window
-from planner.world_plan import world_plan
+from surefoot.planner.geometry import sole_pose, wrap_angle
+from surefoot.planner.ground.terrain import Terrain, flat
+from surefoot.planner.laws.constraints import StepContext, check_reach
+from surefoot.planner.laws.law import Motion, MotionProblem
+from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.planner.model.jerk import Trajectory, block_moves, predict, trajectory
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.references.com_height import HeightProfile, SmoothHeight, check_height
+from surefoot.planner.references.leg_offset import swing_shape
+from surefoot.planner.references.window import OffsetTable, Outlook, Window
+from surefoot.planner.references.zmp_reference import Support, present_support
+from surefoot.planner.swing.course import swing_courses
+from surefoot.planner.swing.heel_off import FootRoll, roll_plan
+from surefoot.planner.swing.trajectory import SwingTrajectory, start_swing, swing_times
+from surefoot.planner.types import (
+    Array,
+    CentroidalState,
+    FeetState,
+    Foot,
+    PhaseKind,
+    PlannedFootstep,
+    PlanStatus,
+    SolverStatus,
+)
+from surefoot.planner.walk.clock import Stepper, schedule
+from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
+from surefoot.planner.walk.gait import GaitParameters
+
+
+def world_plan(
+    time: float,
+    stepper: Stepper,
+    support: Support,
+    window: Window,
+    motion: Trajectory,
+    shifts: Array,
+    footsteps: tuple[PlannedFootstep, ...],
+    swing: SwingTrajectory | None,
+    roll: FootRoll | None,
+    status: PlanStatus,
+) -> WalkPlan:
+    """The plan of a tick.
+
+    Args:
+        time: instant of the measurement [s].
+        stepper: clock and footholds.
+        support: the present support and the plan frame on it.
+        window: references.
+        motion: predicted motion in the plan frame.
+        shifts: shifts of the next two footsteps in the plan frame, shape (2, 2) [m].
+        footsteps: the next footsteps.
+        swing: trajectory of the swing foot.
+        roll: of the foot that leaves the ground.
+        status: how the plan was made.
+    """
+    reference, schedule = window.reference, stepper.schedule
+    count, to_world = len(motion.zmp), support.rotation.T
+    com = np.empty((3, count, 3))
+    com[:, :, :2] = motion.com @ to_world
+    com[0, :, :2] += support.origin
+    com[:, :, 2] = window.height.height[:, :count]
+    point = reference.point[:count] + reference.gain[:count] @ shifts
+    samples = slice(window.start, window.start + count)
+    return WalkPlan(
+        time=time,
+        sample_time=schedule.sample_time,
+        com=com[0],
+        com_velocity=com[1],
+        com_acceleration=com[2],
+        jerk=motion.jerk @ to_world,
+        zmp=(motion.zmp + window.offset[:count]) @ to_world + support.origin,
+        zmp_offset=window.offset[:count] @ to_world,
+        zmp_reference=point @ to_world + support.origin,
+        stiffness=window.stiffness[:count],
+        omega=window.omega[:count],
+        phase=stepper.info,
+        contacts=schedule.contacts[samples],
+        load_left=schedule.load_left[samples],
+        support_polygon=support.outer,
+        inner_polygon=support.inner,
+        footholds=support.footholds,
+        footsteps=footsteps,
+        swing=swing,
+        roll=roll,
+        status=status,
+    )
+
 
 _SAME_TARGET = 1e-4
 """Difference of touchdown pose that is not worth a new swing trajectory [m, rad]."""

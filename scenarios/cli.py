@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 
 if TYPE_CHECKING:
-    from scenarios.log import Log
+    from surefoot.scenarios.log import Log
 
 app = typer.Typer(
     name="surefoot",
@@ -30,8 +30,8 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and 
 @app.command("list")
 def list_() -> None:
     """List scenarios and robots, one line each."""
-    from scenarios import catalogue
-    from scenarios.file.robots import RegisteredRobots
+    from surefoot.scenarios import catalogue
+    from surefoot.scenarios.setup.robot import RegisteredRobots
 
     for name in catalogue.names():
         typer.echo(f"scenario  {name:<16} {catalogue.summary(name)}")
@@ -50,11 +50,10 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Run a scenario, write its log and judge it."""
-    from scenarios.console import ProgressLine, print_result
-    from scenarios.file.load import load_scenario, locate
-    from scenarios.replay.beside import LiveView, check
-    from scenarios.rerun import output_folder
-    from scenarios.run import LOG_NAME, run_scenario
+    from surefoot.scenarios.loop.run import LOG_NAME, run_scenario
+    from surefoot.scenarios.setup.load import load_scenario, locate, output_folder
+    from surefoot.scenarios.show.console import ProgressLine, print_result
+    from surefoot.scenarios.show.replay.command import LiveView, check
 
     overrides = [*(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
     loaded = load_scenario(scenario, overrides)
@@ -75,8 +74,8 @@ def run(
         typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
         raise typer.Exit(INTERRUPTED)
     if video:
-        from scenarios.replay import command
-        from scenarios.replay.frames import Window
+        from surefoot.scenarios.show.replay import command
+        from surefoot.scenarios.show.replay.poses import Window
 
         command.video(result.log, video, Window())
     live.wait()
@@ -94,9 +93,9 @@ def inspect(
     as_json: AsJson = False,
 ) -> None:
     """Show verdict, metrics, health, topics and rates of a log."""
-    from scenarios import inspection
-    from scenarios.console import print_inspection
-    from scenarios.log import read
+    from surefoot.scenarios.judge import inspection
+    from surefoot.scenarios.log import read
+    from surefoot.scenarios.show.console import print_inspection
 
     opened = read(log)
     if topic is not None:
@@ -116,9 +115,9 @@ def _show_topic(
     log: "Log", topic: str, span: tuple[float | None, float | None], field: str | None, file: Path | None, as_json: bool
 ) -> None:
     """Summarise a topic, or export it and say where it is."""
-    from scenarios.console import print_topic
-    from scenarios.export import export, selected
-    from scenarios.inspection import topic_summary
+    from surefoot.scenarios.judge.inspection import topic_summary
+    from surefoot.scenarios.show.console import print_topic
+    from surefoot.scenarios.show.export import export, selected
 
     channel = selected(log, topic, *span, field)
     for loss in log.damage:
@@ -141,7 +140,7 @@ def plot(
     end: Annotated[float | None, typer.Option("--to", metavar="T", help="End of the window [s].")] = None,
 ) -> None:
     """Draw the figures that a walking engineer looks at."""
-    from scenarios.report.plot import plot as plot_log
+    from surefoot.scenarios.show.figures.page import plot as plot_log
 
     drawn = plot_log(log, out, what, start, end)
     for note in drawn.notes:
@@ -158,9 +157,8 @@ def compare(
     as_json: AsJson = False,
 ) -> None:
     """Show two logs side by side, and where their channels part."""
-    from scenarios.report.compare import compare as compare_logs
-    from scenarios.report.compare import draw
-    from scenarios.report.comparison_tables import print_comparison
+    from surefoot.scenarios.show.compare.compare import compare as compare_logs
+    from surefoot.scenarios.show.compare.compare import draw, print_comparison
 
     found, first, second = compare_logs(a, b, tolerance)
     if out is not None:
@@ -177,7 +175,7 @@ def recover(
     out: Annotated[Path, typer.Argument(help="The whole log to write.")],
 ) -> None:
     """Make a whole, indexed log of what a truncated one still holds."""
-    from scenarios.log.recover import recover as recover_log
+    from surefoot.scenarios.log.recover import recover as recover_log
 
     recovery = recover_log(log, out)
     for loss in recovery.lost:
@@ -198,8 +196,8 @@ def replay(
     """Show a log in 3D: as a page, as a video or live."""
     if (html is not None) + (video is not None) + live != 1:
         raise typer.BadParameter("give one of --html FILE, --video FILE and --live")
-    from scenarios.replay import command
-    from scenarios.replay.frames import Window
+    from surefoot.scenarios.show.replay import command
+    from surefoot.scenarios.show.replay.poses import Window
 
     window = Window(start, end)
     if html is not None:
@@ -218,9 +216,9 @@ def paper(
     jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
 ) -> None:
     """Run the paper's experiments and write what holds as one HTML page; begun again, it goes on where it stopped."""
-    from scenarios.paper.command import cores
-    from scenarios.paper.command import paper as run_paper
-    from scenarios.paper.runner import InterruptedRunsError
+    from surefoot.scenarios.paper.command import cores
+    from surefoot.scenarios.paper.command import paper as run_paper
+    from surefoot.scenarios.paper.runner import InterruptedRunsError
 
     try:
         written = run_paper(out, jobs or cores())
@@ -239,7 +237,7 @@ def paper(
 @app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors."""
-    from scenarios.file.schema import Scenario
+    from surefoot.scenarios.file.schema import Scenario
 
     typer.echo(json.dumps(Scenario.model_json_schema(), indent=2))
 

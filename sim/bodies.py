@@ -2,7 +2,7 @@
 
 import mujoco
 
-from sim.measurement import Array
+from surefoot.sim.measurement import Array
 
 _WXYZ = (6, 3, 4, 5)
 

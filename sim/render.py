@@ -9,9 +9,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from models.convert import pinocchio_to_mujoco
-from sim.gl import make_context
-from sim.marks import Mark, draw
+from surefoot.models.convert import pinocchio_to_mujoco
+from surefoot.sim.gl import make_context
+from surefoot.sim.marks import Mark, draw
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

@@ -2,9 +2,9 @@
 
 from xml.etree import ElementTree
 
-from models.types import RobotDescription
-from planner.terrain import Terrain
-from sim.terrain import add_terrain
+from surefoot.models.types import RobotDescription
+from surefoot.planner.ground.terrain import Terrain
+from surefoot.sim.terrain import add_terrain
 
 GRAVITY = 9.81
 """[m/s^2], downwards."""

@@ -3,12 +3,12 @@
 import mujoco
 import numpy as np
 
-from models.convert import mujoco_to_pinocchio
-from models.types import RobotDescription
-from sim.contacts import ContactSense
-from sim.errors import WorldError
-from sim.measurement import Array, Measurement
-from sim.pushes import PushSchedule
+from surefoot.models.convert import mujoco_to_pinocchio
+from surefoot.models.types import RobotDescription
+from surefoot.sim.contacts import ContactSense
+from surefoot.sim.errors import WorldError
+from surefoot.sim.measurement import Array, Measurement
+from surefoot.sim.pushes import PushSchedule
 
 ROUND_OFF = 1e-9
 """Share of a push below which what remains of a body's external force is rounding."""

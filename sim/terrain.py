@@ -7,7 +7,7 @@ Priority 1 makes MuJoCo take friction and contact stiffness from the terrain alo
 from collections.abc import Iterable
 from xml.etree import ElementTree
 
-from planner.terrain import Box, Terrain
+from surefoot.planner.ground.terrain import Box, Terrain
 
 GROUND = "ground"
 """Name of the ground plane's geom; boxes are `terrain_0`, `terrain_1`, ..."""

@@ -6,15 +6,15 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from models.convert import pinocchio_to_mujoco
-from models.options import nearest
-from models.types import RobotDescription
-from planner.terrain import Terrain
-from sim.errors import SimulationDiverged, WorldError
-from sim.measurement import Array, Measurement
-from sim.pushes import Push, PushSchedule
-from sim.scene import world_mjcf
-from sim.sensors import SensorReader
+from surefoot.models.convert import pinocchio_to_mujoco
+from surefoot.models.options import nearest
+from surefoot.models.types import RobotDescription
+from surefoot.planner.ground.terrain import Terrain
+from surefoot.sim.errors import SimulationDiverged, WorldError
+from surefoot.sim.measurement import Array, Measurement
+from surefoot.sim.pushes import Push, PushSchedule
+from surefoot.sim.scene import world_mjcf
+from surefoot.sim.sensors import SensorReader
 
 _LOG = logging.getLogger(__name__)
 

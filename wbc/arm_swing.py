@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wbc.model import RobotTerms
+from surefoot.wbc.model import RobotTerms
 
 
 @dataclass(frozen=True, slots=True)

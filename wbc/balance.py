@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from wbc.types import Array, WbcReference
+from surefoot.wbc.types import Array, WbcReference
 
 
 @dataclass(frozen=True, slots=True)

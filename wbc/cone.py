@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from wbc.types import Array
+from surefoot.wbc.types import Array
 
 CONE_ROWS = 16
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from wbc.types import FootSensing, WbcReference
+from surefoot.wbc.types import FootSensing, WbcReference
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,18 +8,18 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from wbc.arm_swing import ArmSwing, shoulder_pitches
-from wbc.balance import BalanceGains, SupportRegion, com_acceleration
-from wbc.cone import CONE_ROWS, wrench_cone
-from wbc.contacts import ContactParameters, ContactSchedule, ContactState
-from wbc.dynamics import ContactGains, HardConstraints
-from wbc.limits import JointLimits
-from wbc.model import BodyFrames, RobotTerms
-from wbc.qp import UNBOUNDED, QpData, QpLayout, allocate
-from wbc.separation import Separation, SeparationParameters
-from wbc.solvers import QpSolution, equalities_only, make_solver
-from wbc.tasks import TaskGains, TaskStack, TaskWeights
-from wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
+from surefoot.wbc.arm_swing import ArmSwing, shoulder_pitches
+from surefoot.wbc.balance import BalanceGains, SupportRegion, com_acceleration
+from surefoot.wbc.cone import CONE_ROWS, wrench_cone
+from surefoot.wbc.contacts import ContactParameters, ContactSchedule, ContactState
+from surefoot.wbc.dynamics import ContactGains, HardConstraints
+from surefoot.wbc.limits import JointLimits
+from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.qp import UNBOUNDED, QpData, QpLayout, allocate
+from surefoot.wbc.separation import Separation, SeparationParameters
+from surefoot.wbc.solvers import QpSolution, equalities_only, make_solver
+from surefoot.wbc.tasks import TaskGains, TaskStack, TaskWeights
+from surefoot.wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
 
 ACCEPTED_VIOLATION = 1e-3
 """A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""

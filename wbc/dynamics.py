@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wbc.contacts import ContactState
-from wbc.limits import AccelerationBounds, JointLimits
-from wbc.model import RobotTerms
-from wbc.qp import FOOT_ROWS, QpData, QpLayout
-from wbc.types import Array
+from surefoot.wbc.contacts import ContactState
+from surefoot.wbc.limits import AccelerationBounds, JointLimits
+from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.qp import FOOT_ROWS, QpData, QpLayout
+from surefoot.wbc.types import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,9 @@ import numpy as np
 import pinocchio as pin
 import qpsolvers
 
-from wbc.limits import JointLimits
-from wbc.model import BodyFrames
-from wbc.types import Array
+from surefoot.wbc.limits import JointLimits
+from surefoot.wbc.model import BodyFrames
+from surefoot.wbc.types import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from wbc.model import BodyFrames
-from wbc.types import Array
+from surefoot.wbc.model import BodyFrames
+from surefoot.wbc.types import Array
 
 Vector = tuple[float, float, float]
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wbc.types import Array
+from surefoot.wbc.types import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from wbc.types import GRAVITY, Array
+from surefoot.wbc.types import GRAVITY, Array
 
 _LOCAL = pin.ReferenceFrame.LOCAL
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wbc.types import Array
+from surefoot.wbc.types import Array
 
 FOOT_ROWS = 6
 EQUALITY_ROWS = 2 * FOOT_ROWS + 6

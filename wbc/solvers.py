@@ -11,8 +11,8 @@ import quadprog
 from proxsuite import proxqp
 from scipy.linalg import lapack
 
-from wbc.qp import EQUALITY_ROWS, UNBOUNDED, QpData
-from wbc.types import Array
+from surefoot.wbc.qp import EQUALITY_ROWS, UNBOUNDED, QpData
+from surefoot.wbc.types import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,8 +3,8 @@
 import numpy as np
 import pinocchio as pin
 
-from wbc.model import BodyFrames
-from wbc.types import Array
+from surefoot.wbc.model import BodyFrames
+from surefoot.wbc.types import Array
 
 
 def standing_torque(model: pin.Model, frames: BodyFrames, q: Array) -> Array:

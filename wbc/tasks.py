@@ -7,10 +7,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from wbc.arm_swing import ArmSwing
-from wbc.model import RobotTerms
-from wbc.qp import QpData, QpLayout
-from wbc.types import GRAVITY, Array, WbcReference
+from surefoot.wbc.arm_swing import ArmSwing
+from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.qp import QpData, QpLayout
+from surefoot.wbc.types import GRAVITY, Array, WbcReference
 
 LINEAR, ANGULAR, PELVIS, TORSO, SWING = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 18)
 TASK_ROWS = 18

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from wbc.types import Array
+from surefoot.wbc.types import Array
 
 UNLOADED = 1.0
 """Normal force below which a centre of pressure has no meaning [N]."""

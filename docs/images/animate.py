@@ -15,13 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from scenarios.log import read
-from scenarios.replay.content import Replay
-from scenarios.replay.extract import extract
-from scenarios.replay.frames import Window
-from scenarios.replay.marks import marks_of
-from scenarios.replay.video import CAMERA, QUALITY
-from sim.render import render_frames
+from surefoot.scenarios.log import read
+from surefoot.scenarios.show.replay.content import Replay
+from surefoot.scenarios.show.replay.extract import Window, extract
+from surefoot.scenarios.show.replay.video import CAMERA, QUALITY, marks_of
+from surefoot.sim.render import render_frames
 
 WIDTH, HEIGHT = 480, 270
 EVERY = 3

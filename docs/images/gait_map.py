@@ -68,9 +68,9 @@ def overrides(cell: Cell, height: float) -> list[str]:
 
 def answer(cell: Cell) -> Answer:
     """Walk a cell with the CoM as high as its steps are accepted."""
-    from scenarios.errors import ScenarioError, SetupError
-    from scenarios.file.load import load_scenario
-    from scenarios.run import run_scenario
+    from surefoot.scenarios.errors import ScenarioError, SetupError
+    from surefoot.scenarios.loop.run import run_scenario
+    from surefoot.scenarios.setup.load import load_scenario
 
     for height in HEIGHTS:
         try:

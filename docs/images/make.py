@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from scenarios.constants import WORLD_FILE
-from scenarios.log import Log, read
-from sim.render import Camera, render_frames
+from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.record.provenance import WORLD_FILE
+from surefoot.sim.render import Camera, render_frames
 
 WIDTH, HEIGHT = 1280, 570
 OVERSAMPLING = 2

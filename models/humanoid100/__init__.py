@@ -1,5 +1,5 @@
 """The 100 kg humanoid of the paper's table."""
 
-from models.humanoid100.robot import describe
+from surefoot.models.humanoid100.robot import describe
 
 __all__ = ["describe"]

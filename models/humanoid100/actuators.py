@@ -4,7 +4,7 @@ Motors are sized like frameless torque motors of about 115, 95, 70 and 40 mm out
 low-ratio planetary drives, so that the reflected rotor inertia stays of the order of the links' own.
 """
 
-from models.actuator import Actuator, Motor
+from surefoot.models.actuator import Actuator, Motor
 
 MOTOR_115 = Motor(rotor_inertia=2.5e-4, peak_torque=15.0, no_load_speed=320.0)
 MOTOR_95 = Motor(rotor_inertia=1.5e-4, peak_torque=10.0, no_load_speed=320.0)

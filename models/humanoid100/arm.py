@@ -1,9 +1,9 @@
 """The arm: shoulder pitch, roll, yaw; elbow; the hand is part of the forearm."""
 
-import models.humanoid100.actuators as act
-import models.humanoid100.dimensions as dim
-from models import inertia
-from models.tree import Body, Geom, Joint, Role
+import surefoot.models.humanoid100.actuators as act
+import surefoot.models.humanoid100.dimensions as dim
+from surefoot.models import inertia
+from surefoot.models.tree import Body, Geom, Joint, Role
 
 
 def arm(side: str) -> Body:

@@ -1,9 +1,9 @@
 """Ankle and foot with a four-corner box sole."""
 
-import models.humanoid100.actuators as act
-import models.humanoid100.dimensions as dim
-from models import inertia
-from models.tree import Body, Geom, Joint, Role
+import surefoot.models.humanoid100.actuators as act
+import surefoot.models.humanoid100.dimensions as dim
+from surefoot.models import inertia
+from surefoot.models.tree import Body, Geom, Joint, Role
 
 
 def foot(side: str, length: float, width: float) -> Body:

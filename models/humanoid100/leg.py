@@ -1,10 +1,10 @@
 """The leg: hip yaw, roll, pitch; knee; ankle pitch, roll; the foot."""
 
-import models.humanoid100.actuators as act
-import models.humanoid100.dimensions as dim
-from models import inertia
-from models.humanoid100.foot import foot
-from models.tree import Body, Geom, Joint, Role
+import surefoot.models.humanoid100.actuators as act
+import surefoot.models.humanoid100.dimensions as dim
+from surefoot.models import inertia
+from surefoot.models.humanoid100.foot import foot
+from surefoot.models.tree import Body, Geom, Joint, Role
 
 
 def leg(side: str, foot_length: float, foot_width: float) -> Body:

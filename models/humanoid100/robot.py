@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-import models.humanoid100.dimensions as dim
-from models import inertia
-from models.humanoid100.leg import leg
-from models.humanoid100.upper_body import upper_body
-from models.mjcf import robot_mjcf
-from models.options import foot_size, with_payload
-from models.tree import Body, Geom, Role
-from models.types import Array, RobotDescription, RobotOptions
+import surefoot.models.humanoid100.dimensions as dim
+from surefoot.models import inertia
+from surefoot.models.humanoid100.leg import leg
+from surefoot.models.humanoid100.upper_body import upper_body
+from surefoot.models.mjcf import robot_mjcf
+from surefoot.models.options import foot_size, with_payload
+from surefoot.models.tree import Body, Geom, Role
+from surefoot.models.types import Array, RobotDescription, RobotOptions
 
 NAME = "humanoid100"
 

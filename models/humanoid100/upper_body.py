@@ -1,10 +1,10 @@
 """Waist, torso, neck and head."""
 
-import models.humanoid100.actuators as act
-import models.humanoid100.dimensions as dim
-from models import inertia
-from models.humanoid100.arm import arm
-from models.tree import Body, Geom, Joint, Role
+import surefoot.models.humanoid100.actuators as act
+import surefoot.models.humanoid100.dimensions as dim
+from surefoot.models import inertia
+from surefoot.models.humanoid100.arm import arm
+from surefoot.models.tree import Body, Geom, Joint, Role
 
 
 def upper_body() -> Body:

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
-from scenarios.file.criteria import Bound, standing_walk
+from surefoot.scenarios.file.criteria import Bound, standing_walk
 
 LONGEST_RUN = 86_400.0
 """Bound on the simulated time [s]."""

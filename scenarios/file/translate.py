@@ -7,9 +7,9 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from scenarios.errors import Key, Problem, dotted, nearest
-from scenarios.file.criteria import BOUNDABLE, Bound
-from scenarios.file.schema import Scenario
+from surefoot.scenarios.errors import Key, Problem, dotted, nearest
+from surefoot.scenarios.file.criteria import BOUNDABLE, Bound
+from surefoot.scenarios.file.schema import Scenario
 
 _EXPECTED = {
     "int_type": "give a whole number",

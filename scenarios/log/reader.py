@@ -7,14 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.errors import LogError, nearest
-from scenarios.log.channel_data import ChannelData
-from scenarios.log.compression import decompress
-from scenarios.log.encode import MAGIC
-from scenarios.log.extract import MESSAGE_BYTES, block_of, content_at, gathered, sound_records
-from scenarios.log.layout import record_dtype
-from scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
-from scenarios.log.spec import FieldSpec, layout_of
+from surefoot.scenarios.errors import LogError, nearest
+from surefoot.scenarios.log.encoding import MAGIC, decompress
+from surefoot.scenarios.log.messages import MESSAGE_BYTES, ChannelData, block_of, content_at, gathered, sound_records
+from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
+from surefoot.scenarios.log.spec import FieldSpec, layout_of, record_dtype
 
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""

@@ -9,11 +9,10 @@ import numpy as np
 from mcap.records import Attachment, Chunk, Header, MessageIndex, Metadata
 from numpy.typing import NDArray
 
-from scenarios.errors import LogError
-from scenarios.log.encode import MAGIC, encoded
-from scenarios.log.reader import Log, read
-from scenarios.log.scan import PREFIX, index_chunk
-from scenarios.log.summary import Summary
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log.encoding import MAGIC, Summary, encoded
+from surefoot.scenarios.log.reader import Log, read
+from surefoot.scenarios.log.scan import PREFIX, index_chunk
 
 Index = dict[int, NDArray[np.void]]
 

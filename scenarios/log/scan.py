@@ -14,7 +14,7 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, ChunkIndex, Footer, Metadata, Schema
 from numpy.typing import NDArray
 
-from scenarios.log.encode import MAGIC
+from surefoot.scenarios.log.encoding import MAGIC
 
 Buffer = Any
 """A read-only bytes-like object: bytes or a memory map."""

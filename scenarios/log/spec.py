@@ -1,9 +1,20 @@
-"""What a channel of the log carries: fields with shape, unit and frame."""
+"""What a channel of the log carries, and the bytes of its messages: protobuf that a numpy record describes.
+
+Field 1 is the stamp (``fixed64``, always written). Every other field is always written whole: scalars as ``double``
+or ``sfixed32``, arrays as packed ``repeated`` ones. So any protobuf reader decodes a message by its schema, and numpy
+reads or writes a block of them without a loop.
+"""
 
 import json
 from dataclasses import dataclass
+from functools import cache
 from math import prod
-from typing import Literal
+from typing import Any, Literal
+
+import numpy as np
+from google.protobuf import descriptor_pb2
+from mcap.opcode import Opcode
+from numpy.typing import NDArray
 
 Kind = Literal["double", "int"]
 
@@ -70,3 +81,68 @@ def layout_of(metadata: dict[str, str]) -> tuple[FieldSpec, ...]:
     if not sound or len(set(names)) < len(names) or not all(name.isidentifier() for name in names):
         raise ValueError("no sound layout")
     return fields
+
+
+PACKAGE = "surefoot"
+HEADER = ("_opcode", "_length", "_channel", "_sequence", "_log_time", "_publish_time", "_stamp_tag", "_stamp")
+PREFIX_BYTES = 9
+"""Opcode and length of an MCAP record, which the record's length does not count."""
+
+_FIXED64, _PACKED, _FIXED32 = 1, 2, 5
+_Descriptor = descriptor_pb2.FieldDescriptorProto
+
+
+@cache
+def record_dtype(fields: tuple[FieldSpec, ...]) -> np.dtype[Any]:
+    """Numpy type of a whole MCAP message record with these fields."""
+    header: list[Any] = list(zip(HEADER, ("u1", "<u8", "<u2", "<u4", "<u8", "<u8", "u1", "<u8"), strict=True))
+    body: list[Any] = []
+    for number, field in enumerate(fields, start=2):
+        body.append((f"_tag_{field.name}", "u1", (len(_tag(number, field)),)))
+        body.append((field.name, "<f8" if field.kind == "double" else "<i4", field.shape))
+    return np.dtype(header + body)
+
+
+def blank_records(fields: tuple[FieldSpec, ...], channel_id: int, count: int) -> NDArray[np.void]:
+    """Message records with every constant byte in place: opcode, length, channel and field tags."""
+    records = np.zeros(count, record_dtype(fields))
+    records["_opcode"] = Opcode.MESSAGE
+    records["_length"] = records.dtype.itemsize - PREFIX_BYTES
+    records["_channel"] = channel_id
+    records["_stamp_tag"] = 1 << 3 | _FIXED64
+    for number, field in enumerate(fields, start=2):
+        records[f"_tag_{field.name}"] = np.frombuffer(_tag(number, field), np.uint8)
+    return records
+
+
+def file_descriptor_set(spec: ChannelSpec) -> bytes:
+    """Serialized protobuf ``FileDescriptorSet`` of a channel's message, with units and frames as comments."""
+    file = descriptor_pb2.FileDescriptorProto(name=f"{PACKAGE}/{spec.message}.proto", package=PACKAGE, syntax="proto3")
+    message = file.message_type.add(name=spec.message)
+    message.field.add(name="stamp_ns", number=1, type=_Descriptor.TYPE_FIXED64, label=_Descriptor.LABEL_OPTIONAL)
+    for index, field in enumerate(spec.fields, start=1):
+        message.field.add(
+            name=field.name,
+            number=index + 1,
+            type=_Descriptor.TYPE_DOUBLE if field.kind == "double" else _Descriptor.TYPE_SFIXED32,
+            label=_Descriptor.LABEL_REPEATED if field.shape else _Descriptor.LABEL_OPTIONAL,
+        )
+        comment = f" {field.doc} [{field.unit}] {field.frame}".rstrip()
+        file.source_code_info.location.add(path=[4, 0, 2, index], span=[index, 0, 0], leading_comments=comment)
+    return bytes(descriptor_pb2.FileDescriptorSet(file=[file]).SerializeToString(deterministic=True))
+
+
+def _tag(number: int, field: FieldSpec) -> bytes:
+    """Tag of a field and, for an array, its length in bytes."""
+    width = 8 if field.kind == "double" else 4
+    if field.shape:
+        return _varint(number << 3 | _PACKED) + _varint(field.size * width)
+    return _varint(number << 3 | (_FIXED64 if width == 8 else _FIXED32))
+
+
+def _varint(value: int) -> bytes:
+    parts = []
+    while value > 0x7F:
+        parts.append(value & 0x7F | 0x80)
+        value >>= 7
+    return bytes([*parts, value])

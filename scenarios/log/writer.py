@@ -1,5 +1,6 @@
 """Writes a log: what the run was first, then a chunk of messages every few hundredths of a simulated second."""
 
+import os
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,15 +10,86 @@ from typing import Literal, Self
 
 from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
 
-from scenarios.log.channel_writer import ChannelWriter, Clock
-from scenarios.log.compression import compress
-from scenarios.log.encode import MAGIC, chunk_head, encoded
-from scenarios.log.layout import PACKAGE, file_descriptor_set
-from scenarios.log.message_writer import MessageWriter
-from scenarios.log.output import Output
-from scenarios.log.row_writer import Columns, Derive, RowWriter
-from scenarios.log.spec import ChannelSpec
-from scenarios.log.summary import Summary
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress, encoded
+from surefoot.scenarios.log.rows import ChannelWriter, Clock, Columns, Derive, MessageWriter, RowWriter
+from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec, file_descriptor_set
+
+
+class Output:
+    """An unbuffered file that keeps only whole records.
+
+    The beginning goes to a temporary name, so that a file that cannot be begun neither appears nor replaces an older
+    log.
+
+    Attributes:
+        path: where the log is.
+        position: bytes written.
+    """
+
+    __slots__ = ("_file", "_temporary", "path", "position")
+
+    def __init__(self, path: Path, beginning: bytes) -> None:
+        """Create the file with its beginning.
+
+        Raises:
+            LogError: it cannot be created or the beginning does not fit.
+        """
+        self.path = path
+        self.position = 0
+        temporary = path.with_name(f".{path.name}.{os.getpid()}.new")
+        try:
+            self._file = temporary.open("wb", buffering=0)
+        except OSError as error:
+            raise LogError(f"{path}: cannot be created, {_reason(error)}; choose another directory") from None
+        try:
+            self._write(beginning)
+            temporary.replace(path)
+        except OSError as error:
+            self._file.close()
+            temporary.unlink(missing_ok=True)
+            raise LogError(f"{path}: cannot be written, {_reason(error)}; no log was created") from None
+
+    def write(self, data: bytes) -> None:
+        """Append whole records.
+
+        Raises:
+            LogError: they could not be written; the file then holds what came before, under the name ``*.incomplete``.
+        """
+        try:
+            self._write(data)
+        except OSError as error:
+            kept = self._set_aside()
+            message = f"{self.path}: cannot be written on, {_reason(error)}; what was written is kept in {kept.name}"
+            raise LogError(message) from None
+
+    @property
+    def closed(self) -> bool:
+        """Whether nothing more can be written."""
+        return self._file.closed
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def _write(self, data: bytes) -> None:
+        rest = memoryview(data)
+        while rest:
+            rest = rest[self._file.write(rest) :]
+        self.position += len(data)
+
+    def _set_aside(self) -> Path:
+        """Cut off the record that did not fit and take away the name of a log."""
+        kept = self.path.with_name(f"{self.path.name}.incomplete")
+        self._file.truncate(self.position)
+        self._file.close()
+        self.path.replace(kept)
+        return kept
+
+
+def _reason(error: OSError) -> str:
+    return (error.strerror or str(error)).lower()
+
 
 Compression = Literal["lz4", "zstd", ""]
 CHUNK_PERIOD_NS = 90_000_000

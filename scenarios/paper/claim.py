@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from scenarios.paper.results import Results, Sample
-from scenarios.paper.tables import MM, WORLD_NAMES, fell_text
-from scenarios.paper.text import number
+from surefoot.scenarios.paper.results import Results, Sample
+from surefoot.scenarios.paper.tables import MM, WORLD_NAMES, fell_text
+from surefoot.scenarios.paper.text import number
 
 Verdict = Literal["holds", "holds with a change", "does not hold", "not measured"]
 

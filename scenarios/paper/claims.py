@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 from functools import partial
 
-from scenarios.paper.claim import FOOT_EDGE, Claim, Finding, any_of, balance_text, grade, stable
-from scenarios.paper.experiment import Study
-from scenarios.paper.results import Results, Sample
-from scenarios.paper.studies import (
+from surefoot.scenarios.paper.claim import FOOT_EDGE, Claim, Finding, any_of, balance_text, grade, stable
+from surefoot.scenarios.paper.results import Results, Sample
+from surefoot.scenarios.paper.studies import (
     HEIGHTS,
     NOISE_ALONE,
     NOISE_STAIRS,
@@ -18,9 +17,10 @@ from scenarios.paper.studies import (
     STEP_LAW,
     WALK,
     ZMP_ONLY,
+    Study,
 )
-from scenarios.paper.tables import PERCENT, error_norms, feasible, preview_gain, survived
-from scenarios.paper.text import number, spread_text
+from surefoot.scenarios.paper.tables import PERCENT, error_norms, feasible, preview_gain, survived
+from surefoot.scenarios.paper.text import number, spread_text
 
 BETTER = 1.1
 """Ratio from which a ZMP error counts as lower."""

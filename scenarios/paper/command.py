@@ -5,14 +5,13 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from scenarios.paper.claim import Verdict
-from scenarios.paper.page import judged, page, tally
-from scenarios.paper.progress import ExperimentBar
-from scenarios.paper.results import Results
-from scenarios.paper.runner import run_all
-from scenarios.paper.studies import experiments
-from scenarios.replay.files import write_whole
-from scenarios.run import made_folder
+from surefoot.scenarios.loop.run import made_folder
+from surefoot.scenarios.paper.claim import Verdict
+from surefoot.scenarios.paper.page import judged, page, tally
+from surefoot.scenarios.paper.results import Results
+from surefoot.scenarios.paper.runner import ExperimentBar, run_all
+from surefoot.scenarios.paper.studies import experiments
+from surefoot.scenarios.show.replay.content import write_whole
 
 PAGE_NAME, NUMBERS_NAME, RUNS_NAME = "paper.html", "paper.json", "runs"
 

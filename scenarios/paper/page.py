@@ -1,21 +1,50 @@
-"""The page: the claims, the tables and the figures of a set of outcomes, as one file that needs no network."""
+"""What the page says beside its numbers, section by section; the words themselves are in ``sections.yaml``."""
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 
-from scenarios.paper import studies
-from scenarios.paper.claim import Claim, Finding, Verdict
-from scenarios.paper.claims import CLAIMS
-from scenarios.paper.energy import ENERGY_CLAIMS
-from scenarios.paper.experiment import Study
-from scenarios.paper.figures.grid import svg
-from scenarios.paper.figures.plates import PLATES, Plate
-from scenarios.paper.prose import Section, sections
-from scenarios.paper.provenance import provenance, runs_table
-from scenarios.paper.results import Results
-from scenarios.paper.tables import balance_table, knee_table, shove_table
-from scenarios.paper.text import Table, escape, listing, paragraphs, table_html, tag
+import yaml
+
+from surefoot.scenarios.paper import studies
+from surefoot.scenarios.paper.claim import Claim, Finding, Verdict
+from surefoot.scenarios.paper.claims import CLAIMS
+from surefoot.scenarios.paper.energy import ENERGY_CLAIMS
+from surefoot.scenarios.paper.figures import PLATES, Plate
+from surefoot.scenarios.paper.grid import svg
+from surefoot.scenarios.paper.results import Results
+from surefoot.scenarios.paper.runner import provenance, runs_table
+from surefoot.scenarios.paper.studies import Study
+from surefoot.scenarios.paper.tables import balance_table, knee_table, shove_table
+from surefoot.scenarios.paper.text import Table, escape, listing, paragraphs, table_html, tag
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A section of the page.
+
+    Attributes:
+        name: its anchor.
+        title: its heading.
+        text: paragraphs, as HTML.
+        points: entries of a list below them, as HTML.
+    """
+
+    name: str
+    title: str
+    text: tuple[str, ...]
+    points: tuple[str, ...] = ()
+
+
+def sections() -> tuple[Section, ...]:
+    """All sections in the order of the page."""
+    entries = yaml.safe_load((files(__package__) / "sections.yaml").read_text(encoding="utf-8"))
+    return tuple(
+        Section(entry["name"], entry["title"], tuple(entry["text"]), tuple(entry.get("points", ())))
+        for entry in entries
+    )
+
 
 TITLE = "A Robust Closed-Loop Biped Locomotion Planner Based on Time Varying Model Predictive Control, measured"
 

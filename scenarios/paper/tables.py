@@ -4,18 +4,18 @@ import math
 import statistics
 from collections.abc import Iterable
 
-from scenarios.paper.experiment import World
-from scenarios.paper.results import Results, Sample, Spread
-from scenarios.paper.studies import (
+from surefoot.scenarios.paper.results import Results, Sample, Spread
+from surefoot.scenarios.paper.studies import (
     ADAPTATIONS,
     GAITS,
     KNEES,
     SHOVE_DIRECTIONS,
     SHOVE_IMPULSES,
+    World,
     knee_study,
     shove,
 )
-from scenarios.paper.text import MISSING, Cell, Table, number, spread_cell, words
+from surefoot.scenarios.paper.text import MISSING, Cell, Table, number, spread_cell, words
 
 MM = 1e3
 PERCENT = 1e2

@@ -4,7 +4,7 @@ import html
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from scenarios.paper.results import Spread
+from surefoot.scenarios.paper.results import Spread
 
 MISSING = "–"
 """Stands where there is no number."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from scenarios import catalogue
+from surefoot.scenarios import catalogue
 
 pytestmark = pytest.mark.unit
 
@@ -35,7 +35,7 @@ def test_code_is_there(name):
 
 
 def test_a_name_that_is_not_there_is_found_out():
-    assert not exists("planner.dcm.no_such_function")
+    assert not exists("planner.model.dcm.no_such_function")
     assert not exists("planner.no_such_module")
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.file.load import read_scenario
-from scenarios.file.robots import RegisteredRobots
+from surefoot.scenarios.setup.load import read_scenario
+from surefoot.scenarios.setup.robot import RegisteredRobots
 
 pytestmark = pytest.mark.unit
 

@@ -1,6 +1,6 @@
 import pytest
 
-from models.actuator import Actuator, Motor
+from surefoot.models.actuator import Actuator, Motor
 
 pytestmark = pytest.mark.unit
 

@@ -5,11 +5,11 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from models.belief import with_com_raised, with_mass_scaled
-from models.consistency import EnginePair
-from models.pinocchio import pinocchio_model
-from models.registry import describe
-from models.types import RobotError, RobotOptions
+from surefoot.models.belief import with_com_raised, with_mass_scaled
+from surefoot.models.consistency import EnginePair
+from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotError, RobotOptions
 
 pytestmark = pytest.mark.unit
 

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from models.consistency import EnginePair
-from models.pinocchio import pinocchio_model
-from models.registry import describe
-from models.types import RobotDescription, RobotError, RobotOptions
+from surefoot.models.consistency import EnginePair
+from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotDescription, RobotError, RobotOptions
 
 pytestmark = pytest.mark.unit
 

@@ -3,10 +3,10 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from models import convert
-from models.consistency import EnginePair
-from models.registry import describe
-from models.types import RobotOptions
+from surefoot.models import convert
+from surefoot.models.consistency import EnginePair
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
 
 pytestmark = pytest.mark.unit
 

@@ -4,8 +4,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from models.registry import describe
-from models.types import RobotDescription, RobotOptions
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotDescription, RobotOptions
 
 pytestmark = pytest.mark.unit
 

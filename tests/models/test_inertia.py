@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from models import inertia
+from surefoot.models import inertia
 
 pytestmark = pytest.mark.unit
 

@@ -1,7 +1,7 @@
 import pytest
 
-from models.registry import UnknownRobotError, describe, robot_names
-from models.types import RobotError, RobotOptions
+from surefoot.models.registry import UnknownRobotError, describe, robot_names
+from surefoot.models.types import RobotError, RobotOptions
 
 pytestmark = pytest.mark.unit
 

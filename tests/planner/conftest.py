@@ -3,10 +3,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from planner.gait import GaitParameters
-from planner.pendulum_walk import PendulumTrace, walk_pendulum
-from planner.planner import WalkingPlanner
-from planner.types import FeetState
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import PendulumTrace, walk_pendulum
+from surefoot.planner.types import FeetState
+from surefoot.planner.walk.gait import GaitParameters
 
 
 def stand(width: float = 0.2, origin: tuple[float, float] = (0.0, 0.0), yaw: float = 0.0) -> FeetState:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from planner.cart_table import CartTable
+from surefoot.planner.plants import CartTable
 
 pytestmark = pytest.mark.unit
 

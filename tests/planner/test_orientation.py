@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from planner.orientation import sole_angles, sole_rates, sole_rotation
-from planner.parameters import PlannerParameters
-from planner.swing import SwingTimes, start_swing
-from planner.types import Foot
+from surefoot.planner.geometry import sole_angles, sole_rates, sole_rotation
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.trajectory import SwingTimes, start_swing
+from surefoot.planner.types import Foot
 
 pytestmark = pytest.mark.unit
 

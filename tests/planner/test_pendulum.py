@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from planner.pendulum import Pendulum, PointPush, pushing_force
+from surefoot.planner.plants import Pendulum, PointPush, pushing_force
 
 pytestmark = pytest.mark.unit
 

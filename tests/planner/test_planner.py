@@ -3,14 +3,13 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from planner.frames import frame_rotation
-from planner.gait import GaitParameters
-from planner.parameters import PlannerParameters, StepAdaptation
-from planner.pendulum import PointPush
-from planner.pendulum_walk import walk_pendulum
-from planner.planner import WalkingPlanner
-from planner.terrain import Box, Terrain
-from planner.types import CentroidalState, FeetState, Foot, PhaseKind, SolverStatus
+from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.ground.terrain import Box, Terrain
+from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import PointPush, walk_pendulum
+from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, SolverStatus
+from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 

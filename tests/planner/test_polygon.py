@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from planner.polygon import convex_hull, nearest_point, signed_distance, sole_corners
-from planner.types import Foot, Footstep
+from surefoot.planner.geometry import convex_hull, nearest_point, signed_distance, sole_corners
+from surefoot.planner.types import Foot, Footstep
 
 pytestmark = pytest.mark.unit
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from planner.sampling import PlanSampler
-from planner.types import PhaseKind
+from surefoot.planner.plan import PlanSampler
+from surefoot.planner.types import PhaseKind
 
 pytestmark = pytest.mark.unit
 

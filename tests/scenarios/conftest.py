@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenarios.file.robots import RobotFacts
-from scenarios.file.schema import Scenario
-from scenarios.log import LogWriter, channels
-from scenarios.progress import End, Progress
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.loop.skeleton import End, Progress
+from surefoot.scenarios.record import channels
+from surefoot.scenarios.setup.robot import RobotFacts
 
 JOINTS = ("left_hip", "left_knee", "right_hip", "right_knee")
 SIZES = channels.Sizes(nj=4, nq=11, nv=10, horizon=50)

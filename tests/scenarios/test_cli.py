@@ -6,10 +6,11 @@ import sys
 
 import pytest
 
-from scenarios import cli, run
-from scenarios.errors import SetupError
-from scenarios.file.robots import RegisteredRobots
-from scenarios.log import read
+from surefoot.scenarios import cli
+from surefoot.scenarios.errors import SetupError
+from surefoot.scenarios.log import read
+from surefoot.scenarios.loop import run
+from surefoot.scenarios.setup.robot import RegisteredRobots
 
 pytestmark = pytest.mark.unit
 
@@ -112,7 +113,7 @@ def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("scenarios.file.load.load_scenario", interrupt)
+    monkeypatch.setattr("surefoot.scenarios.setup.load.load_scenario", interrupt)
     code, _, err = surefoot("run", scenario)
     assert code in (1, 130)
     assert "Traceback" not in err
@@ -181,6 +182,6 @@ def test_inspect_a_topic(surefoot, scenario, tmp_path):
 
 
 def test_help_needs_no_heavy_package():
-    code = "import sys; import scenarios.cli; print(*(m for m in ('numpy', 'mujoco', 'pydantic') if m in sys.modules))"
+    code = "import sys; import surefoot.scenarios.cli; print(*(m for m in ('numpy', 'mujoco', 'pydantic') if m in sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == ""

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from sim.world import World
+from surefoot.sim.world import World
 
 
 def _standing_configuration(world: World) -> np.ndarray:

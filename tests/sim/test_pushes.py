@@ -2,12 +2,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from models.registry import describe
-from models.types import RobotOptions
-from planner.terrain import flat
-from sim.errors import WorldError
-from sim.pushes import Push, PushSchedule
-from sim.world import World
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.planner.ground.terrain import flat
+from surefoot.sim.errors import WorldError
+from surefoot.sim.pushes import Push, PushSchedule
+from surefoot.sim.world import World
 
 pytestmark = pytest.mark.unit
 

@@ -4,13 +4,13 @@ import sys
 import numpy as np
 import pytest
 
-from models.registry import describe
-from models.types import RobotOptions
-from planner.terrain import flat
-from sim import gl
-from sim.marks import Mark
-from sim.render import Camera, Quality, render_frames
-from sim.world import World
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.planner.ground.terrain import flat
+from surefoot.sim import gl
+from surefoot.sim.marks import Mark
+from surefoot.sim.render import Camera, Quality, render_frames
+from surefoot.sim.world import World
 
 pytestmark = pytest.mark.unit
 DRAFT = Quality(shadows=False, reflections=False, samples=0)

@@ -2,10 +2,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from models.registry import describe
-from models.types import RobotOptions
-from planner.terrain import Box, Terrain, flat
-from sim.world import World
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.planner.ground.terrain import Box, Terrain, flat
+from surefoot.sim.world import World
 
 pytestmark = pytest.mark.unit
 

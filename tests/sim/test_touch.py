@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from models.convert import pinocchio_to_mujoco
-from models.registry import describe
-from models.types import RobotDescription, RobotOptions
-from planner.terrain import flat
-from sim.world import World
+from surefoot.models.convert import pinocchio_to_mujoco
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotDescription, RobotOptions
+from surefoot.planner.ground.terrain import flat
+from surefoot.sim.world import World
 
 pytestmark = pytest.mark.unit
 

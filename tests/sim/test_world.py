@@ -3,13 +3,13 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from models.pinocchio import pinocchio_model
-from models.registry import describe
-from models.types import RobotOptions
-from planner.terrain import Box, Terrain, flat
-from sim.errors import SimulationDiverged
-from sim.pushes import Push
-from sim.world import World
+from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.planner.ground.terrain import Box, Terrain, flat
+from surefoot.sim.errors import SimulationDiverged
+from surefoot.sim.pushes import Push
+from surefoot.sim.world import World
 
 pytestmark = pytest.mark.unit
 

@@ -5,15 +5,15 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from models.pinocchio import pinocchio_model
-from models.registry import describe
-from models.types import RobotOptions
-from wbc.controller import Sole, WbcParameters, WholeBodyController
-from wbc.ik import PostureIk, PostureTarget
-from wbc.limits import JointLimits
-from wbc.model import BodyFrames
-from wbc.qp import QpData
-from wbc.types import FootSensing, RobotState, WbcReference
+from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.wbc.controller import Sole, WbcParameters, WholeBodyController
+from surefoot.wbc.ik import PostureIk, PostureTarget
+from surefoot.wbc.limits import JointLimits
+from surefoot.wbc.model import BodyFrames
+from surefoot.wbc.qp import QpData
+from surefoot.wbc.types import FootSensing, RobotState, WbcReference
 
 PERIOD = 0.002
 HALF_SOLE = 0.0375

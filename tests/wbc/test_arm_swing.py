@@ -2,10 +2,10 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from wbc.arm_swing import ArmSwing, shoulder_pitches
-from wbc.controller import WbcParameters
-from wbc.model import RobotTerms
-from wbc.types import FootSensing, RobotState
+from surefoot.wbc.arm_swing import ArmSwing, shoulder_pitches
+from surefoot.wbc.controller import WbcParameters
+from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.types import FootSensing, RobotState
 
 pytestmark = pytest.mark.unit
 

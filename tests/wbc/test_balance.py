@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from wbc.balance import BalanceGains, SupportRegion, com_acceleration
+from surefoot.wbc.balance import BalanceGains, SupportRegion, com_acceleration
 
 pytestmark = pytest.mark.unit
 

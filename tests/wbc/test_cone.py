@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import qpsolvers
 
-from wbc.cone import CONE_ROWS, wrench_cone
+from surefoot.wbc.cone import CONE_ROWS, wrench_cone
 
 pytestmark = pytest.mark.unit
 

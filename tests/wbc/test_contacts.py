@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wbc.contacts import ContactParameters, ContactSchedule
-from wbc.types import FootSensing, WbcReference
+from surefoot.wbc.contacts import ContactParameters, ContactSchedule
+from surefoot.wbc.types import FootSensing, WbcReference
 
 pytestmark = pytest.mark.unit
 

@@ -6,9 +6,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from wbc.cone import wrench_cone
-from wbc.controller import WbcParameters
-from wbc.types import GRAVITY, FootSensing, RobotState, SolveStatus
+from surefoot.wbc.cone import wrench_cone
+from surefoot.wbc.controller import WbcParameters
+from surefoot.wbc.types import GRAVITY, FootSensing, RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from wbc.qp import EQUALITY_ROWS
-from wbc.types import RobotState, SolveStatus
+from surefoot.wbc.qp import EQUALITY_ROWS
+from surefoot.wbc.types import RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit
 

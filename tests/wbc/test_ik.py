@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from wbc.ik import PostureTarget
+from surefoot.wbc.ik import PostureTarget
 
 pytestmark = pytest.mark.unit
 

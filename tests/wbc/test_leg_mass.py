@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from wbc.leg_mass import leg_mass
+from surefoot.wbc.leg_mass import leg_mass
 
 pytestmark = pytest.mark.unit
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from wbc.limits import AccelerationBounds, JointLimits
+from surefoot.wbc.limits import AccelerationBounds, JointLimits
 
 pytestmark = pytest.mark.unit
 

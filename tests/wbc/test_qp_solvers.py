@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from wbc.qp import EQUALITY_ROWS, UNBOUNDED, QpLayout, allocate
-from wbc.solvers import equalities_only, make_solver
+from surefoot.wbc.qp import EQUALITY_ROWS, UNBOUNDED, QpLayout, allocate
+from surefoot.wbc.solvers import equalities_only, make_solver
 
 pytestmark = pytest.mark.unit
 

@@ -4,12 +4,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from models.pinocchio import limb_shapes
-from models.registry import describe
-from models.types import RobotOptions
-from wbc.controller import WbcParameters
-from wbc.separation import Separation, SeparationParameters
-from wbc.types import FootSensing, RobotState, SolveStatus
+from surefoot.models.pinocchio import limb_shapes
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.wbc.controller import WbcParameters
+from surefoot.wbc.separation import Separation, SeparationParameters
+from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit
 

@@ -2,11 +2,11 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from models.pinocchio import pinocchio_model
-from models.registry import describe
-from models.types import RobotOptions
-from wbc.model import BodyFrames
-from wbc.statics import standing_torque
+from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.wbc.model import BodyFrames
+from surefoot.wbc.statics import standing_torque
 
 pytestmark = pytest.mark.unit
 

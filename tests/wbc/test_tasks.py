@@ -5,8 +5,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from wbc.controller import WbcParameters
-from wbc.tasks import ANGULAR, LINEAR, PELVIS, SWING, TORSO, TaskWeights
+from surefoot.wbc.controller import WbcParameters
+from surefoot.wbc.tasks import ANGULAR, LINEAR, PELVIS, SWING, TORSO, TaskWeights
 
 pytestmark = pytest.mark.unit
 

@@ -2,7 +2,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.model import BodyFrames, RobotTerms
 
 pytestmark = pytest.mark.unit
 

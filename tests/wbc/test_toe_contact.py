@@ -4,12 +4,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from wbc.balance import SupportRegion
-from wbc.cone import wrench_cone
-from wbc.contacts import ContactParameters, ContactSchedule
-from wbc.controller import TOE_DEPTH
-from wbc.model import RobotTerms
-from wbc.types import FootSensing, RobotState, SolveStatus
+from surefoot.wbc.balance import SupportRegion
+from surefoot.wbc.cone import wrench_cone
+from surefoot.wbc.contacts import ContactParameters, ContactSchedule
+from surefoot.wbc.controller import TOE_DEPTH
+from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit
 

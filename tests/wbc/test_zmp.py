@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from wbc.zmp import centre_of_pressure, measured_zmp
+from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
 
 pytestmark = pytest.mark.unit
 

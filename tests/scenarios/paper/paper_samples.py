@@ -1,8 +1,7 @@
 """Outcomes with chosen metrics, for the rules and tables of the page."""
 
-from scenarios.paper.experiment import Experiment
-from scenarios.paper.outcome import Outcome
-from scenarios.paper.results import Results
+from surefoot.scenarios.paper.results import Outcome, Results
+from surefoot.scenarios.paper.studies import Experiment
 
 SOUND = {
     "fell": False,

@@ -3,11 +3,11 @@
 import pytest
 from paper_samples import FALL, outcome, results
 
-from scenarios.paper import studies
-from scenarios.paper.claim import any_of, grade, stable
-from scenarios.paper.claims import CLAIMS
-from scenarios.paper.energy import ENERGY_CLAIMS
-from scenarios.paper.studies import (
+from surefoot.scenarios.paper import studies
+from surefoot.scenarios.paper.claim import any_of, grade, stable
+from surefoot.scenarios.paper.claims import CLAIMS
+from surefoot.scenarios.paper.energy import ENERGY_CLAIMS
+from surefoot.scenarios.paper.studies import (
     HEIGHTS,
     NOISE_ALONE,
     NOISE_WALK,

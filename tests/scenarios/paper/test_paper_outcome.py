@@ -2,16 +2,15 @@
 
 import pytest
 
-from scenarios.file.load import load_scenario
-from scenarios.log import read
-from scenarios.paper import outcome as module
-from scenarios.paper.experiment import Experiment, Study
-from scenarios.paper.outcome import execute, is_done
-from scenarios.paper.studies import experiments
-from scenarios.progress import End
-from scenarios.provenance import source_digest
-from scenarios.run import run_scenario
-from scenarios.verdict import judge
+from surefoot.scenarios.judge.verdict import judge
+from surefoot.scenarios.log import read
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.loop.skeleton import End
+from surefoot.scenarios.paper import results as module
+from surefoot.scenarios.paper.results import execute, is_done
+from surefoot.scenarios.paper.studies import Experiment, Study, experiments
+from surefoot.scenarios.record.provenance import source_digest
+from surefoot.scenarios.setup.load import load_scenario
 
 pytestmark = pytest.mark.unit
 
@@ -93,11 +92,11 @@ def test_every_experiment_of_the_page_is_a_scenario_that_can_run():
 
 
 def test_digest_tells_code_apart_but_not_what_only_reads_logs(tmp_path):
-    for name in ("planner/a.py", "scenarios/report/b.py"):
+    for name in ("planner/a.py", "scenarios/show/b.py"):
         (tmp_path / name).parent.mkdir(parents=True)
         (tmp_path / name).write_text("1")
     first = source_digest(tmp_path)
-    (tmp_path / "scenarios/report/b.py").write_text("2")
+    (tmp_path / "scenarios/show/b.py").write_text("2")
     assert source_digest(tmp_path) == first
     (tmp_path / "planner/a.py").write_text("2")
     assert source_digest(tmp_path) != first

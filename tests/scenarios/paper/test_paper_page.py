@@ -9,18 +9,16 @@ from html.parser import HTMLParser
 import pytest
 from paper_samples import FALL, outcome, results
 
-from scenarios import cli
-from scenarios.log import read
-from scenarios.paper import command, page, runner
-from scenarios.paper.experiment import Experiment, Study
-from scenarios.paper.figures.grid import Column, svg
-from scenarios.paper.figures.plates import JERKS, POSITIONS, grid
-from scenarios.paper.outcome import execute
-from scenarios.paper.results import Spread
-from scenarios.paper.studies import SHOVES, WALK
-from scenarios.paper.tables import balance_table, feasible, shove_table
-from scenarios.paper.text import number, spread_cell, spread_text, table_html
-from scenarios.verdict import judge
+from surefoot.scenarios import cli
+from surefoot.scenarios.judge.verdict import judge
+from surefoot.scenarios.log import read
+from surefoot.scenarios.paper import command, page, runner
+from surefoot.scenarios.paper.figures import JERKS, POSITIONS, grid
+from surefoot.scenarios.paper.grid import Column, svg
+from surefoot.scenarios.paper.results import Spread, execute
+from surefoot.scenarios.paper.studies import SHOVES, WALK, Experiment, Study
+from surefoot.scenarios.paper.tables import balance_table, feasible, shove_table
+from surefoot.scenarios.paper.text import number, spread_cell, spread_text, table_html
 
 SHORT = ("gait.steps=1", "gait.single_support=0.6", "gait.initial_stand=0.2", "rates.control=100")
 SHORT_WALK = Study("short", "Short walk", "paper-walk", SHORT, "")

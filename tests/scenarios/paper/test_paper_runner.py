@@ -6,9 +6,9 @@ from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
-from scenarios.paper.experiment import Experiment, Study
-from scenarios.paper.outcome import Outcome
-from scenarios.paper.runner import InterruptedRunsError, process, run_all
+from surefoot.scenarios.paper.results import Outcome
+from surefoot.scenarios.paper.runner import InterruptedRunsError, process, run_all
+from surefoot.scenarios.paper.studies import Experiment, Study
 
 pytestmark = pytest.mark.unit
 

@@ -1,0 +1,147 @@
+"""Planar frames, the orientation of soles, convex polygons on the ground, and quintic curves.
+
+The sole's frame is turned by yaw about the vertical, then by pitch about its new lateral axis, then by roll about its
+new forward axis: R = R_z(yaw) R_y(pitch) R_x(roll). Yaw is the heading of its forward axis seen from above, whatever
+the tilt; uphill, pitch is negative.
+"""
+
+import math
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from surefoot.planner.types import Array, Footstep
+
+
+def frame_rotation(yaw: float) -> Array:
+    """Rotation from a frame of that heading to the world, shape (2, 2)."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    return np.array([[c, -s], [s, c]])
+
+
+def wrap_angle(angle: float) -> float:
+    """The same angle in [-pi, pi) [rad]."""
+    return (angle + math.pi) % (2.0 * math.pi) - math.pi
+
+
+def sole_angles(normal: Array, yaw: float) -> tuple[float, float]:
+    """Pitch and roll of a sole of a heading that lies flat on ground [rad].
+
+    Args:
+        normal: unit normal of the ground, upwards, shape (3,) [-].
+        yaw: heading [rad].
+    """
+    x, y, z = normal.tolist()
+    c, s = math.cos(yaw), math.sin(yaw)
+    return math.atan2(c * x + s * y, z), math.asin(s * x - c * y)
+
+
+def sole_pose(position: Array, yaw: float, normal: Array) -> Array:
+    """Position, yaw, pitch and roll of a sole flat on ground of a normal, shape (6,) [m, rad]."""
+    return np.array([*position.tolist(), yaw, *sole_angles(normal, yaw)])
+
+
+def sole_rotation(yaw: float, pitch: float, roll: float) -> Array:
+    """Rotation from the sole's frame to the world, shape (3, 3)."""
+    (cy, cp, cr), (sy, sp, sr) = ((f(yaw), f(pitch), f(roll)) for f in (math.cos, math.sin))
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def sole_rates(angles: Array, rates: Array, accelerations: Array) -> tuple[Array, Array]:
+    """Angular velocity and acceleration of a sole in the world frame, shape (3,) each [rad/s, rad/s^2].
+
+    With the axes z of the world, j = (-sin yaw, cos yaw, 0) of the pitch and k of the roll, the sole's forward axis,
+    ω = yaw' z + pitch' j + roll' k.
+
+    Args:
+        angles: yaw, pitch, roll, shape (3,) [rad].
+        rates: their rates, shape (3,) [rad/s].
+        accelerations: their second derivatives, shape (3,) [rad/s^2].
+    """
+    yaw, pitch, _ = angles.tolist()
+    (turn, tilt, lean), (turn2, tilt2, lean2) = rates.tolist(), accelerations.tolist()
+    c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+    velocity = (lean * cp * c - tilt * s, lean * cp * s + tilt * c, turn - lean * sp)
+    # Axis j turns with yaw', axis k with yaw' and pitch'.
+    across, along = tilt2 + lean * turn * cp, lean2 * cp - lean * tilt * sp - tilt * turn
+    return np.array(velocity), np.array(
+        (along * c - across * s, along * s + across * c, turn2 - lean2 * sp - lean * tilt * cp)
+    )
+
+
+def sole_corners(footstep: Footstep, half_size: Array) -> Array:
+    """Corners of a sole seen from above, anticlockwise, shape (4, 2) [m].
+
+    Args:
+        footstep: where the sole stands.
+        half_size: half of its length and width, shape (2,) [m].
+    """
+    signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+    rotation = sole_rotation(footstep.yaw, *sole_angles(footstep.normal, footstep.yaw))
+    return np.asarray(footstep.position[:2] + (signs * half_size) @ rotation[:2, :2].T)
+
+
+def convex_hull(points: Array) -> Array:
+    """Vertices of the convex hull, anticlockwise, shape (v, 2).
+
+    Args:
+        points: shape (n, 2) [m], at least three that are not on a line.
+    """
+    return np.asarray(points[ConvexHull(points).vertices])
+
+
+def signed_distance(polygon: Array, point: Array) -> float:
+    """Distance to the nearest edge's line, positive inside [m]; outside it is a lower bound of the true distance."""
+    edge = np.roll(polygon, -1, axis=0) - polygon
+    offset = point - polygon
+    return float(np.min((edge[:, 0] * offset[:, 1] - edge[:, 1] * offset[:, 0]) / np.hypot(edge[:, 0], edge[:, 1])))
+
+
+def nearest_point(polygon: Array, point: Array) -> Array:
+    """The point of a convex anticlockwise polygon nearest to another one, shape (2,) [m]."""
+    if signed_distance(polygon, point) >= 0.0:
+        return point
+    edge = np.roll(polygon, -1, axis=0) - polygon
+    along = np.einsum("ij,ij->i", point - polygon, edge) / np.einsum("ij,ij->i", edge, edge)
+    candidates = polygon + np.clip(along, 0.0, 1.0)[:, None] * edge
+    return np.asarray(candidates[np.argmin(np.sum((candidates - point) ** 2, axis=1))])
+
+
+_BINOMIAL = np.array([[math.comb(i, k) for i in range(6)] for k in range(6)], dtype=float)
+_POWER = np.maximum(np.arange(6)[None, :] - np.arange(6)[:, None], 0)
+_EXPONENT = tuple(range(6))
+
+
+def quintic(start: Array, end: Array, duration: float) -> Array:
+    """Quintic between two states.
+
+    Args:
+        start: position, velocity, acceleration at time 0, shape (3, k).
+        end: the same at time `duration`, shape (3, k).
+        duration: [s].
+
+    Returns:
+        Coefficients of 1, t, ..., t^5, shape (6, k).
+    """
+    t = duration
+    gap = end[0] - start[0] - t * start[1] - 0.5 * t * t * start[2]
+    speed = t * (end[1] - start[1] - t * start[2])
+    bend = t * t * (end[2] - start[2])
+    coefficients = np.empty((6, start.shape[1]))
+    coefficients[0], coefficients[1], coefficients[2] = start[0], start[1], 0.5 * start[2]
+    coefficients[3] = (10.0 * gap - 4.0 * speed + 0.5 * bend) / t**3
+    coefficients[4] = (-15.0 * gap + 7.0 * speed - bend) / t**4
+    coefficients[5] = (6.0 * gap - 3.0 * speed + 0.5 * bend) / t**5
+    return coefficients
+
+
+def shifted(coefficients: Array, time: float) -> Array:
+    """The same polynomials with their local time starting at `time`."""
+    powers = np.array([time**i for i in _EXPONENT])
+    return np.asarray((_BINOMIAL * powers[_POWER]) @ coefficients)

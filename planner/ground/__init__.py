@@ -1,0 +1,1 @@
+"""The ground: terrain as data, and the kinds of it that are built."""

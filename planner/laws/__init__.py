@@ -1,0 +1,1 @@
+"""Laws of motion: what decides jerk and footsteps of a tick, and the profiles made of them."""

@@ -1,0 +1,222 @@
+"""Soft TVMPC with the footsteps as variables of the QP (Herdt et al., 2010): profiles `default` and `lti`."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from surefoot.planner.laws.constraints import Constraints, generate_constraints
+from surefoot.planner.laws.law import Motion, MotionProblem, Qp, solve
+from surefoot.planner.model.dcm import NominalMotion, jerk_range, no_motion, nominal_motion
+from surefoot.planner.model.jerk import Prediction, block_moves, predict, zmp_response
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.references.leg_offset import softening
+from surefoot.planner.references.zmp_reference import ZmpReference
+from surefoot.planner.types import GRAVITY, Array, SolverStatus
+
+_EXTRA = 4
+"""Variables after the moves: two footstep shifts, ZMP slack, terminal slack."""
+
+
+def build_problem(
+    parameters: PlannerParameters,
+    prediction: Prediction,
+    state: Array,
+    stiffness: Array,
+    reference: ZmpReference,
+    constraints: Constraints,
+    last_jerk: Array,
+    move_range: tuple[Array, Array] | None = None,
+) -> tuple[Qp, Qp]:
+    """The QPs of the plan frame's x and y axis; they share P and G.
+
+    Variables per axis: m moves of the jerk [m/s^3], shifts of the next two footsteps [m], ZMP slack [m], terminal slack
+    [m].
+
+    Cost (eq. costfunction with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks.
+    The terminal cost is what the best linear feedback would still spend on the squared ZMP error after the horizon;
+    without it the optimum prefers a constant ZMP error of millimetres to paying once for its correction.
+    All constraints on the motion are soft (the paper's hard ones are infeasible under noise), so that the problem
+    always has a solution.
+
+    Args:
+        parameters: planner parameters.
+        prediction: cached prediction matrices.
+        state: CoM position, velocity, acceleration per axis, shape (2, 3).
+        stiffness: λ at samples 0..N, shape (N + 1,).
+        reference: ZMP reference, at least N + 1 samples.
+        constraints: bounds of this tick.
+        last_jerk: jerk applied now, shape (2,) [m/s^3]; enters only with a finite rate limit.
+        move_range: bounds of the moves, shape (axis, m) each [m/s^3]; the jerk limit on both sides by default.
+    """
+    errors = _linear_errors(prediction, state, stiffness, reference, constraints)
+    m = prediction.basis.shape[1]
+    P, q = _cost(parameters, errors, m)
+    G, h = _inequalities(constraints, errors, m)
+    if np.isfinite(parameters.jerk_rate_limit):
+        G, h = _with_rate_limit(G, h, m, parameters.jerk_rate_limit, last_jerk)
+    lower, upper = _bounds(constraints, m, move_range or (-parameters.jerk_limit, parameters.jerk_limit))
+    x, y = (Qp(P, q[i], G, h[i], lower[i], upper[i]) for i in range(2))
+    return x, y
+
+
+@dataclass(frozen=True, slots=True)
+class _Errors:
+    """ZMP error `zmp_rows @ z + zmp` (N, 2) and terminal DCM error `end_row @ z + end` (2,) in moves and shifts z."""
+
+    zmp_rows: Array
+    zmp: Array
+    end_row: Array
+    end: Array
+
+
+def _linear_errors(
+    prediction: Prediction, state: Array, stiffness: Array, reference: ZmpReference, constraints: Constraints
+) -> _Errors:
+    n = prediction.basis.shape[0]
+    moves = zmp_response(prediction.moves[:, 1:], stiffness[1:])
+    free = zmp_response(prediction.state[:, 1:] @ state.T, stiffness[1:])
+    end_state = prediction.state[0, n] + prediction.state[1, n] / constraints.terminal_omega
+    end_moves = prediction.moves[0, n] + prediction.moves[1, n] / constraints.terminal_omega
+    return _Errors(
+        zmp_rows=np.concatenate((moves, -reference.gain[1 : n + 1]), axis=1),
+        zmp=free - reference.point[1 : n + 1],
+        end_row=np.concatenate((end_moves, -constraints.terminal_gain)),
+        end=state @ end_state - constraints.terminal_center,
+    )
+
+
+def _cost(parameters: PlannerParameters, errors: _Errors, m: int) -> tuple[Array, Array]:
+    weighted_end = parameters.terminal_weight * errors.end_row
+    P = np.zeros((m + _EXTRA, m + _EXTRA))
+    P[: m + 2, : m + 2] = 2.0 * (errors.zmp_rows.T @ errors.zmp_rows + np.outer(weighted_end, errors.end_row))
+    P.flat[:: m + _EXTRA + 1] += _diagonal_cost(parameters, m)
+    q = np.empty((2, m + _EXTRA))
+    q[:, : m + 2] = 2.0 * (errors.zmp.T @ errors.zmp_rows + np.outer(errors.end, weighted_end))
+    q[:, m + 2], q[:, m + 3] = parameters.zmp_slack[1], parameters.terminal_slack[1]
+    return P, q
+
+
+def _inequalities(constraints: Constraints, errors: _Errors, m: int) -> tuple[Array, Array]:
+    """Rows: ZMP box above and below at samples 1..N, terminal DCM bound above and below."""
+    n = len(errors.zmp)
+    G = np.zeros((2 * n + 2, m + _EXTRA))
+    G[:n, : m + 2] = errors.zmp_rows
+    G[n : 2 * n, : m + 2] = -errors.zmp_rows
+    G[: 2 * n, m + 2] = -1.0
+    G[2 * n, : m + 2] = errors.end_row
+    G[2 * n + 1, : m + 2] = -errors.end_row
+    G[2 * n :, m + 3] = -1.0
+    h = np.empty((2, 2 * n + 2))
+    h[:, :n] = (constraints.half_size - errors.zmp).T
+    h[:, n : 2 * n] = (constraints.half_size + errors.zmp).T
+    h[:, 2 * n] = constraints.terminal_half_size - errors.end
+    h[:, 2 * n + 1] = constraints.terminal_half_size + errors.end
+    return G, h
+
+
+def _diagonal_cost(parameters: PlannerParameters, m: int) -> Array:
+    cost = np.full(m + _EXTRA, 2.0 * parameters.jerk_weight)
+    cost[m : m + 2] = 2.0 * parameters.step_weight
+    cost[m + 2], cost[m + 3] = 2.0 * parameters.zmp_slack[0], 2.0 * parameters.terminal_slack[0]
+    return cost
+
+
+def _bounds(constraints: Constraints, m: int, moves: tuple[Array, Array] | tuple[float, float]) -> tuple[Array, Array]:
+    lower, upper = np.zeros((2, m + _EXTRA)), np.full((2, m + _EXTRA), np.inf)
+    lower[:, :m], upper[:, :m] = moves
+    lower[:, m : m + 2], upper[:, m : m + 2] = constraints.step_lower.T, constraints.step_upper.T
+    return lower, upper
+
+
+def _with_rate_limit(G: Array, h: Array, m: int, limit: float, last_jerk: Array) -> tuple[Array, Array]:
+    """Bound the change of the jerk from the last tick and from block to block (the paper's ±0.1, per sample)."""
+    change = np.eye(m) - np.eye(m, k=-1)
+    rows = np.zeros((2 * m, G.shape[1]))
+    rows[:m, :m], rows[m:, :m] = change, -change
+    bound = np.full((2, 2 * m), limit)
+    bound[:, 0] += last_jerk
+    bound[:, m] -= last_jerk
+    return np.concatenate((G, rows)), np.concatenate((h, bound), axis=1)
+
+
+def solve_problem(qps: tuple[Qp, Qp], prediction: Prediction, solvers: tuple[str, str], fallback: Array) -> Motion:
+    """Solve both axes; an axis that no solver solves takes the fallback jerk and does not shift its footsteps.
+
+    Args:
+        qps: the QPs of `planner.laws.footstep_tvmpc`.
+        prediction: holds the basis of the moves.
+        solvers: qpsolvers names, in the order to try.
+        fallback: previous jerk sequence shifted by one sample, shape (N, 2) [m/s^3].
+    """
+    m = prediction.basis.shape[1]
+    jerk, shifts, slack = fallback.copy(), np.zeros((2, 2)), np.full((2, 2), np.nan)
+    worst = SolverStatus.SOLVED
+    for axis, qp in enumerate(qps):
+        solution = solve(qp, solvers)
+        worst = max(worst, SolverStatus(solution.attempt))
+        if solution.z is not None:
+            jerk[:, axis] = prediction.basis @ solution.z[:m]
+            shifts[:, axis], slack[:, axis] = solution.z[m : m + 2], solution.z[m + 2 :]
+    return Motion(jerk, shifts, slack[0], slack[1], worst, qps=qps)
+
+
+class FootstepTvmpc:
+    """Blocked jerk and two footstep shifts per axis; ZMP box and terminal DCM bound are soft, so it has no bad tick.
+
+    The moves are what differs from the nominal motion (see `planner.model.dcm`); with a limit on the jerk's rate, which
+    the nominal motion does not keep, they are the whole jerk.
+
+    Args:
+        parameters: planner parameters.
+        com_height: CoM height over the ground, which it does not need [m].
+    """
+
+    def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
+        self._parameters = parameters
+        self._prediction = predict(parameters.sample_time, block_moves(parameters.moves, parameters.horizon))
+
+    def plan(self, problem: MotionProblem) -> Motion:
+        """See `MotionPlanner`."""
+        p = self._parameters
+        nominal = self._nominal(problem)
+        rest = replace(problem.reference, point=problem.reference.point - nominal.zmp)
+        constraints = generate_constraints(p, rest, problem.stiffness, problem.omega, problem.steps)
+        qps = build_problem(
+            p,
+            self._prediction,
+            problem.state - nominal.com[:, 0].T,
+            problem.stiffness[: p.horizon + 1],
+            rest,
+            constraints,
+            problem.last_jerk,
+            jerk_range(nominal.jerk[: p.horizon], p.moves, p.jerk_limit),
+        )
+        applied = nominal.jerk[: p.horizon]
+        motion = solve_problem(qps, self._prediction, p.solvers, problem.fallback - applied)
+        return replace(motion, jerk=motion.jerk + applied)
+
+    def _nominal(self, problem: MotionProblem) -> NominalMotion:
+        t, zmp = self._parameters.sample_time, problem.reference.point
+        if math.isfinite(self._parameters.jerk_rate_limit):
+            return no_motion(len(zmp), t)
+        return nominal_motion(problem.state[:, 0], zmp, problem.stiffness, t)
+
+
+class ConstantHeightTvmpc:
+    """The same without previewing the dynamics: λ = g / z_c and ω = sqrt(λ) over the whole window (LIPM).
+
+    Args:
+        parameters: planner parameters.
+        com_height: CoM height over the ground at rest, z_c [m].
+    """
+
+    def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
+        self._law = FootstepTvmpc(parameters, com_height)
+        self._stiffness = softening(parameters.leg) * GRAVITY / com_height
+
+    def plan(self, problem: MotionProblem) -> Motion:
+        """See `MotionPlanner`."""
+        stiffness = np.full_like(problem.stiffness, self._stiffness)
+        omega = np.full_like(problem.omega, math.sqrt(self._stiffness))
+        return self._law.plan(replace(problem, stiffness=stiffness, omega=omega))

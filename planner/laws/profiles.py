@@ -1,0 +1,61 @@
+"""The profiles by name: parameters, CoM height and law of motion of each."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+from surefoot.planner.laws.dcm_feedback import DcmFeedback
+from surefoot.planner.laws.footstep_tvmpc import ConstantHeightTvmpc, FootstepTvmpc
+from surefoot.planner.laws.law import MotionPlanner
+from surefoot.planner.laws.tvmpc import paper_law, repaired_law
+from surefoot.planner.laws.zmp_preview import ZmpPreview
+from surefoot.planner.model.jerk import BLOCK_STARTS
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.references.com_height import HeightProfile, PaperHeight
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """A formulation of the planner.
+
+    Attributes:
+        name: its name.
+        parameters: its parameters; a user may change some of them.
+        law: makes its law of motion, from the parameters and the CoM height over the ground at rest [m].
+        moves: whether it optimises moves of the jerk, whose number may be chosen.
+        height: vertical CoM motion that belongs to it; None for what the user chooses.
+    """
+
+    name: str
+    parameters: PlannerParameters
+    law: Callable[[PlannerParameters, float], MotionPlanner]
+    moves: bool
+    height: HeightProfile | None = None
+
+
+_PAPER = PlannerParameters(
+    horizon=50,
+    moves=(0, 1),
+    jerk_limit=1.5,
+    jerk_rate_limit=0.1,
+    jerk_weight=0.0,
+    foot_margin=0.9,
+    zmp_slack=(1e4, 10.0),
+    terminal_margin=1.0,
+)
+_REPAIRED = replace(_PAPER, moves=BLOCK_STARTS)
+
+PROFILES: Mapping[str, Profile] = MappingProxyType(
+    {
+        profile.name: profile
+        for profile in (
+            Profile("default", PlannerParameters(), FootstepTvmpc, moves=True),
+            Profile("paper", _PAPER, paper_law, moves=True, height=PaperHeight()),
+            Profile("repaired", _REPAIRED, repaired_law, moves=True),
+            Profile("lti", PlannerParameters(), ConstantHeightTvmpc, moves=True),
+            Profile("preview", PlannerParameters(), ZmpPreview, moves=False),
+            Profile("dcm", PlannerParameters(), DcmFeedback, moves=False),
+        )
+    }
+)
+"""Every profile by its name."""

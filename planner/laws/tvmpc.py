@@ -1,0 +1,170 @@
+"""The paper's TVMPC in the Δu form with hard constraints: profiles `paper` and `repaired`.
+
+`paper` is the paper's: two moves over fifty samples and no terminal constraint. With the paper's own limits its hard
+problem has no solution at a third of the ticks, and on a true pendulum the walk falls. Its step law makes it fall
+even earlier, without any push (see `planner.laws.step_laws.paper_shift`); `step_adaptation` none leaves the law out.
+`repaired` changes what the paper needed: ten blocks of moves over the same horizon, the terminal DCM constraint and the
+corrected step law; horizon, limits, cost and hard constraints are the paper's.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from surefoot.planner.laws.law import Motion, MotionProblem, Qp, solve
+from surefoot.planner.laws.step_laws import corrected_shift, paper_shift
+from surefoot.planner.model.dcm import viability_weights
+from surefoot.planner.model.jerk import block_moves
+from surefoot.planner.model.step_response import CachedResponse, cached_response
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.types import Array, SolverStatus
+
+
+def build_hard_problem(
+    parameters: PlannerParameters,
+    response: CachedResponse,
+    problem: MotionProblem,
+    point: Array,
+    terminal: bool,
+) -> tuple[Qp, Qp]:
+    """The QPs of both axes in ΔU [m/s^3], from eq. costfunction, constraints and param_constraint.
+
+    Rows of G: ZMP box above and below, jerk above and below, and if wanted the terminal DCM above and below; bounds are
+    those of the jerk's rate. A block of several samples may change the jerk by the rate times the samples since the
+    last block began; the first one, the only one that is applied, begins one sample after the last jerk.
+
+    - Erratum: eq. param_constraint prints G = [0.9 L_f/2, -0.9 L_f/2] for F = [1, -1]; here both are +0.9 L_f/2 and
+      count from the moving reference, because as printed the ZMP would have to equal +34 mm and the box would not
+      follow the feet.
+    - Erratum: eq. constraints runs over j = 0..N_p; here 1..N_p, because C has no feed-through and y(k) is past.
+    - Erratum: z_k of eq. costfunction holds N_p increments; here N_c, as announced.
+    - Erratum: the rate of change of the jerk is limited to "0.1" without a unit; here per sample, because no motion at
+      all walks this gait with 0.1 m/s^4.
+
+    Args:
+        parameters: planner parameters.
+        response: cached prediction matrices.
+        problem: the tick.
+        point: ZMP reference over the window, the decided footstep shifts included, shape (N + M + 1, 2) [m].
+        terminal: whether the DCM at the end of the horizon must lie in the set that the known future boxes allow; the
+            paper has no such constraint.
+    """
+    p, n = parameters, parameters.horizon
+    last = np.clip(problem.last_jerk, -p.jerk_limit, p.jerk_limit)
+    S = response.at(problem.stiffness[1 : n + 1])
+    moves = S.S_u.shape[1]
+    error = S.S_x @ problem.state.T + np.outer(S.S_u1, last) - point[1 : n + 1]
+    P = 2.0 * (S.S_u.T @ S.S_u)
+    P.flat[:: moves + 1] += 2.0 * p.jerk_weight
+    q = 2.0 * (error.T @ S.S_u)
+    sums = np.tri(moves)
+    limits = np.full((moves, 2), p.jerk_limit)
+    box = problem.reference.half_size[1 : n + 1]
+    rows, bounds = [S.S_u, -S.S_u, sums, -sums], [box - error, box + error, limits - last, limits + last]
+    if terminal:
+        row, end, half = _terminal(p, response, problem, point, last)
+        rows += [row, -row]
+        bounds += [half - end, half + end]
+    G, h = np.concatenate(rows), np.concatenate(bounds).T
+    rate = np.asarray(p.jerk_rate_limit * np.diff(p.moves, prepend=-1), dtype=np.float64)
+    x, y = (Qp(P, q[i], G, np.ascontiguousarray(h[i]), -rate, rate) for i in range(2))
+    return x, y
+
+
+def softened(qp: Qp, hard: slice, cost: tuple[float, float]) -> Qp:
+    """The same problem with one slack s >= 0 on all rows but the hard ones, as the last variable.
+
+    Erratum: ε = [0, 0] of eq. param_constraint, "the solution must always satisfy it"; here a slack steps in when it
+    cannot, because with the paper's own parameters the hard problem has no solution at a third of all ticks.
+
+    Args:
+        qp: problem without a solution.
+        hard: rows that stay hard: those of the jerk, which can always be met.
+        cost: quadratic and linear cost of the slack.
+    """
+    n = len(qp.q)
+    P = np.zeros((n + 1, n + 1))
+    P[:n, :n], P[n, n] = qp.P, 2.0 * cost[0]
+    slack = np.full((len(qp.h), 1), -1.0)
+    slack[hard] = 0.0
+    return replace(
+        qp,
+        P=P,
+        q=np.append(qp.q, cost[1]),
+        G=np.concatenate((qp.G, slack), axis=1),
+        lower=np.append(qp.lower, 0.0),
+        upper=np.append(qp.upper, np.inf),
+    )
+
+
+def _terminal(
+    parameters: PlannerParameters, response: CachedResponse, problem: MotionProblem, point: Array, last: Array
+) -> tuple[Array, Array, Array]:
+    """Row of ΔU, deviation without them and half size of the viable interval, shapes (1, m), (1, 2), (1, 2)."""
+    n = parameters.horizon
+    weights = viability_weights(problem.stiffness[n:], problem.omega[n:], parameters.sample_time)
+    end = response.last[0] + response.last[1] / problem.omega[n]
+    free = problem.state @ end[:3] + end[3] * last
+    half = parameters.terminal_margin * (weights @ problem.reference.half_size[n:])
+    return end[None, 4:], (free - weights @ point[n:])[None], half[None]
+
+
+StepLaw = Callable[[MotionProblem, PlannerParameters], Array]
+
+
+class HardTvmpc:
+    """The step law decides the next footstep, then a hard QP per axis the jerk; a QP without solution is softened.
+
+    Args:
+        parameters: planner parameters; `zmp_slack` is the cost of the softening slack.
+        step_law: gives the shift of the next footstep.
+        terminal: whether the terminal DCM is constrained.
+    """
+
+    def __init__(self, parameters: PlannerParameters, step_law: StepLaw, terminal: bool) -> None:
+        p = self._parameters = parameters
+        self._step_law, self._terminal = step_law, terminal
+        self._response = cached_response(p.sample_time, p.moves, p.horizon)
+        self._basis = np.asarray(np.cumsum(block_moves(p.moves, p.horizon)[:, ::-1], axis=1)[:, ::-1])
+        self._jerk_rows = slice(2 * p.horizon, 2 * p.horizon + 2 * len(p.moves))
+
+    def plan(self, problem: MotionProblem) -> Motion:
+        """See `MotionPlanner`."""
+        p, reference, moves = self._parameters, problem.reference, len(self._parameters.moves)
+        shifts = np.zeros((2, 2))
+        shifts[0] = self._step_law(problem, p)
+        point = reference.point + reference.gain @ shifts
+        hard = build_hard_problem(p, self._response, problem, point, self._terminal)
+        jerk, slack = problem.fallback.copy(), np.zeros(2)
+        worst, infeasible = SolverStatus.SOLVED, False
+        qps = []
+        for axis, qp in enumerate(hard):
+            used, z, attempt = self._solve(qp)
+            qps.append(used)
+            worst, infeasible = max(worst, SolverStatus(attempt)), infeasible or used is not qp
+            slack[axis] = np.nan if z is None else z[moves] if used is not qp else 0.0
+            if z is not None:
+                jerk[:, axis] = np.clip(problem.last_jerk[axis], -p.jerk_limit, p.jerk_limit) + self._basis @ z[:moves]
+        terminal_slack = slack if self._terminal else np.zeros(2)
+        return Motion(jerk, shifts, slack, terminal_slack, worst, infeasible, tuple(qps))
+
+    def _solve(self, qp: Qp) -> tuple[Qp, Array | None, int]:
+        """The problem that was solved in the end, its solution and the solver's number."""
+        p = self._parameters
+        solution = solve(qp, p.solvers)
+        if solution.z is not None:
+            return qp, solution.z, solution.attempt
+        soft = softened(qp, self._jerk_rows, p.zmp_slack)
+        solution = solve(soft, p.solvers)
+        return soft, solution.z, solution.attempt
+
+
+def paper_law(parameters: PlannerParameters, com_height: float) -> HardTvmpc:
+    """The law of profile `paper`."""
+    return HardTvmpc(parameters, paper_shift, terminal=False)
+
+
+def repaired_law(parameters: PlannerParameters, com_height: float) -> HardTvmpc:
+    """The law of profile `repaired`."""
+    return HardTvmpc(parameters, corrected_shift, terminal=True)

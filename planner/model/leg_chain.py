@@ -1,0 +1,185 @@
+"""A walking body as a trunk on two legs of thigh, shank and foot: its posture and angular momentum from CoM and soles.
+
+The trunk does not turn, the knees bend forward, the feet stay level. Then the hips follow from the CoM, the knees from
+hips and soles, and with them the mass of every link: each is a rod whose momentum is bilinear in its two ends.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from surefoot.planner.types import Array
+
+_ITERATIONS = 3
+"""Corrections of the hips; each leaves a fifth of the CoM's error, and a constant rest does no harm."""
+
+_BEND = 0.02
+"""Share of its length by which a leg stays the more bent the nearer it comes to straight, or its sole out of reach: the
+knee of a straight leg would move infinitely fast [-]."""
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A straight link of a leg.
+
+    Attributes:
+        length: from its upper to its lower joint [m].
+        mass: over the body's mass [-].
+        centre: where its CoM is, as a share of the length from the upper joint [-].
+        inertia: pitch inertia about its CoM over the body's mass [m^2].
+    """
+
+    length: float
+    mass: float
+    centre: float
+    inertia: float
+
+    def mass_matrix(self) -> Array:
+        """M with Σ M_ij x_i · x_j' the momentum of the rod with ends x_1, x_2, shape (2, 2) [-]."""
+        s, spin = self.centre, self.inertia / self.length**2
+        mixed = self.mass * s * (1.0 - s) - spin
+        return np.array([[self.mass * (1.0 - s) ** 2 + spin, mixed], [mixed, self.mass * s**2 + spin]])
+
+
+@dataclass(frozen=True, slots=True)
+class LegChain:
+    """Lengths and masses of the body; both legs are alike.
+
+    Attributes:
+        hip_half_width: hip centre from the middle between the hips [m].
+        trunk: CoM of everything but the legs, from that middle: forward, left, up [m].
+        thigh, shank: the links.
+        foot_mass: over the body's mass [-].
+        foot_centre: CoM of the foot from the ankle: forward, left, up [m].
+        ankle: from the sole's centre: forward, left, up [m].
+    """
+
+    hip_half_width: float
+    trunk: Vector
+    thigh: Link
+    shank: Link
+    foot_mass: float
+    foot_centre: Vector
+    ankle: Vector
+
+    def momentum_rate(
+        self,
+        com: Array,
+        soles: Array,
+        heading: Array,
+        sample_time: float,
+        pitch: Array | None = None,
+        toe: float = 0.0,
+    ) -> Array:
+        """Rate of angular momentum about the CoM over the body's mass, by second differences.
+
+        Args:
+            com: CoM, shape (n, 3) [m].
+            soles: centres of the left and the right sole, shape (2, n, 3) [m].
+            heading: of trunk, knees and feet, shape (n,) [rad].
+            sample_time: between the samples [s].
+            pitch: of the soles about their toe edges, heel up positive, shape (2, n) [rad]; level by default. `soles`
+                are where they would be without it.
+            toe: toe edge from the sole's centre [m].
+
+        Returns:
+            At all samples but the first and the last, shape (n - 2, 3) [m^2/s^2].
+        """
+        frame = _headings(heading)
+        offsets = self._rolled(frame, pitch, toe)
+        ankles = soles - com + offsets[0]
+        foot = ankles + offsets[1]
+        hips, knees = self._posture(ankles, frame)
+        trunk = 0.5 * (hips[0] + hips[1]) + _turned(frame, self.trunk)
+        points = np.concatenate((hips, knees, ankles, foot, trunk[None]))
+        bend = np.diff(points, 2, axis=1) / sample_time**2
+        return _crossed(points[:, 1:-1], np.tensordot(self._masses(), bend, 1))
+
+    def _rolled(self, frame: Array, pitch: Array | None, toe: float) -> tuple[Array, Array]:
+        """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, n, 3) or (n, 3)."""
+        if pitch is None or not pitch.any():
+            return _turned(frame, self.ankle), _turned(frame, self.foot_centre)
+        edge = np.array([toe, 0.0, 0.0])
+        lever = _pitched(frame, np.array(self.ankle) - edge, pitch)
+        return _turned(frame, edge) + lever, _pitched(frame, np.array(self.foot_centre), pitch)
+
+    def _posture(self, ankles: Array, frame: Array) -> tuple[Array, Array]:
+        """Hips and knees from the CoM, shape (2, n, 3) each, for ankles from the CoM."""
+        thigh, shank = self.thigh, self.shank
+        at_hip = thigh.mass * (1.0 - thigh.centre)
+        at_knee = thigh.mass * thigh.centre + shank.mass * (1.0 - shank.centre)
+        at_ankle = shank.mass * shank.centre + self.foot_mass
+        trunk_mass = 1.0 - 2.0 * (thigh.mass + shank.mass + self.foot_mass)
+        apart = self.hip_half_width * frame[:, 1]
+        fixed = at_ankle * (ankles[0] + ankles[1]) + _turned(
+            frame, trunk_mass * np.array(self.trunk) + 2.0 * self.foot_mass * np.array(self.foot_centre)
+        )
+        middle = np.zeros_like(fixed)
+        middle[:, 2] = -0.1
+        for _ in range(_ITERATIONS):
+            hips = np.stack((middle + apart, middle - apart))
+            knees = self._knees(hips, ankles, frame[:, 0])
+            middle = middle - fixed - (trunk_mass + 2.0 * at_hip) * middle - at_knee * (knees[0] + knees[1])
+        hips = np.stack((middle + apart, middle - apart))
+        return hips, self._knees(hips, ankles, frame[:, 0])
+
+    def _knees(self, hips: Array, ankles: Array, forward: Array) -> Array:
+        leg = ankles - hips
+        long = np.sqrt(np.einsum("kni,kni->kn", leg, leg))
+        a, b = self.thigh.length, self.shank.length
+        slack = 1.0 - long / (a + b)
+        reach = (a + b) * (1.0 - 0.5 * (slack + np.sqrt(slack * slack + _BEND * _BEND)))
+        reach = np.maximum(reach, abs(a - b) + 1e-6)
+        along = (a * a - b * b + reach * reach) / (2.0 * reach)
+        down = leg / long[..., None]
+        ahead = forward - np.einsum("kni,ni->kn", down, forward)[..., None] * down
+        bent = np.sqrt((a * a - along * along) / np.einsum("kni,kni->kn", ahead, ahead))
+        return np.asarray(hips + along[..., None] * down + bent[..., None] * ahead)
+
+    def _masses(self) -> Array:
+        """Mass matrix of the points hips, knees, ankles, feet (left, right each) and trunk, shape (9, 9) [-]."""
+        M = np.zeros((9, 9))
+        thigh, shank = self.thigh.mass_matrix(), self.shank.mass_matrix()
+        for leg in (0, 1):
+            upper, lower = np.ix_((leg, 2 + leg), (leg, 2 + leg)), np.ix_((2 + leg, 4 + leg), (2 + leg, 4 + leg))
+            M[upper] += thigh
+            M[lower] += shank
+            M[6 + leg, 6 + leg] = self.foot_mass
+        M[8, 8] = 1.0 - 2.0 * (self.thigh.mass + self.shank.mass + self.foot_mass)
+        return M
+
+
+def _headings(heading: Array) -> Array:
+    """Forward, left and up at each sample, shape (n, 3, 3)."""
+    frame = np.zeros((len(heading), 3, 3))
+    c, s = np.cos(heading), np.sin(heading)
+    frame[:, 0, 0], frame[:, 0, 1], frame[:, 1, 0], frame[:, 1, 1], frame[:, 2, 2] = c, s, -s, c, 1.0
+    return frame
+
+
+def _turned(frame: Array, vector: Vector | Array) -> Array:
+    return np.asarray(np.asarray(vector) @ frame)
+
+
+def _pitched(frame: Array, vector: Array, pitch: Array) -> Array:
+    """A vector of a foot that is pitched heel up, shape (2, n, 3)."""
+    c, s = np.cos(pitch), np.sin(pitch)
+    x, y, z = vector
+    rolled = np.stack((c * x + s * z, np.full_like(c, y), c * z - s * x), axis=-1)
+    return np.asarray(np.einsum("kni,nij->knj", rolled, frame))
+
+
+def _crossed(points: Array, rates: Array) -> Array:
+    """Sum over the points of their cross products, shape (n, 3)."""
+    x, y, z = (points[..., i] for i in range(3))
+    u, v, w = (rates[..., i] for i in range(3))
+    return np.stack(
+        (
+            np.einsum("kn,kn->n", y, w) - np.einsum("kn,kn->n", z, v),
+            np.einsum("kn,kn->n", z, u) - np.einsum("kn,kn->n", x, w),
+            np.einsum("kn,kn->n", x, v) - np.einsum("kn,kn->n", y, u),
+        ),
+        axis=1,
+    )

@@ -1,1 +1,0 @@
-"""Planner profiles: formulations of the same walk behind one interface (`planner.motion`), to be compared."""

@@ -1,0 +1,1 @@
+"""References over horizon and preview: ZMP, CoM height, what the legs add, put together in a window."""

@@ -1,0 +1,285 @@
+"""Vertical CoM motion: the paper's profile (eq. z_traj), a smooth one, and one that legs can follow on stairs.
+
+A profile has two parts: the base level, which changes from support to support, and the bumps above it. On stairs the
+paper changes the level in double support, where the rear foot stands a riser below the front one and the CoM is
+already over the front foot: the rear leg is then too short. So there are two places for the rise, see `Rise`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.types import GRAVITY, Array, PhaseKind
+from surefoot.planner.walk.clock import Phase, Schedule
+from surefoot.planner.walk.gait import GaitParameters
+
+_FALL_LIMIT = 0.8
+"""Downward CoM acceleration that a plan may ask for, as a share of gravity: beyond it the feet hardly press [-]."""
+
+_IMPULSE_LIMIT = 0.95
+"""The same where one-sample impulses of a height with velocity jumps are cut off [-]."""
+
+_LEAST_HEIGHT = 0.1
+"""Height over the ZMP that the pendulum never goes below [m]."""
+
+_CLIMB_SHARE, _DESCENT_SHARE = 0.8, 1.0
+"""Shares of single support in which the level rises and sinks: the knee is bent most, and can lift least, at the begin
+of a climb and at the end of a descent [-]."""
+
+BENT_KNEES = 0.08
+"""How much lower than stretched knees carry it bent ones carry the CoM [m]."""
+
+
+class Rise(Enum):
+    """Where the base level of the CoM changes.
+
+    DOUBLE, as in the paper: from the height of one support point to that of the next, while the ZMP moves.
+    SINGLE: the level of a double support is that of the lower of its two feet, so that both legs reach the ground; it
+    is changed in the single support before, on the new foot when going up and above the foot left behind when going
+    down.
+    """
+
+    DOUBLE = "double"
+    SINGLE = "single"
+
+
+@dataclass(frozen=True, slots=True)
+class HeightShape:
+    """CoM height of a whole walk, before the heights of the footholds are known.
+
+    At sample k the CoM is at `level[i] + rise[0, k] * (level[i + 1] - level[i]) + bump[0, k]` with i = `index[k]`, and
+    with `fall` for `rise` where the next level is lower.
+
+    Attributes:
+        index: base level that the CoM leaves, shape (K,).
+        rise: share of the change to the next level done, its first and second derivative, shape (3, K) [-, 1/s, 1/s^2].
+        fall: the same on the way down.
+        bump: height above the base, and its first and second derivative, shape (3, K) [m, m/s, m/s^2].
+        levels: makes the base levels of the heights of the support points, both of shape (n + 2,) [m].
+        impulsive: whether the velocity jumps, which the second derivative then has as impulses of one sample.
+    """
+
+    index: NDArray[np.intp]
+    rise: Array
+    fall: Array
+    bump: Array
+    levels: Callable[[Array], Array]
+    impulsive: bool = False
+
+    def height(self, window: slice, support_height: Array) -> Array:
+        """z, z', z'' in the world frame over a window, shape (3, n) [m, m/s, m/s^2].
+
+        Args:
+            window: samples.
+            support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
+        """
+        levels, index = self.levels(support_height), self.index[window]
+        step = np.append(np.diff(levels), 0.0)[index]
+        height = self.bump[:, window] + np.where(step < 0.0, self.fall[:, window], self.rise[:, window]) * step
+        height[0] += levels[index]
+        return np.asarray(height)
+
+
+def own_levels(support_height: Array) -> Array:
+    """Base levels of `Rise.DOUBLE`: the heights of the support points, shape (n + 2,) [m]."""
+    return support_height
+
+
+def lower_levels(support_height: Array) -> Array:
+    """Base levels of `Rise.SINGLE`: the lower foot of each double support 0..n, and the last one again [m]."""
+    return np.append(np.minimum(support_height[:-1], support_height[1:]), support_height[-1])
+
+
+class HeightProfile(Protocol):
+    """Anything that lays a CoM height on a schedule."""
+
+    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
+        """The height of the whole walk."""
+
+
+@dataclass(frozen=True, slots=True)
+class SmoothHeight:
+    """C² height: a bump of A sin³ in each support phase, and a quintic change of level.
+
+    The paper's A sin and its linear rise jump in velocity at every phase change, which asks for a ZMP that no foot
+    has; sin³ and the quintic reach the same heights with continuous z, z', z''.
+
+    Attributes:
+        rise: where the level changes.
+    """
+
+    rise: Rise = Rise.DOUBLE
+
+    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
+        """The height of the whole walk (see `HeightProfile`)."""
+        bump = np.zeros((3, len(schedule.index)))
+        bump[0] = gait.com_height
+        for phase in schedule.phases:
+            amplitude = {PhaseKind.SINGLE: gait.apex_ss, PhaseKind.DOUBLE: gait.apex_ds}.get(phase.kind, 0.0)
+            if amplitude:
+                bump[:, phase.start : phase.end] += _sine_cubed(phase, amplitude, schedule.sample_time)
+        return _on_levels(self.rise, schedule, bump)
+
+
+@dataclass(frozen=True, slots=True)
+class BentKneeHeight:
+    """Constant height over the level, `BENT_KNEES` below the gait's: the crouched gait of most humanoids.
+
+    Attributes:
+        rise: where the level changes.
+    """
+
+    rise: Rise = Rise.DOUBLE
+
+    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
+        """The height of the whole walk (see `HeightProfile`)."""
+        bump = np.zeros((3, len(schedule.index)))
+        bump[0] = gait.com_height - BENT_KNEES
+        return _on_levels(self.rise, schedule, bump)
+
+
+@dataclass(frozen=True, slots=True)
+class PaperHeight:
+    """The paper's height as printed (eq. z_traj): A sin in each support phase, a linear rise in double support.
+
+    Two things are mended, without which the equation means nothing over more than one step: z_c0 goes up by Δz_c with
+    every step, and t begins anew with every step and phase. Its velocity jumps at each phase change stay: z' and z''
+    are central differences at the sample time, so that z'' carries the jumps as impulses of one sample, some of which
+    ask for more than free fall (steps of 0.15 m in 0.5 s at 50 Hz do). λ is kept positive there. Taking the analytic
+    z'' instead, which ignores the jumps, would leave a λ that stairs do not change at all.
+    """
+
+    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
+        """The height of the whole walk (see `HeightProfile`)."""
+        t = schedule.sample_time
+        bump = np.full(len(schedule.index), gait.com_height)
+        for phase in schedule.phases:
+            amplitude = {PhaseKind.SINGLE: gait.apex_ss, PhaseKind.DOUBLE: gait.apex_ds}.get(phase.kind, 0.0)
+            if amplitude:
+                bump[phase.start : phase.end] += amplitude * np.sin(np.pi * np.arange(phase.samples) / phase.samples)
+        # Where a rise has just ended its slope still counts: that sample belongs to the level that was left.
+        ended = np.diff(schedule.index, prepend=0) > 0
+        index, done = schedule.index - ended, schedule.index + schedule.fraction
+        rise = _differences(done, t)
+        rise[0] = done - index
+        return HeightShape(index, rise, rise, _differences(bump, t), own_levels, impulsive=True)
+
+
+def _differences(values: Array, sample_time: float) -> Array:
+    """Values and their first and second central differences, at rest beyond both ends, shape (3, K)."""
+    padded = np.pad(values, 1, mode="edge")
+    slope = (padded[2:] - padded[:-2]) / (2.0 * sample_time)
+    return np.stack((values, slope, (padded[2:] - 2.0 * values + padded[:-2]) / sample_time**2))
+
+
+def _on_levels(place: Rise, schedule: Schedule, bump: Array) -> HeightShape:
+    """A shape with quintic changes of level at a place."""
+    if place is Rise.DOUBLE:
+        rise = quintic_rise(schedule.fraction, schedule.fraction_rate)
+        return HeightShape(schedule.index, rise, rise, bump, own_levels)
+    index, changes = np.empty_like(schedule.index), np.zeros((2, *bump.shape))
+    for phase in schedule.phases:
+        span = slice(phase.start, phase.end if phase.samples else None)
+        reached = phase.kind is PhaseKind.SINGLE or phase.samples == 0
+        index[span] = max(phase.support - reached, 0)
+        if phase.kind is PhaseKind.SINGLE:
+            for change, share in zip(changes, (_CLIMB_SHARE, _DESCENT_SHARE), strict=True):
+                change[:, span] = _early_rise(phase, share, schedule.sample_time)
+    rise, fall = changes
+    return HeightShape(index, rise, fall, bump, lower_levels)
+
+
+def _early_rise(phase: Phase, share: float, sample_time: float) -> Array:
+    """Quintic rise within the first share of a phase and rest at 1 after it, shape (3, samples)."""
+    fraction = np.arange(phase.samples) / (share * phase.samples)
+    rate = np.where(fraction < 1.0, 1.0 / (share * phase.samples * sample_time), 0.0)
+    return quintic_rise(np.minimum(fraction, 1.0), rate)
+
+
+def quintic_rise(fraction: Array, rate: Array) -> Array:
+    """Quintic from 0 to 1 with zero first and second derivative at both ends.
+
+    Args:
+        fraction: argument in [0, 1], shape (K,).
+        rate: its time derivative, shape (K,) [1/s].
+
+    Returns:
+        Value and first and second time derivative, shape (3, K).
+    """
+    s = fraction
+    value = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+    slope = 30.0 * s**2 * (1.0 - s) ** 2
+    curvature = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s)
+    return np.stack((value, slope * rate, curvature * rate**2))
+
+
+def _sine_cubed(phase: Phase, amplitude: float, sample_time: float) -> Array:
+    w = np.pi / (phase.samples * sample_time)
+    angle = np.pi * np.arange(phase.samples) / phase.samples
+    s, c = np.sin(angle), np.cos(angle)
+    return amplitude * np.stack((s**3, 3.0 * w * s**2 * c, 3.0 * w**2 * s * (2.0 * c**2 - s**2)))
+
+
+@dataclass(frozen=True, slots=True)
+class HeightPreview:
+    """CoM height over a window of samples.
+
+    Attributes:
+        height: z, z', z'' in the world frame, shape (3, n) [m, m/s, m/s^2].
+        stiffness: λ = (g + z'') / (z - p_z), shape (n,) [1/s^2].
+    """
+
+    height: Array
+    stiffness: Array
+
+
+def preview_height(
+    shape: HeightShape, start: int, count: int, support_height: Array, zmp_height: Array
+) -> HeightPreview:
+    """CoM height and pendulum stiffness of a window.
+
+    λ counts the height above the ZMP, z - p_z; the paper's equation leaves p_z out, which is wrong on stairs. Measured
+    footholds of a falling robot may lie anywhere: λ stays finite and positive.
+
+    Args:
+        shape: height of the walk.
+        start: first sample of the window.
+        count: its length.
+        support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
+        zmp_height: height of the ground under the ZMP reference over the window, shape (count,) [m].
+    """
+    height = shape.height(slice(start, start + count), support_height)
+    limit = _IMPULSE_LIMIT if shape.impulsive else _FALL_LIMIT
+    pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
+    return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT))
+
+
+def check_height(shape: HeightShape, schedule: Schedule, support_height: Array) -> None:
+    """Refuse a height that the body could only follow by nearly free fall, or that goes into the ground.
+
+    Args:
+        shape: height of the walk.
+        schedule: its phases.
+        support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
+
+    Raises:
+        ValueError: names the acceleration or the height that is out of bounds. The impulses of an impulsive shape last
+            a sample and depend on its length; they are not refused.
+    """
+    step = np.append(np.diff(support_height), 0.0)[schedule.index]
+    ground = support_height[schedule.index] + schedule.fraction * step
+    height = shape.height(slice(0, len(ground)), support_height)
+    lowest = float(np.min(height[0] - ground))
+    if lowest <= 0.0:
+        raise ValueError(f"The CoM comes within {lowest:.2f} m of the ground under it, but it must stay above it.")
+    fall = float(np.min(height[2]))
+    if fall < -_FALL_LIMIT * GRAVITY and not shape.impulsive:
+        remedy = "double_support, or planner.rise single" if shape.levels is own_levels else "single_support"
+        raise ValueError(
+            f"The CoM height falls off with {fall:.1f} m/s^2, but {-_FALL_LIMIT * GRAVITY:.1f} m/s^2 is the limit:"
+            f" the height step between two footsteps needs a longer gait.{remedy}."
+        )

@@ -1,0 +1,153 @@
+"""ZMP planner: the present support, and the ZMP reference over a window, linear in the next two footsteps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from surefoot.planner.geometry import convex_hull, frame_rotation, sole_corners
+from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
+from surefoot.planner.walk.clock import Schedule, Stepper
+from surefoot.planner.walk.footsteps import FootstepPlan
+
+
+@dataclass(frozen=True, slots=True)
+class SupportTable:
+    """Support points (see `Schedule`) seen from the plan frame, with what each of them does to reference and box.
+
+    Attributes:
+        values: columns x, y [m], gain of the next two footstep shifts [-], box half sizes x, y [m], height [m];
+            shape (m, 7).
+        steps: difference to the next row, zero in the last one, shape (m, 7).
+    """
+
+    values: Array
+    steps: Array
+
+
+@dataclass(frozen=True, slots=True)
+class ZmpReference:
+    """ZMP reference and its box over a window, in the plan frame.
+
+    reference(d) = point + gain @ d, where d holds the shifts of the next two footsteps from their nominal increments.
+
+    Attributes:
+        point: reference with nominal footsteps, shape (n, 2) [m].
+        gain: sensitivity to the two shifts, the same on both axes, shape (n, 2) [-].
+        half_size: half extents of the box around the reference that lies in the support polygon, shape (n, 2) [m].
+        height: ground height under the reference, shape (n,) [m].
+    """
+
+    point: Array
+    gain: Array
+    half_size: Array
+    height: Array
+
+
+def support_table(plan: FootstepPlan, stance_row: int, free: tuple[bool, bool], half_size: Array) -> SupportTable:
+    """Tabulate the support points in the plan frame (origin and planned heading of the stance row).
+
+    The box of a point is the largest axis-aligned one, of the foot's proportions, inscribed in the foot turned by its
+    heading in the plan frame; without turning it is the foot itself. A convex combination of two such boxes lies in
+    the convex hull of the two feet, so the box that moves with the reference is legal throughout double support.
+
+    Args:
+        plan: footsteps.
+        stance_row: row of the stance foot, or of the foot that landed last.
+        free: whether the first and the second footstep after the stance row may be shifted.
+        half_size: half extents of the (shrunk) foot, shape (2,) [m].
+    """
+    rows = np.arange(len(plan.feet))
+    points = plan.support_points()
+    rotation = frame_rotation(float(plan.yaw[stance_row]))
+    values = np.empty((len(points), 7))
+    values[:, :2] = (points[:, :2] - plan.position[stance_row, :2]) @ rotation
+    shifted = np.where(rows[:, None] > stance_row + np.arange(2), np.array(free, dtype=np.float64), 0.0)
+    values[:, 2:4] = plan.between_rows(shifted)
+    values[:, 4:6] = plan.between_rows(_inscribed_boxes(plan.yaw - plan.yaw[stance_row], half_size))
+    values[:, 6] = points[:, 2]
+    steps = np.zeros_like(values)
+    steps[:-1] = np.diff(values, axis=0)
+    return SupportTable(values, steps)
+
+
+def zmp_reference(schedule: Schedule, table: SupportTable, start: int, count: int) -> ZmpReference:
+    """ZMP reference of a window: the stance foot in single support, linear to the next one in double support.
+
+    Eq. zmpEquation in vector form: the paper's scalar S_L is f_{i+1} - f_i, and its t starts anew at each step.
+
+    Args:
+        schedule: phases of the walk.
+        table: support points.
+        start: first sample of the window.
+        count: its length.
+    """
+    index = schedule.index[start : start + count]
+    fraction = schedule.fraction[start : start + count]
+    rows = table.values.take(index, axis=0) + fraction[:, None] * table.steps.take(index, axis=0)
+    return ZmpReference(rows[:, :2], rows[:, 2:4], rows[:, 4:6], rows[:, 6])
+
+
+def _inscribed_boxes(yaw: Array, half_size: Array) -> Array:
+    c, s = np.abs(np.cos(yaw)), np.abs(np.sin(yaw))
+    a, b = half_size
+    scale = np.minimum(a / (a * c + b * s), b / (a * s + b * c))
+    return np.asarray(scale[:, None] * half_size)
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """The present support and the plan frame on it.
+
+    Attributes:
+        footsteps: the footsteps that it was made from.
+        key: the rest of what it was made from: row, phase and freedom of the next footsteps.
+        rotation: plan frame to world, shape (2, 2).
+        origin: origin of the plan frame, shape (2,) [m].
+        table: support points of the walk in the plan frame.
+        heights: heights of the support points, shape (m,) [m].
+        outer: support polygon of the planned soles, shape (v, 2) [m].
+        inner: support polygon of the soles shrunk to the ZMP margin, shape (v, 2) [m].
+        footholds: where the left and the right foot stand, or stood last.
+    """
+
+    footsteps: FootstepPlan
+    key: tuple[object, ...]
+    rotation: Array
+    origin: Array
+    table: SupportTable
+    heights: Array
+    outer: Array
+    inner: Array
+    footholds: tuple[Footstep, Footstep]
+
+
+def present_support(last: Support | None, stepper: Stepper, half_size: Array, margin: float) -> Support:
+    """The support of this tick, the last one when nothing has changed.
+
+    Args:
+        last: support of the tick before.
+        stepper: clock and footholds.
+        half_size: half of the sole's length and width, shape (2,) [m].
+        margin: share of the sole in which the ZMP must stay [-].
+    """
+    steps, row, phase = stepper.footsteps, stepper.row, stepper.phase
+    key = (row, phase.start, stepper.free)
+    if last is not None and last.footsteps is steps and last.key == key:
+        return last
+    latest, before = steps.footstep(row), steps.footstep(row - 1)
+    standing = [latest] if phase.kind is PhaseKind.SINGLE else [latest, before]
+    outer, inner = (
+        convex_hull(np.concatenate([sole_corners(foot, scale * half_size) for foot in standing]))
+        for scale in (1.0, margin)
+    )
+    return Support(
+        footsteps=steps,
+        key=key,
+        rotation=frame_rotation(latest.yaw),
+        origin=latest.position[:2],
+        table=support_table(steps, row, stepper.free, margin * half_size),
+        heights=steps.support_points()[:, 2],
+        outer=outer,
+        inner=inner,
+        footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),
+    )

@@ -1,0 +1,135 @@
+"""How a swing foot gets over edges: when it glides forward and when it is highest, so that the whole sole is clear."""
+
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.geometry import quintic, sole_pose, sole_rotation
+from surefoot.planner.ground.terrain import Terrain
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.trajectory import SwingCourse, SwingTimes, swing_times
+from surefoot.planner.types import Array, PhaseKind
+from surefoot.planner.walk.clock import Schedule
+from surefoot.planner.walk.footsteps import FootstepPlan
+
+EDGE_CLEARANCE = 0.02
+"""Height of every part of the sole above ground that is neither its lift-off nor its landing place [m]."""
+
+EDGE_DISTANCE = 0.003
+"""The sole is taken as larger by this on every side, so that it passes risers at a distance [m]."""
+
+_STARTS = (0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35)
+_ENDS = (1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.65)
+_APEXES = (0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7)
+_WAY = np.linspace(0.0, 1.0, 81)
+_INSTANTS = 200
+_LEVEL = 1e-3
+
+
+def swing_courses(
+    footsteps: FootstepPlan,
+    schedule: Schedule,
+    terrain: Terrain,
+    half_size: Array,
+    clearance: float,
+    parameters: PlannerParameters,
+) -> tuple[SwingCourse, ...]:
+    """Courses of all steps of a plan, in their order.
+
+    On level ground the foot glides all the time and is highest when the parameters say. Where edges are in the way it
+    takes the gentlest course that clears them: the one with the least sum of peak accelerations.
+
+    Args:
+        footsteps: footholds.
+        schedule: gives the time for each swing.
+        terrain: the ground as the planner believes it to be.
+        half_size: half of the sole's length and width, shape (2,) [m].
+        clearance: least height of the apex above lift-off and touchdown [m].
+        parameters: give the apex of a swing over level ground.
+
+    Raises:
+        ValueError: no course clears the edges of a step.
+    """
+    plain = SwingCourse(parameters.apex_share, 0.0, 1.0, clearance)
+    if not terrain.boxes:
+        return (plain,) * footsteps.steps
+    courses = []
+    for phase in schedule.phases:
+        if phase.kind is not PhaseKind.SINGLE:
+            continue
+        row = phase.step + 1
+        start, end = (sole_pose(footsteps.position[r], footsteps.yaw[r], footsteps.normal[r]) for r in (row - 2, row))
+        ground = _ground(start, end, terrain, half_size + EDGE_DISTANCE)
+        course: SwingCourse | None = plain
+        if np.ptp(ground) > _LEVEL:
+            course = _gentlest(start, end, ground, clearance, phase.samples, parameters)
+        if course is None:
+            raise ValueError(
+                f"Footstep {phase.step} cannot be swung {EDGE_CLEARANCE:g} m clear of the edges before it; give"
+                " terrain.tread more depth, or gait.swing_height more height."
+            )
+        courses.append(course)
+    return tuple(courses)
+
+
+def _ground(start: Array, end: Array, terrain: Terrain, half_size: Array) -> Array:
+    """Least height of the sole's centre around each point of its way, on which it turns too, shape (81,) [m]."""
+    sides = (-1.0, -0.5, 0.0, 0.5, 1.0)
+    outline = half_size * np.array([(u, v) for u, v in product(sides, sides) if max(abs(u), abs(v)) == 1.0])
+    poses = start + _WAY[:, None] * (end - start)
+    spread = np.array([outline @ sole_rotation(*pose[3:].tolist())[:, :2].T for pose in poses])
+    points = poses[:, None, :2] + spread[:, :, :2]
+    heights = terrain.heights(points.reshape(-1, 2)).reshape(spread.shape[:2])
+    needed = np.max(heights - spread[:, :, 2], axis=1)
+    at_home = _on_face(points, heights, start) | _on_face(points, heights, end)
+    needed = np.where(at_home, needed, needed + EDGE_CLEARANCE)
+    # An edge may lie anywhere between two points.
+    around = np.maximum(needed, np.maximum(np.append(needed[1:], -np.inf), np.append(-np.inf, needed[:-1])))
+    around[[0, -1]] = start[2], end[2]
+    return np.asarray(around)
+
+
+def _on_face(points: Array, heights: Array, pose: Array) -> NDArray[np.bool_]:
+    """Whether all ground under a sole, points (n, k, 2) of heights (n, k), is the plane of the sole's pose, (n,)."""
+    normal = sole_rotation(*pose[3:].tolist())[:, 2]
+    above = heights - pose[2] + (points - pose[:2]) @ (normal[:2] / normal[2])
+    return np.asarray(np.max(np.abs(above), axis=1) < _LEVEL)
+
+
+def _gentlest(
+    start: Array, end: Array, ground: Array, clearance: float, samples: int, parameters: PlannerParameters
+) -> SwingCourse | None:
+    """The gentlest course above the ground, None if there is none."""
+    higher = max(float(start[2]), float(end[2]))
+    top = max(higher + clearance, float(ground.max()))
+    up, down, way = top - float(start[2]), top - float(end[2]), float(np.hypot(*(end - start)[:2]))
+    glides = list(product(_STARTS, _ENDS))
+    courses = [[SwingCourse(a, s, e, top - higher) for s, e in glides] for a in _APEXES]
+    times = [[swing_times(0.0, samples, course, parameters) for course in row] for row in courses]
+    instants = np.linspace(0.0, times[0][0].touchdown, _INSTANTS)
+    height = np.array([_height(up, down, row[0], instants) for row in times]) + end[2]
+    needed = np.array([np.interp(_progress(t, instants), _WAY, ground) for t in times[0]]) - _LEVEL
+    clear = np.all(height[:, None] >= needed[None], axis=2)
+    apex, glide = np.array(_APEXES), np.array(glides)
+    effort = (up / apex**2 + down / (1.0 - apex) ** 2)[:, None] + way / (glide[:, 1] - glide[:, 0]) ** 2
+    effort[~clear] = np.inf
+    a, g = np.unravel_index(np.argmin(effort), effort.shape)
+    return courses[a][g] if clear[a, g] else None
+
+
+def _progress(times: SwingTimes, instants: Array) -> Array:
+    """Share of the way done at instants."""
+    s = np.clip((instants - times.glide_start) / (times.glide_end - times.glide_start), 0.0, 1.0)
+    return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s**2))
+
+
+def _height(up: float, down: float, times: SwingTimes, instants: Array) -> Array:
+    """Height above touchdown at instants, as `planner.swing.trajectory` shapes it [m]."""
+    rising, falling = times.apex - times.lift, times.touchdown - times.apex
+    top = np.array([[down], [0.0], [-4.0 * min(up / rising**2, down / falling**2)]])
+    rise = quintic(np.array([[down - up], [0.0], [0.0]]), top, rising)
+    fall = quintic(top, np.zeros((3, 1)), falling)
+    powers = np.arange(6)
+    late = np.maximum(instants - times.apex, 0.0)[:, None] ** powers @ fall
+    return np.where(instants < times.apex, (instants[:, None] ** powers @ rise)[:, 0], late[:, 0])

@@ -1,0 +1,206 @@
+"""Swing foot trajectory: quintic over the ground, up to an apex and softly down, replanned at every planner tick."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from surefoot.planner.geometry import quintic, shifted
+from surefoot.planner.parameters import GroundSearch, PlannerParameters
+from surefoot.planner.types import Array, Foot
+
+_NOW = 1e-9
+"""Times of ticks carry rounding; a piece begins this much early [s]."""
+
+_GLIDING = [0, 1, 3, 4, 5]
+"""Columns of all but z."""
+
+_LEAST_GLIDE = 0.1
+"""A new target is reached by touchdown instead of by the end of the glide when less than this is left of it [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SwingTrajectory:
+    """Motion of a swing foot; columns are x, y, z [m], yaw, pitch, roll [rad] in the world frame.
+
+    All but z are one quintic from the state at the last change of target to rest at the target, so that an unchanged
+    target is continued identically; before and after this glide they rest, so that the sole leaves and meets tilted
+    ground flat on it. z is one quintic up to the apex and one down to the touchdown height, joined with continuous
+    acceleration. After the touchdown time all but z hold and z goes on downwards in search of the ground.
+
+    Attributes:
+        foot: the foot that swings.
+        start_time: local time zero of the glide, before which all but z rest [s].
+        glide_end: when they come to rest [s].
+        apex_time: when the sole is highest [s].
+        touchdown_time: when it is planned to land [s].
+        target: touchdown position and angles, shape (6,).
+        clearance: height of the apex above the higher of lift-off and touchdown [m].
+        search: how it goes on after the touchdown time, if it feels no ground.
+        level: coefficients of all but z from `start_time`, shape (6, 5).
+        rise_start: local time zero of the rise [s].
+        rise: coefficients of z until the apex, shape (6, 1).
+        fall_start: local time zero of the fall [s].
+        fall: coefficients of z from the apex on, shape (6, 1).
+    """
+
+    foot: Foot
+    start_time: float
+    glide_end: float
+    apex_time: float
+    touchdown_time: float
+    target: Array
+    clearance: float
+    search: GroundSearch
+    level: Array
+    rise_start: float
+    rise: Array
+    fall_start: float
+    fall: Array
+
+    def coefficients(self, time: float) -> Array:
+        """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 6)."""
+        result = np.zeros((6, 6))
+        if time >= self.touchdown_time - _NOW:
+            result[0] = self.target
+            way, speed, bend = self.search.motion(time - self.touchdown_time)
+            result[:3, 2] = self.target[2] - way, -speed, -0.5 * bend
+            return result
+        if time >= self.glide_end - _NOW:
+            result[0] = self.target
+        elif time >= self.start_time - _NOW:
+            result[:, _GLIDING] = shifted(self.level, time - self.start_time)
+        else:
+            result[0, _GLIDING] = self.level[0]
+        if time >= self.apex_time - _NOW:
+            result[:, 2] = shifted(self.fall, time - self.fall_start)[:, 0]
+        else:
+            result[:, 2] = shifted(self.rise, time - self.rise_start)[:, 0]
+        return result
+
+    def evaluate(self, time: float) -> Array:
+        """Position, velocity and acceleration at an instant after the start, shape (3, 6)."""
+        return np.asarray(self.coefficients(time)[:3] * _FACTORIAL)
+
+    def retargeted(self, time: float, target: Array) -> "SwingTrajectory":
+        """The trajectory that goes on from its own state at `time` to another target.
+
+        Args:
+            time: instant of the change, before the touchdown [s].
+            target: new touchdown position and angles, shape (6,).
+        """
+        state = self.evaluate(time)
+        start = max(time, self.start_time)
+        end = self.glide_end if time < self.glide_end - _LEAST_GLIDE else self.touchdown_time
+        level = _to_rest(state[:, _GLIDING], target[_GLIDING], end - start)
+        moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target))
+        if target[2] == self.target[2]:
+            return moved
+        if time < self.apex_time - _NOW:
+            height = state[:, 2:3]
+            return _with_height(moved, time, height, max(float(height[0, 0]), float(target[2])) + self.clearance)
+        fall = _fall(state[:, 2:3], float(target[2]), self.search.touchdown_speed, self.touchdown_time - time)
+        return replace(moved, fall_start=time, fall=fall)
+
+
+_FACTORIAL = np.array([[1.0], [1.0], [2.0]])
+
+
+@dataclass(frozen=True, slots=True)
+class SwingCourse:
+    """How a swing divides its time, as shares of it.
+
+    Attributes:
+        apex: when the sole is highest [-].
+        glide_start: when it begins to move forward, sideways and to turn [-].
+        glide_end: when that is done [-].
+        height: of the apex above the higher of lift-off and touchdown [m].
+    """
+
+    apex: float
+    glide_start: float
+    glide_end: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class SwingTimes:
+    """Instants of a swing, on the planner's clock except the touchdown [s].
+
+    Attributes:
+        lift: the foot leaves the ground.
+        glide_start: it begins to move horizontally.
+        apex: it is highest.
+        glide_end: it has stopped to move horizontally.
+        touchdown: it is planned to land.
+    """
+
+    lift: float
+    glide_start: float
+    apex: float
+    glide_end: float
+    touchdown: float
+
+
+def swing_times(start: float, samples: int, course: SwingCourse, parameters: PlannerParameters) -> SwingTimes:
+    """Times [s] of a swing in a single support of so many samples that begins at `start`."""
+    t = parameters.sample_time
+    touchdown = start + samples * t - min(parameters.touchdown_lead, 0.25 * samples * t)
+    glide_start, apex, glide_end = (
+        start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
+    )
+    return SwingTimes(start, glide_start, apex, min(glide_end, touchdown), touchdown)
+
+
+def start_swing(
+    foot: Foot, pose: Array, target: Array, times: SwingTimes, clearance: float, parameters: PlannerParameters
+) -> SwingTrajectory:
+    """Swing from rest.
+
+    Args:
+        foot: the foot that swings.
+        pose: lift-off position and angles, shape (6,).
+        target: touchdown position and angles, shape (6,).
+        times: of the swing.
+        clearance: height of the apex above the higher of both ends [m].
+        parameters: give the search for the ground.
+    """
+    rest = np.zeros((3, 6))
+    rest[0] = pose
+    trajectory = SwingTrajectory(
+        foot=foot,
+        start_time=times.glide_start,
+        glide_end=times.glide_end,
+        apex_time=times.apex,
+        touchdown_time=times.touchdown,
+        target=np.array(target),
+        clearance=clearance,
+        search=parameters.search,
+        level=_to_rest(rest[:, _GLIDING], target[_GLIDING], times.glide_end - times.glide_start),
+        rise_start=times.lift,
+        rise=np.zeros((6, 1)),
+        fall_start=times.apex,
+        fall=np.zeros((6, 1)),
+    )
+    return _with_height(trajectory, times.lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
+
+
+def _with_height(trajectory: SwingTrajectory, time: float, state: Array, apex: float) -> SwingTrajectory:
+    """Height from a state up to the apex height and down to the target; 4 h / t² at the apex keeps both monotone."""
+    up, down = trajectory.apex_time - time, trajectory.touchdown_time - trajectory.apex_time
+    end = float(trajectory.target[2])
+    bend = -4.0 * min((apex - float(state[0, 0])) / up**2, (apex - end) / down**2)
+    top = np.array([[apex], [0.0], [bend]])
+    fall = _fall(top, end, trajectory.search.touchdown_speed, down)
+    return replace(
+        trajectory, rise_start=time, rise=quintic(state, top, up), fall_start=trajectory.apex_time, fall=fall
+    )
+
+
+def _fall(state: Array, height: float, speed: float, duration: float) -> Array:
+    return quintic(state, np.array([[height], [-speed], [0.0]]), duration)
+
+
+def _to_rest(state: Array, target: Array, duration: float) -> Array:
+    end = np.zeros((3, state.shape[1]))
+    end[0] = target
+    return quintic(state, end, duration)

@@ -1,0 +1,1 @@
+"""The walk: gait, commands, where feet may go, footsteps, and the clock."""

@@ -1,0 +1,181 @@
+"""The gait as the user asks for it: how many steps, how long, how fast, how high."""
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.types import Foot
+
+
+@dataclass(frozen=True, slots=True)
+class Stride:
+    """What one step does to the path, in the frame midway between the old and the new heading.
+
+    The foot lands half a `width` beside the path's new point. A stride of zeros brings it beside the other foot.
+
+    Attributes:
+        length: advance of the path along its heading, negative backward [m].
+        lateral: advance to the left [m].
+        turn: change of heading, positive to the left [rad].
+        width: lateral distance of the two feet from each other about the path [m].
+
+    Raises:
+        ValueError: a value is not finite, or the width is not positive.
+    """
+
+    length: float
+    lateral: float
+    turn: float
+    width: float
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not math.isfinite(value) or (field.name == "width" and value <= 0.0):
+                least = " greater than 0" if field.name == "width" else ""
+                raise ValueError(f"The {field.name} of a stride is {value}, but it must be a finite number{least}.")
+
+
+@dataclass(frozen=True, slots=True)
+class Bout:
+    """A time of standing and the strides that follow it; the last of them is followed by standing again.
+
+    Attributes:
+        stand: rest before the first double support [s].
+        strides: in order, at least one.
+
+    Raises:
+        ValueError: the rest is negative or not finite, or there is no stride.
+    """
+
+    stand: float
+    strides: tuple[Stride, ...]
+
+    def __post_init__(self) -> None:
+        if not (self.stand >= 0.0 and math.isfinite(self.stand)):
+            raise ValueError(f"The standing before a bout is {self.stand:g} s, but it must be at least 0 and finite.")
+        if not self.strides:
+            raise ValueError("A bout has no strides, but it must have at least one.")
+
+
+_POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
+_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off")
+
+
+@dataclass(frozen=True, slots=True)
+class GaitParameters:
+    """Parameters of a walk from standing to standing (the paper's table of parameters, with what it leaves open).
+
+    `steps` counts every step taken. The last step brings its foot beside the other one, so that the robot ends in a
+    square stance; the path therefore advances `steps - 1` times by (`step_length`, `lateral_step`). A walk of unequal
+    steps, or with stops, is given by its `bouts` (see `planner.walk.commands`), and step_length, lateral_step, turn and
+    initial_stand then say nothing.
+
+    Attributes:
+        steps: number of steps, 0 stands for ever; with bouts the number of all their strides.
+        step_length: distance from one footstep to the next along the heading, negative walks backward (S_L) [m].
+        step_width: lateral distance between the two feet in the square stance [m].
+        lateral_step: lateral progress of the path per step, positive to the left; diagonal walking (S_w) [m].
+        turn: change of heading per step, positive to the left [rad].
+        single_support: duration of single support (T_ss) [s].
+        double_support: duration of double support (T_ds) [s].
+        swing_height: clearance of the swing sole above the higher of lift-off and touchdown [m].
+        com_height: CoM height above the support (z_c0) [m].
+        initial_stand: rest before the first double support [s].
+        first_foot: the foot that swings first.
+        apex_ss: rise of the CoM in the middle of single support (A_ss) [m].
+        apex_ds: rise of the CoM in the middle of double support (A_ds) [m].
+        heel_off: greatest pitch of a foot about its toe edge after its stance, 0 keeps the feet level [rad].
+        bouts: the walk stride by stride; empty for equal strides. Feet alternate throughout, across stops too.
+
+    Raises:
+        ValueError: a value is not finite or has the wrong sign, or the bouts have another number of strides.
+    """
+
+    steps: int = 5
+    step_length: float = 0.2
+    step_width: float = 0.2
+    lateral_step: float = 0.0
+    turn: float = 0.0
+    single_support: float = 1.5
+    double_support: float = 0.5
+    swing_height: float = 0.05
+    com_height: float = 1.0
+    initial_stand: float = 1.0
+    first_foot: Foot = Foot.LEFT
+    apex_ss: float = 0.0135
+    apex_ds: float = 0.00135
+    heel_off: float = 0.0
+    bouts: tuple[Bout, ...] = ()
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name == "bouts":
+                continue
+            if not math.isfinite(value):
+                raise ValueError(f"gait.{field.name} is {value}, but it must be a finite number.")
+            if field.name in _POSITIVE and value <= 0.0:
+                raise ValueError(f"gait.{field.name} is {value:g}, but it must be greater than 0.")
+            if field.name in _NOT_NEGATIVE and value < 0.0:
+                raise ValueError(f"gait.{field.name} is {value:g}, but it must not be negative.")
+        if self.steps < 0 or self.steps != int(self.steps):
+            raise ValueError(f"gait.steps is {self.steps}, but it must be a whole number of at least 0.")
+        strides = sum(len(bout.strides) for bout in self.bouts)
+        if self.bouts and strides != self.steps:
+            raise ValueError(f"gait.steps is {self.steps}, but its bouts have {strides} strides; both must be equal.")
+
+    @property
+    def walk(self) -> tuple[Bout, ...]:
+        """The walk stride by stride; () when it only stands."""
+        if self.bouts or self.steps == 0:
+            return self.bouts
+        stride = Stride(self.step_length, self.lateral_step, self.turn, self.step_width)
+        closing = Stride(0.0, 0.0, 0.0, self.step_width)
+        return (Bout(self.initial_stand, (stride,) * (self.steps - 1) + (closing,)),)
+
+    @property
+    def strides(self) -> tuple[Stride, ...]:
+        """The strides of all bouts."""
+        return tuple(stride for bout in self.walk for stride in bout.strides)
+
+    def step_foot(self, step: int) -> Foot:
+        """The foot that step number `step` moves; steps count from 1, number 0 and -1 are the start feet."""
+        return self.first_foot if step % 2 == 1 else Foot(self.first_foot).other
+
+
+def support_rows(walk: tuple[Bout, ...]) -> NDArray[np.intp]:
+    """The rows of a footstep plan between which each support point of the ZMP reference lies, shape (m, 2).
+
+    The reference stands between two feet before every bout and at the end, and on one foot, given twice, during each
+    step: with B bouts of n strides in all there are m = n + B + 1 support points. The stance foot of step i is row i.
+    """
+    rows, step = [], 0
+    for bout in walk:
+        rows.append((step, step + 1))
+        rows += [(step + i, step + i) for i in range(1, len(bout.strides) + 1)]
+        step += len(bout.strides)
+    return np.array([*rows, (step, step + 1)], dtype=np.intp)
+
+
+def samples(name: str, duration: float, sample_time: float) -> int:
+    """Number of planner samples in a duration.
+
+    Args:
+        name: what the duration is called, for the message.
+        duration: duration [s].
+        sample_time: planner sample time [s].
+
+    Raises:
+        ValueError: the duration is no multiple of the sample time; the message names the nearest that is.
+    """
+    count = round(duration / sample_time)
+    if abs(count * sample_time - duration) > 1e-9 * max(1.0, duration):
+        nearest = max(count, 1) * sample_time
+        raise ValueError(
+            f"{name} is {duration:g} s, but it must be a multiple of the planner's sample time of {sample_time:g} s;"
+            f" the nearest is {nearest:g} s."
+        )
+    return count

@@ -1,0 +1,110 @@
+"""Where a foot may land beside its stance foot: in reach, apart from it, and not crossed."""
+
+import math
+from dataclasses import dataclass, replace
+
+from surefoot.planner.types import Foot
+from surefoot.planner.walk.gait import Stride
+
+_ROUNDING = 1e-9
+"""Places in the region are compared with this tolerance [m, rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Landing:
+    """Where a foot lands, seen from its stance foot.
+
+    Attributes:
+        ahead: forward distance in the stance foot's frame [m].
+        beside: distance to the foot's own side, negative when the legs cross [m].
+        turn: heading against the stance foot, positive to the left [rad].
+    """
+
+    ahead: float
+    beside: float
+    turn: float
+
+
+def landing(stride: Stride, foot: Foot) -> Landing:
+    """Where a foot lands that makes a stride (see `planner.walk.footsteps.plan_footsteps`)."""
+    side, half = (1.0 if foot is Foot.LEFT else -1.0), 0.5 * stride.width
+    forward, left = _advance(stride)
+    ahead = forward - side * half * math.sin(stride.turn)
+    return Landing(ahead, side * left + half * (1.0 + math.cos(stride.turn)), stride.turn)
+
+
+def _advance(stride: Stride) -> tuple[float, float]:
+    """Advance of the path in the frame of its old heading, forward and to the left [m]."""
+    c, s = math.cos(0.5 * stride.turn), math.sin(0.5 * stride.turn)
+    return c * stride.length - s * stride.lateral, s * stride.length + c * stride.lateral
+
+
+@dataclass(frozen=True, slots=True)
+class StepRegion:
+    """Bounds of a landing.
+
+    Two soles that are `nearest` apart sideways keep the gap whatever the distance ahead, so that a foot neither lands
+    on the other one, nor passes through it, nor crosses over.
+
+    Attributes:
+        length: largest distance ahead or behind [m].
+        width: least and largest distance beside [m].
+        sole: length and width of the soles [m].
+        gap: least distance between two soles side by side [m].
+        turn: largest change of heading; beyond about 0.7 rad the thighs touch [rad].
+        leg_span: largest distance from the point `hip_width` beside the stance foot, where both legs stand upright [m].
+        hip_width: distance between the hips [m].
+    """
+
+    length: float
+    width: tuple[float, float]
+    sole: tuple[float, float]
+    gap: float = 0.01
+    turn: float = 0.5
+    leg_span: float = math.inf
+    hip_width: float = 0.0
+
+    def nearest(self, turn: float) -> float:
+        """Least distance beside for a foot that lands turned [m]."""
+        length, width = self.sole
+        swept = length * abs(math.sin(turn)) + width * abs(math.cos(turn))
+        return max(self.width[0], 0.5 * (width + swept) + self.gap)
+
+    def contains(self, place: Landing) -> bool:
+        """Whether a foot may land there."""
+        return self.why_not(place) is None
+
+    def why_not(self, place: Landing) -> str | None:
+        """What is wrong with a landing, in a clause that follows "the foot"; None when nothing is."""
+        near, far = self.nearest(place.turn), self.width[1]
+        if abs(place.turn) > self.turn + _ROUNDING:
+            return f"turns by {place.turn:.3g} rad against its stance foot, and {self.turn:g} rad is the most"
+        if place.beside < near - _ROUNDING:
+            what = "crosses" if place.beside < 0.0 else "would touch"
+            return f"{what} its stance foot, {place.beside:.3f} m beside it, and {near:.3f} m is the least"
+        if place.beside > far + _ROUNDING:
+            return f"lands {place.beside:.3f} m beside its stance foot, and {far:g} m is the most"
+        if abs(place.ahead) > self.length + _ROUNDING:
+            return f"lands {place.ahead:.3f} m ahead of its stance foot, and {self.length:g} m is the most"
+        stretch = math.hypot(place.ahead, place.beside - self.hip_width)
+        if stretch > self.leg_span + _ROUNDING:
+            return f"lands {stretch:.3f} m from where the legs stand upright, and {self.leg_span:.3f} m is the most"
+        return None
+
+    def fitted(self, stride: Stride) -> Stride:
+        """The stride with the width nearest to its own at which both feet land within bounds, if there is one.
+
+        Sideways the feet alternate between a wide and a closing step, whose distances differ by twice the lateral
+        advance; in a turn the outer foot goes the farther the wider the feet stand.
+        """
+        forward, left = _advance(stride)
+        middle, ahead = 0.5 * (1.0 + math.cos(stride.turn)), 0.5 * abs(math.sin(stride.turn))
+        least = (self.nearest(stride.turn) + abs(left)) / middle
+        most = (self.width[1] - abs(left)) / middle
+        if ahead > 0.0:
+            most = min(most, (self.length - abs(forward)) / ahead)
+        return replace(stride, width=max(min(stride.width, most), least))
+
+    def admits(self, stride: Stride) -> bool:
+        """Whether both feet may make a stride."""
+        return all(self.contains(landing(stride, foot)) for foot in Foot)

@@ -1,1 +1,0 @@
-"""The closed loops of both fidelities, put together from a scenario."""

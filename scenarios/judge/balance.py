@@ -1,0 +1,164 @@
+"""Metrics of balance: ZMP, centre of pressure, CoM and DCM against what was planned."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.scenarios.judge.digest import Array, Mask, RunView
+
+Rows = NDArray[np.intp]
+
+MARGIN = 0.9
+"""Share of each foot that the planned ZMP may use, the paper's margin."""
+
+PREDICTION = 0.2
+"""Age of the plan that the true state is compared with [s]."""
+
+
+def zmp_depth(run: RunView) -> Array:
+    """How deep the measured ZMP is inside the planned support polygon of feet shrunk to 90 %, shape (n,) [m].
+
+    A hull of shrunk feet is the hull of the feet with each edge moved in by a tenth of the foot's half extent along
+    the edge's normal; exact for parallel feet, and on the safe side for others. Negative outside, NaN in flight.
+    """
+    zmp = run.field("/contact", "zmp")[:, None, :2]
+    vertices = run.field("/reference", "support")
+    edges = np.roll(vertices, -1, axis=1) - vertices
+    lengths = np.linalg.norm(edges, axis=2)
+    normals = np.stack([-edges[..., 1], edges[..., 0]], axis=2) / np.where(lengths > 0, lengths, 1.0)[..., None]
+    normals *= np.sign(_signed_area(vertices))[:, None, None]
+    depth = np.sum(normals * (zmp - vertices), axis=2)
+    depth -= (1 - MARGIN) * _half_extent(run, normals)
+    return np.asarray(np.where(lengths < 1e-9, np.inf, depth).min(axis=1))
+
+
+def zmp_inside(run: RunView) -> Mask:
+    """Whether the ZMP is inside the planned support polygon of feet shrunk to 90 %, shape (n,); not so in flight."""
+    return np.asarray(run.reduced(zmp_depth) >= -1e-9)
+
+
+def zmp_inside_fraction(run: RunView) -> float:
+    """Share of ticks at which `zmp_inside` holds."""
+    return float(np.mean(zmp_inside(run)))
+
+
+def zmp_excursion_max(run: RunView) -> float | None:
+    """Farthest that the ZMP came out of the planned support polygon of feet shrunk to 90 %, negative inside [m]."""
+    depth = run.reduced(zmp_depth)
+    depth = depth[np.isfinite(depth)]
+    return float(-depth.min()) if len(depth) else None
+
+
+def cop_ratios(run: RunView) -> Array:
+    """Centre of pressure of the stance foot over its half size in single support, the worse axis, shape (k,)."""
+    size = np.array([run.constants.foot_length, run.constants.foot_width]) / 2
+    stance = run.field("/reference", "stance")
+    cops = np.where((stance == 0)[:, None], run.field("/contact", "cop_left"), run.field("/contact", "cop_right"))
+    ratios = np.max(np.abs(cops[run.single_support & (stance >= 0)]) / size, axis=1)
+    return np.asarray(ratios[np.isfinite(ratios)])
+
+
+def cop_ratio_p99(run: RunView) -> float | None:
+    """Centre of pressure of the stance foot over its half size in single support: 99th percentile [-]."""
+    ratios = cop_ratios(run)
+    return float(np.percentile(ratios, 99)) if len(ratios) else None
+
+
+def cop_ratio_max(run: RunView) -> float | None:
+    """The same: largest [-]."""
+    ratios = cop_ratios(run)
+    return float(ratios.max()) if len(ratios) else None
+
+
+def zmp_error_rms(run: RunView) -> list[float] | None:
+    """Measured ZMP minus the ZMP reference that the footsteps define, RMS, x and y [m]."""
+    return rms(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
+
+
+def zmp_error_max(run: RunView) -> list[float] | None:
+    """Measured ZMP minus the ZMP reference that the footsteps define, largest in size, x and y [m]."""
+    error = np.abs(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
+    error = error[np.isfinite(error).all(axis=1)]
+    return [float(value) for value in error.max(axis=0)] if len(error) else None
+
+
+def predicted(run: RunView) -> Array:
+    """What each plan predicts for 0.2 s later, shape (plans, 6): CoM, its velocity x y, ω; NaN beyond its horizon."""
+    plan, sample = run.log["/plan"], round(PREDICTION / run.constants.sample_time)
+    com, velocity, omega = (plan.field(name) for name in ("com", "com_velocity", "omega"))
+    if sample >= com.shape[1]:
+        return np.full((len(com), 6), np.nan)
+    return np.column_stack((com[:, sample], velocity[:, sample, :2], omega[:, sample]))
+
+
+def com_error_rms(run: RunView) -> list[float] | None:
+    """True CoM minus what the plan of 0.2 s earlier predicted for this instant, RMS, x, y and z [m]."""
+    rows, prediction = _predictions(run)
+    return rms(run.log["/truth"].field("com")[rows] - prediction[:, :3])
+
+
+def dcm_error_rms(run: RunView) -> list[float] | None:
+    """True DCM minus what the plan of 0.2 s earlier predicted, both by the predicted frequency, RMS, x and y [m]."""
+    rows, prediction = _predictions(run)
+    truth = run.log["/truth"]
+    position = truth.field("com")[rows, :2] - prediction[:, :2]
+    velocity = truth.field("com_velocity")[rows, :2] - prediction[:, 3:5]
+    return rms(position + velocity / prediction[:, 5:])
+
+
+def estimation_error_rms(run: RunView) -> float | None:
+    """Distance of the CoM that the planner was given from the true one, RMS [m]."""
+    rows, given = _given(run)
+    error = run.log["/planner_state"].field("com")[given] - run.log["/truth"].field("com")[rows]
+    value = rms(np.linalg.norm(error, axis=1)[:, None])
+    return value[0] if value else None
+
+
+def dcm_estimation_error_rms(run: RunView) -> list[float] | None:
+    """DCM that the planner was given minus the true one, both by the planned frequency, RMS, x and y [m]."""
+    rows, given = _given(run)
+    state, truth = run.log["/planner_state"], run.log["/truth"]
+    omega = run.log["/reference"].field("omega")[rows, None]
+    position = state.field("com")[given, :2] - truth.field("com")[rows, :2]
+    velocity = state.field("com_velocity")[given, :2] - truth.field("com_velocity")[rows, :2]
+    return rms(position + velocity / omega)
+
+
+def rms(error: Array) -> list[float] | None:
+    """Root mean square of each column over the rows that are finite; None when there is none."""
+    sound = error[np.isfinite(error).all(axis=1)]
+    return [float(value) for value in np.sqrt(np.mean(sound**2, axis=0))] if len(sound) else None
+
+
+def _given(run: RunView) -> tuple[Rows, Rows]:
+    """Rows of /truth and of /planner_state at the planner's measurements, of ticks that are whole."""
+    rows, near = run.rows_at("/truth", run.log["/planner_state"].time_ns)
+    given = np.flatnonzero(near & (rows < run.ticks))
+    return rows[given], given
+
+
+def _predictions(run: RunView) -> tuple[Rows, Array]:
+    """Rows of /truth and what was predicted for them; held plans predict nothing."""
+    plan = run.log["/plan"]
+    sample = round(PREDICTION / run.constants.sample_time)
+    ahead = round(sample * run.constants.sample_time * 1e9)
+    rows, near = run.rows_at("/truth", plan.time_ns + ahead)
+    plans = np.flatnonzero(near & (plan.field("held") == 0))
+    return rows[plans], run.reduced(predicted)[plans]
+
+
+def _signed_area(vertices: Array) -> Array:
+    """Signed area of polygons, counter-clockwise positive, shape (n,)."""
+    x, y = vertices[..., 0], vertices[..., 1]
+    return np.asarray(0.5 * np.sum(x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y, axis=1))
+
+
+def _half_extent(run: RunView, normals: Array) -> Array:
+    """Half extent of the supporting feet along edge normals, the larger of two, shape (n, edges)."""
+    stance = run.field("/reference", "stance")
+    extents = []
+    for foot, yaw in enumerate(run.sole_yaw.T):
+        along = np.abs(normals[..., 0] * np.cos(yaw)[:, None] + normals[..., 1] * np.sin(yaw)[:, None])
+        across = np.abs(normals[..., 1] * np.cos(yaw)[:, None] - normals[..., 0] * np.sin(yaw)[:, None])
+        extent = (along * run.constants.foot_length + across * run.constants.foot_width) / 2
+        extents.append(np.where((stance == 1 - foot)[:, None], 0.0, extent))
+    return np.maximum(*extents)

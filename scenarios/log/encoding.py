@@ -1,0 +1,182 @@
+"""Bytes of MCAP records: compression of chunks, encoding, and the summary at the end of a file."""
+
+import struct
+import zlib
+from collections.abc import Callable, Mapping, Sequence
+
+import lz4.frame
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import (
+    Attachment,
+    AttachmentIndex,
+    Channel,
+    Chunk,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    McapRecord,
+    Metadata,
+    MetadataIndex,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+
+from surefoot.scenarios.errors import LogError
+
+_LZ4_LEVEL = -3
+"""Twice as fast as the default, for 8 % more bytes of a log."""
+
+_GREATEST_RATIO = 100_000
+"""No sound chunk is compressed more; a damaged size must not exhaust the memory."""
+
+
+def compress(data: bytes, method: str) -> bytes:
+    """Compress a chunk by lz4, zstd or, for an empty method, not at all."""
+    if method == "lz4":
+        return bytes(lz4.frame.compress(data, store_size=True, compression_level=_LZ4_LEVEL))
+    return zstandard.compress(data) if method == "zstd" else data
+
+
+def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:
+    """Decompress a chunk.
+
+    Args:
+        data: compressed bytes.
+        method: as of `compress`.
+        size: bytes that must come out.
+
+    Raises:
+        LogError: the bytes are damaged or the method is unknown.
+    """
+    if size > _GREATEST_RATIO * len(data) + 1024:
+        raise LogError("a chunk states more bytes than compression can yield; its bytes are damaged")
+    try:
+        if method == "lz4":
+            whole = lz4.frame.decompress(data)
+        elif method == "zstd":
+            whole = zstandard.ZstdDecompressor().decompress(data, max_output_size=size)
+        elif method == "":
+            whole = bytes(data)
+        else:
+            raise LogError(f"chunk compression '{method}' is unknown; use lz4, zstd or none")
+    except (RuntimeError, zstandard.ZstdError, MemoryError, ValueError, OverflowError, EOFError):
+        raise LogError("a chunk does not decompress; its bytes are damaged") from None
+    if len(whole) != size:
+        raise LogError(f"a chunk holds {len(whole)} bytes where it states {size}; its bytes are damaged")
+    return bytes(whole)
+
+
+MAGIC = b"\x89MCAP0\r\n"
+
+
+def encoded(record: McapRecord) -> bytes:
+    """Encode a record with its opcode and length."""
+    builder = RecordBuilder()
+    record.write(builder)
+    return bytes(builder.end())  # type: ignore[no-untyped-call]
+
+
+def chunk_head(chunk: Chunk) -> bytes:
+    """Encode a chunk's record up to its data, which follow as they are: they are not copied once more."""
+    method, size = chunk.compression.encode(), len(chunk.data)
+    times = (chunk.message_start_time, chunk.message_end_time, chunk.uncompressed_size, chunk.uncompressed_crc)
+    body = struct.pack(f"<QQQII{len(method)}sQ", *times, len(method), method, size)
+    return struct.pack("<BQ", Opcode.CHUNK, len(body) + size) + body
+
+
+class Summary:
+    """Everything a reader wants to know before it reads the messages."""
+
+    def __init__(self) -> None:
+        self._schemas: list[Schema] = []
+        self._channels: list[Channel] = []
+        self._chunks: list[ChunkIndex] = []
+        self._attachments: list[AttachmentIndex] = []
+        self._metadata: list[MetadataIndex] = []
+
+    def add_channel(self, schema: Schema | None, channel: Channel) -> None:
+        """Note a channel and its schema, when it is new."""
+        if schema is not None and all(known.id != schema.id for known in self._schemas):
+            self._schemas.append(schema)
+        self._channels.append(channel)
+
+    def add_metadata(self, record: Metadata, position: int) -> bytes:
+        """Note a metadata record at a file position and encode it."""
+        data = encoded(record)
+        self._metadata.append(MetadataIndex(position, len(data), record.name))
+        return data
+
+    def add_attachment(self, record: Attachment, position: int) -> bytes:
+        """Note an attachment at a file position and encode it."""
+        data = encoded(record)
+        size = len(record.data)
+        stamps = (record.log_time, record.create_time)
+        self._attachments.append(AttachmentIndex(position, len(data), *stamps, size, record.name, record.media_type))
+        return data
+
+    def add_chunk(self, chunk: Chunk, position: int, length: int, indexes: Sequence[tuple[int, bytes]]) -> None:
+        """Note a chunk of `length` bytes at a file position, followed by the MessageIndex records of its channels."""
+        offsets, end = {}, position + length
+        for channel_id, index in indexes:
+            offsets[channel_id] = end
+            end += len(index)
+        entry = ChunkIndex(
+            chunk_length=length,
+            chunk_start_offset=position,
+            compression=chunk.compression,
+            compressed_size=len(chunk.data),
+            message_end_time=chunk.message_end_time,
+            message_index_length=end - position - length,
+            message_index_offsets=offsets,
+            message_start_time=chunk.message_start_time,
+            uncompressed_size=chunk.uncompressed_size,
+        )
+        self._chunks.append(entry)
+
+    def finish(self, position: int, counts: Mapping[int, int]) -> bytes:
+        """Give the end of the file: end of data, summary, footer, magic.
+
+        Args:
+            position: where it will stand in the file.
+            counts: messages by channel.
+        """
+        end = encoded(DataEnd(0))
+        start = position + len(end)
+        groups: list[tuple[Opcode, Sequence[McapRecord]]] = [
+            (Opcode.SCHEMA, self._schemas),
+            (Opcode.CHANNEL, self._channels),
+            (Opcode.STATISTICS, [self._statistics(counts)]),
+            (Opcode.CHUNK_INDEX, self._chunks),
+            (Opcode.ATTACHMENT_INDEX, self._attachments),
+            (Opcode.METADATA_INDEX, self._metadata),
+        ]
+        summary, offsets = bytearray(), bytearray()
+        for opcode, records in groups:
+            data = b"".join(encoded(record) for record in records)
+            if data:
+                offsets += encoded(SummaryOffset(opcode, start + len(summary), len(data)))
+                summary += data
+        offset_start = start + len(summary)
+        summary += offsets
+        footer = encoded(Footer(start, offset_start, 0))
+        crc = zlib.crc32(footer[:-4], zlib.crc32(summary))
+        return b"".join((end, summary, encoded(Footer(start, offset_start, crc)), MAGIC))
+
+    def _statistics(self, counts: Mapping[int, int]) -> Statistics:
+        def over_chunks(choose: Callable[..., int], name: str) -> int:
+            return choose((getattr(chunk, name) for chunk in self._chunks), default=0)
+
+        return Statistics(
+            attachment_count=len(self._attachments),
+            channel_count=len(self._channels),
+            channel_message_counts=dict(counts),
+            chunk_count=len(self._chunks),
+            message_count=sum(counts.values()),
+            message_end_time=over_chunks(max, "message_end_time"),
+            message_start_time=over_chunks(min, "message_start_time"),
+            metadata_count=len(self._metadata),
+            schema_count=len(self._schemas),
+        )

@@ -1,0 +1,112 @@
+"""Messages of one channel: out of a block of bytes, and as numpy arrays by field name."""
+
+from typing import Any
+
+import numpy as np
+from mcap.opcode import Opcode
+from numpy.typing import NDArray
+
+from surefoot.scenarios.errors import LogError, nearest
+from surefoot.scenarios.log.scan import PREFIX, Buffer, ChunkPlace
+from surefoot.scenarios.log.spec import PREFIX_BYTES, FieldSpec
+
+MESSAGE_BYTES = PREFIX_BYTES + 22
+"""A message record without its content."""
+
+
+def content_at(data: Buffer, offset: int) -> bytes:
+    """Content of the message record at an offset; cut where the data end."""
+    _, length = PREFIX.unpack_from(data, offset)
+    return bytes(data[offset + MESSAGE_BYTES : offset + PREFIX_BYTES + length])
+
+
+def block_of(data: memoryview, chunk: ChunkPlace, channel_id: int, size: int, file: Buffer) -> memoryview | bytes:
+    """Bytes of a channel's messages of `size` bytes, one after the other; those beyond the chunk are left out.
+
+    Where the first and the last one are as far apart as their number says, they stand in a row; `sound_records` shows
+    whether they do.
+
+    Args:
+        data: the decompressed chunk.
+        chunk: its place.
+        channel_id: the channel, which has messages in it.
+        size: of a message record.
+        file: bytes of the file.
+    """
+    first, last = chunk.extent(channel_id, file)
+    if last - first == (chunk.count(channel_id) - 1) * size and last + size <= len(data):
+        return data[first : last + size]
+    return gathered(data, chunk.entries(channel_id, file), size)
+
+
+def gathered(data: memoryview, index: NDArray[np.void], size: int) -> bytes:
+    """Bytes of messages that stand anywhere, one after the other; those beyond the data are left out."""
+    last = len(data) - size
+    return b"".join(data[start : start + size] for start in index["offset"].tolist() if start <= last)
+
+
+def sound_records(block: NDArray[np.uint8], channel_id: int, dtype: np.dtype[Any]) -> NDArray[np.void]:
+    """Message records of one channel out of whole records one after the other; others are left out."""
+    records = block.view(dtype)
+    sound = (
+        (records["_opcode"] == Opcode.MESSAGE)
+        & (records["_length"] == dtype.itemsize - PREFIX_BYTES)
+        & (records["_channel"] == channel_id)
+    )
+    return records if sound.all() else records[sound]
+
+
+class ChannelData:
+    """The messages of one channel in order of time.
+
+    Attributes:
+        topic: the channel's topic.
+        fields: its fields.
+        time_ns: simulated time of each message, shape (n,) [ns].
+    """
+
+    def __init__(self, topic: str, fields: tuple[FieldSpec, ...], records: NDArray[np.void]) -> None:
+        times = records["_log_time"].astype(np.int64)
+        if np.any(times[1:] < times[:-1]):
+            order = np.argsort(times, kind="stable")
+            times, records = times[order], records[order]
+        self.topic = topic
+        self.fields = fields
+        self.time_ns: NDArray[np.int64] = times
+        self._records = records
+
+    def __len__(self) -> int:
+        return len(self._records)
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Simulated time of each message, shape (n,) [s]."""
+        return np.asarray(self.time_ns / 1e9)
+
+    def between(self, start_ns: int, end_ns: int) -> "ChannelData":
+        """The messages from a time on and up to another one [ns]."""
+        first, last = np.searchsorted(self.time_ns, (start_ns, end_ns + 1))
+        return ChannelData(self.topic, self.fields, self._records[first:last])
+
+    def content(self) -> bytes:
+        """Bytes of all messages in order, for exact comparison of two runs."""
+        return self._records.tobytes()
+
+    def field(self, name: str) -> NDArray[Any]:
+        """Values of one field, shape (n, *field shape).
+
+        Raises:
+            LogError: the channel has no such field.
+        """
+        self._require(name)
+        return np.array(self._records[name])
+
+    def only(self, name: str) -> "ChannelData":
+        """The same messages with one field; errors as of `field`."""
+        self._require(name)
+        return ChannelData(self.topic, tuple(field for field in self.fields if field.name == name), self._records)
+
+    def _require(self, name: str) -> None:
+        if all(field.name != name for field in self.fields):
+            right = nearest(name, [field.name for field in self.fields])
+            raise LogError(f"channel {self.topic} has no field '{name}'; {right}")

@@ -1,0 +1,282 @@
+"""The hot end of the log: values are copied into preallocated message records, alone or as rows of several channels."""
+
+import struct
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from mcap.opcode import Opcode
+from numpy.typing import ArrayLike, NDArray
+
+from surefoot.scenarios.log.spec import PREFIX_BYTES, ChannelSpec, blank_records
+
+_INDEX_HEADER = struct.Struct("<BQHI")
+
+
+class Clock:
+    """When the chunk under way is due.
+
+    Attributes:
+        due: simulated time [ns] from which the next message completes the chunk.
+    """
+
+    __slots__ = ("due",)
+
+    def __init__(self, due: int) -> None:
+        self.due = due
+
+
+class ChannelWriter:
+    """Messages of one channel that wait for their chunk.
+
+    Attributes:
+        spec: the channel.
+        channel_id: its number in the file.
+        count: messages waiting.
+        total: messages handed over to chunks so far.
+        times: simulated time of the messages waiting [ns].
+    """
+
+    __slots__ = (
+        "_bytes",
+        "_capacity",
+        "_clock",
+        "_flush",
+        "_log_time",
+        "_offsets",
+        "_publish_time",
+        "_records",
+        "_sequence",
+        "_stamp",
+        "_views",
+        "channel_id",
+        "count",
+        "spec",
+        "times",
+        "total",
+    )
+
+    def __init__(
+        self, spec: ChannelSpec, channel_id: int, capacity: int, clock: Clock, flush: Callable[[int], None]
+    ) -> None:
+        self.spec = spec
+        self.channel_id = channel_id
+        self.count = 0
+        self.total = 0
+        self._records = blank_records(spec.fields, channel_id, capacity)
+        self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[field.name] for field in spec.fields)
+        self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
+        self.times: list[int] = []
+        self._stamp, self._sequence = self._records["_stamp"], self._records["_sequence"]
+        self._log_time, self._publish_time = self._records["_log_time"], self._records["_publish_time"]
+        self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._records.dtype.itemsize)
+        self._capacity = capacity
+        self._clock = clock
+        self._flush = flush
+
+    def append(self, time_ns: int, *values: ArrayLike) -> None:
+        """Add a message; the values are copied.
+
+        Args:
+            time_ns: simulated time [ns].
+            values: one per field, of the field's shape.
+
+        Raises:
+            ValueError: the number of values or a shape does not fit the channel.
+            LogError: the chunk that this message completes cannot be written.
+        """
+        n = self.count
+        self.times.append(time_ns)
+        for view, value in zip(self._views, values, strict=True):
+            view[n] = value
+        self.count = n = n + 1
+        if time_ns >= self._clock.due or n == self._capacity:
+            self._flush(time_ns)
+
+    def view(self, name: str) -> NDArray[np.generic]:
+        """Where the values of a field wait, shape (capacity, *field shape)."""
+        return self._views[[field.name for field in self.spec.fields].index(name)]
+
+    def fill(self, times_ns: Sequence[int]) -> None:
+        """Take over messages whose values were written into the views, while none waits."""
+        self.times.extend(times_ns)
+        self.count = len(times_ns)
+
+    def take(self, offset: int) -> tuple[memoryview, bytes]:
+        """Hand over what waits.
+
+        Args:
+            offset: where its block begins in the chunk [bytes].
+
+        Returns:
+            the message records, valid until the next `append`, and their MessageIndex record.
+        """
+        n = self.count
+        stamps = np.array(self.times, np.uint64)
+        self._stamp[:n] = self._log_time[:n] = self._publish_time[:n] = stamps
+        self._sequence[:n] = np.arange(self.total, self.total + n)
+        self.times.clear()
+        self.count = 0
+        self.total += n
+        index = message_index(self.channel_id, stamps, self._offsets[:n] + np.uint64(offset))
+        return self._bytes[:n].data.cast("B"), index
+
+
+def message_index(channel_id: int, times_ns: ArrayLike, offsets: ArrayLike) -> bytes:
+    """MessageIndex record of a channel's messages in a chunk: times [ns] and byte offsets, shape (n,) each."""
+    times = np.asarray(times_ns, "<u8")
+    index = np.empty((len(times), 2), "<u8")
+    index[:, 0], index[:, 1] = times, offsets
+    entries = index.tobytes()
+    return _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(entries) + 6, channel_id, len(entries)) + entries
+
+
+_HEADER = struct.Struct("<BQHIQQ")
+
+
+class MessageWriter:
+    """Encoded messages of any size that wait for their chunk; for channels slower than the control rate.
+
+    Attributes:
+        channel_id: its number in the file.
+        count: messages waiting.
+        total: messages handed over to chunks so far.
+        times: simulated time of the messages waiting [ns].
+    """
+
+    def __init__(self, channel_id: int, clock: Clock, flush: Callable[[int], None]) -> None:
+        self.channel_id = channel_id
+        self.count = self.total = 0
+        self.times: list[int] = []
+        self._waiting: list[bytes] = []
+        self._clock, self._flush = clock, flush
+
+    def append(self, time_ns: int, data: bytes) -> None:
+        """Add an encoded message.
+
+        Raises:
+            LogError: the chunk that this message completes cannot be written.
+        """
+        self.times.append(time_ns)
+        self._waiting.append(data)
+        self.count += 1
+        if time_ns >= self._clock.due:
+            self._flush(time_ns)
+
+    def take(self, offset: int) -> tuple[bytes, bytes]:
+        """Hand over what waits, as `ChannelWriter.take` does."""
+        blocks, offsets = [], []
+        for time, data in zip(self.times, self._waiting, strict=True):
+            offsets.append(offset)
+            length = _HEADER.size - PREFIX_BYTES + len(data)
+            blocks.append(_HEADER.pack(Opcode.MESSAGE, length, self.channel_id, self.total, time, time) + data)
+            offset += len(blocks[-1])
+            self.total += 1
+        index = message_index(self.channel_id, self.times, offsets)
+        self.times.clear()
+        self._waiting.clear()
+        self.count = 0
+        return b"".join(blocks), index
+
+
+Array = NDArray[np.float64]
+Columns = Sequence[tuple[ChannelWriter, Sequence[str]]]
+"""Fields of channels, in order."""
+
+Derive = Callable[[Array, Array], Array]
+
+
+class RowWriter:
+    """Rows that wait for their chunk: vectors, numbers, and what is derived from both when the chunk is due."""
+
+    __slots__ = ("_capacity", "_clock", "_columns", "_derive", "_flush", "_numbers", "_times", "_vectors", "_writers")
+
+    def __init__(
+        self,
+        vectors: Columns,
+        numbers: Columns,
+        capacity: int,
+        clock: Clock,
+        flush: Callable[[int], None],
+        derived: Columns = (),
+        derive: Derive | None = None,
+        inputs: int = 0,
+    ) -> None:
+        """Rows made of fields of channels, in this order.
+
+        Args:
+            vectors: fields that come as vectors.
+            numbers: fields that come as plain numbers.
+            capacity: rows that may wait.
+            clock: says when a chunk is due.
+            flush: completes it.
+            derived: fields that come out of `derive`.
+            derive: from vectors, shape (n, width), and numbers, shape (n, count), to the derived fields' columns.
+            inputs: width of further vectors that only `derive` needs.
+
+        Raises:
+            ValueError: a field is missing or there twice.
+        """
+        groups = (vectors, numbers, derived)
+        self._columns = [_columns(group) for group in groups]
+        writers = {writer.channel_id: writer for group in groups for writer, _ in group}
+        widths = [columns[-1][2] if columns else 0 for columns in self._columns]
+        if sum(widths) != sum(field.size for writer in writers.values() for field in writer.spec.fields):
+            raise ValueError("a row must hold every field of its channels exactly once")
+        self._writers = list(writers.values())
+        self._derive = derive
+        self._vectors = np.zeros((capacity, widths[0] + inputs))
+        self._numbers: list[tuple[float, ...]] = []
+        self._times: list[int] = []
+        self._capacity, self._clock, self._flush = capacity, clock, flush
+
+    def append(self, time_ns: int, numbers: tuple[float, ...], *vectors: Array) -> None:
+        """Add a message to each channel; the values are copied.
+
+        Args:
+            time_ns: simulated time [ns].
+            numbers: the row's numbers.
+            vectors: float64 vectors that make up the rest of the row.
+
+        Raises:
+            ValueError: the vectors do not fill the row.
+            LogError: the chunk that this row completes cannot be written.
+        """
+        if vectors:
+            np.concatenate(vectors, out=self._vectors[len(self._times)])
+        self._numbers.append(numbers)
+        self._times.append(time_ns)
+        if time_ns >= self._clock.due or len(self._times) == self._capacity:
+            self._flush(time_ns)
+
+    def spread(self) -> None:
+        """Hand the rows that wait over to the channels."""
+        n = len(self._times)
+        if not n:
+            return
+        vectors, numbers = self._vectors[:n], np.array(self._numbers)
+        groups = [vectors, numbers] if self._derive is None else [vectors, numbers, self._derive(vectors, numbers)]
+        for rows, columns in zip(groups, self._columns, strict=False):
+            for view, start, end in columns:
+                view[:n] = rows[:, start:end].reshape(n, *view.shape[1:])
+        for writer in self._writers:
+            writer.fill(self._times)
+        self._times.clear()
+        self._numbers.clear()
+
+
+def places(group: Columns) -> dict[tuple[str, str], slice]:
+    """Columns that the fields of a group take, by topic and name."""
+    found, start = {}, 0
+    for writer, names in group:
+        sizes = {field.name: field.size for field in writer.spec.fields}
+        for name in names:
+            found[writer.spec.topic, name] = slice(start, start + sizes[name])
+            start += sizes[name]
+    return found
+
+
+def _columns(group: Columns) -> list[tuple[NDArray[np.generic], int, int]]:
+    """Where the fields of a group wait, and the columns that they take."""
+    at = places(group)
+    fields = [(writer, name, at[writer.spec.topic, name]) for writer, names in group for name in names]
+    return [(writer.view(name), place.start, place.stop) for writer, name, place in fields]

@@ -1,0 +1,1 @@
+"""The closed loops of both fidelities, and the run around them."""

@@ -1,0 +1,124 @@
+"""The planner inside a closed loop, on its own clock and logged, and what it asks of the whole-body controller."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.geometry import sole_rates, sole_rotation
+from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
+from surefoot.scenarios.file.schema import Rates
+from surefoot.scenarios.loop.sensing import PlannerSensing
+from surefoot.scenarios.loop.skeleton import FaultSchedule
+from surefoot.scenarios.record.walk import WalkRecorder
+from surefoot.wbc.types import WbcReference
+
+
+class Planning:
+    """Planner, its sensing, its latest plan, and the record of all.
+
+    Attributes:
+        plan: the latest plan; there is none before the first `update`.
+        sampler: of the latest plan.
+    """
+
+    def __init__(
+        self,
+        planner: WalkingPlanner,
+        sensing: PlannerSensing,
+        recorder: WalkRecorder,
+        faults: FaultSchedule,
+        rates: Rates,
+    ) -> None:
+        self._planner, self._sensing, self._recorder, self._faults = planner, sensing, recorder, faults
+        self._every = rates.control // rates.planner
+        self.plan: WalkPlan
+        self.sampler: PlanSampler
+        self._started = False
+
+    @property
+    def phase(self) -> PhaseInfo:
+        """Where the gait stands."""
+        return self.plan.phase
+
+    def due(self, tick: int) -> bool:
+        """Whether the planner measures at a control tick."""
+        return tick % self._every == 0
+
+    def update(self, tick: int, now_ns: int, state: CentroidalState, zmp: NDArray[np.float64], feet: FeetState) -> None:
+        """Measure and plan; a frozen planner only measures, but the first plan is made whatever the faults say.
+
+        Args:
+            tick: control tick.
+            now_ns: its time [ns].
+            state: CoM without noise, as the planner's robot model has it.
+            zmp: ZMP without noise, shape (2,) [m].
+            feet: the feet, which are measured without noise.
+        """
+        before = self.plan if self._started else None
+        sensed = self._sensing.sense(state, zmp, before)
+        self._recorder.planner_state(now_ns, sensed)
+        if self._started and self._faults.active("planner_freeze", tick):
+            return
+        self.plan = plan = self._planner.update(sensed.given, feet)
+        self.sampler = PlanSampler(plan)
+        self._started = True
+        self._recorder.plan(now_ns, plan)
+        if before is not None and before.phase.kind is PhaseKind.SINGLE and plan.phase.kind is not PhaseKind.SINGLE:
+            self._recorder.touchdown(now_ns, before.footsteps[0], feet)
+
+
+def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
+    """What the whole-body controller shall do at the sample's instant of the plan.
+
+    The heading of pelvis and torso is the mean of both feet's yaws, so that it turns smoothly with the swing foot.
+    """
+    phase = plan.phase
+    passed = phase.elapsed + sample.time - plan.time
+    swing, rate, bend = sample.swing, sample.swing_velocity, sample.swing_acceleration
+    roll = plan.roll
+    foot = -1 if sample.swing_foot is None else int(sample.swing_foot)
+    yaw = [plan.footholds[0].yaw, plan.footholds[1].yaw]
+    normal = np.array([plan.footholds[0].normal, plan.footholds[1].normal])
+    if foot >= 0:
+        yaw[foot] = float(swing[3])
+        normal[foot] = plan.footsteps[0].footstep.normal
+    turning, bending = sole_rates(swing[3:], rate[3:], bend[3:])
+    return WbcReference(
+        com=sample.com,
+        com_velocity=sample.com_velocity,
+        com_acceleration=sample.com_acceleration,
+        zmp=sample.pendulum_zmp,
+        zmp_offset=sample.zmp - sample.pendulum_zmp,
+        omega=sample.omega,
+        stiffness=sample.stiffness,
+        heading=0.5 * (yaw[0] + yaw[1]),
+        heading_rate=0.5 * float(rate[3]),
+        planned_contact=sample.contacts,
+        load_share=(sample.load_left, 1.0 - sample.load_left),
+        time_to_switch=max(0.0, phase.duration - passed),
+        lifting_foot=_lifting_foot(plan),
+        swing_foot=foot,
+        swing_progress=min(1.0, passed / phase.duration) if foot >= 0 and math.isfinite(phase.duration) else 0.0,
+        swing_position=swing[:3],
+        swing_velocity=rate[:3],
+        swing_acceleration=bend[:3],
+        swing_rotation=sole_rotation(*swing[3:].tolist()),
+        swing_angular_velocity=turning,
+        swing_angular_acceleration=bending,
+        ground_normal=normal,
+        rolling_foot=-1 if roll is None or not roll.start < sample.time < roll.end else int(roll.foot),
+        roll=(0.0, 0.0, 0.0) if roll is None else roll.evaluate(sample.time),
+    )
+
+
+def _lifting_foot(plan: WalkPlan) -> int:
+    """The foot that leaves the ground when the present double support ends, -1 if none does."""
+    phase = plan.phase
+    if phase.kind is not PhaseKind.DOUBLE or not plan.footsteps:
+        return -1
+    end = round((phase.duration - phase.elapsed) / plan.sample_time)
+    stands = end < len(plan.contacts) and bool(plan.contacts[end].all())
+    return -1 if stands else int(plan.footsteps[0].footstep.foot)

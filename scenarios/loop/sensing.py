@@ -1,0 +1,108 @@
+"""What the planner is told of the CoM: measured with noise, once per plan, and filtered."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.model.filter import ZMP_ONLY, CentroidalFilter, FilterNoise
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.types import GRAVITY, CentroidalState, FeetState
+from surefoot.scenarios.file.schema import Scenario, Sensing
+from surefoot.scenarios.record.walk import PlannerState
+
+Array = NDArray[np.float64]
+
+VELOCITY_NOISE = 5.0
+"""Standard deviation of the measured CoM velocity over that of the measured CoM [1/s]."""
+
+CLIP = 2.0
+"""Standard deviations at which noise is clipped: with 0.01 m it stays within the paper's 0.02 m."""
+
+LEAST_ZMP_DEVIATION = 0.01
+"""The filter trusts no ZMP more than this: swinging limbs move it by some millimetres that the model lacks [m]."""
+
+LEAST_COM_DEVIATION = 1e-4
+"""The filter trusts no CoM more than this, so that its covariance keeps an inverse [m]."""
+
+_PRIOR = (0.01, 0.01, 0.05)
+"""How far from standing still over the middle of its feet the robot may start [m, m/s, m/s^2]."""
+
+_STREAM = 1
+"""Random numbers of the measurement, apart from those of the start pose with the same seed."""
+
+
+class PlannerSensing:
+    """Noisy measurement and filter of a scenario.
+
+    Horizontal CoM position, velocity and ZMP are noisy; the CoM height needs no measurement, since the planner uses its
+    own. One Gaussian sample per plan, clipped; always as many are drawn, so that one noise does not change another.
+
+    Args:
+        scenario: its sensing, its filter and its seed.
+        feet: where the robot stands at the start.
+    """
+
+    def __init__(self, scenario: Scenario, feet: FeetState) -> None:
+        sensing = scenario.sensing
+        com = sensing.com_noise
+        self._deviation = np.repeat([sensing.zmp_noise, com, VELOCITY_NOISE * com], 2).reshape(3, 2)
+        self._rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(_STREAM,)))
+        self._filter = _filter(scenario, feet)
+        self._ground = float(feet.position[:, 2].mean())
+
+    def sense(self, state: CentroidalState, zmp: Array, plan: WalkPlan | None) -> PlannerState:
+        """Measure, and estimate from all measurements so far.
+
+        Args:
+            state: CoM as the planner's robot model has it, without noise.
+            zmp: ZMP without noise, shape (2,) [m]; NaN when the feet carry no load.
+            plan: what has been done since the last measurement, None at the first.
+        """
+        noise = self._deviation * np.clip(self._rng.standard_normal((3, 2)), -CLIP, CLIP)
+        com = np.append(state.com[:2] + noise[1], state.com[2])
+        velocity = np.append(state.com_velocity[:2] + noise[2], state.com_velocity[2])
+        measured, measured_zmp = CentroidalState(state.time, com, velocity), zmp + noise[0]
+        kalman = self._filter
+        if kalman is None:
+            nothing = np.full(2, np.nan)
+            return PlannerState(measured, measured_zmp, measured, nothing, nothing)
+        self._estimate(kalman, measured, measured_zmp, plan)
+        x, v, a = kalman.mean
+        given = CentroidalState(state.time, np.append(x, com[2]), np.append(v, velocity[2]))
+        innovation = kalman.innovation
+        return PlannerState(
+            measured, measured_zmp, given, a, np.full(2, np.nan) if innovation is None else innovation.normalised
+        )
+
+    def _estimate(self, kalman: CentroidalFilter, measured: CentroidalState, zmp: Array, plan: WalkPlan | None) -> None:
+        if plan is None:
+            stiffness, offset = GRAVITY / (float(measured.com[2]) - self._ground), np.zeros(2)
+        else:
+            done = round((measured.time - plan.time) / plan.sample_time)
+            kalman.predict(plan.jerk[done - 1] if done <= len(plan.jerk) else np.zeros(2))
+            now = min(done, len(plan.jerk))
+            stiffness, offset = float(plan.stiffness[now]), plan.zmp_offset[now]
+        kalman.update(zmp - offset, measured.com[:2], measured.com_velocity[:2], stiffness)
+
+
+def _filter(scenario: Scenario, feet: FeetState) -> CentroidalFilter | None:
+    """The scenario's filter, believing that the robot stands still over the middle of its feet."""
+    kind = filter_kind(scenario)
+    if kind == "none":
+        return None
+    mean = np.zeros((3, 2))
+    mean[0] = feet.position[:, :2].mean(axis=0)
+    noise = filter_noise(scenario.sensing)
+    sensors = ZMP_ONLY if kind == "zmp_only" else (True, True, True)
+    return CentroidalFilter(scenario.planner.sample_time, noise, mean, _PRIOR, sensors)
+
+
+def filter_kind(scenario: Scenario) -> str:
+    """The filter of a scenario; when it names none, the Kalman filter if there is noise."""
+    sensing = scenario.sensing
+    return scenario.planner.filter or ("kalman" if sensing.zmp_noise > 0.0 or sensing.com_noise > 0.0 else "none")
+
+
+def filter_noise(sensing: Sensing) -> FilterNoise:
+    """What the filter counts on: the sensors' own noise, down to what the model can promise."""
+    com = max(sensing.com_noise, LEAST_COM_DEVIATION)
+    return FilterNoise(max(sensing.zmp_noise, LEAST_ZMP_DEVIATION), com, VELOCITY_NOISE * com)

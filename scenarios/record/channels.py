@@ -1,0 +1,221 @@
+"""The channels of a run: the single source of what is logged, in which order, shape, unit and frame.
+
+Feet are ordered left, right; wrenches force first; poses x y z qx qy qz qw; q and v follow Pinocchio's convention.
+"""
+
+from dataclasses import dataclass
+
+from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
+
+SUPPORT_VERTICES = 8
+"""Vertices that a planned support polygon is padded to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """Numbers that shape the channels.
+
+    Attributes:
+        nj: actuated joints.
+        nq: configuration coordinates.
+        nv: velocity coordinates.
+        horizon: samples of the planner's preview.
+    """
+
+    nj: int
+    nq: int
+    nv: int
+    horizon: int
+
+
+def _real(name: str, shape: int | tuple[int, ...], unit: str, frame: str, doc: str) -> FieldSpec:
+    return FieldSpec(name, (shape,) if isinstance(shape, int) else shape, unit, frame, doc)
+
+
+def _scalar(name: str, unit: str, doc: str) -> FieldSpec:
+    return FieldSpec(name, (), unit, "", doc)
+
+
+def _int(name: str, doc: str, *shape: int) -> FieldSpec:
+    return FieldSpec(name, shape, "-", "", doc, "int")
+
+
+def measurement(n: Sizes) -> ChannelSpec:
+    """What the sensors give, every control tick."""
+    fields = (
+        _real("joint_position", n.nj, "rad", "", "encoders"),
+        _real("joint_velocity", n.nj, "rad/s", "", "encoders"),
+        _real("joint_torque", n.nj, "N m", "", "applied"),
+        _real("gyro", 3, "rad/s", "imu", "angular velocity"),
+        _real("accelerometer", 3, "m/s^2", "imu", "specific force"),
+        _real("wrench_left", 6, "N, N m", "left sole", "contact wrench at the sole centre"),
+        _real("wrench_right", 6, "N, N m", "right sole", "contact wrench at the sole centre"),
+        _real("external_force", 3, "N", "world", "sum of pushes"),
+    )
+    return ChannelSpec("/measurement", "Measurement", fields, measurement.__doc__ or "")
+
+
+def truth(n: Sizes) -> ChannelSpec:
+    """The simulator's state, every control tick."""
+    fields = (
+        _real("q", n.nq, "m, -, rad", "world", "configuration"),
+        _real("v", n.nv, "m/s, rad/s", "base", "velocity"),
+        _real("com", 3, "m", "world", "CoM"),
+        _real("com_velocity", 3, "m/s", "world", "CoM velocity"),
+        _real("angular_momentum", 3, "N m s", "world", "about the CoM"),
+        _real("left_sole", 7, "m, -", "world", "pose of the sole centre"),
+        _real("right_sole", 7, "m, -", "world", "pose of the sole centre"),
+        _scalar("torso_tilt", "rad", "angle of the torso from the vertical"),
+        _int("nonfoot_contact", "1: something but a foot touches the ground"),
+        _int("self_contact", "1: the robot touches itself"),
+    )
+    return ChannelSpec("/truth", "Truth", fields, truth.__doc__ or "")
+
+
+def point_truth(_: Sizes) -> ChannelSpec:
+    """The pendulum's state, every control tick."""
+    fields = (
+        _real("com", 3, "m", "world", "CoM"),
+        _real("com_velocity", 3, "m/s", "world", "CoM velocity"),
+        _real("left_sole", 7, "m, -", "world", "pose of the sole centre"),
+        _real("right_sole", 7, "m, -", "world", "pose of the sole centre"),
+        _real("external_force", 3, "N", "world", "sum of pushes, mean until the next tick"),
+    )
+    return ChannelSpec("/truth", "PointTruth", fields, point_truth.__doc__ or "")
+
+
+def estimate(_: Sizes) -> ChannelSpec:
+    """The state that the whole-body controller was given, by its robot model, every control tick."""
+    fields = (
+        _real("com", 3, "m", "world", "CoM"),
+        _real("com_velocity", 3, "m/s", "world", "CoM velocity"),
+        _real("dcm", 2, "m", "world", "divergent component of motion"),
+        _real("base_position", 3, "m", "world", "base"),
+        _real("base_velocity", 6, "m/s, rad/s", "base", "linear, angular"),
+    )
+    return ChannelSpec("/estimate", "Estimate", fields, estimate.__doc__ or "")
+
+
+def planner_state(_: Sizes) -> ChannelSpec:
+    """What the planner measured of the CoM and was given of it, every planner tick."""
+    fields = (
+        _real("measured_com", 3, "m", "world", "CoM with noise"),
+        _real("measured_com_velocity", 3, "m/s", "world", "CoM velocity with noise"),
+        _real("measured_zmp", 2, "m", "world", "ZMP with noise"),
+        _real("com", 3, "m", "world", "CoM that the planner was given"),
+        _real("com_velocity", 3, "m/s", "world", "CoM velocity that the planner was given"),
+        _real("com_acceleration", 2, "m/s^2", "world", "CoM acceleration of the filter; NaN without one"),
+        _real("innovation", 2, "-", "world", "normalised innovation squared of the filter; NaN without one"),
+    )
+    return ChannelSpec("/planner_state", "PlannerState", fields, planner_state.__doc__ or "")
+
+
+def contact(_: Sizes) -> ChannelSpec:
+    """Contacts planned, used by the controller and felt, every control tick."""
+    fields = (
+        _real("zmp", 3, "m", "world", "from contact forces; NaN in flight"),
+        _real("normal_force", 2, "N", "", "left, right"),
+        _int("planned", "contact by the gait: left, right", 2),
+        _int("active", "contact in the whole-body QP: left, right", 2),
+        _int("felt", "contact by force: left, right", 2),
+        _real("cop_left", 2, "m", "left sole", "centre of pressure; NaN when unloaded"),
+        _real("cop_right", 2, "m", "right sole", "centre of pressure; NaN when unloaded"),
+    )
+    return ChannelSpec("/contact", "Contact", fields, contact.__doc__ or "")
+
+
+def reference(_: Sizes) -> ChannelSpec:
+    """The whole-body reference and the gait's clock, every control tick."""
+    fields = (
+        _real("com", 3, "m", "world", "CoM"),
+        _real("com_velocity", 3, "m/s", "world", "CoM velocity"),
+        _real("com_acceleration", 3, "m/s^2", "world", "CoM acceleration"),
+        _real("zmp", 2, "m", "world", "planned ZMP"),
+        _real("dcm", 2, "m", "world", "planned DCM"),
+        _scalar("omega", "1/s", "natural frequency of the pendulum"),
+        _real("zmp_reference", 2, "m", "world", "ZMP that the footsteps define"),
+        _real("swing_position", 3, "m", "world", "sole centre of the swing foot"),
+        _real("swing_velocity", 3, "m/s", "world", "sole centre of the swing foot"),
+        _int("phase", "0 standing, 1 double support, 2 single support"),
+        _int("stance", "stance foot: 0 left, 1 right, -1 both"),
+        _int("step", "footsteps completed"),
+        _scalar("phase_time", "s", "since the phase began"),
+        _scalar("phase_duration", "s", "of the phase"),
+        _real("support", (SUPPORT_VERTICES, 2), "m", "world", "planned support polygon; the last vertex pads"),
+        _int("support_count", "vertices of the polygon"),
+    )
+    return ChannelSpec("/reference", "Reference", fields, reference.__doc__ or "")
+
+
+def plan(n: Sizes) -> ChannelSpec:
+    """The plan with its horizon, every planner tick; sample 0 is the message's time."""
+    states, moves = n.horizon + 1, n.horizon
+    fields = (
+        _real("com", (states, 3), "m", "world", "CoM"),
+        _real("com_velocity", (states, 3), "m/s", "world", "CoM velocity"),
+        _real("zmp", (states, 2), "m", "world", "ZMP"),
+        _real("zmp_reference", (states, 2), "m", "world", "ZMP that the footsteps define"),
+        _real("jerk", (moves, 2), "m/s^3", "world", "CoM jerk"),
+        _real("omega", states, "1/s", "", "natural frequency of the pendulum"),
+        _int("status", "solver status, 0 solved"),
+        _real("slack", 2, "m", "", "of the ZMP bounds and of the terminal bound"),
+        _int("held", "1: no new plan, the last one is held"),
+        _int("infeasible", "1: the profile's hard constraints had no solution and were softened by the slack"),
+    )
+    return ChannelSpec("/plan", "Plan", fields, plan.__doc__ or "")
+
+
+def footsteps(_: Sizes) -> ChannelSpec:
+    """Feet and the next three footsteps as planned, every planner tick."""
+    fields = (
+        _real("current_left", 4, "m, rad", "world", "x y z yaw"),
+        _real("current_right", 4, "m, rad", "world", "x y z yaw"),
+        _real("next", (3, 4), "m, rad", "world", "x y z yaw; NaN: none"),
+        _int("next_foot", "0 left, 1 right, -1 none", 3),
+        _real("touchdown_time", 3, "s", "", "planned; NaN: none"),
+    )
+    return ChannelSpec("/footsteps", "Footsteps", fields, footsteps.__doc__ or "")
+
+
+def footstep(_: Sizes) -> ChannelSpec:
+    """A footstep taken, at its touchdown."""
+    fields = (
+        _int("index", "1 is the first"),
+        _int("foot", "0 left, 1 right"),
+        _real("planned", 4, "m, rad", "world", "x y z yaw as last planned"),
+        _real("actual", 4, "m, rad", "world", "x y z yaw"),
+    )
+    return ChannelSpec("/footstep", "Footstep", fields, footstep.__doc__ or "")
+
+
+def wbc(n: Sizes) -> ChannelSpec:
+    """The whole-body QP's solution, every control tick."""
+    fields = (
+        _int("status", "0 solved"),
+        _int("solver", "0 default, 1 second solver"),
+        _int("iterations", "of the solver"),
+        _int("fallback", "1: no solution, the fallback torque is used"),
+        _scalar("primal_residual", "-", "of the constraints"),
+        _scalar("dual_residual", "-", "of stationarity"),
+        _real("acceleration", n.nv, "m/s^2, rad/s^2", "base", "planned"),
+        _real("wrench_left", 6, "N, N m", "left sole", "planned"),
+        _real("wrench_right", 6, "N, N m", "right sole", "planned"),
+        _real("task_error", 18, "mixed", "", "CoM 3, angular momentum 3, pelvis 3, torso 3, swing foot 6"),
+    )
+    return ChannelSpec("/wbc", "WholeBodyControl", fields, wbc.__doc__ or "")
+
+
+def torque(n: Sizes) -> ChannelSpec:
+    """The joint torques commanded, every control tick."""
+    fields = (
+        _real("command", n.nj, "N m", "", "commanded"),
+        _scalar("limit_ratio_max", "-", "largest torque over its limit"),
+    )
+    return ChannelSpec("/torque", "JointTorque", fields, torque.__doc__ or "")
+
+
+def timing(_: Sizes) -> ChannelSpec:
+    """Wall-clock time spent in each part of a control tick; excluded from reproducibility."""
+    parts = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick")
+    fields = tuple(_scalar(part, "us", "wall-clock time") for part in parts)
+    return ChannelSpec("/timing", "Timing", fields, timing.__doc__ or "")

@@ -1,0 +1,249 @@
+"""The messages of Foxglove's well-known schemas that a run is drawn with, and their values."""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import cast
+
+import numpy as np
+from foxglove_schemas_protobuf.ArrowPrimitive_pb2 import ArrowPrimitive
+from foxglove_schemas_protobuf.Color_pb2 import Color
+from foxglove_schemas_protobuf.FrameTransform_pb2 import FrameTransform
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.JointState_pb2 import JointState
+from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
+from foxglove_schemas_protobuf.LinePrimitive_pb2 import LinePrimitive
+from foxglove_schemas_protobuf.Point3_pb2 import Point3
+from foxglove_schemas_protobuf.Pose_pb2 import Pose
+from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion
+from foxglove_schemas_protobuf.SceneEntity_pb2 import SceneEntity
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
+from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
+from google.protobuf.descriptor import FileDescriptor
+from google.protobuf.descriptor_pb2 import FileDescriptorProto, FileDescriptorSet
+from google.protobuf.message import Message
+from google.protobuf.timestamp_pb2 import Timestamp
+from numpy.typing import NDArray
+
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.types import Footstep
+from surefoot.scenarios.log import PublishedSchema
+from surefoot.scenarios.log.template import NANOS, SECONDS, Template, slot
+
+
+def published(message: type[Message]) -> PublishedSchema:
+    """The schema of a message class, with every file that it imports."""
+    files: dict[str, FileDescriptorProto] = {}
+    _collect(cast(FileDescriptor, message.DESCRIPTOR.file), files)
+    descriptors = FileDescriptorSet(file=files.values()).SerializeToString(deterministic=True)
+    return PublishedSchema(message.DESCRIPTOR.full_name, descriptors)
+
+
+def _collect(file: FileDescriptor, files: dict[str, FileDescriptorProto]) -> None:
+    """Note a file after the files that it imports."""
+    if file.name in files:
+        return
+    for imported in file.dependencies:
+        _collect(imported, files)
+    proto = FileDescriptorProto()
+    file.CopyToProto(proto)
+    files[file.name] = proto
+
+
+WORLD = "world"
+"""Frame that every other one is placed in."""
+
+Rgba = tuple[float, float, float, float]
+
+
+def stamp() -> Timestamp:
+    """Stands for the time of a message that is to become a template."""
+    return Timestamp(seconds=SECONDS, nanos=NANOS)
+
+
+def pose(position: Iterable[float], quaternion: Iterable[float] = (0.0, 0.0, 0.0, 1.0)) -> Pose:
+    """A pose of x y z [m] and qx qy qz qw."""
+    x, y, z = position
+    qx, qy, qz, qw = quaternion
+    return Pose(position=Vector3(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
+
+
+def color(rgba: Sequence[float]) -> Color:
+    """A colour of red, green, blue and opacity, 0 to 1."""
+    r, g, b, a = (float(part) for part in rgba)
+    return Color(r=r, g=g, b=b, a=a)
+
+
+def sphere(position: Iterable[float], diameter: float, rgba: Rgba) -> SpherePrimitive:
+    """A ball at x y z [m]."""
+    return SpherePrimitive(pose=pose(position), size=Vector3(x=diameter, y=diameter, z=diameter), color=color(rgba))
+
+
+def arrow(position: Iterable[float], quaternion: Iterable[float], length: float, rgba: Rgba) -> ArrowPrimitive:
+    """An arrow from x y z [m] along the x axis of a quaternion qx qy qz qw, head included in nothing but its look."""
+    return ArrowPrimitive(
+        pose=pose(position, quaternion), shaft_length=length, shaft_diameter=0.02, head_length=0.05,
+        head_diameter=0.04, color=color(rgba),
+    )  # fmt: skip
+
+
+def loop(points: Iterable[Iterable[float]], rgba: Rgba) -> LinePrimitive:
+    """A closed line through points x y z [m], three pixels wide."""
+    corners = [Point3(x=x, y=y, z=z) for x, y, z in points]
+    return LinePrimitive(
+        type=LinePrimitive.LINE_LOOP, pose=pose((0.0, 0.0, 0.0)), thickness=3.0, scale_invariant=True, points=corners,
+        color=color(rgba),
+    )  # fmt: skip
+
+
+def scene(*entities: SceneEntity) -> SceneUpdate:
+    """A scene update of these entities."""
+    return SceneUpdate(entities=entities)
+
+
+BALLS: tuple[tuple[str, float, Rgba], ...] = (
+    ("CoM", 0.06, (0.90, 0.62, 0.00, 1.0)),
+    ("CoM planned", 0.03, (0.34, 0.34, 0.34, 1.0)),
+    ("ZMP", 0.03, (0.84, 0.37, 0.00, 1.0)),
+    ("ZMP planned", 0.02, (0.0, 0.0, 0.0, 1.0)),
+    ("DCM", 0.03, (0.00, 0.45, 0.70, 1.0)),
+    ("DCM planned", 0.02, (0.34, 0.71, 0.91, 1.0)),
+)
+"""Points that are drawn: entity, diameter [m], colour (Okabe and Ito's palette, distinct to colour-blind eyes)."""
+
+ARROWS: tuple[tuple[str, Rgba], ...] = (
+    ("left contact", (0.00, 0.62, 0.45, 1.0)),
+    ("right contact", (0.80, 0.47, 0.65, 1.0)),
+    ("push", (0.84, 0.10, 0.10, 1.0)),
+)
+"""Forces that are drawn: entity, colour."""
+
+LOOPS: tuple[tuple[str, int, Rgba], ...] = (
+    ("support", 8, (0.00, 0.62, 0.45, 1.0)),
+    *((f"footstep {k}", 4, (0.00, 0.45, 0.70, 1.0 - 0.25 * k)) for k in range(3)),
+)
+"""Outlines that are drawn: entity, vertices, colour."""
+
+
+def transforms(frames: Sequence[str]) -> Template:
+    """``foxglove.FrameTransforms`` of frames in the world; values: all x y z [m], then all qw qx qy qz."""
+    n = len(frames)
+
+    def one(i: int, name: str) -> FrameTransform:
+        p, q = 3 * i, 3 * n + 4 * i
+        return FrameTransform(
+            timestamp=stamp(), parent_frame_id=WORLD, child_frame_id=name,
+            translation=Vector3(x=slot(p), y=slot(p + 1), z=slot(p + 2)),
+            rotation=Quaternion(w=slot(q), x=slot(q + 1), y=slot(q + 2), z=slot(q + 3)),
+        )  # fmt: skip
+
+    return Template(FrameTransforms(transforms=[one(i, name) for i, name in enumerate(frames)]), 7 * n)
+
+
+def joint_states(names: Sequence[str]) -> Template:
+    """``foxglove.JointStates``; values: all positions [rad], then all velocities [rad/s], then all torques [N m]."""
+    n = len(names)
+    joints = [
+        JointState(name=name, position=slot(i), velocity=slot(n + i), effort=slot(2 * n + i))
+        for i, name in enumerate(names)
+    ]
+    return Template(JointStates(timestamp=stamp(), joints=joints), 3 * n)
+
+
+def points() -> Template:
+    """``foxglove.SceneUpdate`` of `BALLS`; values: x y z of each [m]."""
+    entities = [
+        SceneEntity(timestamp=stamp(), frame_id=WORLD, id=name, spheres=[sphere(_slots(3 * i, 3), diameter, rgba)])
+        for i, (name, diameter, rgba) in enumerate(BALLS)
+    ]
+    return Template(scene(*entities), 3 * len(BALLS))
+
+
+def forces() -> Template:
+    """``foxglove.SceneUpdate`` of `ARROWS`; values of each: x y z [m], qx qy qz qw, length [m]."""
+    entities = []
+    for i, (name, rgba) in enumerate(ARROWS):
+        *place, length = _slots(8 * i, 8)
+        drawn = arrow(place[:3], place[3:], length, rgba)
+        entities.append(SceneEntity(timestamp=stamp(), frame_id=WORLD, id=name, arrows=[drawn]))
+    return Template(scene(*entities), 8 * len(ARROWS))
+
+
+def outlines() -> Template:
+    """``foxglove.SceneUpdate`` of `LOOPS`; values: x y z of each vertex [m]."""
+    entities, first = [], 0
+    for name, vertices, rgba in LOOPS:
+        line = loop([_slots(first + 3 * k, 3) for k in range(vertices)], rgba)
+        entities.append(SceneEntity(timestamp=stamp(), frame_id=WORLD, id=name, lines=[line]))
+        first += 3 * vertices
+    return Template(scene(*entities), first)
+
+
+def _slots(first: int, count: int) -> list[float]:
+    return [slot(first + k) for k in range(count)]
+
+
+Array = NDArray[np.float64]
+
+METRES_PER_NEWTON = 1e-3
+"""Length of a force's arrow over the force."""
+
+LIFT = 0.002
+"""Outlines are drawn this far above the ground, so that they are not hidden by it [m]."""
+
+_VERTICES = sum(vertices for _, vertices, _ in LOOPS)
+
+NOWHERE = (0.0, 0.0, -1000.0)
+"""Where a point is drawn that does not exist now, such as the ZMP of a robot in flight; out of sight [m]."""
+
+
+def force_arrow(origin: Array, force: Array) -> tuple[float, ...]:
+    """Values of an arrow: x y z [m], qx qy qz qw of the rotation that takes x to the force, length [m].
+
+    Args:
+        origin: where the force acts, world frame, shape (3,) [m].
+        force: world frame, shape (3,) [N].
+    """
+    x, y, z = force.tolist()
+    size = math.sqrt(x * x + y * y + z * z)
+    if not size > 0.0:
+        return (*origin.tolist(), 0.0, 0.0, 0.0, 1.0, 0.0)
+    # Half-way rotation from x to the unit force d: q ~ (x cross d, 1 + x . d); straight back turns about z.
+    w = 1.0 + x / size
+    turn = (0.0, 0.0, 1.0, 0.0) if w < 1e-9 else (0.0, -z / size, y / size, w)
+    norm = math.sqrt(sum(part * part for part in turn))
+    return (*origin.tolist(), *(part / norm for part in turn), METRES_PER_NEWTON * size)
+
+
+class Outlines:
+    """The support polygon and the footsteps to come, as the values of their template.
+
+    Attributes:
+        values: x y z of every vertex of `LOOPS`, flat [m].
+        ground: height of the lower foothold [m].
+    """
+
+    def __init__(self, half_length: float, half_width: float) -> None:
+        """For soles of this half size [m]."""
+        self._corners = [(a * half_length, b * half_width) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+        self.values: list[float] = []
+        self.ground = 0.0
+
+    def update(self, plan: WalkPlan) -> None:
+        """Take over a plan; a footstep that is not there shrinks to a point of the last one."""
+        self.ground = min(float(foot.position[2]) for foot in plan.footholds)
+        height, polygon = self.ground + LIFT, plan.support_polygon.tolist()
+        vertices = [(x, y, height) for x, y in polygon]
+        vertices += vertices[-1:] * (LOOPS[0][1] - len(polygon))
+        for step in plan.footsteps:
+            vertices += self._outline(step.footstep)
+        vertices += vertices[-1:] * (_VERTICES - len(vertices))
+        self.values = [part for vertex in vertices for part in vertex]
+
+    def _outline(self, footstep: Footstep) -> list[tuple[float, float, float]]:
+        """Corners of a sole."""
+        x, y, z = footstep.position.tolist()
+        c, s = math.cos(footstep.yaw), math.sin(footstep.yaw)
+        slope_x, slope_y = (-footstep.normal[:2] / footstep.normal[2]).tolist()
+        offsets = [(c * a - s * b, s * a + c * b) for a, b in self._corners]
+        return [(x + u, y + v, z + slope_x * u + slope_y * v + LIFT) for u, v in offsets]

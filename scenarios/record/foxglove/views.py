@@ -1,0 +1,219 @@
+"""What MCAP viewers draw of a run: bodies, forces, points and outlines, and its events in words."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
+from foxglove_schemas_protobuf.Log_pb2 import Log
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from google.protobuf.message import Message as ProtobufMessage
+from google.protobuf.timestamp_pb2 import Timestamp
+from numpy.typing import NDArray
+
+from surefoot.models.types import RobotDescription
+from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.types import SolverStatus
+from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.log.template import Template
+from surefoot.scenarios.record.foxglove import drawing as templates
+from surefoot.scenarios.record.foxglove.drawing import NOWHERE, Outlines, force_arrow, published
+from surefoot.scenarios.record.foxglove.scene import world_scene
+from surefoot.sim.bodies import BodyPoses
+from surefoot.sim.measurement import Measurement
+from surefoot.sim.world import World
+from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.types import SolveStatus, WbcReport
+from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
+
+Array = NDArray[np.float64]
+Triple = tuple[float, float, float]
+
+RATE = 20
+"""Pictures per simulated second [Hz]."""
+
+_HELD = SolverStatus.HELD
+
+
+class Drawn:
+    """A channel whose messages come from one template."""
+
+    def __init__(
+        self, writer: LogWriter, topic: str, schema: type[ProtobufMessage], template: Template, doc: str
+    ) -> None:
+        self._channel = writer.message_channel(topic, published(schema), doc)
+        self._template = template
+
+    def append(self, time_ns: int, values: Sequence[float]) -> None:
+        """Write a message with the template's values."""
+        self._channel.append(time_ns, self._template.encode(time_ns, values))
+
+
+class WalkView:
+    """The channels that every fidelity can fill: points and outlines."""
+
+    def __init__(self, writer: LogWriter, half_length: float, half_width: float) -> None:
+        """Open them; half size of the soles [m]."""
+        self._points = Drawn(
+            writer, "/scene/points", SceneUpdate, templates.points(), "CoM, ZMP, DCM, true and planned"
+        )
+        support = "support polygon and the next footsteps as planned"
+        self._outlines = Drawn(writer, "/scene/support", SceneUpdate, templates.outlines(), support)
+        self._shape = Outlines(half_length, half_width)
+        self._plan: WalkPlan | None = None
+
+    def update(self, time_ns: int, com: Array, com_velocity: Array, zmp: Triple, plan: WalkPlan, s: PlanSample) -> None:
+        """Draw an instant.
+
+        Args:
+            time_ns: simulated time [ns].
+            com: true CoM, shape (3,) [m].
+            com_velocity: shape (3,) [m/s].
+            zmp: true ZMP, x y z [m]; NaN in flight.
+            plan: the plan that is followed.
+            s: its references now.
+        """
+        if plan is not self._plan:
+            self._shape.update(plan)
+            self._plan = plan
+        x, y, _ = centre = com.tolist()
+        vx, vy, _ = com_velocity.tolist()
+        in_flight = zmp[0] != zmp[0]
+        ground = self._shape.ground if in_flight else zmp[2]
+        true_dcm = (x + vx / s.omega, y + vy / s.omega, ground)
+        planned = (*s.zmp.tolist(), ground, *true_dcm, *s.dcm.tolist(), ground)
+        self._points.append(time_ns, (*centre, *s.com.tolist(), *(NOWHERE if in_flight else zmp), *planned))
+        self._outlines.append(time_ns, self._shape.values)
+
+
+class PointView:
+    """Everything that is drawn of a run of the pendulum."""
+
+    def __init__(self, writer: LogWriter, sole: tuple[float, float], control_rate: int) -> None:
+        """Open the channels; ``sole`` is length and width [m]."""
+        self._every = max(control_rate // RATE, 1)
+        self._walk = WalkView(writer, 0.5 * sole[0], 0.5 * sole[1])
+        self._events = EventLog(writer)
+
+    def events(self, time_ns: int, contact: tuple[bool, bool], force: Array, plan: WalkPlan, lost: bool) -> None:
+        """Say what has changed since the last control tick; ``force`` is the push, shape (2,) [N]."""
+        self._events.update(time_ns, contact, bool(np.dot(force, force)), plan.status.solver is _HELD, lost)
+
+    def picture(
+        self, tick: int, time_ns: int, com: Array, com_velocity: Array, zmp: Array, plan: WalkPlan, sample: PlanSample
+    ) -> None:
+        """Draw a control tick, if it is one that is drawn; arguments as of `WalkView`, the ZMP as x y."""
+        if tick % self._every == 0:
+            ground = min(float(foot.position[2]) for foot in plan.footholds)
+            x, y = zmp.tolist()
+            self._walk.update(time_ns, com, com_velocity, (x, y, ground), plan, sample)
+
+
+TOPIC = "/events"
+_FEET = ("left", "right")
+
+
+class EventLog:
+    """The log messages of a run, in Foxglove's ``foxglove.Log``."""
+
+    def __init__(self, writer: LogWriter) -> None:
+        self._channel = writer.message_channel(TOPIC, published(Log), "what happens, in words")
+        self._last = ((True, True), False, False, False)
+
+    def update(self, time_ns: int, contact: tuple[bool, bool], pushed: bool, fallback: bool, fallen: bool) -> None:
+        """Say what has changed since the last call; before the first one the robot stood in peace.
+
+        Args:
+            time_ns: simulated time [ns].
+            contact: feet that stand, (left, right).
+            pushed: whether a push acts.
+            fallback: whether the controller or the planner goes on without a solution.
+            fallen: whether the robot has fallen.
+        """
+        now = (contact, pushed, fallback, fallen)
+        if now == self._last:
+            return
+        (last_contact, was_pushed, fell_back, had_fallen), self._last = self._last, now
+        for foot, before, after in zip(_FEET, last_contact, contact, strict=True):
+            if after != before:
+                kind = "touchdown" if after else "lift-off"
+                self._say(time_ns, Log.INFO, kind, f"{kind} of the {foot} foot")
+        if pushed != was_pushed:
+            self._say(time_ns, Log.WARNING, "push", "a push begins" if pushed else "the push ends")
+        if fallback != fell_back:
+            words = "no solution, the fallback acts" if fallback else "solved again, the fallback ends"
+            self._say(time_ns, Log.WARNING, "fallback", words)
+        if fallen and not had_fallen:
+            self._say(time_ns, Log.ERROR, "fall", "the robot falls")
+
+    def _say(self, time_ns: int, level: "Log.Level.ValueType", kind: str, text: str) -> None:
+        seconds, nanos = divmod(time_ns, 10**9)
+        message = Log(timestamp=Timestamp(seconds=seconds, nanos=nanos), level=level, message=text, name=kind)
+        self._channel.append(time_ns, message.SerializeToString(deterministic=True))
+
+
+SCENE_PERIOD = 10
+"""The unchanging scene is repeated, for viewers that join late or see a part of the log [s]."""
+
+
+_FALLBACK, _HELD = SolveStatus.EQUALITIES_ONLY, SolverStatus.HELD
+
+
+class BodyView:
+    """Everything that is drawn of a run in full physics.
+
+    Attributes:
+        every: control ticks from picture to picture.
+    """
+
+    def __init__(self, writer: LogWriter, world: World, robot: RobotDescription, control_rate: int) -> None:
+        self.every = max(control_rate // RATE, 1)
+        self._scene_every = control_rate * SCENE_PERIOD
+        self._poses = BodyPoses(world.model)
+        self._torso = self._poses.names.index(robot.torso_body)
+        poses, joints = templates.transforms(self._poses.names), templates.joint_states(robot.joint_names)
+        self._tf = Drawn(writer, "/tf", FrameTransforms, poses, "all bodies in the world")
+        self._joints = Drawn(writer, "/joint_states", JointStates, joints, "positions, velocities and torques")
+        forces = "contact forces at the centres of pressure, and pushes"
+        self._forces = Drawn(writer, "/scene/forces", SceneUpdate, templates.forces(), forces)
+        self._scene = writer.message_channel(
+            "/scene/world", published(SceneUpdate), "robot and terrain, each body in its frame"
+        )
+        self._scene_data = world_scene(world.mjcf()).SerializeToString(deterministic=True)
+        self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
+        self._events = EventLog(writer)
+        self._levers = np.zeros((2, 3, 2))
+
+    def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
+        """Say what has changed since the last control tick."""
+        force = measurement.external_force
+        fallback = report.status >= _FALLBACK or plan.status.solver is _HELD
+        self._events.update(time_ns, report.active, bool(np.dot(force, force)), fallback, fallen)
+
+    def picture(
+        self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
+    ) -> None:
+        """Draw a control tick, if it is one that is drawn; ``terms`` are those of the true state."""
+        if tick % self.every:
+            return
+        if tick % self._scene_every == 0:
+            self._scene.append(time_ns, self._scene_data)
+        m, poses = measurement, self._poses
+        poses.update(m.q)
+        self._tf.append(time_ns, poses.position.ravel().tolist() + poses.quaternion.ravel().tolist())
+        self._joints.append(time_ns, np.concatenate((m.joint_position, m.joint_velocity, m.joint_torque)).tolist())
+        self._forces.append(time_ns, self._arrows(m, terms))
+        zmp = measured_zmp(m.wrench, terms.sole_position, terms.sole_rotation)
+        self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)
+
+    def _arrows(self, m: Measurement, terms: RobotTerms) -> tuple[float, ...]:
+        """Contact forces and push as arrows."""
+        levers = self._levers
+        levers[:, :, 0] = m.wrench[:, :3]
+        for foot in (0, 1):
+            x, y = centre_of_pressure(m.wrench[foot])
+            levers[foot, :2, 1] = (0.0, 0.0) if x != x else (x, y)
+        left, right = np.matmul(terms.sole_rotation, levers).transpose(0, 2, 1)
+        origins = terms.sole_position
+        push = force_arrow(self._poses.position[self._torso], m.external_force)
+        return (*force_arrow(origins[0] + left[1], left[0]), *force_arrow(origins[1] + right[1], right[0]), *push)

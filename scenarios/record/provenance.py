@@ -1,0 +1,140 @@
+"""What a log carries about its run beside the channels: its constants, and the versions of all that it depends on."""
+
+import hashlib
+import json
+import platform
+import subprocess
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from pydantic import TypeAdapter
+
+from surefoot.scenarios.errors import LogError
+
+RECORD = "run"
+"""Name of the metadata record."""
+
+WORLD_FILE = "world.xml"
+"""Attachment that holds the simulated world as MJCF, the robot in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunConstants:
+    """What is fixed during a run.
+
+    Attributes:
+        scenario: its name.
+        fidelity: full or pendulum.
+        seed: its seed.
+        steps_planned: footsteps asked for.
+        mass: true mass of the robot [kg].
+        com_height: true nominal CoM height above the soles [m].
+        foot_length: of the soles [m].
+        foot_width: of the soles [m].
+        control_rate: ticks of the controller [Hz].
+        sample_time: of the planner's preview [s].
+        joint_names: in the order of the joint arrays.
+        torque_limit: by joint [N m].
+        position_lower: by joint [rad].
+        position_upper: by joint [rad].
+        terrain: kind of ground.
+        plant: of fidelity pendulum.
+        boxes: the solids on the ground plane, each as centre, half sizes [m] and rotation to the world, row by row.
+    """
+
+    scenario: str
+    fidelity: str
+    seed: int
+    steps_planned: int
+    mass: float
+    com_height: float
+    foot_length: float
+    foot_width: float
+    control_rate: int
+    sample_time: float
+    joint_names: tuple[str, ...]
+    torque_limit: tuple[float, ...]
+    position_lower: tuple[float, ...]
+    position_upper: tuple[float, ...]
+    terrain: str
+    plant: str = "pendulum"
+    boxes: tuple[tuple[float, ...], ...] = ()
+
+    def to_metadata(self) -> dict[str, str]:
+        """Write as metadata: JSON by name."""
+        return {name: json.dumps(value) for name, value in asdict(self).items()}
+
+    @classmethod
+    def from_metadata(cls, records: Mapping[str, Mapping[str, str]], log_name: str) -> "RunConstants":
+        """Read back.
+
+        Args:
+            records: the metadata of a log.
+            log_name: what to call the log in messages.
+
+        Raises:
+            LogError: the log does not carry them.
+        """
+        try:
+            values = {name: json.loads(text) for name, text in records[RECORD].items()}
+            return TypeAdapter(cls).validate_python(values)
+        except (KeyError, TypeError, ValueError, RecursionError):
+            raise LogError(f"{log_name}: does not describe a run; give a log that `surefoot run` has written") from None
+
+
+PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "quadprog", "numpy", "scipy", "mcap")
+CODE = ("planner", "wbc", "sim", "models", "scenarios")
+READERS = ("scenarios/paper", "scenarios/show")
+"""Folders of the code, and those in it that only read logs: no run depends on them."""
+
+ABSENT = "not installed"
+"""Version of a package that is not there, as of a source tree that was never installed."""
+
+
+def versions() -> dict[str, str]:
+    """Versions of all that a result may depend on, by name."""
+    return {
+        **{name: _version(name) for name in PACKAGES},
+        "python": platform.python_version(),
+        "machine": f"{platform.system()} {platform.machine()}",
+        "git_revision": _git_revision(),
+        "source_digest": source_digest(Path(__file__).parents[2]),
+    }
+
+
+def source_digest(root: Path) -> str:
+    """Digest of the code that makes runs, as it is on the disk: tells apart what a revision with ``-dirty`` cannot.
+
+    Args:
+        root: folder that holds the code's folders.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(path for folder in CODE for path in (root / folder).rglob("*.py")):
+        name = path.relative_to(root).as_posix()
+        if not name.startswith(READERS):
+            digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return ABSENT
+
+
+def _git_revision() -> str:
+    """Commit of the source tree, with ``-dirty`` when it was changed; empty when it is not under git."""
+    here = Path(__file__)
+    tracked = _git(here.parent, "ls-files", "--error-unmatch", here.name)
+    return (_git(here.parent, "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*") or "") if tracked else ""
+
+
+def _git(folder: Path, *arguments: str) -> str | None:
+    try:
+        done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, timeout=10)
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip() if done.returncode == 0 else None

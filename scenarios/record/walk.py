@@ -1,0 +1,160 @@
+"""Writes what every walk has, whatever its fidelity, and what the pendulum has in place of a body."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, PlannedFootstep, SolverStatus
+from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.record import channels
+from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes
+
+Array = NDArray[np.float64]
+
+_NO_FOOTSTEP = (math.nan,) * 4
+
+
+@dataclass(frozen=True, slots=True)
+class TickTiming:
+    """Wall-clock time of the parts of one control tick [s]."""
+
+    state: float
+    wbc_build: float
+    wbc_solve: float
+    planner: float
+    physics: float
+    log: float
+    tick: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlannerState:
+    """What the planner measured, and what it was given; world frame.
+
+    Attributes:
+        measured: CoM as measured.
+        measured_zmp: ZMP as measured, shape (2,) [m].
+        given: CoM as estimated, which the planner gets.
+        acceleration: its estimated acceleration, which the planner does not get, since it keeps the one that it has
+            planned; NaN without a filter, shape (2,) [m/s^2].
+        innovation: normalised innovation squared of the filter, by axis; NaN without a filter, shape (2,) [-].
+    """
+
+    measured: CentroidalState
+    measured_zmp: Array
+    given: CentroidalState
+    acceleration: Array
+    innovation: Array
+
+
+class WalkRecorder:
+    """The channels of planner and clock."""
+
+    def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
+        reference = writer.channel(channels.reference(sizes))
+        vectors = (
+            *("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_reference"),
+            *("swing_position", "swing_velocity", "support"),
+        )
+        numbers = ("omega", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
+        self._reference = writer.rows(((reference, vectors),), ((reference, numbers),))
+        self._state = writer.channel(channels.planner_state(sizes))
+        self._plan = writer.channel(channels.plan(sizes))
+        self._footsteps = writer.channel(channels.footsteps(sizes))
+        self._footstep = writer.channel(channels.footstep(sizes))
+        timing = writer.channel(channels.timing(sizes))
+        self._timing = writer.rows((), ((timing, [field.name for field in timing.spec.fields]),))
+        self._support = np.zeros((SUPPORT_VERTICES, 2))
+
+    def planner_state(self, time_ns: int, state: PlannerState) -> None:
+        """What the planner measured and was given."""
+        measured, given = state.measured, state.given
+        self._state.append(
+            time_ns, measured.com, measured.com_velocity, state.measured_zmp,
+            given.com, given.com_velocity, state.acceleration, state.innovation,
+        )  # fmt: skip
+
+    def plan(self, time_ns: int, plan: WalkPlan) -> None:
+        """A new plan with its horizon and footsteps."""
+        status = plan.status
+        self._plan.append(
+            time_ns, plan.com, plan.com_velocity, plan.zmp, plan.zmp_reference, plan.jerk, plan.omega,
+            status.solver, (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD,
+            status.infeasible,
+        )  # fmt: skip
+        ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
+        self._footsteps.append(
+            time_ns,
+            _pose(plan.footholds[Foot.LEFT]),
+            _pose(plan.footholds[Foot.RIGHT]),
+            [_NO_FOOTSTEP if step is None else _pose(step.footstep) for step in ahead],
+            [-1 if step is None else int(step.footstep.foot) for step in ahead],
+            [math.nan if step is None else step.touchdown_time for step in ahead],
+        )
+        vertices = plan.support_polygon
+        self._support[: len(vertices)] = vertices
+        self._support[len(vertices) :] = vertices[-1]
+
+    def touchdown(self, time_ns: int, planned: PlannedFootstep, feet: FeetState) -> None:
+        """A footstep taken: as last planned, and where the sole is."""
+        foot = planned.footstep.foot
+        actual = np.append(feet.position[foot], feet.yaw[foot])
+        self._footstep.append(time_ns, planned.step, int(foot), _pose(planned.footstep), actual)
+
+    def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
+        """The reference of a control tick and the gait's clock."""
+        phase = plan.phase
+        numbers = (
+            sample.omega, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
+            phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
+        )  # fmt: skip
+        self._reference.append(
+            time_ns, numbers, sample.com, sample.com_velocity, sample.com_acceleration, sample.zmp, sample.dcm,
+            sample.zmp_reference, sample.swing[:3], sample.swing_velocity[:3], self._support.ravel(),
+        )  # fmt: skip
+
+    def timing(self, time_ns: int, timing: TickTiming) -> None:
+        """Wall-clock times of the tick."""
+        t = timing
+        parts = (t.state, t.wbc_build, t.wbc_solve, t.planner, t.physics, t.log, t.tick)
+        self._timing.append(time_ns, tuple([1e6 * part for part in parts]))
+
+
+def _pose(footstep: Footstep) -> tuple[float, ...]:
+    return (*footstep.position.tolist(), footstep.yaw)
+
+
+class PendulumRecorder:
+    """The channels of the pendulum."""
+
+    def __init__(self, writer: LogWriter, sizes: Sizes, mass: float) -> None:
+        """Open its channels; ``mass`` of the pendulum [kg]."""
+        self._mass = mass
+        self._truth = writer.channel(channels.point_truth(sizes))
+        self._contact = writer.channel(channels.contact(sizes))
+
+    def state(self, time_ns: int, state: CentroidalState, feet: FeetState, force: Array) -> None:
+        """True state of a control tick and the push that follows it, shape (2,) [N]."""
+        left, right = (_level_pose(position, float(yaw)) for position, yaw in zip(feet.position, feet.yaw, strict=True))
+        self._truth.append(time_ns, state.com, state.com_velocity, left, right, (*force, 0.0))
+
+    def contact(self, time_ns: int, zmp: Array, sample: PlanSample, feet: FeetState) -> None:
+        """Contacts and the ZMP, shape (2,) [m]; as centre of pressure only where one foot has all the load."""
+        weight = self._mass * (GRAVITY + float(sample.com_acceleration[2]))
+        contacts, share = sample.contacts, sample.load_left
+        height = share * feet.position[0, 2] + (1.0 - share) * feet.position[1, 2]
+        cops = [(math.nan, math.nan), (math.nan, math.nan)]
+        if not all(contacts):
+            foot = int(contacts[1])
+            cops[foot] = tuple((zmp - feet.position[foot, :2]) @ frame_rotation(float(feet.yaw[foot])))
+        self._contact.append(
+            time_ns, (*zmp, height), (share * weight, (1.0 - share) * weight), contacts, contacts, contacts, *cops
+        )
+
+
+def _level_pose(position: Array, yaw: float) -> tuple[float, ...]:
+    return (*position.tolist(), 0.0, 0.0, math.sin(0.5 * yaw), math.cos(0.5 * yaw))

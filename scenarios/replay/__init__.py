@@ -1,1 +1,0 @@
-"""Pictures of a log that move: a page, a live page and a video, all drawn from one content."""

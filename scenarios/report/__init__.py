@@ -1,1 +1,0 @@
-"""Logs for the eyes: figures, and one run beside another."""

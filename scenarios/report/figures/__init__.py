@@ -1,1 +1,0 @@
-"""Figures of a log, one file per family, and the page that gathers them."""

@@ -1,0 +1,1 @@
+"""From a scenario to a resolved walk: what a scenario file means."""

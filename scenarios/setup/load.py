@@ -1,0 +1,219 @@
+"""From a scenario's name, file or log to a checked scenario: every fault of a file is reported at once."""
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from surefoot.scenarios import catalogue
+from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, dotted, nearest
+from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.schema import Scenario, Sensing
+from surefoot.scenarios.file.source import MAX_BYTES, apply_override, parse
+from surefoot.scenarios.file.translate import problems_of, unknown_metrics, without
+from surefoot.scenarios.judge.verdict import SCENARIO_FILE
+from surefoot.scenarios.log import read
+from surefoot.scenarios.loop.run import LOG_NAME
+from surefoot.scenarios.setup.checks import check
+from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
+
+_SENSED = ("zmp_noise", "com_noise")
+"""Noises of what the planner measures; those of the whole-body controller's sensors need its estimator."""
+
+_AVAILABLE: dict[Key, tuple[Any, ...]] = {
+    ("fidelity",): ("full", "pendulum"),
+    ("terrain", "kind"): ("flat", "stairs", "slope", "blocks"),
+    ("planner", "step_adaptation"): ("none", "location"),
+    **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
+}
+
+_PENDULUM_FAULTS = ("planner_freeze", "state_nan")
+
+
+def unavailable(scenario: Scenario) -> list[Problem]:
+    """List values that the contract allows and this version has not got."""
+    found = []
+    for key, values in _AVAILABLE.items():
+        value: Any = scenario
+        for part in key:
+            value = getattr(value, str(part))
+        if value not in values:
+            what = f"{dotted(key)} {value!r} is not available in this version"
+            found.append(Problem(key, what, f"available: {', '.join(str(v) for v in values)}"))
+    return [*found, *_without_body(scenario)] if scenario.fidelity == "pendulum" else found
+
+
+def _without_body(scenario: Scenario) -> Iterator[Problem]:
+    """List what would test nothing on a pendulum."""
+    for index, fault in enumerate(scenario.faults):
+        if fault.kind not in _PENDULUM_FAULTS:
+            what = f"fault {fault.kind!r} needs joints, which fidelity pendulum has not got"
+            yield Problem(("faults", index, "kind"), what, f"use fidelity full, or {' or '.join(_PENDULUM_FAULTS)}")
+    for index, push in enumerate(scenario.pushes):
+        if push.force[2] != 0.0:
+            what = "a vertical push on a pendulum, whose height is prescribed"
+            yield Problem(("pushes", index, "force"), what, "use fidelity full, or [x, y, 0]")
+
+
+LOG_ENDING = ".mcap"
+RUNS, AGAIN = Path("runs"), Path("runs/again")
+"""Where runs go by default, and where the repetition of one goes that lies there."""
+
+
+def is_log(reference: str) -> bool:
+    """Whether a reference to a scenario is the path of a log."""
+    return reference.endswith(LOG_ENDING)
+
+
+def attached_scenario(path: str) -> tuple[str, str]:
+    """Text of the scenario that a log carries, and what to call it in messages.
+
+    Raises:
+        ScenarioError: the log cannot be read, or carries none.
+    """
+    try:
+        log = read(path)
+        text = log.attachments[SCENARIO_FILE].decode()
+    except LogError as error:
+        raise ScenarioError([str(error)]) from None
+    except (KeyError, UnicodeDecodeError):
+        what = f"{path}: carries no readable {SCENARIO_FILE}, so it cannot be run again"
+        raise ScenarioError([f"{what}; give a log that `surefoot run` has written"]) from None
+    return text, f"{path}/{SCENARIO_FILE}"
+
+
+def output_folder(reference: str, scenario: Scenario, chosen: Path | None) -> Path:
+    """Where a run goes; never over the log that it repeats.
+
+    Args:
+        reference: scenario or log.
+        scenario: to run.
+        chosen: by the user; None for the default.
+
+    Raises:
+        ScenarioError: the user chose the folder in which the log would be replaced.
+    """
+    out = RUNS if chosen is None else chosen
+    target = out / f"{scenario.name}-{scenario.seed}" / LOG_NAME
+    if not is_log(reference) or not target.exists() or not target.samefile(reference):
+        return out
+    if chosen is not None:
+        raise ScenarioError([f"--out {chosen}: the run would replace {reference}; choose another directory"])
+    return AGAIN
+
+
+def load_scenario(reference: str, overrides: Sequence[str] = (), robots: Robots | None = None) -> Scenario:
+    """Load a scenario.
+
+    Args:
+        reference: a catalogue name, the path of a YAML file, or that of a log to run again.
+        overrides: ``key=value`` with dotted keys and YAML values, applied in order.
+        robots: the robots it may name; those of ``models`` by default.
+
+    Returns:
+        the scenario, fit to run; its name is the file's when it gives none.
+
+    Raises:
+        ScenarioError: it cannot be found, read or run; lists every fault with its place.
+    """
+    text, name, stem = _text(reference)
+    return read_scenario(text, name, stem, overrides, robots or RegisteredRobots())
+
+
+def locate(reference: str, overrides: Sequence[str], refusal: SetupError) -> ScenarioError:
+    """Say where the cause of a refusal stands: at the first key that its sentence names, else at the scenario's begin.
+
+    Args:
+        reference: as given to `load_scenario`, as are the overrides.
+        overrides: ``key=value``.
+        refusal: of a part of the stack.
+    """
+    text, name, _ = _text(reference)
+    source = parse(text, name)
+    for override in overrides:
+        apply_override(source, override)
+    what, _, right = str(refusal).rstrip(".").partition("; ")
+    problem = Problem(_named_key(what), what, right or "change the scenario so that it fits")
+    return ScenarioError([source.describe(problem)])
+
+
+def _named_key(sentence: str) -> Key:
+    """The first scenario key that a sentence names, such as gait.com_height; () when it names none."""
+    for group, name in re.findall(r"\b([a-z_]+)\.([a-z_]+)\b", sentence):
+        fields = getattr(Scenario.model_fields.get(group), "annotation", None)
+        if name in getattr(fields, "model_fields", {}):
+            return (group, name)
+    return ()
+
+
+def read_scenario(text: str, name: str, stem: str, overrides: Sequence[str], robots: Robots) -> Scenario:
+    """Check a scenario's text; arguments and errors as of `load_scenario`, with `name` used in messages."""
+    source = parse(text, name)
+    if source.value is None:
+        raise ScenarioError([f"{name}:1:1: the file is empty; give at least 'name: {stem}'"])
+    if not isinstance(source.value, dict):
+        raise ScenarioError([f"{name}:1:1: a scenario is a group of keys; write 'key: value' lines"])
+    for override in overrides:
+        apply_override(source, override)
+    source.value.setdefault("name", stem)
+    scenario, problems = _validated(source.value)
+    problems = [*source.problems, *problems]
+    wrong = {problem.key for problem in problems}
+    semantic = [*check(scenario, robots), *unavailable(scenario)]
+    problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
+    if problems:
+        raise ScenarioError(source.describe(problem) for problem in sorted(problems, key=source.spot))
+    if "fell" not in scenario.criteria:
+        criteria = {"fell": Bound(equals=False), **scenario.criteria}
+        scenario = scenario.model_copy(update={"criteria": criteria})
+    return scenario
+
+
+def _text(reference: str) -> tuple[str, str, str]:
+    """Text, name for messages, and stem of a scenario."""
+    if reference in catalogue.names():
+        return catalogue.text(reference), f"catalogue/{reference}.yaml", reference
+    if is_log(reference):
+        return *attached_scenario(reference), Path(reference).stem
+    path = Path(reference)
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+        if len(data) > MAX_BYTES:
+            raise ScenarioError([f"{reference}:1:1: larger than {MAX_BYTES} bytes; a scenario is a short YAML file"])
+        return data.decode("utf-8-sig"), reference, path.stem
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        column = error.start - data.rfind(b"\n", 0, error.start)
+        raise ScenarioError([f"{reference}:{line}:{column}: not UTF-8 text; save the file as UTF-8"]) from None
+    except IsADirectoryError:
+        raise ScenarioError([f"{reference}: a directory; give a scenario file or a catalogue name"]) from None
+    except FileNotFoundError:
+        right = nearest(reference, catalogue.names())
+        raise ScenarioError([f"{reference}: no such scenario file or catalogue name; {right}"]) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ScenarioError([f"{reference}: cannot be read, {reason}; give a readable scenario file"]) from None
+
+
+def _validated(data: Any) -> tuple[Scenario, list[Problem]]:
+    """The scenario that the sound part of the data gives, and the faults of the rest."""
+    problems = unknown_metrics(data.get("criteria"))
+    data = without(data, problems)
+    while True:
+        try:
+            return Scenario.model_validate(data), problems
+        except ValidationError as error:
+            found = problems_of(error, data)
+            problems += found
+            smaller = without(data, found)
+            if smaller == data:
+                return Scenario(), problems
+            data = smaller
+
+
+def _touched(key: Key, wrong: set[Key]) -> bool:
+    """Whether a finding concerns something that is already known to be at fault."""
+    return any(key[: len(other)] == other or other[: len(key)] == key for other in wrong)

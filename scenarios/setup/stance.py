@@ -1,0 +1,132 @@
+"""How the robot stands when a run begins: the posture, its noise, and the feet as the planner first sees them."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.types import RobotDescription
+from surefoot.planner.types import FeetState
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.setup.ground import standing_height, start_height
+from surefoot.scenarios.setup.planner import square_stance
+from surefoot.wbc.ik import PostureIk, PostureTarget
+from surefoot.wbc.limits import JointLimits
+from surefoot.wbc.model import BodyFrames
+
+Array = NDArray[np.float64]
+
+SOLE_SINKAGE = 5e-5
+"""How far the soles sink into the simulated ground under the robot's weight [m]."""
+
+_LEG_JOINTS = ("hip", "knee", "ankle")
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A robot in the whole-body controller's terms.
+
+    Attributes:
+        robot: its description.
+        model: its Pinocchio model.
+        frames: the frames that the controller steers.
+        limits: of its joints.
+        leg_joints: which joints are leg joints, bool, shape (nj,).
+    """
+
+    robot: RobotDescription
+    model: pin.Model
+    frames: BodyFrames
+    limits: JointLimits
+    leg_joints: NDArray[np.bool_]
+
+    def ik(self, posture: Array) -> PostureIk:
+        """Inverse kinematics near joint positions, shape (nj,) [rad]."""
+        return PostureIk(self.model, self.frames, self.limits, posture)
+
+
+def body_of(robot: RobotDescription) -> Body:
+    """The body of a described robot."""
+    return Body(
+        robot=robot,
+        model=pinocchio_model(robot),
+        frames=BodyFrames(soles=robot.sole_sites, torso=robot.torso_body),
+        limits=JointLimits(robot.torque_limit, robot.velocity_limit, robot.position_lower, robot.position_upper),
+        leg_joints=np.array([any(part in name for part in _LEG_JOINTS) for name in robot.joint_names]),
+    )
+
+
+def start_posture(scenario: Scenario, body: Body) -> Array:
+    """Configuration, shape (nq,), that stands with the CoM at its height over the middle of the feet.
+
+    Raises:
+        ValueError: if the legs cannot reach that stance.
+    """
+    feet, start, height = square_stance(scenario), scenario.start, standing_height(scenario)
+    ground = start_height(scenario)
+    target = PostureTarget(feet.position, feet.yaw, np.array([start.x, start.y, ground + height]), start.yaw)
+    robot = body.robot
+    q = pin.neutral(body.model)
+    q[:3] = start.x, start.y, ground + robot.leg_length
+    q[3:7] = 0.0, 0.0, math.sin(0.5 * start.yaw), math.cos(0.5 * start.yaw)
+    q[7:] = robot.nominal_joint_positions
+    result = body.ik(robot.nominal_joint_positions).solve(target, q)
+    if not result.reached:
+        raise ValueError(
+            f"robot '{robot.name}' cannot stand with gait.com_height {height:g} m and gait.step_width "
+            f"{scenario.gait.step_width:g} m, {result.error:.3f} m are missing; "
+            f"use for example {robot.com_height:g} m and {robot.hip_width:g} m"
+        )
+    return result.q
+
+
+def disturbed(q: Array, scenario: Scenario, body: Body) -> Array:
+    """The posture, shape (nq,), with the start noises on base position, base attitude and every joint.
+
+    The legs then give way until both soles, wherever the noise has put and turned them, lie flat on the ground.
+
+    Raises:
+        ValueError: if they cannot.
+    """
+    start = scenario.start
+    if start.position_noise == 0.0 and start.angle_noise == 0.0:
+        return q
+    rng = np.random.default_rng(scenario.seed)
+    nv = body.model.nv
+    offset = np.zeros(nv)
+    offset[:3] = rng.uniform(-start.position_noise, start.position_noise, 3)
+    offset[3:] = rng.uniform(-start.angle_noise, start.angle_noise, nv - 3)
+    q = pin.integrate(body.model, q, offset)
+    feet = feet_at(body, q)
+    soles = feet.position.copy()
+    soles[:, 2] = start_height(scenario)
+    result = body.ik(q[7:]).solve(PostureTarget(soles, feet.yaw), q)
+    if not result.reached:
+        raise ValueError(
+            f"robot '{body.robot.name}' cannot stand with start.angle_noise {start.angle_noise:g} rad and "
+            f"start.position_noise {start.position_noise:g} m: {result.error:.3f} m or rad are missing; reduce them"
+        )
+    return result.q
+
+
+def pressed(q: Array) -> Array:
+    """The configuration, shape (nq,), sunk in so far that the ground carries it from the first instant."""
+    sunk = q.copy()
+    sunk[2] -= SOLE_SINKAGE
+    return sunk
+
+
+def feet_at(body: Body, q: Array) -> FeetState:
+    """Soles of a standing configuration, shape (nq,)."""
+    position, rotation = _sole_placements(body, q)
+    return FeetState(position, np.arctan2(rotation[:, 1, 0], rotation[:, 0, 0]), (True, True))
+
+
+def _sole_placements(body: Body, q: Array) -> tuple[Array, Array]:
+    data = body.model.createData()
+    pin.framesForwardKinematics(body.model, data, q)
+    placements = [data.oMf[body.model.getFrameId(name)] for name in body.frames.soles]
+    return np.array([p.translation for p in placements]), np.array([p.rotation for p in placements])

@@ -1,0 +1,221 @@
+"""Checks of the walk that a scenario asks for: footsteps in reach and apart, times and heights that can be planned."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.ground.terrain import flat
+from surefoot.planner.laws.constraints import reach_box
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.types import GRAVITY, Foot
+from surefoot.planner.walk.commands import Twist, fastest
+from surefoot.planner.walk.footsteps import plan_footsteps
+from surefoot.planner.walk.gait import Stride
+from surefoot.planner.walk.reach import StepRegion, landing
+from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.file.schema import Gait, Scenario
+from surefoot.scenarios.setup.gait import commanded, gait_duration, gait_of, longest_step, step_region, twist_of
+from surefoot.scenarios.setup.planner import LONGEST_REACH, gait_parameters, planner_profile, square_stance, step_reach
+from surefoot.scenarios.setup.robot import RobotFacts
+
+MOST_SAMPLES = 1_000_000
+"""Planner samples of a gait, which are laid out in memory before it starts."""
+
+FEWEST_SWING_SAMPLES = 4
+"""Planner samples of a single support: lift-off, apex, descent and touchdown."""
+
+STEEPEST_FALL = 0.8 * GRAVITY
+"""Downward CoM acceleration that a gait may ask for [m/s^2]."""
+
+_PERIOD = 4
+"""Footsteps after which a gait on flat ground only repeats itself: the first, one of each foot, the last."""
+
+
+def swing_too_short(scenario: Scenario) -> bool:
+    """Whether a single support leaves no time for a swing of the foot."""
+    return scenario.gait.single_support < (FEWEST_SWING_SAMPLES - 0.5) * scenario.planner.sample_time
+
+
+def walk_problems(scenario: Scenario) -> Iterator[Problem]:
+    """List what cannot be planned whatever the robot."""
+    gait, sample_time = scenario.gait, scenario.planner.sample_time
+    yield from _moves(scenario)
+    if gait_duration(gait) > MOST_SAMPLES * sample_time:
+        what = f"a gait of {gait_duration(gait):.6g} s"
+        yield Problem(
+            ("gait", "steps"), what, f"it may last {MOST_SAMPLES * sample_time:g} s; use fewer or faster steps"
+        )
+    if scenario.duration is not None and scenario.duration * scenario.rates.control < 1.0:
+        what = f"duration {scenario.duration} s is shorter than one control tick"
+        yield Problem(("duration",), what, f"use at least {1 / scenario.rates.control:g} s")
+    if not swing_too_short(scenario):
+        yield from _apexes(gait)
+
+
+def _moves(scenario: Scenario) -> Iterator[Problem]:
+    """List moves of the jerk that the profile has not got, or that begin after the horizon."""
+    profile, settings = planner_profile(scenario), scenario.planner
+    if not profile.moves:
+        if settings.control_horizon is not None:
+            what = f"planner.control_horizon with profile {profile.name!r}, which optimises no moves of the jerk"
+            yield Problem(("planner", "control_horizon"), what, "leave it null")
+        return
+    horizon = settings.horizon or profile.parameters.horizon
+    if settings.control_horizon is not None:
+        if settings.control_horizon > horizon:
+            what = f"planner.control_horizon {settings.control_horizon} exceeds the horizon of {horizon} samples"
+            yield Problem(("planner", "control_horizon"), what, f"use at most {horizon}")
+    elif horizon <= profile.parameters.moves[-1]:
+        what = f"planner.horizon {horizon} is shorter than the planner's blocks of moves"
+        yield Problem(("planner", "horizon"), what, f"use at least {profile.parameters.moves[-1] + 1}")
+
+
+def footstep_problems(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
+    """List footsteps out of reach of the planner, and feet that would touch each other."""
+    gait = scenario.gait
+    if gait.step_width < facts.foot_width:
+        what = f"gait.step_width {gait.step_width} m lets feet {facts.foot_width:g} m wide touch"
+        yield Problem(("gait", "step_width"), what, f"use more than {facts.foot_width:g} m")
+        return
+    found = (_footstep_problem(gait, facts, *step) for step in _displacements(scenario))
+    yield from [problem for problem in found if problem is not None][:1]
+
+
+def _displacements(scenario: Scenario) -> Iterator[tuple[int, Foot, float, float, float]]:
+    """Number and foot of footsteps, and their place and turn from the stance foot in its frame [m, m, rad]."""
+    gait = replace(gait_parameters(scenario), steps=min(scenario.gait.steps, _PERIOD))
+    footsteps = plan_footsteps(gait, square_stance(scenario), flat())
+    for row in range(2, footsteps.steps + 2):
+        x, y = footsteps.increment[row] @ frame_rotation(float(footsteps.yaw[row - 1]))
+        yield row - 1, footsteps.feet[row], float(x), float(y), float(footsteps.yaw[row] - footsteps.yaw[row - 1])
+
+
+def _footstep_problem(
+    gait: Gait, facts: RobotFacts, number: int, foot: Foot, ahead: float, left: float, turn: float
+) -> Problem | None:
+    low, high = reach_box(PlannerParameters(reach_length=step_reach(gait)), 1.0)
+    beside = left if foot is Foot.LEFT else -left
+    if not low[0] - 1e-9 <= ahead <= high[0] + 1e-9:
+        what = f"footstep {number} would land {ahead:.3f} m ahead of its stance foot"
+        return Problem(
+            ("gait", "step_length"), what, f"it must be {low[0]:g} to {high[0]:g} m; change gait.step_length"
+        )
+    sideways = "lateral_step" if gait.lateral_step else "turn" if gait.turn else "step_width"
+    what = f"footstep {number} would land {beside:.3f} m beside its stance foot"
+    if not low[1] - 1e-9 <= beside <= high[1] + 1e-9:
+        return Problem(("gait", sideways), what, f"it must be {low[1]:g} to {high[1]:g} m; change gait.{sideways}")
+    swept = abs(facts.foot_length * math.sin(turn)) + abs(facts.foot_width * math.cos(turn))
+    apart = 0.5 * (facts.foot_width + swept)
+    if beside < apart:
+        return Problem(("gait", sideways), f"{what} and touch it", f"keep the feet {apart:.3f} m apart")
+    return None
+
+
+def _apexes(gait: Gait) -> Iterator[Problem]:
+    """A rise of A sin³ in a support phase of duration T falls with at most 3 A (π / T)² at its apex."""
+    for support in ("single", "double"):
+        duration, apex = getattr(gait, f"{support}_support"), getattr(gait, f"apex_{support}")
+        highest = STEEPEST_FALL / 3.0 * (duration / math.pi) ** 2
+        if apex > highest:
+            what = f"gait.apex_{support} {apex} m within {duration} s asks the CoM to fall faster than the feet allow"
+            right = f"use at most {highest:.2g} m, or a longer gait.{support}_support"
+            yield Problem(("gait", f"apex_{support}"), what, right)
+
+
+_VELOCITY = ("gait", "velocity")
+_FOOTSTEPS = ("gait", "footsteps")
+
+
+def command_problems(scenario: Scenario) -> list[Problem]:
+    """List what makes velocity or footsteps no walk at all, whatever the robot."""
+    gait = scenario.gait
+    if gait.velocity and gait.footsteps:
+        return [Problem(_FOOTSTEPS, "footsteps beside gait.velocity", "give one of them", at_key=True)]
+    problems = [*_times(scenario), *_feet(gait)]
+    if problems or not commanded(gait):
+        return problems
+    try:
+        gait_of(gait)
+    except ValueError as error:
+        what, _, right = str(error).rstrip(".").partition(", but ")
+        return [Problem(_VELOCITY if gait.velocity else _FOOTSTEPS, what, right or "give others")]
+    return []
+
+
+def commanded_step_problems(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
+    """Name velocities whose steps are out of reach with the fastest possible, or the first footstep that is."""
+    gait = scenario.gait
+    sole, span = (facts.foot_length, facts.foot_width), _leg_span(gait, facts)
+    region = step_region(PlannerParameters(reach_length=LONGEST_REACH), sole, span, facts.hip_width)
+    for index, command in enumerate(gait.velocity):
+        right = _too_fast(gait, twist_of(command), region)
+        if right is not None:
+            stride = twist_of(command).stride(_period(gait), gait.step_width)
+            what = f"gait.velocity.{index} asks for steps of {_step_text(stride)} in {_period(gait):g} s, out of reach"
+            yield Problem((*_VELOCITY, index), what, right)
+    if gait.footsteps:
+        walk = gait_of(gait)
+        for index, stride in enumerate(walk.strides):
+            why = region.why_not(landing(stride, walk.step_foot(index + 1)))
+            if why is not None:
+                yield Problem((*_FOOTSTEPS, index), *_clauses(f"footstep {index + 1} {why}"))
+                return
+
+
+def _times(scenario: Scenario) -> Iterator[Problem]:
+    sample_time, commands = scenario.planner.sample_time, scenario.gait.velocity
+    for index, command in enumerate(commands):
+        count = command.time / sample_time
+        what = f"gait.velocity.{index}.time {command.time} s"
+        if index and command.time <= commands[index - 1].time:
+            what = f"{what} does not come after the command before it"
+            yield Problem((*_VELOCITY, index, "time"), what, f"use more than {commands[index - 1].time} s")
+        elif not math.isclose(count, round(count), rel_tol=1e-9, abs_tol=1e-9):
+            what = f"{what} is not a multiple of planner.sample_time {sample_time} s"
+            yield Problem((*_VELOCITY, index, "time"), what, f"use for example {round(count) * sample_time:.6g} s")
+    if commands and not twist_of(commands[-1]).is_zero:
+        what = "the last velocity command does not stop"
+        yield Problem((*_VELOCITY, len(commands) - 1), what, "end gait.velocity with the time at which to stand alone")
+
+
+def _feet(gait: Gait) -> Iterator[Problem]:
+    for index, (before, after) in enumerate(zip(gait.footsteps, gait.footsteps[1:], strict=False), start=1):
+        if before.foot == after.foot:
+            what = f"gait.footsteps.{index} moves the {after.foot} foot a second time"
+            yield Problem((*_FOOTSTEPS, index, "foot"), what, "left and right must take turns")
+
+
+def _too_fast(gait: Gait, twist: Twist, region: StepRegion) -> str | None:
+    limit = fastest(twist, _period(gait), gait.step_width, region)
+    if limit == twist:
+        return None
+    speeds = ", ".join(f"{name} {_toward_zero(getattr(limit, name)):g}" for name in ("v_x", "v_y", "yaw_rate"))
+    return f"the fastest in this direction is {speeds}; or take faster steps"
+
+
+def _period(gait: Gait) -> float:
+    """Time from one lift-off to the next [s]."""
+    return gait.single_support + gait.double_support
+
+
+def _step_text(stride: Stride) -> str:
+    named = ((stride.length, "m ahead"), (stride.lateral, "m to the left"), (stride.turn, "rad of turn"))
+    return " and ".join(f"{value:.3g} {unit}" for value, unit in named if value)
+
+
+def _toward_zero(value: float) -> float:
+    """Three decimals, never faster."""
+    return math.trunc(1000.0 * value) / 1000.0
+
+
+def _clauses(why: str) -> tuple[str, str]:
+    """A fault and what would be right, from "..., and ... is the least"."""
+    what, _, right = why.rpartition(", ")
+    return what, right.removeprefix("and ")
+
+
+def _leg_span(gait: Gait, facts: RobotFacts) -> float:
+    """Largest distance between two soles with the hips over their middle, less the hip width sideways [m]."""
+    span = longest_step(facts.leg_length, gait.com_height - facts.com_above_hip, facts.hip_width, facts.hip_width)
+    return 0.0 if math.isnan(span) else span

@@ -1,0 +1,251 @@
+"""``surefoot compare``: two logs side by side."""
+
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
+from surefoot.scenarios.show.compare.divergence import ChannelDifference, Point, compare_channels, unreadable
+from surefoot.scenarios.show.compare.settings import (
+    WALL_CLOCK_METRICS,
+    Difference,
+    file_differences,
+    metric_pairs,
+    setting_differences,
+    version_differences,
+)
+from surefoot.scenarios.show.console import number, plain_console, plain_table
+from surefoot.scenarios.show.logview import LogView
+
+TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What two logs, A and B, have in common and what not.
+
+    Attributes:
+        a: path of the first log.
+        b: path of the second log.
+        tolerance: of the values that still agree.
+        versions: that differ.
+        settings: of the scenarios that differ.
+        files: attached files that differ.
+        metrics: of both logs, all of them.
+        channels: common to both, in the order in which they part.
+        only_a: topics in the first log alone.
+        only_b: topics in the second log alone.
+        notes: what could not be read or compared, in words.
+    """
+
+    a: str
+    b: str
+    tolerance: float
+    versions: tuple[Difference, ...]
+    settings: tuple[Difference, ...]
+    files: tuple[str, ...]
+    metrics: tuple[Difference, ...]
+    channels: tuple[ChannelDifference, ...]
+    only_a: tuple[str, ...]
+    only_b: tuple[str, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def identical(self) -> bool:
+        """Whether both hold the same run to the last bit, apart from what the wall clock wrote."""
+        apart = (self.settings, self.files, self.only_a, self.only_b)
+        return bool(self.channels) and not any(apart) and all(channel.same for channel in self.channels)
+
+    @property
+    def first(self) -> ChannelDifference | None:
+        """The channel that parts first."""
+        return next((channel for channel in self.channels if channel.time is not None), None)
+
+    @property
+    def summary(self) -> str:
+        """One sentence: identical, or where the runs part."""
+        if self.identical:
+            return "identical apart from wall-clock timing"
+        if self.first is not None:
+            return f"first divergence: {describe(self.first)}"
+        if not self.channels:
+            return "no channel in common, so nothing can be compared tick by tick"
+        if all(channel.same for channel in self.channels):
+            return "every common channel is identical; what describes the runs is not"
+        return "identical as far as both logs reach"
+
+    def to_json(self) -> dict[str, Any]:
+        """Write as one JSON object."""
+        return {
+            "a": self.a,
+            "b": self.b,
+            "identical": self.identical,
+            "summary": self.summary,
+            "tolerance": self.tolerance,
+            "first_divergence": None if self.first is None else _plain(asdict(self.first)),
+            "versions": [asdict(one) for one in self.versions],
+            "settings": [_plain(asdict(one)) for one in self.settings],
+            "files": list(self.files),
+            "metrics": {one.name: {"a": one.a, "b": one.b, "difference": one.delta} for one in self.metrics},
+            "channels": [{**_plain(asdict(one)), "same": one.same} for one in self.channels],
+            "only_a": list(self.only_a),
+            "only_b": list(self.only_b),
+            "notes": list(self.notes),
+        }
+
+
+def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[Comparison, Log, Log]:
+    """Compare two logs, also truncated ones and ones of different versions.
+
+    Args:
+        path_a: first log.
+        path_b: second log.
+        tolerance: as of `compare_channels`.
+
+    Returns:
+        the comparison, and both logs.
+
+    Raises:
+        LogError: one of them cannot be read, or the tolerance is no such number.
+    """
+    if not 0.0 <= tolerance < math.inf:
+        raise LogError(f"--tolerance {tolerance}: not a tolerance; give a number from 0 on, such as {TOLERANCE}")
+    a, b = read(path_a), read(path_b)
+    metrics, notes = metric_pairs(a, b)
+    topics_a, topics_b = _own(a), _own(b)
+    common = tuple(topic for topic in topics_a if topic in b)
+    found = Comparison(
+        a=str(a.path),
+        b=str(b.path),
+        tolerance=tolerance,
+        versions=version_differences(a, b),
+        settings=setting_differences(a, b),
+        files=file_differences(a, b),
+        metrics=metrics,
+        channels=compare_channels(a, b, tolerance),
+        only_a=tuple(topic for topic in topics_a if topic not in b),
+        only_b=tuple(topic for topic in topics_b if topic not in a),
+        notes=(*notes, *_damage("A", a, common), *_damage("B", b, common)),
+    )
+    return found, a, b
+
+
+def draw(found: Comparison, a: Log, b: Log, out: Path) -> None:
+    """Draw both runs over each other.
+
+    Args:
+        found: their comparison.
+        a: first log.
+        b: second log.
+        out: file to write, PNG, SVG or PDF by its ending.
+
+    Raises:
+        LogError: there is nothing to draw, or the file cannot be written.
+    """
+    from surefoot.scenarios.show.figures.overlay import overlay
+    from surefoot.scenarios.show.figures.style import save
+
+    when = None if found.first is None else found.first.time
+    header = f"A: {found.a}\nB: {found.b}\n{found.summary}".replace("$", r"\$")
+    save(overlay(LogView(a), LogView(b), header, when), out)
+
+
+def describe(channel: ChannelDifference) -> str:
+    """Say where a channel parts."""
+    at = channel.exact
+    if at is None or (channel.only_one is not None and channel.only_one < at.time):
+        if channel.only_one is None:
+            return f"{channel.topic} does not part"
+        return f"{channel.topic} at {channel.only_one:.3f} s: only one log has a message there"
+    return f"{channel.topic} {at.field} at {at.time:.3f} s: {at.a!r} and {at.b!r}"
+
+
+def timed(name: str) -> bool:
+    """Whether a metric's element differs between any two runs."""
+    return name.partition(".")[0] in WALL_CLOCK_METRICS
+
+
+def _own(log: Log) -> tuple[str, ...]:
+    """Topics of a log, less those for viewers, which derive from the others."""
+    return tuple(topic for topic in log.topics if topic not in DERIVED_TOPICS)
+
+
+def _damage(name: str, log: Log, common: tuple[str, ...]) -> list[str]:
+    notes = [f"{name} is truncated: it can be read up to {log.time_range()[1]:.3f} s"] if log.truncated else []
+    notes += [f"{name}: {damage}" for damage in dict.fromkeys(log.damage)]
+    return notes + [f"{topic} of {name} has no layout of fixed size: not compared" for topic in unreadable(log, common)]
+
+
+def _plain(value: Any) -> Any:
+    """The value for JSON: tuples as lists, what is not a finite number as text."""
+    if isinstance(value, dict):
+        return {key: _plain(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+_WIDTH = 110
+"""Columns that the widest line needs; a narrower terminal wraps it rather than losing what it says."""
+
+
+def print_comparison(found: Comparison) -> None:
+    """Print what is the same and what is not, the answer first."""
+    console = plain_console()
+    console.width = max(console.width, _WIDTH)
+    console.print(found.summary)
+    console.print(f"A: {found.a}\nB: {found.b}")
+    for note in found.notes:
+        console.print(f"note: {note}")
+    for title, differences in (("version", found.versions), ("setting", found.settings)):
+        console.print(_settings(title, differences) if differences else f"{title}s: the same")
+    if found.files:
+        console.print(f"attached files that differ: {', '.join(found.files)}")
+    console.print(_metrics(found.metrics))
+    console.print(_channels(found.channels, found.tolerance))
+    for name, topics in (("A", found.only_a), ("B", found.only_b)):
+        if topics:
+            console.print(f"only in {name}: {', '.join(topics)}")
+
+
+def _settings(title: str, differences: tuple[Difference, ...]) -> Table:
+    rows = plain_table(title, "A", "B")
+    for one in differences:
+        rows.add_row(one.name, number(one.a), number(one.b))
+    return rows
+
+
+def _metrics(metrics: tuple[Difference, ...]) -> Table:
+    rows = plain_table("metric", "A", "B", "B - A")
+    for one in metrics:
+        delta = "" if one.delta in (None, 0.0) else f"{one.delta:+.3g}"
+        rows.add_row(one.name, number(one.a), number(one.b), f"{delta} (wall clock)" if timed(one.name) else delta)
+    return rows
+
+
+def _channels(channels: tuple[ChannelDifference, ...], tolerance: float) -> Table:
+    """Times at which each channel parts, with the value that differs beyond the tolerance, or else by a bit."""
+    rows = plain_table("channel", "messages", "from [s]", f"beyond {tolerance:g}", "field", "A", "B")
+    for one in channels:
+        shown = one.tolerated or one.exact
+        values = (shown.field, f"{shown.a:.5g}", f"{shown.b:.5g}") if shown else ()
+        counts = " / ".join(str(count) for count in dict.fromkeys(one.messages))
+        times = ("identical", "-") if one.same else (_time(one.exact), _time(one.tolerated))
+        rows.add_row(one.topic, counts, *times, *values)
+        for remark in _remarks(one):
+            rows.add_row("", "", "", "", remark)
+    return rows
+
+
+def _remarks(channel: ChannelDifference) -> list[str]:
+    alone = [] if channel.only_one is None else [f"in one log only at {channel.only_one:.3f} s"]
+    return [*alone, *channel.layout]
+
+
+def _time(point: Point | None) -> str:
+    return "-" if point is None else f"{point.time:.3f}"

@@ -1,0 +1,184 @@
+"""The page of all figures of a log, or one of them, as a file."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import shorten
+
+from matplotlib.figure import Figure
+
+from surefoot.scenarios.errors import LogError, nearest
+from surefoot.scenarios.judge.verdict import judge
+from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.record.provenance import ABSENT
+from surefoot.scenarios.show.figures import balance, feet, height, solver, top_view, torques
+from surefoot.scenarios.show.figures.shading import Background, background
+from surefoot.scenarios.show.figures.style import Area, canvas, format_of, in_style, save
+from surefoot.scenarios.show.logview import LogView, MissingError
+
+Draw = Callable[[Area, LogView, Background], None]
+
+_A3, _A4 = 11.7, 8.3
+_HEADER = 0.75
+
+
+@dataclass(frozen=True, slots=True)
+class Family:
+    """A family of figures.
+
+    Attributes:
+        draw: how.
+        size: width and height when it stands alone [in].
+        over_time: whether its axes are of time, with what happened behind them.
+    """
+
+    draw: Draw
+    size: tuple[float, float]
+    over_time: bool = True
+
+
+FIGURES: dict[str, Family] = {
+    "balance": Family(balance.draw, (_A3, 6.0)),
+    "top-view": Family(top_view.draw, (_A3, 5.5), over_time=False),
+    "height": Family(height.draw, (_A4, 4.5)),
+    "feet": Family(feet.draw, (_A4, 4.5)),
+    "torques": Family(torques.draw, (_A4, 6.0)),
+    "solver": Family(solver.draw, (_A3, 4.5)),
+}
+"""The families of figures by name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row of the page: its height [in] and the figures in it."""
+
+    height: float
+    names: tuple[str, ...]
+
+
+_COMPACT = (
+    Row(5.1, ("balance",)),
+    Row(3.6, ("top-view", "height")),
+    Row(3.9, ("feet", "torques")),
+    Row(3.3, ("solver",)),
+)
+_WIDE = (
+    Row(4.5, ("balance",)),
+    Row(2.0, ("top-view",)),
+    Row(3.1, ("height", "feet")),
+    Row(3.1, ("torques",)),
+    Row(3.1, ("solver",)),
+)
+
+
+def page(view: LogView, header: str) -> Figure:
+    """Draw all figures on one page, A3 wide."""
+    rows = _WIDE if top_view.is_wide(view) else _COMPACT
+    heights = [_HEADER, *(row.height for row in rows)]
+    with in_style():
+        figure, areas = canvas(_A3, heights)
+        behind = background(view)
+        _head(areas[0], header, behind, 11.0)
+        for area, row in zip(areas[1:], rows, strict=True):
+            for part, name in zip(area.subfigures(1, len(row.names), squeeze=False)[0], row.names, strict=True):
+                FIGURES[name].draw(part, view, behind)
+    return figure
+
+
+def single(view: LogView, header: str, name: str) -> Figure:
+    """Draw one figure by name.
+
+    Raises:
+        LogError: there is no such figure.
+    """
+    if name not in FIGURES:
+        raise LogError(f"--what {name}: no such figure; {nearest(name, FIGURES)}")
+    with in_style():
+        width, tall = FIGURES[name].size
+        figure, (top, area) = canvas(width, (_HEADER, tall))
+        behind = background(view) if FIGURES[name].over_time else Background((), (), None)
+        _head(top, header, behind, 9.0)
+        FIGURES[name].draw(area, view, behind)
+    return figure
+
+
+def _head(area: Area, header: str, behind: Background, size: float) -> None:
+    """What the log is, and what the shades behind all curves over time mean."""
+    area.text(0.01, 0.98, header, ha="left", va="top", fontsize=size, linespacing=1.4)
+    area.legend(handles=behind.handles(), loc="lower left", bbox_to_anchor=(0.004, 0.0), ncols=4)
+
+
+PAGE_NAME = "figures.png"
+_REASON = 90
+"""Letters of a reason that fit into the header."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """What was drawn.
+
+    Attributes:
+        path: of the file.
+        notes: what of the log could not be read, in words.
+    """
+
+    path: Path
+    notes: tuple[str, ...]
+
+
+def plot(
+    log_path: Path,
+    out: Path | None = None,
+    what: str | None = None,
+    start: float | None = None,
+    end: float | None = None,
+) -> Drawn:
+    """Draw the figures of a log.
+
+    Args:
+        log_path: a log, also a truncated one.
+        out: file to write, PNG, SVG or PDF by its ending; ``figures.png`` beside the log by default, or the figure's
+            own name when one was chosen.
+        what: one figure by name, all on one page by default.
+        start: of the window [s].
+        end: of the window [s].
+
+    Raises:
+        LogError: the log cannot be read, the window is empty, there is no such figure or the file cannot be written.
+    """
+    out = out or log_path.parent / (f"{what}.png" if what else PAGE_NAME)
+    format_of(out)
+    log = read(log_path)
+    view = LogView(log, start, end)
+    figure = page(view, _header(view)) if what is None else single(view, _header(view), what)
+    save(figure, out)
+    return Drawn(out, _notes(log))
+
+
+def _header(view: LogView) -> str:
+    """Two lines: which run and its verdict; the stretch of time and what made it."""
+    log = view.log
+    try:
+        scenario, seed, fidelity = (view.constant(name) for name in ("scenario", "seed", "fidelity"))
+        name = f"{scenario}, seed {seed}, fidelity {fidelity}"
+    except MissingError:
+        name = log.path.name
+    versions = log.metadata.get("versions", {})
+    parts = (("surefoot", "surefoot"), ("git_revision", "revision"), ("mujoco", "mujoco"))
+    made = [f"{label} {versions[part][:12]}" for part, label in parts if versions.get(part, ABSENT) not in ("", ABSENT)]
+    window = f"{view.start:.3f} s to {view.end:.3f} s"
+    return f"{name}: {_verdict(log)}\n{', '.join([window, *made])}".replace("$", r"\$")
+
+
+def _verdict(log: Log) -> str:
+    try:
+        verdict = judge(log)
+    except LogError:
+        return "no verdict"
+    first = f" ({shorten(verdict.reasons[0], _REASON)})" if verdict.reasons else ""
+    return f"{'pass' if verdict.passed else 'fail'}{first}"
+
+
+def _notes(log: Log) -> tuple[str, ...]:
+    truncated = (f"the file is truncated: it can be read up to {log.time_range()[1]:.3f} s",) if log.truncated else ()
+    return (*truncated, *dict.fromkeys(log.damage))

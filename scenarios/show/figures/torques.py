@@ -1,0 +1,93 @@
+"""Joint torques over their limits, leg by leg and the rest of the body."""
+
+import re
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from surefoot.scenarios.show.figures.shading import Background
+from surefoot.scenarios.show.figures.style import BLACK, CYCLE, GREY, Area, curve, legend, or_say, time_axes
+from surefoot.scenarios.show.logview import LogView, MissingError
+
+TITLE = "Joint torques in percent of their limits"
+_LEG = re.compile(r"hip|knee|ankle|leg")
+_MOST = 6
+"""Joints of a group drawn one by one; a larger group is drawn by its largest ratio."""
+
+
+_PLATE = {"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 1.0}
+
+
+def draw(area: Area, view: LogView, background: Background) -> None:
+    """Draw torque over limit, signed, in three groups of joints on one scale."""
+    axes = time_axes(area, view, TITLE, (1.0, 1.0, 1.0))
+    background.shade(axes)
+    for one, name in zip(axes, ("left leg", "right leg", "upper body"), strict=True):
+        one.set_ylabel(f"{name} [%]")
+        with or_say(one):
+            names, percent = _percent(view)
+            _group(one, view.time("/torque"), percent, groups(names)[name])
+            one.set_ylim(*_limits(percent))
+            for limit in (-100.0, 100.0):
+                one.axhline(limit, color=BLACK, linewidth=0.9, linestyle="--")
+    same = axes[0].get_legend_handles_labels()[1] == axes[1].get_legend_handles_labels()[1]
+    for one in (axes[0], *([] if same else [axes[1]]), axes[2]):
+        legend(one, 6 if same else 4)
+
+
+def groups(names: tuple[str, ...]) -> dict[str, dict[str, list[int]]]:
+    """Joints by figure and label: both legs joint by joint, waist joints likewise, arms and head together."""
+    legs: dict[str, dict[str, list[int]]] = {"left leg": {}, "right leg": {}, "upper body": {}}
+    for index, name in enumerate(names):
+        side = next((side for side in ("left", "right") if side in name), "")
+        if side and _LEG.search(name):
+            legs[f"{side} leg"][_short(name, side)] = [index]
+        else:
+            label = _short(name, "") if not side and len(legs["upper body"]) < _MOST - 1 else "arms and head, largest"
+            label = "arms and head, largest" if re.search("neck|head", name) else label
+            legs["upper body"].setdefault(label, []).append(index)
+    return legs
+
+
+def _percent(view: LogView) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    torque = view.field("/torque", "command", -1)
+    names, limit = (view.constant(name) for name in ("joint_names", "torque_limit"))
+    sound = isinstance(names, list) and isinstance(limit, list) and len(names) == len(limit) == torque.shape[1]
+    if not sound or not all(isinstance(value, int | float) for value in limit):
+        raise MissingError("a torque limit for each joint")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return tuple(map(str, names)), 100.0 * torque / np.array(limit, float)
+
+
+def _group(
+    axes: Axes,
+    time: NDArray[np.float64],
+    percent: NDArray[np.float64],
+    members: dict[str, list[int]],
+) -> None:
+    """Draw each label's largest torque, and say which is the largest of all."""
+    if not members:
+        raise MissingError("such joints")
+    peaks = {}
+    for number, (label, joints) in enumerate(members.items()):
+        chosen = np.nan_to_num(percent[:, joints])
+        largest = np.argmax(np.abs(chosen), axis=1)
+        color = GREY if len(joints) > 1 else CYCLE[number % len(CYCLE)]
+        values = chosen[np.arange(len(chosen)), largest]
+        peaks[label] = float(np.abs(values).max())
+        curve(axes, time, values, label, color, linewidth=0.9)
+    worst = max(peaks, key=lambda label: peaks[label])
+    text = f"largest: {worst.removesuffix(', largest')} {peaks[worst]:.0f} %"
+    axes.text(0.995, 0.03, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=7, bbox=_PLATE)
+
+
+def _limits(percent: NDArray[np.float64]) -> tuple[float, float]:
+    """The same range for all groups; the limits come into sight when a torque comes near them."""
+    largest = max(20.0, float(np.max(np.abs(percent), initial=0.0, where=np.isfinite(percent))))
+    return -1.2 * largest, 1.2 * largest
+
+
+def _short(name: str, side: str) -> str:
+    words = [word for word in name.split("_") if word not in (side, "joint", "leg")]
+    return " ".join(words) or name

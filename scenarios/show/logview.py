@@ -1,0 +1,140 @@
+"""A stretch of a log as figures see it: whatever cannot be shown is named, never a surprise."""
+
+import json
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log import ChannelData, Log
+from surefoot.scenarios.record.provenance import RECORD
+
+Array = NDArray[np.float64]
+
+DRAWN = (
+    *("/truth", "/measurement", "/contact", "/reference", "/plan"),
+    *("/footsteps", "/footstep", "/wbc", "/torque", "/timing"),
+)
+"""Topics that the figures draw."""
+
+_GREATEST = 1e9
+"""No sound value or time is greater; beyond it axes fail rather than show the rest."""
+
+
+class MissingError(Exception):
+    """What a figure needs and the log has not got; the message names it."""
+
+
+class LogView:
+    """Fields of a log within a window of time.
+
+    Attributes:
+        log: the log.
+        start: of the window [s].
+        end: of the window [s].
+    """
+
+    def __init__(self, log: Log, start: float | None = None, end: float | None = None) -> None:
+        """Choose a window, by default all of the log.
+
+        Raises:
+            LogError: there is nothing to see in the window.
+        """
+        self.log = log
+        self._channels = _loaded(log)
+        times = np.concatenate([np.zeros(0), *(channel.time for channel in self._channels.values())])
+        times = times[(times >= 0.0) & (times < _GREATEST)]
+        if not len(times):
+            raise LogError(f"{log.path}: holds no messages to draw; give a log that `surefoot run` has written")
+        first, last = float(times.min()), float(times.max())
+        self.start, self.end = first if start is None else start, last if end is None else end
+        if not np.any((times >= self.start) & (times <= self.end)):
+            window = _window(start, end)
+            raise LogError(f"{log.path}: holds nothing {window}; choose --from and --to within {first:g} to {last:g} s")
+
+    def constant(self, name: str) -> Any:
+        """A constant of the run by its name in `RunConstants`; read one by one, for logs of other versions.
+
+        Raises:
+            MissingError: the log does not carry it.
+        """
+        try:
+            return json.loads(self.log.metadata[RECORD][name])
+        except (KeyError, ValueError, RecursionError):
+            raise MissingError(f"{name} of the {RECORD}") from None
+
+    def number(self, name: str) -> float:
+        """A constant that is a positive number; errors as of `constant`."""
+        value = self.constant(name)
+        if not isinstance(value, int | float) or not 0.0 < value < _GREATEST:
+            raise MissingError(f"{name} of the {RECORD}")
+        return float(value)
+
+    def time(self, topic: str) -> Array:
+        """Times of a topic's messages in the window, shape (n,) [s].
+
+        Raises:
+            MissingError: it has none.
+        """
+        return np.asarray(self._channel(topic).time[self._rows(topic)])
+
+    def field(self, topic: str, name: str, *shape: int) -> Array:
+        """Values of a field in the window, shape (n, *shape); what is no number or absurd is NaN.
+
+        Args:
+            topic: of the channel.
+            name: of its field.
+            shape: that each value must have; -1 for any extent.
+
+        Raises:
+            MissingError: there is no such field of that shape, or no message of it.
+        """
+        spec = next((field for field in self._channel(topic).fields if field.name == name), None)
+        if spec is None or len(spec.shape) != len(shape):
+            raise MissingError(f"{topic} {name}")
+        if any(wanted not in (-1, extent) for wanted, extent in zip(shape, spec.shape, strict=True)):
+            raise MissingError(f"{topic} {name} of shape {shape}")
+        values = self._channel(topic).field(name)[self._rows(topic)].astype(float)
+        return np.asarray(np.where(np.abs(values) < _GREATEST, values, np.nan))
+
+    def at(self, topic: str, name: str, times: Array) -> Array:
+        """A scalar field interpolated to given times, shape (n,); errors as of `field`."""
+        return np.asarray(np.interp(times, self.time(topic), self.field(topic, name)))
+
+    def _channel(self, topic: str) -> ChannelData:
+        channel = self._channels.get(topic)
+        if channel is None:
+            raise MissingError(topic)
+        return channel
+
+    def _rows(self, topic: str) -> NDArray[Any]:
+        time = self._channel(topic).time
+        rows = np.flatnonzero((time >= self.start) & (time <= self.end))
+        if not len(rows):
+            raise MissingError(f"{topic} in this window")
+        return rows
+
+
+def _window(start: float | None, end: float | None) -> str:
+    if start is None:
+        return f"up to {end:g} s"
+    return f"from {start:g} s on" if end is None else f"from {start:g} to {end:g} s"
+
+
+def _loaded(log: Log) -> dict[str, ChannelData]:
+    """The drawn channels that the log has in a layout of ours; in one pass if it can be."""
+    present = [topic for topic in DRAWN if topic in log]
+    try:
+        log.load(*present)
+    except LogError:
+        present = [topic for topic in present if _readable(log, topic)]
+    return {topic: log[topic] for topic in present}
+
+
+def _readable(log: Log, topic: str) -> bool:
+    try:
+        log.load(topic)
+    except LogError:
+        return False
+    return True

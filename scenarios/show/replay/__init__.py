@@ -1,0 +1,1 @@
+"""A log in 3D: page, video, live."""

@@ -1,0 +1,86 @@
+"""The commands that show a log in 3D, and a run while it goes on."""
+
+import contextlib
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log import read
+from surefoot.scenarios.loop.skeleton import OnProgress, Progress
+from surefoot.scenarios.show.console import ProgressLine
+from surefoot.scenarios.show.replay.content import require
+from surefoot.scenarios.show.replay.extract import extract
+from surefoot.scenarios.show.replay.poses import Window
+
+
+def html_page(log: Path, out: Path, window: Window) -> None:
+    """Write a page; errors as of `extract` and `write_page`."""
+    from surefoot.scenarios.show.replay.page import write_page
+
+    write_page(extract(read(log), window), out)
+
+
+def video(log: Path, out: Path, window: Window) -> None:
+    """Write a video, with a progress line; errors as of `extract` and `write_video`."""
+    from surefoot.scenarios.show.replay.video import write_video
+
+    replay, begin = extract(read(log), window), time.monotonic()
+    length = len(replay) / replay.frame_rate
+    with ProgressLine(out.name) as line:
+
+        def note(frames: int) -> None:
+            done = frames / replay.frame_rate
+            line(Progress(done, length, "drawn", done / max(time.monotonic() - begin, 1e-9)))
+
+        write_video(replay, out, note)
+
+
+def live(log: Path, window: Window, say: Callable[[str], None]) -> None:
+    """Serve a log until Ctrl-C; errors as of `serve`."""
+    from surefoot.scenarios.show.replay.live import serve
+
+    with contextlib.suppress(KeyboardInterrupt):
+        serve(log, window, say)
+
+
+def check(fidelity: str, *, video: Path | None, view: bool) -> None:
+    """Say before a run what its pictures would lack after it.
+
+    Raises:
+        MissingExtraError: an optional package is not installed.
+        LogError: the fidelity has no body to show, or the video's name does not end in .mp4.
+    """
+    if fidelity == "pendulum":
+        raise LogError("a pendulum has no body to show; drop --video and --view, or run with fidelity full")
+    if video is not None:
+        if video.suffix != ".mp4":
+            raise LogError(f"{video}: a video is an MP4 file; give a name that ends in .mp4")
+        require("av", "video", "--video")
+    if view:
+        require("viser", "replay", "--view")
+
+
+class LiveView:
+    """Progress of a run, passed on; the first of it opens the replay, since the log exists from then on."""
+
+    def __init__(self, log: Path, on_progress: OnProgress) -> None:
+        self._log, self._on_progress = log, on_progress
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def __call__(self, progress: Progress) -> None:
+        """See `OnProgress`."""
+        if self._process is None:
+            command = [sys.executable, "-m", "surefoot", "replay", str(self._log), "--live"]
+            self._process = subprocess.Popen(command, stdout=sys.stderr)
+        self._on_progress(progress)
+
+    def wait(self) -> None:
+        """Leave the replay open until Ctrl-C."""
+        if self._process is None:
+            return
+        with contextlib.suppress(KeyboardInterrupt):
+            self._process.wait()
+        self._process.terminate()

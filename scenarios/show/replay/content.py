@@ -1,0 +1,169 @@
+"""What a replay shows, independent of what shows it: surfaces on bodies, marks that move, footprints that stay."""
+
+import contextlib
+import importlib
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.scenarios.errors import LogError
+
+Array = NDArray[np.float64]
+Color = tuple[float, float, float]
+"""Red, green and blue from 0 to 1."""
+
+Kind = Literal["point", "arrow", "outline"]
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """Triangles that move with a body.
+
+    Attributes:
+        body: index of the body; 0 is the world.
+        color: of the surface.
+        vertices: in the body's frame, shape (k, 3) [m].
+        faces: indices of vertices, counter-clockwise from outside, shape (m, 3).
+    """
+
+    body: int
+    color: Color
+    vertices: Array
+    faces: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """A mark that moves.
+
+    Attributes:
+        layer: what it is switched on and off with.
+        name: what it is, within the layer.
+        kind: a point has one vertex, an arrow a tail and a head, an outline two or more in order and is closed.
+        color: of the mark.
+        size: radius of a point, of an arrow's shaft or of an outline's line [m].
+        vertices: in the world by frame, NaN where there is nothing to show, shape (n, k, 3) [m].
+        trail: whether its path is worth drawing.
+    """
+
+    layer: str
+    name: str
+    kind: Kind
+    color: Color
+    size: float
+    vertices: Array
+    trail: bool = False
+
+    def shown(self, frame: int) -> bool:
+        """Whether there is something to show in a frame."""
+        return bool(np.isfinite(self.vertices[frame]).all())
+
+    def path(self, frames: slice) -> Array:
+        """Where a point has been, without the frames in which it was not shown, shape (k, 3) [m]."""
+        points = self.vertices[frames, 0]
+        return np.asarray(points[np.isfinite(points).all(axis=1)])
+
+
+@dataclass(frozen=True, slots=True)
+class Footprint:
+    """Where a sole has been set down; it stays.
+
+    Attributes:
+        color: of the foot.
+        corners: of the sole in the world, in order, shape (4, 3) [m].
+        since: time of the touchdown [s].
+    """
+
+    color: Color
+    corners: Array
+    since: float
+
+
+@dataclass(frozen=True, slots=True)
+class Replay:
+    """A stretch of a run at an even frame rate.
+
+    Attributes:
+        title: what is shown.
+        frame_rate: of the content [Hz].
+        time: simulated time of each frame, shape (n,) [s].
+        configuration: of the robot by frame, in Pinocchio's convention, shape (n, nq).
+        body_names: by body.
+        body_position: origins of the bodies in the world by frame, shape (n, bodies, 3) [m].
+        body_quaternion: w x y z by frame, shape (n, bodies, 4).
+        surfaces: of the robot and of the terrain.
+        tracks: marks that move.
+        footprints: that were taken, in order of time.
+        mjcf: text of the simulated world.
+    """
+
+    title: str
+    frame_rate: float
+    time: Array
+    configuration: Array
+    body_names: tuple[str, ...]
+    body_position: Array
+    body_quaternion: Array
+    surfaces: tuple[Surface, ...]
+    tracks: tuple[Track, ...]
+    footprints: tuple[Footprint, ...]
+    mjcf: str
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+
+class MissingExtraError(LogError):
+    """An output needs a package that is not installed; the message says how to install it."""
+
+
+def require(module: str, extra: str, purpose: str) -> ModuleType:
+    """Import an optional package.
+
+    Args:
+        module: to import.
+        extra: of the distribution that brings it.
+        purpose: what needs it, for the message.
+
+    Raises:
+        MissingExtraError: it is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        install = f"pip install 'surefoot[{extra}]'"
+        raise MissingExtraError(f"{purpose} needs the package {module}; install it with: {install}") from None
+
+
+@contextlib.contextmanager
+def write_whole(path: Path) -> Iterator[Path]:
+    """A temporary file beside the wanted one, which it replaces when the context ends well.
+
+    Args:
+        path: the wanted file.
+
+    Yields:
+        path of the temporary file, which exists and can be written.
+
+    Raises:
+        LogError: the file cannot be written.
+    """
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.new")
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(0, "is a directory")
+        temporary.touch()
+        yield temporary
+        temporary.replace(path)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise LogError(f"{path}: cannot be written, {reason}; choose another file") from None
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink()

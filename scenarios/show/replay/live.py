@@ -1,0 +1,113 @@
+"""A replay in the browser that follows a log while it is written."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log import read
+from surefoot.scenarios.show.replay.content import Replay
+from surefoot.scenarios.show.replay.extract import extract
+from surefoot.scenarios.show.replay.poses import Window
+from surefoot.scenarios.show.replay.scene import LOCALHOST, ViserScene, serving
+
+if TYPE_CHECKING:
+    import viser
+
+
+STEP = 0.001
+"""Resolution of the timeline [s]."""
+
+POLL = 1.0
+"""Wall-clock time between looks at the log [s]."""
+
+PATIENCE = 15.0
+"""How long a log may lack its first control tick [s]."""
+
+SPEEDS = ("0.1x", "0.25x", "0.5x", "1x", "2x", "4x")
+
+
+def serve(path: Path, window: Window, say: Callable[[str], None]) -> None:
+    """Serve a log on this machine until interrupted.
+
+    Args:
+        path: of the log, which may still be growing.
+        window: what part of it.
+        say: is told the address.
+
+    Raises:
+        MissingExtraError: viser is not installed.
+        LogError: the log holds nothing to show.
+    """
+    with serving() as server:
+        replay = _first(path, window)
+        say(f"http://{LOCALHOST}:{server.get_port()} shows {path}; Ctrl-C stops")
+        player, size, looked = Player(server, replay), path.stat().st_size, time.monotonic()
+        while True:
+            time.sleep(1.0 / window.frame_rate)
+            player.advance(time.monotonic())
+            if time.monotonic() - looked > POLL and path.stat().st_size != size:
+                size, looked = path.stat().st_size, time.monotonic()
+                player.replace(extract(read(path), window))
+
+
+def _first(path: Path, window: Window) -> Replay:
+    """What a log shows, as soon as it shows anything."""
+    begin = time.monotonic()
+    while True:
+        log = read(path)
+        try:
+            return extract(log, window)
+        except LogError:
+            if not log.truncated or time.monotonic() - begin > PATIENCE:
+                raise
+        time.sleep(POLL)
+
+
+class Player:
+    """Timeline, play, speed and follow, and the scene that they move."""
+
+    def __init__(self, server: "viser.ViserServer", replay: Replay) -> None:
+        self._replay, self._scene, self._last = replay, ViserScene(server, replay), time.monotonic()
+        first, last = float(replay.time[0]), float(replay.time[-1])
+        gui: Any = server.gui
+        self._slider = gui.add_slider(
+            "time [s]", min=first, max=max(last, first + STEP), step=STEP, initial_value=first
+        )
+        self._playing = gui.add_checkbox("play", initial_value=True)
+        self._following = gui.add_checkbox("follow the run", initial_value=False, hint="show the end of a growing log")
+        self._speed = gui.add_dropdown("speed", options=SPEEDS, initial_value="1x")
+        self._now = first
+        self._slider.on_update(self._sought)
+        with gui.add_folder("show"):
+            for name, node in self._scene.layers.items():
+                switch = gui.add_checkbox(name, initial_value=node.visible)
+                switch.on_update(lambda event, node=node: setattr(node, "visible", event.target.value))
+
+    def _sought(self, event: Any) -> None:
+        """Stay where the user has moved the slider to."""
+        if event.client is not None:
+            self._now, self._playing.value, self._following.value = event.target.value, False, False
+
+    def replace(self, replay: Replay) -> None:
+        """Show more of the run."""
+        self._replay = replay
+        self._scene.replace(replay)
+        self._slider.max = float(replay.time[-1])
+
+    def advance(self, now: float) -> None:
+        """Show what is due at a wall-clock time [s]."""
+        times = self._replay.time
+        elapsed, self._last = now - self._last, now
+        if self._following.value:
+            self._now = float(times[-1])
+        elif self._playing.value:
+            self._now += elapsed * float(self._speed.value.rstrip("x"))
+            self._now = self._now if self._now <= times[-1] else float(times[0])
+        if self._playing.value or self._following.value:
+            self._slider.value = round(self._now, 3)
+        frame = int(np.clip(np.searchsorted(times, self._now + 1e-9, side="right") - 1, 0, len(times) - 1))
+        self._scene.show(frame)

@@ -1,0 +1,207 @@
+"""The replay in viser: the stage, the robot on it, and the marks beside it."""
+
+import contextlib
+import io
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from surefoot.scenarios.show.replay.content import Array, Color, Footprint, Replay, Track, require
+
+if TYPE_CHECKING:
+    import viser
+
+
+class Mark:
+    """A node that follows a track; `layer/name` is its place in the scene tree."""
+
+    def __init__(self, node: Any) -> None:
+        self._node = node
+        node.visible = False
+
+    def show(self, track: Track, frame: int) -> None:
+        """Move to a frame of its track, or out of sight."""
+        shown = track.shown(frame)
+        if shown:
+            self._move(track.vertices[frame])
+        self._node.visible = shown
+
+    def _move(self, vertices: Array) -> None:
+        raise NotImplementedError
+
+
+class _Point(Mark):
+    def _move(self, vertices: Array) -> None:
+        self._node.position = vertices[0]
+
+
+class _Arrow(Mark):
+    def _move(self, vertices: Array) -> None:
+        self._node.points = vertices[None]
+
+
+class _Outline(Mark):
+    def _move(self, vertices: Array) -> None:
+        self._node.points = closed(vertices)
+
+
+def make_mark(scene: "viser.SceneApi", track: Track) -> Mark:
+    """Add the node of a track, not yet in sight."""
+    name, color, size = f"/{track.layer}/{track.name}", rgb(track.color), track.size
+    if track.kind == "point":
+        return _Point(scene.add_icosphere(name, radius=size, color=color, subdivisions=2))
+    if track.kind == "arrow":
+        head: dict[str, Any] = {"head_radius": 2.2 * size, "head_length": 5.0 * size}
+        return _Arrow(scene.add_arrows(name, np.zeros((1, 2, 3)), _linear(color), shaft_radius=size, **head))
+    nowhere = np.zeros((track.vertices.shape[1], 2, 3))
+    return _Outline(scene.add_line_segments(name, nowhere, color, thickness=2 * size))
+
+
+def _linear(color: tuple[int, int, int]) -> tuple[int, int, int]:
+    """The colour that viser, which takes those of arrows for linear light, shows as the given one."""
+    red, green, blue = (round(255 * (channel / 255) ** 2.2) for channel in color)
+    return red, green, blue
+
+
+def closed(vertices: Array) -> Array:
+    """Edges of a closed outline, shape (k, 2, 3)."""
+    return np.stack([vertices, np.roll(vertices, -1, axis=0)], axis=1)
+
+
+def rgb(color: Color) -> tuple[int, int, int]:
+    """Colour in 256 steps per channel."""
+    red, green, blue = (round(255 * channel) for channel in color)
+    return red, green, blue
+
+
+LOCALHOST = "127.0.0.1"
+"""A replay is for this machine alone."""
+
+PORT = 8080
+"""The first to try; viser takes the next free one."""
+
+STEP_BACK = np.array([1.6, -1.9, 0.35])
+"""From what the camera looks at to where it stands at first, for a robot that stays in place [m]."""
+
+WIDER, WIDEST = 0.2, 1.6
+"""Share by which the camera steps back for each metre that the robot walks [1/m], and the largest factor."""
+
+LOOK_AT_HEIGHT = 0.7
+"""Of what the camera looks at, over the ground [m]."""
+
+
+@contextlib.contextmanager
+def serving() -> "Iterator[viser.ViserServer]":
+    """A server of viser on this machine for as long as the context lasts; it says nothing on standard output.
+
+    Raises:
+        MissingExtraError: viser is not installed.
+    """
+    viser = require("viser", "replay", "the replay in a browser")
+    with contextlib.redirect_stdout(io.StringIO()):
+        server = viser.ViserServer(host=LOCALHOST, port=PORT, verbose=False)
+    try:
+        yield server
+    finally:
+        with contextlib.redirect_stdout(io.StringIO()):
+            server.stop()
+
+
+def set_stage(server: "viser.ViserServer", replay: Replay) -> None:
+    """Set camera, light and ground."""
+    scene, base = server.scene, replay.body_position[:, 1]
+    scene.set_up_direction("+z")
+    scene.world_axes.visible = False
+    scene.configure_default_lights(cast_shadow=True)
+    middle = (base.min(axis=0) + base.max(axis=0)) / 2
+    middle[2] = replay.footprints[0].corners[0, 2] if replay.footprints else 0.0
+    middle[2] += LOOK_AT_HEIGHT
+    walked = float(np.linalg.norm(np.ptp(base[:, :2], axis=0)))
+    server.initial_camera.look_at = middle
+    server.initial_camera.position = middle + STEP_BACK * min(1.0 + WIDER * walked, WIDEST)
+    server.initial_camera.fov = np.deg2rad(45.0)
+    scene.add_grid(
+        "/Ground", infinite_grid=True, cell_size=0.1, section_size=1.0, fade_distance=25.0,
+        cell_color=(214, 218, 223), section_color=(165, 172, 180), plane_color=(238, 240, 242), plane_opacity=1.0,
+        shadow_opacity=0.25, position=(0.0, 0.0, -0.002),
+    )  # fmt: skip
+
+
+SEE_THROUGH = 0.6
+"""Opacity of the robot through which the marks inside it are seen."""
+
+_QUADRANGLE = np.array([[0, 1, 2], [0, 2, 3]])
+
+
+class ViserScene:
+    """Nodes for everything in a replay; `show` moves them to a frame.
+
+    Attributes:
+        layers: nodes that hide all that is below them, by name.
+    """
+
+    def __init__(self, server: "viser.ViserServer", replay: Replay) -> None:
+        self._scene = server.scene
+        set_stage(server, replay)
+        self.layers: dict[str, Any] = {}
+        self._bodies = tuple(self._add_bodies(replay))
+        for name in (*(track.layer for track in replay.tracks), "Taken footprints", "Paths"):
+            self._add_layer(name)
+        self._marks = tuple(make_mark(self._scene, track) for track in replay.tracks)
+        self._footprints: list[Any] = []
+        self.replace(replay)
+        self.show(0)
+
+    def replace(self, replay: Replay) -> None:
+        """Show another stretch of the same run, in which it may have gone on."""
+        self._replay = replay
+        for index, footprint in enumerate(replay.footprints[len(self._footprints) :], start=len(self._footprints)):
+            self._footprints.append(self._add_footprint(index, footprint))
+        for track in replay.tracks:
+            path = track.path(slice(None)) if track.trail else np.empty((0, 3))
+            if len(path) > 1:
+                lines = np.stack([path[:-1], path[1:]], axis=1)
+                self._scene.add_line_segments(f"/Paths/{track.layer}", lines, rgb(track.color), thickness=0.004)
+
+    def show(self, frame: int) -> None:
+        """Move everything to a frame."""
+        replay = self._replay
+        for body, node in self._bodies:
+            node.position, node.wxyz = replay.body_position[frame, body], replay.body_quaternion[frame, body]
+        for mark, track in zip(self._marks, replay.tracks, strict=True):
+            mark.show(track, frame)
+        for node, footprint in zip(self._footprints, replay.footprints, strict=True):
+            node.visible = footprint.since <= replay.time[frame] + 1e-9
+
+    def _add_bodies(self, replay: Replay) -> Iterator[tuple[int, Any]]:
+        """Terrain and robot; the robot twice, since forces and CoM are seen only through it."""
+        yield from self._add_branch(replay, "Terrain", lambda body: body == 0)
+        yield from self._add_branch(replay, "Robot", lambda body: body > 0, opacity=SEE_THROUGH)
+        yield from self._add_branch(replay, "Robot, solid", lambda body: body > 0)
+        self.layers["Robot, solid"].visible = False
+
+    def _add_branch(
+        self, replay: Replay, layer: str, wanted: Callable[[int], bool], **look: Any
+    ) -> Iterator[tuple[int, Any]]:
+        """A node per body that has surfaces, and its surfaces below it."""
+        chosen = [surface for surface in replay.surfaces if wanted(surface.body)]
+        if chosen:
+            self._add_layer(layer)
+        for body in dict.fromkeys(surface.body for surface in chosen):
+            yield body, self._scene.add_frame(f"/{layer}/{replay.body_names[body]}", show_axes=False)
+        for index, surface in enumerate(chosen):
+            name, color = f"/{layer}/{replay.body_names[surface.body]}/{index}", rgb(surface.color)
+            self._scene.add_mesh_simple(name, surface.vertices, surface.faces, color=color, **look)
+
+    def _add_layer(self, name: str) -> None:
+        if name not in self.layers:
+            self.layers[name] = self._scene.add_frame(f"/{name}", show_axes=False)
+
+    def _add_footprint(self, index: int, footprint: Footprint) -> Any:
+        name, color = f"/Taken footprints/{index}", rgb(footprint.color)
+        node = self._scene.add_frame(name, show_axes=False, visible=False)
+        self._scene.add_line_segments(f"{name}/outline", closed(footprint.corners), color, thickness=0.006)
+        area: dict[str, Any] = {"color": color, "opacity": 0.3, "cast_shadow": False, "side": "double"}
+        self._scene.add_mesh_simple(f"{name}/area", footprint.corners, _QUADRANGLE, **area)
+        return node

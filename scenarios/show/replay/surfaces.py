@@ -1,0 +1,113 @@
+"""Triangles of what MuJoCo draws: spheres, ellipsoids, capsules and cylinders turned on a lathe, boxes, meshes."""
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.scenarios.show.replay.content import Array, Color, Surface
+
+Faces = NDArray[np.int64]
+Triangles = tuple[Array, Faces]
+
+SEGMENTS = 20
+"""Around the axis of a lathed body; half as many from pole to pole."""
+
+LAST_VISIBLE_GROUP = 2
+"""MuJoCo's viewers show the geoms of groups 0 to 2; higher ones are for inertia and contact."""
+
+
+def surfaces(model: mujoco.MjModel) -> tuple[Surface, ...]:
+    """Every visible geom but the endless ground, geoms of one body and one colour merged."""
+    groups: dict[tuple[int, Color], list[Triangles]] = {}
+    for geom in range(model.ngeom):
+        if model.geom_group[geom] <= LAST_VISIBLE_GROUP and model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_PLANE:
+            key = (int(model.geom_bodyid[geom]), _color(model, geom))
+            groups.setdefault(key, []).append(_placed(model, geom))
+    return tuple(Surface(body, color, *_merged(parts)) for (body, color), parts in groups.items())
+
+
+def _color(model: mujoco.MjModel, geom: int) -> Color:
+    material = model.geom_matid[geom]
+    red, green, blue = (model.mat_rgba[material] if material >= 0 else model.geom_rgba[geom])[:3].tolist()
+    return red, green, blue
+
+
+def _placed(model: mujoco.MjModel, geom: int) -> Triangles:
+    """Triangles of a geom in the frame of its body."""
+    vertices, faces = _triangles(model, geom)
+    rotation = np.empty(9)
+    mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
+    return vertices @ rotation.reshape(3, 3).T + model.geom_pos[geom], faces
+
+
+def _merged(parts: list[Triangles]) -> Triangles:
+    offsets = np.cumsum([0, *(len(vertices) for vertices, _ in parts[:-1])])
+    faces = [faces + offset for (_, faces), offset in zip(parts, offsets, strict=True)]
+    return np.concatenate([vertices for vertices, _ in parts]), np.concatenate(faces)
+
+
+def _triangles(model: mujoco.MjModel, geom: int) -> Triangles:
+    kind, size = mujoco.mjtGeom(int(model.geom_type[geom])), model.geom_size[geom]
+    if kind == mujoco.mjtGeom.mjGEOM_BOX:
+        return box(size)
+    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+        return cylinder(size[0], size[1])
+    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
+        return capsule(size[0], size[1])
+    if kind == mujoco.mjtGeom.mjGEOM_MESH:
+        return _mesh(model, int(model.geom_dataid[geom]))
+    return ellipsoid(size if kind == mujoco.mjtGeom.mjGEOM_ELLIPSOID else np.full(3, size[0]))
+
+
+def _mesh(model: mujoco.MjModel, mesh: int) -> Triangles:
+    first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+    face, faces = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
+    vertices = model.mesh_vert[first : first + count].astype(np.float64)
+    return vertices, model.mesh_face[face : face + faces].astype(np.int64)
+
+
+def ellipsoid(radii: Array) -> Triangles:
+    """Ellipsoid about the origin with these half axes, shape (3,) [m]."""
+    angle = np.linspace(-np.pi / 2, np.pi / 2, SEGMENTS // 2 + 1)
+    vertices, faces = _lathe(np.cos(angle), np.sin(angle))
+    return vertices * radii, faces
+
+
+def capsule(radius: float, half_length: float) -> Triangles:
+    """Capsule along z; the half length is that of its straight part [m]."""
+    angle = np.linspace(0, np.pi / 2, SEGMENTS // 4 + 1)
+    r, z = radius * np.cos(angle), radius * np.sin(angle) + half_length
+    return _lathe(np.concatenate([r[::-1], r]), np.concatenate([-z[::-1], z]))
+
+
+def cylinder(radius: float, half_length: float) -> Triangles:
+    """Cylinder along z; caps and mantle share no vertices, so that the edges are sharp."""
+    ends = np.array([-half_length, half_length])
+    bottom = _lathe(np.array([0.0, radius]), ends[[0, 0]])
+    mantle = _lathe(np.array([radius, radius]), ends)
+    top = _lathe(np.array([radius, 0.0]), ends[[1, 1]])
+    return _merged([bottom, mantle, top])
+
+
+def box(half_size: Array) -> Triangles:
+    """Box about the origin with sharp edges; half sizes of shape (3,) [m]."""
+    square = np.array([[-1.0, -1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    # Cyclic permutations of the axes keep the orientation, so does a turn by half about x.
+    half_turn = np.array([1.0, -1.0, -1.0])
+    sides = [np.roll(square * flip, axis, axis=1) for axis in range(3) for flip in (np.ones(3), half_turn)]
+    vertices, faces = _merged([(side, faces) for side in sides])
+    return vertices * half_size, faces
+
+
+def _lathe(radius: Array, height: Array) -> Triangles:
+    """Turn a profile, given from the bottom to the top, about the z axis."""
+    angle = np.linspace(0, 2 * np.pi, SEGMENTS, endpoint=False)
+    x, y = np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))
+    vertices = np.stack([x, y, np.broadcast_to(height[:, None], x.shape)], axis=2).reshape(-1, 3)
+    ring = np.arange((len(radius) - 1) * SEGMENTS).reshape(-1, SEGMENTS)
+    beside, above, both = np.roll(ring, -1, axis=1), ring + SEGMENTS, np.roll(ring, -1, axis=1) + SEGMENTS
+    faces = np.stack([ring, beside, both, ring, both, above], axis=2).reshape(-1, 3)
+    corners = vertices[faces]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    return vertices, faces[area > 1e-12]

@@ -1,0 +1,1 @@
+"""Surefoot: a humanoid walking stack in full physics."""

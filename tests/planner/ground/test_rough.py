@@ -1,0 +1,110 @@
+"""Slopes and block fields, and footsteps and swings on them."""
+
+import numpy as np
+import pytest
+
+from surefoot.planner.geometry import frame_rotation, sole_corners, sole_pose, sole_rotation
+from surefoot.planner.ground.rough import LEVEL_STEPS, Blocks, Slope, block_field, slope
+from surefoot.planner.ground.terrain import flat
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.course import swing_courses
+from surefoot.planner.swing.trajectory import start_swing, swing_times
+from surefoot.planner.types import Foot
+from surefoot.planner.walk.clock import schedule
+from surefoot.planner.walk.footsteps import plan_footsteps
+from surefoot.planner.walk.gait import GaitParameters
+
+pytestmark = pytest.mark.unit
+
+ORIGIN, YAW = np.array([1.0, -2.0]), 0.4
+HALF_SOLE = np.array([0.11, 0.055])
+BLOCKS = Blocks(0.05, 0.14, 0.3, 0.18)
+GAIT = GaitParameters(steps=12, step_length=0.3, turn=0.03)
+
+
+def field(stand, seed=0):
+    feet = stand(origin=tuple(ORIGIN), yaw=YAW)
+    terrain = block_field(BLOCKS, plan_footsteps(GAIT, feet, flat()), np.random.default_rng(seed), 0.7)
+    feet.position[:, 2] = terrain.heights(feet.position[:, :2])
+    return plan_footsteps(GAIT, feet, terrain), terrain
+
+
+def ahead(distance, left=0.0):
+    return ORIGIN + frame_rotation(YAW) @ (distance, left)
+
+
+@pytest.mark.parametrize("angle", [0.17, -0.17])
+def test_a_slope_has_its_inclination_from_its_edge_on(angle):
+    terrain = slope(Slope(angle, 0.5, 4.0, 1.0), ORIGIN, YAW, 0.7)
+    height = [terrain.height(*ahead(x, y)) for x, y in ((0.0, 0.3), (0.499, 0.0), (0.501, 0.0), (1.5, -0.4), (2.5, 0))]
+    base = height[0]
+    assert base == pytest.approx(max(0.0, 4.0 * np.sin(-angle)))
+    assert height[1:] == pytest.approx([base, base, base + np.tan(angle), base + 2.0 * np.tan(angle)], abs=2e-4)
+    assert min(terrain.heights(np.array([ahead(x) for x in np.linspace(0.0, 4.0, 100)]))) >= 0.0
+    np.testing.assert_array_equal(terrain.normal(*ahead(0.3)), [0.0, 0.0, 1.0])
+
+
+def test_normals_are_those_of_the_heights(stand):
+    """Against finite differences of the heights, away from edges."""
+    plan, terrain = field(stand)
+    rng = np.random.default_rng(1)
+    step, checked = 1e-5, 0
+    for position in plan.position[2:]:
+        for point in position[:2] + rng.uniform(-0.06, 0.06, (5, 2)):
+            around = point + step * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
+            h = terrain.heights(around)
+            gradient = np.array([h[0] - h[1], h[2] - h[3]]) / (2.0 * step)
+            normal = np.append(-gradient, 1.0) / np.hypot(1.0, np.linalg.norm(gradient))
+            np.testing.assert_allclose(terrain.normal(*point), normal, atol=1e-8)
+            checked += normal[2] < 1.0
+    assert checked > 40
+
+
+def test_blocks_carry_the_whole_sole_of_every_footstep(stand):
+    plan, terrain = field(stand)
+    soles = [plan.footstep(row) for row in range(plan.steps + 2)]
+    corners = np.array([sole_corners(sole, HALF_SOLE) for sole in soles])
+    assert terrain.edge_margins(plan.position[:, :2], corners).min() > 0.03
+    for sole, place in zip(soles, corners, strict=True):
+        np.testing.assert_array_equal(terrain.normal(*sole.position[:2]), sole.normal)
+        plane = sole.position[2] - (place - sole.position[:2]) @ sole.normal[:2] / sole.normal[2]
+        np.testing.assert_allclose(terrain.heights(place), plane, atol=1e-12)
+
+
+def test_blocks_scatter_within_their_bounds_by_the_seed_and_are_level_at_both_ends(stand):
+    plan, terrain = field(stand)
+    heights = plan.position[:, 2] - BLOCKS.middle
+    assert np.abs(heights).max() <= BLOCKS.height
+    assert np.ptp(heights) > BLOCKS.height
+    tilt = np.arccos(plan.normal[:, 2])
+    assert 0.8 * BLOCKS.angle < tilt.max() <= np.sqrt(2.0) * BLOCKS.angle
+    level = [0, 1, *range(-LEVEL_STEPS, 0)]
+    np.testing.assert_allclose(heights[level], 0.0, atol=1e-12)
+    np.testing.assert_allclose(tilt[level], 0.0, atol=1e-7)
+    np.testing.assert_array_equal(field(stand)[0].position, plan.position)
+    assert not np.array_equal(field(stand, seed=1)[0].position, plan.position)
+    signs = np.array([[x, y, 1.0] for x in (-1, 1) for y in (-1, 1)])
+    for box in terrain.boxes:
+        corners = box.center + (signs * box.half_size) @ box.rotation.T
+        assert corners[:, 2].min() > 0.0
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_turning_sole_clears_all_blocks_and_lands_flat(stand, seed):
+    """The whole sole is above the ground all the time, and away from home by the clearance of edges."""
+    plan, terrain = field(stand, seed)
+    samples, parameters = 35, PlannerParameters()
+    clock = schedule(GaitParameters(steps=plan.steps, single_support=0.02 * samples), 0.02, 10)
+    courses = swing_courses(plan, clock, terrain, HALF_SOLE, 0.05, parameters)
+    outline = np.array([(x, y, 0.0) for x in np.linspace(-0.11, 0.11, 9) for y in (-0.055, 0.055)])
+    for row, course in enumerate(courses, start=2):
+        start, end = (sole_pose(plan.position[r], plan.yaw[r], plan.normal[r]) for r in (row - 2, row))
+        times = swing_times(0.0, samples, course, parameters)
+        swing = start_swing(Foot.LEFT, start, end, times, course.height, parameters)
+        for time in np.arange(0.0, times.touchdown, 0.01):
+            pose = swing.evaluate(time)[0]
+            points = pose[:3] + outline @ sole_rotation(*pose[3:]).T
+            gap = np.min(points[:, 2] - terrain.heights(points[:, :2]))
+            far = min(np.linalg.norm(pose[:2] - place[:2]) for place in (start, end)) > 0.06
+            assert gap > (0.018 if far else -2e-3)
+        np.testing.assert_allclose(sole_rotation(*swing.evaluate(times.touchdown)[0, 3:])[:, 2], plan.normal[row])

@@ -1,0 +1,102 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from surefoot.planner.model.leg_chain import LegChain, Link, _headings
+
+pytestmark = pytest.mark.unit
+
+T = 0.005
+THIGH, SHANK = Link(0.43, 0.1, 0.33, 1.7e-3), Link(0.41, 0.04, 0.4, 6e-4)
+CHAIN = LegChain(0.1, (0.01, 0.0, 0.3), THIGH, SHANK, 0.02, (0.02, 0.0, -0.04), (-0.02, 0.0, 0.08))
+
+
+def walking(n=41):
+    """CoM (n, 3) and soles (2, n, 3) of a walk-like motion."""
+    t = T * np.arange(n)
+    com = np.column_stack([t + 0.01 * np.sin(9.0 * t), 0.03 * np.cos(6.0 * t), 0.95 + 0.01 * np.sin(12.0 * t)])
+    stance = np.tile([0.05, 0.1, 0.0], (n, 1))
+    swing = np.column_stack([-0.3 + 2.5 * t, np.full(n, -0.1), 0.05 * np.sin(15.0 * t) ** 2])
+    return com, np.stack([stance, swing])
+
+
+def bodies(chain, com, soles, heading):
+    """Point masses (points, masses) that are equimomental to the chain's rods, feet and trunk."""
+    frame = _headings(heading)
+    ankles = soles - com + np.array(chain.ankle) @ frame
+    hips, knees = chain._posture(ankles, frame)
+    points, masses = [], []
+    for upper, lower, link in ((hips, knees, chain.thigh), (knees, ankles, chain.shank)):
+        # A rod's mass sits at its CoM but for two equal masses at a distance d either side, 2 m d² = I.
+        half = 0.25 * link.mass
+        d = np.sqrt(link.inertia / (2.0 * half)) / link.length
+        for share, mass in ((link.centre, link.mass - 2 * half), (link.centre - d, half), (link.centre + d, half)):
+            points.append(upper + share * (lower - upper))
+            masses.append(np.full(2, mass))
+    points.append(ankles + np.array(chain.foot_centre) @ frame)
+    masses.append(np.full(2, chain.foot_mass))
+    trunk = 0.5 * (hips[0] + hips[1]) + np.array(chain.trunk) @ frame
+    points.append(np.stack([trunk, trunk]))
+    masses.append(np.full(2, 0.5 - chain.thigh.mass - chain.shank.mass - chain.foot_mass))
+    return np.concatenate(points), np.concatenate(masses)
+
+
+def test_a_rods_mass_matrix_gives_its_kinetic_energy():
+    rng = np.random.default_rng(0)
+    upper, lower = np.zeros(2), np.array([0.0, -THIGH.length])
+    velocity = rng.normal(size=2)
+    spin = rng.normal()
+    turn = spin * np.array([THIGH.length, 0.0])
+    ends = np.stack([velocity, velocity + turn])
+    centre = velocity + THIGH.centre * turn
+    energy = 0.5 * THIGH.mass * centre @ centre + 0.5 * THIGH.inertia * spin**2
+    assert 0.5 * np.einsum("ij,ix,jx", THIGH.mass_matrix(), ends, ends) == pytest.approx(energy, rel=1e-12)
+    assert np.linalg.norm(upper - lower) == THIGH.length
+
+
+def test_links_keep_their_lengths_and_knees_bend_forward():
+    com, soles = walking()
+    frame = _headings(np.zeros(len(com)))
+    ankles = soles - com + np.array(CHAIN.ankle)
+    hips, knees = CHAIN._posture(ankles, frame)
+    np.testing.assert_allclose(np.linalg.norm(knees - hips, axis=-1), THIGH.length, rtol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(knees - ankles, axis=-1), SHANK.length, rtol=0.02)
+    assert np.all(knees[..., 0] > np.minimum(hips[..., 0], ankles[..., 0]))
+
+
+def test_posture_has_the_com_it_was_asked_for():
+    com, soles = walking()
+    points, masses = bodies(CHAIN, com, soles, np.zeros(len(com)))
+    assert masses.sum() == pytest.approx(1.0)
+    found = np.einsum("k,kni->ni", masses, points)
+    assert np.abs(found).max() < 2e-3
+    assert np.ptp(found, axis=0).max() < 1e-3
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.7])
+def test_momentum_rate_is_that_of_the_point_masses(turned):
+    com, soles = walking()
+    c, s = np.cos(turned), np.sin(turned)
+    R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    com, soles = com @ R.T, soles @ R.T
+    heading = np.full(len(com), turned)
+    points, masses = bodies(CHAIN, com, soles, heading)
+    bend = (points[:, 2:] - 2.0 * points[:, 1:-1] + points[:, :-2]) / T**2
+    expected = np.einsum("k,kni->ni", masses, np.cross(points[:, 1:-1], bend))
+    rate = CHAIN.momentum_rate(com, soles, heading, T)
+    np.testing.assert_allclose(rate, expected, atol=1e-9)
+    assert np.abs(rate).max() > 0.5
+
+
+def test_rest_has_no_momentum_rate():
+    com, soles = walking(1)
+    still = np.repeat(com, 5, axis=0), np.repeat(soles, 5, axis=1)
+    np.testing.assert_allclose(CHAIN.momentum_rate(*still, np.zeros(5), T), 0.0, atol=1e-9)
+
+
+def test_a_leg_that_comes_to_be_straight_does_not_jump():
+    com, soles = walking()
+    for length in np.linspace(0.3, 0.45, 7):
+        chain = replace(CHAIN, thigh=replace(THIGH, length=length))
+        assert np.abs(chain.momentum_rate(com, soles, np.zeros(len(com)), T)).max() < 20.0

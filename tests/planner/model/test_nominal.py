@@ -1,0 +1,63 @@
+import numpy as np
+import pytest
+
+from surefoot.planner.model.dcm import jerk_range, no_motion, nominal_motion
+from surefoot.planner.model.jerk import zmp_response
+
+pytestmark = pytest.mark.unit
+
+T = 0.02
+
+
+@pytest.fixture
+def footsteps():
+    """A ZMP that jumps half a metre in a tenth of a second, and a stiffness that varies."""
+    rng = np.random.default_rng(0)
+    time = T * np.arange(150)
+    zmp = np.column_stack(
+        [0.5 * np.interp(time % 0.5, [0.0, 0.4, 0.5], [0.0, 0.0, 1.0]) + 0.5 * (time // 0.5), 0.1 * time]
+    )
+    return zmp, rng.uniform(9.0, 12.0, 150)
+
+
+def test_motion_has_the_zmp_it_was_asked_for(footsteps):
+    zmp, stiffness = footsteps
+    motion = nominal_motion(np.array([0.1, -0.05]), zmp, stiffness, T)
+    inner = slice(1, -1)
+    np.testing.assert_allclose(zmp_response(motion.com, stiffness)[inner], zmp[inner], atol=1e-12)
+
+
+def test_constant_jerk_leads_from_sample_to_sample(footsteps):
+    zmp, stiffness = footsteps
+    motion = nominal_motion(np.array([0.1, -0.05]), zmp, stiffness, T)
+    A = np.array([[1.0, T, T * T / 2], [0.0, 1.0, T], [0.0, 0.0, 1.0]])
+    B = np.array([T**3 / 6, T * T / 2, T])
+    following = np.einsum("ij,jkx->ikx", A, motion.com[:, :-1]) + B[:, None, None] * motion.jerk
+    np.testing.assert_allclose(following, motion.com[:, 1:], atol=1e-12)
+
+
+def test_it_starts_where_it_is_told_and_does_not_diverge(footsteps):
+    zmp, stiffness = footsteps
+    motion = nominal_motion(np.array([0.3, -0.2]), zmp, stiffness, T)
+    np.testing.assert_array_equal(motion.com[0, 0], [0.3, -0.2])
+    np.testing.assert_array_equal(motion.com[0, -1], zmp[-1])
+    assert np.abs(motion.com[0] - zmp).max() < 0.6
+
+
+def test_over_a_constant_zmp_it_is_the_decaying_exponential():
+    motion = nominal_motion(np.array([0.1, 0.0]), np.zeros((200, 2)), np.full(200, 9.81), T)
+    time, omega = T * np.arange(100), np.sqrt(9.81)
+    np.testing.assert_allclose(motion.com[0, :100, 0], 0.1 * np.exp(-omega * time), atol=2e-5)
+    assert motion.com[1, 0, 0] == pytest.approx(-omega * 0.1, rel=1e-3)
+
+
+def test_no_motion_leaves_everything_to_the_moves():
+    motion = no_motion(5, T)
+    assert not (motion.com.any() or motion.zmp.any() or motion.jerk.any())
+
+
+def test_moves_keep_the_whole_jerk_within_its_limit():
+    jerk = np.array([[10.0, 0.0], [-20.0, 0.0], [5.0, 80.0], [15.0, 70.0]])
+    lower, upper = jerk_range(jerk, (0, 2), 60.0)
+    np.testing.assert_array_equal(upper, [[50.0, 45.0], [60.0, 0.0]])
+    np.testing.assert_array_equal(lower, [[-40.0, -65.0], [-60.0, -130.0]])

@@ -1,0 +1,88 @@
+import numpy as np
+import pytest
+
+from surefoot.planner.model.leg_chain import LegChain, Link
+from surefoot.planner.parameters import LegInertia, PlannerParameters
+from surefoot.planner.plan import PlanSampler
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import IdealFeet
+from surefoot.planner.references.leg_offset import softening
+from surefoot.planner.types import GRAVITY, CentroidalState, Foot
+from surefoot.planner.walk.gait import GaitParameters
+
+pytestmark = pytest.mark.unit
+
+CHAIN = LegChain(
+    0.1, (0.0, 0.0, 0.3), Link(0.43, 0.1, 0.33, 1.7e-3), Link(0.43, 0.04, 0.4, 6e-4), 0.02, (0.0, 0.0, -0.04),
+    (0.0, 0.0, 0.08),
+)  # fmt: skip
+LEG = LegInertia(mass_ratio=0.05, chain=CHAIN)
+
+
+def plans(stand, leg, until=3.0):
+    """Plans of a walk whose CoM and feet do exactly what is planned."""
+    gait = GaitParameters(
+        initial_stand=0.0, step_length=0.3, single_support=0.5, double_support=0.2, lateral_step=0.05, com_height=0.95
+    )
+    planner = WalkingPlanner(gait, stand(), 0.2, 0.1, parameters=PlannerParameters(leg=leg))
+    com, velocity, ideal, made = np.array([0.0, 0.0, 0.95]), np.zeros(3), IdealFeet(stand()), []
+    for tick in range(round(until / 0.02)):
+        made.append(planner.update(CentroidalState(0.02 * tick, com, velocity), ideal.state))
+        com, velocity = made[-1].com[1], made[-1].com_velocity[1]
+        ideal.follow(PlanSampler(made[-1]), 0.02 * (tick + 1))
+    return made
+
+
+def zmp_of_the_chain(plan, step=0.002):
+    """ZMP soon after the plan's instant of the body with links, by the moment balance of its definition."""
+    sampler, com, soles = PlanSampler(plan), [], []
+    middle = plan.time + 0.01
+    for time in middle + step * np.arange(-1, 2):
+        sample = sampler.sample(time)
+        feet = [plan.footholds[foot].position for foot in Foot]
+        if sample.swing_foot is not None:
+            feet[sample.swing_foot] = sample.swing[:3]
+        com.append(sample.com)
+        soles.append(feet)
+    moment = CHAIN.momentum_rate(np.array(com), np.array(soles).transpose(1, 0, 2), np.zeros(3), step)[0]
+    sample = sampler.sample(middle)
+    c, force = sample.com, sample.com_acceleration + np.array([0.0, 0.0, GRAVITY])
+    x = c[0] - (c[2] * force[0] + moment[1]) / force[2]
+    y = c[1] - (c[2] * force[1] - moment[0]) / force[2]
+    return np.array([x, y]), sample
+
+
+def test_zmp_of_the_plan_is_that_of_the_links(stand):
+    errors, offsets = [], []
+    for plan in plans(stand, LEG):
+        zmp, sample = zmp_of_the_chain(plan)
+        errors.append(np.abs(sample.zmp - zmp).max())
+        offsets.append(np.abs(sample.zmp - sample.pendulum_zmp).max())
+    assert max(offsets) > 0.05
+    assert np.percentile(errors, 90) < 0.03 * max(offsets)
+    assert max(errors) < 0.12 * max(offsets)  # where swing accelerations bend within a sample
+
+
+def test_legs_without_mass_are_the_papers_pendulum(stand):
+    for plan in plans(stand, LegInertia(), until=1.5):
+        assert not plan.zmp_offset.any()
+        height = plan.com[:, 2]
+        np.testing.assert_allclose(plan.stiffness, (GRAVITY + plan.com_acceleration[:, 2]) / height, rtol=1e-12)
+
+
+def test_stiffness_is_softened_by_both_legs(stand):
+    plan = plans(stand, LEG, until=0.1)[-1]
+    point_mass = (GRAVITY + plan.com_acceleration[:, 2]) / plan.com[:, 2]
+    np.testing.assert_allclose(plan.stiffness, softening(LEG) * point_mass, rtol=1e-12)
+
+
+def test_a_body_at_rest_has_no_offset(stand):
+    planner = WalkingPlanner(GaitParameters(steps=0), stand(), 0.2, 0.1, parameters=PlannerParameters(leg=LEG))
+    plan = planner.update(CentroidalState(0.0, np.array([0.0, 0.0, 1.0]), np.zeros(3)), IdealFeet(stand()).state)
+    np.testing.assert_allclose(plan.zmp_offset, 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("ratio", [-0.1, 0.5, float("nan")])
+def test_impossible_legs_are_refused(ratio):
+    with pytest.raises(ValueError, match="must be within"):
+        LegInertia(mass_ratio=ratio)

@@ -1,0 +1,90 @@
+import numpy as np
+import pytest
+
+from surefoot.planner.geometry import sole_corners, sole_pose
+from surefoot.planner.ground.stairs import Direction, Stairs, staircase
+from surefoot.planner.ground.terrain import flat
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.course import EDGE_CLEARANCE, swing_courses
+from surefoot.planner.swing.trajectory import start_swing, swing_times
+from surefoot.planner.types import FeetState, Foot, Footstep
+from surefoot.planner.walk.clock import schedule
+from surefoot.planner.walk.footsteps import plan_footsteps
+from surefoot.planner.walk.gait import GaitParameters
+
+pytestmark = pytest.mark.unit
+
+PARAMETERS = PlannerParameters()
+
+
+def walk_plan(direction, riser, tread, steps=6):
+    stairs = Stairs(riser, tread, 3, direction, 0.5 * tread, 3 * tread, 3.0)
+    terrain = staircase(stairs, np.zeros(2), 0.0, 0.8)
+    ground = terrain.height(0.0, 0.0)
+    feet = FeetState(np.array([[0.0, 0.1, ground], [0.0, -0.1, ground]]), np.zeros(2), (True, True))
+    return plan_footsteps(GaitParameters(steps=steps, step_length=tread), feet, terrain), terrain
+
+
+def courses_of(plan, terrain, half_size, samples=75):
+    gait = GaitParameters(steps=plan.steps, single_support=0.02 * samples)
+    return swing_courses(plan, schedule(gait, 0.02, 10), terrain, np.array(half_size), 0.05, PARAMETERS)
+
+
+def swings(plan, courses, samples):
+    for row, course in enumerate(courses, start=2):
+        ends = [sole_pose(plan.position[r], plan.yaw[r], plan.normal[r]) for r in (row - 2, row)]
+        times = swing_times(0.0, samples, course, PARAMETERS)
+        yield ends, times, start_swing(Foot.LEFT, *ends, times, course.height, PARAMETERS)
+
+
+@pytest.mark.parametrize("direction", Direction)
+@pytest.mark.parametrize(("riser", "tread", "foot"), [(0.1, 0.2, 0.075), (0.185, 0.24, 0.22), (0.235, 0.32, 0.22)])
+@pytest.mark.parametrize("samples", [45, 75])
+def test_the_whole_sole_clears_every_edge(direction, riser, tread, foot, samples):
+    half_size = 0.5 * np.array([foot, 0.1])
+    plan, terrain = walk_plan(direction, riser, tread)
+    courses = courses_of(plan, terrain, half_size, samples)
+    for _, times, swing in swings(plan, courses, samples):
+        clearance = []
+        for time in np.arange(0.0, times.touchdown, 0.002):
+            pose = swing.evaluate(time)[0]
+            grid = sole_corners(Footstep(Foot.LEFT, pose[:3], float(pose[3])), half_size)
+            heights = terrain.heights(grid)
+            if np.ptp(heights) > 1e-3:
+                clearance.append(pose[2] - heights.max())
+        assert min(clearance, default=EDGE_CLEARANCE) > EDGE_CLEARANCE - 2e-3
+
+
+def test_on_level_ground_nothing_changes(stand):
+    plan = plan_footsteps(GaitParameters(), stand(), flat())
+    courses = courses_of(plan, flat(), [0.04, 0.04])
+    assert {(c.apex, c.glide_start, c.glide_end, c.height) for c in courses} == {(0.5, 0.0, 1.0, 0.05)}
+    plan, terrain = walk_plan(Direction.UP_DOWN, 0.1, 0.3, steps=9)
+    courses = courses_of(plan, terrain, [0.04, 0.04])
+    assert (courses[4].apex, courses[4].glide_start) == (0.5, 0.0)
+
+
+def test_a_plain_swing_would_stub_its_toe():
+    """Negative control: without a course of its own the swing goes through the nosings."""
+    plan, terrain = walk_plan(Direction.UP, 0.185, 0.24)
+    half_size = np.array([0.11, 0.05])
+    plain = courses_of(plan_footsteps(GaitParameters(), stand_here(), flat()), flat(), half_size)
+    (_, times, swing) = list(swings(plan, plain[:2], 45))[1]
+    depth = []
+    for time in np.arange(0.0, times.touchdown, 0.01):
+        pose = swing.evaluate(time)[0]
+        corners = sole_corners(Footstep(Foot.LEFT, pose[:3], 0.0), half_size)
+        depth.append(pose[2] - terrain.heights(corners).max())
+    assert min(depth) < -0.05
+
+
+def stand_here():
+    return FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
+
+
+def test_edges_that_nothing_clears_are_refused():
+    plan, terrain = walk_plan(Direction.UP, 0.2, 0.2)
+    with pytest.raises(
+        ValueError, match=r"Footstep 1 cannot be swung 0\.02 m clear of .* terrain\.tread more depth.*\.$"
+    ):
+        courses_of(plan, terrain, [0.16, 0.05])

@@ -1,0 +1,102 @@
+import numpy as np
+import pytest
+
+from surefoot.planner.ground.terrain import flat
+from surefoot.planner.model.leg_chain import LegChain, Link
+from surefoot.planner.plan import PlanSampler
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import IdealFeet
+from surefoot.planner.swing.heel_off import FootRoll, bump, roll_plan
+from surefoot.planner.types import CentroidalState, Foot, PhaseKind
+from surefoot.planner.walk.clock import schedule
+from surefoot.planner.walk.footsteps import plan_footsteps
+from surefoot.planner.walk.gait import GaitParameters
+
+pytestmark = pytest.mark.unit
+
+GAIT = GaitParameters(
+    steps=4, step_length=0.4, single_support=0.4, double_support=0.1, initial_stand=0.1, com_height=0.95, heel_off=0.5
+)
+
+
+@pytest.fixture
+def walk(stand):
+    phases = schedule(GAIT, 0.02, 150)
+    footsteps = plan_footsteps(GAIT, stand(), flat())
+    return phases, roll_plan(phases, footsteps, GAIT.heel_off, 0.11)
+
+
+def test_bump_starts_and_ends_at_rest_with_one_in_the_middle():
+    assert bump(0.5) == pytest.approx((1.0, 0.0, -24.0))
+    for s in (0.0, 1.0, -0.1, 1.1):
+        assert bump(s) == (0.0, 0.0, 0.0)
+    assert np.abs(bump(1e-6)).max() < 1e-3
+
+
+def test_rates_of_a_roll_are_its_derivatives():
+    roll, h = FootRoll(Foot.LEFT, 1.0, 1.3, 0.5, 0.11), 1e-5
+    for time in (1.02, 1.1, 1.25):
+        before, now, after = (roll.evaluate(time + d) for d in (-h, 0.0, h))
+        assert now[1] == pytest.approx((after[0] - before[0]) / (2 * h), rel=1e-5)
+        assert now[2] == pytest.approx((after[1] - before[1]) / (2 * h), rel=1e-5)
+
+
+def test_a_roll_begins_in_double_support_and_ends_before_touchdown(walk):
+    phases, rolls = walk
+    singles = [phase for phase in phases.phases if phase.kind is PhaseKind.SINGLE]
+    for phase, start, end in zip(singles, rolls.start, rolls.end, strict=True):
+        assert phase.start - 5 < start < phase.start < end < phase.end
+        # By then the ZMP has left the sole behind that is to roll.
+        assert phases.fraction[int(np.ceil(start))] * GAIT.step_length > 0.09
+
+
+def test_only_feet_that_are_left_behind_roll(walk):
+    _, rolls = walk
+    assert list(rolls.angle > 0.0) == [False, True, True, True]
+
+
+def test_pitch_at_the_samples_is_that_of_the_rolls(walk):
+    phases, rolls = walk
+    pitch = rolls.pitch(phases)
+    roll = rolls.of_step(2, Foot.RIGHT, 0.0, 0, 0.02)
+    for sample in range(int(rolls.start[1]), int(rolls.end[1]) + 2):
+        assert pitch[sample] == pytest.approx(roll.evaluate(0.02 * sample)[0], abs=1e-12)
+    assert pitch.max() <= 0.5
+    assert rolls.of_step(1, Foot.LEFT, 0.0, 0, 0.02) is None
+    assert rolls.of_step(2, Foot.RIGHT, 0.0, int(rolls.end[1]) + 1, 0.02) is None
+
+
+def test_plans_of_a_walk_carry_the_roll_of_the_foot_that_leaves(stand):
+    planner = WalkingPlanner(GAIT, stand(), 0.22, 0.11)
+    com, velocity, ideal, rolled = np.array([0.0, 0.0, 0.95]), np.zeros(3), IdealFeet(stand()), []
+    for tick in range(90):
+        plan = planner.update(CentroidalState(0.02 * tick, com, velocity), ideal.state)
+        if plan.roll is not None and plan.roll.evaluate(plan.time)[0] > 0.0:
+            foot = plan.roll.foot
+            assert plan.swing is None or plan.swing.foot is foot
+            assert plan.phase.kind is PhaseKind.SINGLE or plan.footsteps[0].footstep.foot is foot
+            rolled.append(plan.phase.step)
+        com, velocity = plan.com[1], plan.com_velocity[1]
+        ideal.follow(PlanSampler(plan), 0.02 * (tick + 1))
+    assert {1, 2, 3} <= set(rolled)
+
+
+def test_level_feet_have_no_roll(stand):
+    planner = WalkingPlanner(GaitParameters(steps=2, initial_stand=0.0), stand(), 0.22, 0.11)
+    plan = planner.update(CentroidalState(0.0, np.array([0.0, 0.0, 1.0]), np.zeros(3)), IdealFeet(stand()).state)
+    assert plan.roll is None
+
+
+def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():
+    chain = LegChain(
+        0.1, (0.0, 0.0, 0.3), Link(0.43, 0.1, 0.33, 1.7e-3), Link(0.43, 0.04, 0.4, 6e-4), 0.02, (0.0, 0.0, -0.04),
+        (-0.022, 0.0, 0.08),
+    )  # fmt: skip
+    frame = np.eye(3)[None]
+    level, _ = chain._rolled(frame, None, 0.11)
+    ankle, _ = chain._rolled(frame, np.array([[0.5], [0.0]]), 0.11)
+    edge = np.array([0.11, 0.0, 0.0])
+    assert np.linalg.norm(ankle[0, 0] - edge) == pytest.approx(np.linalg.norm(level[0] - edge))
+    assert ankle[0, 0, 0] > level[0, 0] + 0.05
+    assert ankle[0, 0, 2] > level[0, 2] + 0.05
+    np.testing.assert_allclose(ankle[1, 0], level[0])

@@ -1,0 +1,81 @@
+import numpy as np
+import pytest
+
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.trajectory import SwingTimes, start_swing
+from surefoot.planner.types import Foot
+
+pytestmark = pytest.mark.unit
+
+START = np.array([1.0, 0.1, 0.0, 0.0, 0.0, 0.1])
+GLIDING = [0, 1, 3, 4, 5]
+TARGET = np.array([1.4, 0.15, 0.0, 0.2, -0.15, 0.0])
+
+
+def swing(height=0.0, clearance=0.05, glide=(2.0, 2.4, 2.8)):
+    target = TARGET + np.array([0.0, 0.0, height, 0.0, 0.0, 0.0])
+    return start_swing(Foot.LEFT, START, target, SwingTimes(2.0, *glide, 2.8), clearance, PlannerParameters())
+
+
+@pytest.mark.parametrize("height", [0.0, 0.15, -0.15])
+def test_swing_leaves_rest_clears_both_heights_and_touches_down_softly(height):
+    trajectory = swing(height)
+    start, end = trajectory.evaluate(2.0), trajectory.evaluate(2.8 - 1e-9 - 1e-10)
+    np.testing.assert_allclose(start, [START, np.zeros(6), np.zeros(6)], atol=1e-12)
+    np.testing.assert_allclose(end[0], TARGET + np.array([0.0, 0.0, height, 0.0, 0.0, 0.0]), atol=1e-8)
+    np.testing.assert_allclose(
+        end[1], [0.0, 0.0, -PlannerParameters().search.touchdown_speed, 0.0, 0.0, 0.0], atol=1e-6
+    )
+    z = np.array([trajectory.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.8, 801)])
+    assert z.max() == pytest.approx(max(0.0, height) + 0.05, abs=1e-6)
+    assert np.all(np.diff(z[:400]) >= -1e-12)
+    assert np.all(np.diff(z[401:]) <= 1e-12)
+
+
+def test_acceleration_is_continuous_and_derivatives_are_right():
+    trajectory, step = swing(0.1), 1e-4
+    motion = np.array([trajectory.evaluate(t) for t in np.arange(2.0, 2.7999, step)])
+    np.testing.assert_allclose(np.gradient(motion[:, 0], step, axis=0)[1:-1], motion[1:-1, 1], atol=1e-4)
+    np.testing.assert_allclose(np.gradient(motion[:, 1], step, axis=0)[1:-1], motion[1:-1, 2], atol=1e-2)
+    assert np.abs(np.diff(motion[:, 2], axis=0)).max() < 0.05
+
+
+def test_the_foot_glides_within_its_time_only():
+    trajectory = swing(0.1, glide=(2.1, 2.5, 2.66))
+    for time, place in ((2.05, START), (2.0999, START), (2.66, TARGET), (2.75, TARGET)):
+        motion = trajectory.evaluate(time)[:, GLIDING]
+        np.testing.assert_allclose(motion, [place[GLIDING], np.zeros(5), np.zeros(5)], atol=1e-9)
+    motion = np.array([trajectory.evaluate(t) for t in np.arange(2.0, 2.7999, 1e-4)])
+    assert np.abs(np.diff(motion[:, 2], axis=0)).max() < 0.3
+    np.testing.assert_allclose(np.gradient(motion[:, 0], 1e-4, axis=0)[1:-1], motion[1:-1, 1], atol=1e-4)
+    for time in (2.04, 2.3, 2.72):
+        moved = trajectory.retargeted(time, TARGET + np.array([0.02, 0.01, 0.11, 0.0, 0.05, -0.05]))
+        np.testing.assert_allclose(moved.evaluate(time), trajectory.evaluate(time), atol=1e-9)
+        np.testing.assert_allclose(moved.evaluate(2.8 - 2e-9)[0], moved.target, atol=1e-6)
+
+
+def test_unchanged_target_is_continued_identically():
+    trajectory = replanned = swing(0.1)
+    for t in np.arange(2.02, 2.72, 0.02):
+        replanned = replanned.retargeted(t, trajectory.target)
+        for later in (t, t + 0.01, 2.79):
+            np.testing.assert_allclose(replanned.evaluate(later), trajectory.evaluate(later), atol=1e-8)
+
+
+@pytest.mark.parametrize("time", [2.1, 2.5])
+def test_new_target_is_reached_without_a_jump(time):
+    trajectory = swing()
+    target = TARGET + np.array([0.05, -0.03, 0.02, 0.1, 0.05, -0.1])
+    moved = trajectory.retargeted(time, target)
+    np.testing.assert_allclose(moved.evaluate(time), trajectory.evaluate(time), atol=1e-9)
+    np.testing.assert_allclose(moved.evaluate(2.8 - 2e-9)[0], target, atol=1e-6)
+
+
+def test_without_ground_the_sole_searches_downwards_without_a_jump_in_speed():
+    parameters, step = PlannerParameters(), 1e-3
+    motion = np.array([swing().evaluate(t) for t in 2.8 + step * np.arange(1000)])
+    np.testing.assert_array_equal(motion[:, 0, GLIDING], np.tile(TARGET[GLIDING], (1000, 1)))
+    np.testing.assert_allclose(np.gradient(motion[:, 0, 2], step)[1:-1], motion[1:-1, 1, 2], atol=1e-6 + step)
+    assert motion[0, 1, 2] == pytest.approx(-parameters.search.touchdown_speed, abs=1e-6)
+    assert motion[-1, 1, 2] == pytest.approx(-parameters.search.speed)
+    assert np.abs(np.diff(motion[:, 1, 2])).max() <= parameters.search.acceleration * step + 1e-9

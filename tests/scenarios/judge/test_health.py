@@ -1,0 +1,98 @@
+"""Health checks: quiet on a sound walk, and each finds its own fault."""
+
+import numpy as np
+import pytest
+
+from surefoot.scenarios.judge.health import findings
+from surefoot.scenarios.judge.inspection import inspect
+from surefoot.scenarios.judge.metric import digest
+from surefoot.scenarios.log import read
+from surefoot.scenarios.log.rows import ChannelWriter
+from surefoot.scenarios.loop.run import run_scenario
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.fixture
+def health(tmp_path, motion, two_steps, robot, monkeypatch):
+    """Findings by name after changing what is appended: {(channel, field index): values(time, value)}."""
+
+    def check(changes=None, **how):
+        original = ChannelWriter.append
+
+        def append(self, time_ns, *values):
+            changed = list(values)
+            for (topic, index), change in (changes or {}).items():
+                if self.spec.topic == topic:
+                    changed[index] = change(time_ns * 1e-9, np.array(values[index], float))
+            original(self, time_ns, *changed)
+
+        monkeypatch.setattr(ChannelWriter, "append", append)
+        path = run_scenario(two_steps, tmp_path, simulate=motion(**how), robot=robot).log
+        return {finding.check: finding for finding in findings(digest(read(path)))}
+
+    return check
+
+
+def weight(time, force):
+    return np.full(2, 100 * 9.81 / 2)
+
+
+SOUND = {
+    ("/contact", 1): weight,
+    ("/truth", 3): lambda time, v: 0 * v,
+    ("/truth", 5): lambda time, pose: pose * [0, 1, 1, 1, 1, 1, 1],
+    ("/truth", 6): lambda time, pose: pose * [0, 1, 1, 1, 1, 1, 1],
+}
+
+
+def test_a_sound_walk_has_no_warning(health):
+    found = health(SOUND)
+    assert {name for name, finding in found.items() if finding.status != "ok"} == set()
+    assert set(found) == {
+        *("finite_values", "contact_forces", "foot_slip", "touchdowns", "zmp_margin", "torque_limits"),
+        *("estimator", "controller_solver", "planner_solver", "overruns"),
+    }
+    assert all(finding.cause == "" for finding in found.values())
+
+
+FAULTS = {
+    "contact_forces": ({("/contact", 1): lambda t, f: weight(t, f) * (0.8 if t > 2 else 1)}, -0.2, "too little"),
+    "foot_slip": (
+        {("/truth", 5): lambda t, p: np.array([0.02 * (t > 2.5), 0.1, 0, 0, 0, 0, 1])}, 0.02, "left foot slips 20 mm",
+    ),
+    "touchdowns": ({("/reference", 13): lambda t, d: 0.5 - 0.1 * (t >= 1)}, 0.1, "late, the worst by 100 ms"),
+    "zmp_margin": ({("/contact", 0): lambda t, z: z + np.array([0.2 * (t > 3), 0, 0])}, 0.25, "the plan asks for it"),
+    "torque_limits": ({("/torque", 0): lambda t, u: u + np.array([0, 0, 95.0 * (t == 2), 0])}, 1.0, "right_hip is at"),
+    "estimator": ({("/estimate", 0): lambda t, c: c + np.array([0.02 * t, 0, 0])}, 0.08, "the base drifts"),
+    "controller_solver": ({("/wbc", 3): lambda t, f: float(t in (2, 3))}, 2.0, "no solution in 2 ticks"),
+    "planner_solver": ({("/plan", 8): lambda t, f: float(t == 2)}, 1.0, "1 plans were held"),
+    "overruns": ({("/timing", 6): lambda t, u: 3000.0, ("/timing", 3): lambda t, u: 2500.0}, 1.0, "part 'planner'"),
+    "finite_values": ({("/estimate", 0): lambda t, c: c * (np.nan if t == 1 else 1)}, 1.0, "first in /estimate"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_is_found_by_its_check_and_by_no_other(health, name):
+    changes, value, words = FAULTS[name]
+    found = health({**SOUND, **changes})
+    warned = {check for check, finding in found.items() if finding.status == "warning"}
+    assert warned == {name}
+    assert found[name].value == pytest.approx(value, rel=0.02)
+    assert words in found[name].cause
+    assert found[name].time is not None
+
+
+def test_a_push_is_named_as_the_cause(health):
+    changes = {("/contact", 0): FAULTS["zmp_margin"][0]["/contact", 0], ("/measurement", 7): lambda t, f: f + (t > 2.9)}
+    assert "a push moves it" in health({**SOUND, **changes})["zmp_margin"].cause
+
+
+def test_inspection_lists_the_file_first(tmp_path, motion, two_steps, robot):
+    path = run_scenario(two_steps, tmp_path, simulate=motion(), robot=robot).log
+    found = inspect(read(path)).to_json()["health"]
+    assert found[0] == {"check": "file", "status": "ok", "time": None, "value": None, "cause": ""}
+    path.write_bytes(path.read_bytes()[:-5000])
+    found = inspect(read(path)).to_json()["health"]
+    assert found[0]["status"] == "warning"
+    assert "truncated" in found[0]["cause"]

@@ -1,0 +1,149 @@
+"""Metrics of a log whose motion is known, against their definitions."""
+
+import numpy as np
+import pytest
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.file.criteria import METRIC_NAMES
+from surefoot.scenarios.judge.metric import compute
+from surefoot.scenarios.log import LogWriter, read
+from surefoot.scenarios.loop.run import run_scenario
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.fixture
+def metrics(tmp_path, robot, two_steps):
+    def make(motion):
+        return run_scenario(two_steps, tmp_path, None, motion, robot).verdict.metrics
+
+    return make
+
+
+def test_all_names_of_the_contract_are_there(metrics, motion):
+    found = metrics(motion())
+    assert tuple(found) == METRIC_NAMES
+    assert [name for name, value in found.items() if value is None] == ["fall_time", "stair_edge_margin_min"]
+
+
+def test_errors_are_the_offsets_that_were_put_in(metrics, motion):
+    found = metrics(motion(zmp_offset=(0.003, -0.004), plan_offset=(0.001, -0.002, 0.003)))
+    assert found["zmp_error_rms"] == pytest.approx([0.003, 0.004])
+    assert found["com_error_rms"] == pytest.approx([0.001, 0.002, 0.003])
+    assert found["dcm_error_rms"] == pytest.approx([0.001, 0.002])
+    assert found["estimation_error_rms"] == pytest.approx(0.001)
+    assert found["dcm_estimation_error_rms"] == pytest.approx([0.001, 0.0])
+    assert found["footstep_error_max"] == pytest.approx(0.006)
+
+
+def test_walk(metrics, motion):
+    found = metrics(motion(speed=0.4))
+    assert found["steps_planned"] == found["steps_taken"] == 2
+    assert found["fell"] is False
+    assert found["duration"] == pytest.approx(4.0)
+    assert found["speed_mean"] == pytest.approx(0.4)
+    assert found["standing_time_final"] == pytest.approx(2.5)
+    assert found["foot_slip_max"] == pytest.approx(0.2, abs=1e-3)
+    assert found["knee_angle_mean"] == pytest.approx(0.4)
+    assert found["com_height_range"] == 0.0
+
+
+def test_way_and_heading(metrics, motion):
+    """The feet's middle goes 0.2 m to either touchdown; the invented robot turns with its feet, starting aslant."""
+    found = metrics(motion(speed=0.4))
+    assert found["path_length"] == pytest.approx(0.4)
+    assert found["displacement"] == pytest.approx([0.4, 0.0])
+    assert found["heading_change"] == pytest.approx(0.0)
+    found = metrics(motion(speed=0.4, yaw=(3.0, 4.0)))
+    assert found["heading_change"] == pytest.approx(4.0 * (1.0 - 1 / 2000))
+    assert found["displacement"] == pytest.approx([0.4 * np.cos(3.0), -0.4 * np.sin(3.0)])
+
+
+def test_standing_between_steps(metrics, motion):
+    """From 0.5 s to 1.5 s the invented robot walks; it pauses for the time given, from 1 s on."""
+    assert metrics(motion())["standing_time_between"] == 0.0
+    assert metrics(motion(pause=0.3))["standing_time_between"] == pytest.approx(0.3)
+
+
+def test_effort(metrics, motion):
+    found = metrics(motion())
+    assert found["torque_ratio_max"] == pytest.approx(0.4)
+    assert found["knee_torque_rms"] == pytest.approx(np.sqrt((40.0**2 + 0.0**2) / 2))
+    assert found["joint_limit_margin_min"] == pytest.approx(0.1)
+    work, way = 4 * 10.0 * 0.5 * 4.0, 0.4
+    assert found["cost_of_transport"] == pytest.approx(work / (100.0 * 9.81 * way))
+    assert found["real_time_factor"] == pytest.approx(4.0)
+    assert found["planner_time"] == pytest.approx({"median": 200e-6, "p99": 200e-6})
+    assert found["wbc_time"] == pytest.approx({"median": 140e-6, "p99": 140e-6})
+    assert found["qp_failures"] == found["wbc_fallbacks"] == 0
+
+
+def test_centre_of_pressure_of_the_stance_foot(metrics, motion):
+    found = metrics(motion())
+    assert found["cop_ratio_p99"] == pytest.approx(0.4)
+    assert found["cop_ratio_max"] == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize(
+    ("offset", "inside"),
+    [
+        ((0.0, 0.0), 1.0),
+        ((0.0337, -0.0337), 1.0),
+        ((0.0338, 0.0), 0.0),
+        ((0.0, 0.0338), 0.75),
+        ((0.0, 0.125 + 0.0337), 0.75),
+        ((0.0, 0.125 + 0.0338), 0.0),
+        ((np.nan, np.nan), 0.0),
+    ],
+)
+def test_zmp_inside_the_hull_of_the_feet_shrunk_to_90_percent(metrics, motion, offset, inside):
+    """Soles of 0.075 m, 0.25 m apart: 0.03375 m is 90 % of half a sole; a quarter of the run is single support."""
+    assert metrics(motion(zmp_offset=offset))["zmp_inside_fraction"] == pytest.approx(inside)
+
+
+@pytest.mark.parametrize(
+    ("offset", "excursion"), [((0.01, 0.0), -0.02375), ((0.04, 0.0), 0.00625), ((0.0, -0.05), 0.01625)]
+)
+def test_largest_error_and_excursion_of_the_zmp(metrics, motion, offset, excursion):
+    found = metrics(motion(zmp_offset=offset))
+    assert found["zmp_error_max"] == pytest.approx([abs(value) for value in offset])
+    assert found["zmp_excursion_max"] == pytest.approx(excursion)
+
+
+def test_flight_is_no_excursion(metrics, motion):
+    found = metrics(motion(zmp_offset=(np.nan, np.nan)))
+    assert found["zmp_excursion_max"] is None
+    assert found["zmp_error_max"] is None
+
+
+def test_a_fall_is_found_with_its_time(metrics, motion):
+    found = metrics(motion(fall_at=1.2))
+    assert found["fell"] is True
+    assert found["fall_time"] == pytest.approx(1.2)
+    assert found["steps_taken"] == 1
+
+
+def test_a_run_cut_short_gives_what_it_can(metrics, motion):
+    found = metrics(motion(stop_at=0.3))
+    assert found["speed_mean"] is None
+    assert found["cop_ratio_p99"] is None
+    assert found["footstep_error_max"] is None
+    assert found["steps_taken"] == 0
+    assert found["duration"] == pytest.approx(0.3)
+
+
+def test_nan_is_never_a_number_of_the_verdict(metrics, motion):
+    found = metrics(motion(plan_offset=(np.nan, np.nan, np.nan)))
+    assert found["com_error_rms"] is None
+
+
+def test_an_empty_run_has_no_metrics_but_its_size(metrics, motion):
+    found = metrics(motion(stop_at=0.0))
+    assert {name for name, value in found.items() if value is not None} == {"steps_planned", "log_bytes"}
+
+
+def test_a_log_of_something_else(tmp_path):
+    with LogWriter(tmp_path / "log.mcap", {"run": {"seed": "{"}}):
+        pass
+    with pytest.raises(LogError, match="does not describe a run"):
+        compute(read(tmp_path / "log.mcap"))

@@ -1,0 +1,26 @@
+import pytest
+
+from surefoot.scenarios.judge.verdict import notes
+from surefoot.scenarios.setup.load import load_scenario
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.mark.parametrize(
+    ("name", "override", "key"),
+    [
+        ("walk", "terrain.riser=0.2", "riser"),
+        ("walk", "terrain.height_noise=0.01", "height_noise"),
+        ("slope", "terrain.direction=down", "direction"),
+        ("blocks", "terrain.count=7", "count"),
+        ("stairs-up", "terrain.angle=0.1", "angle"),
+    ],
+)
+def test_keys_of_other_terrain_are_noted(name: str, override: str, key: str) -> None:
+    scenario = load_scenario(name, [override])
+    assert notes(scenario, {}) == (f"terrain.{key} has no effect on terrain.kind {scenario.terrain.kind}",)
+
+
+@pytest.mark.parametrize("name", ["walk", "slope", "blocks", "stairs-up", "stairs-up-down", "stair-climbing"])
+def test_the_catalogue_sets_no_idle_key(name: str) -> None:
+    assert notes(load_scenario(name), {}) == ()

@@ -1,0 +1,81 @@
+"""Templates of foreign messages, rows of several channels, and what is derived in them."""
+
+import numpy as np
+import pytest
+from foxglove_schemas_protobuf.JointState_pb2 import JointState
+from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
+from google.protobuf.timestamp_pb2 import Timestamp
+
+from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
+from surefoot.scenarios.log.template import NANOS, SECONDS, Template, slot
+from surefoot.scenarios.record.body import contact_points
+from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
+
+pytestmark = pytest.mark.unit
+
+
+def message(*values):
+    joints = [JointState(name=f"j{i}", position=value) for i, value in enumerate(values)]
+    return JointStates(timestamp=Timestamp(seconds=SECONDS, nanos=NANOS), joints=joints)
+
+
+@pytest.mark.parametrize("time_ns", [0, 1, 999_999_999, 10**9, 123_456_789_012_345_678])
+@pytest.mark.parametrize("values", [(0.0, -0.0, 1e-300), (np.pi, np.inf, -1.5)])
+def test_a_template_decodes_to_its_values_and_never_changes_its_size(time_ns, values):
+    template = Template(message(slot(0), slot(2), slot(1)), 3)
+    data = template.encode(time_ns, values)
+    back = JointStates.FromString(data)
+    assert [joint.position for joint in back.joints] == [values[0], values[2], values[1]]
+    assert back.timestamp.seconds * 10**9 + back.timestamp.nanos == time_ns
+    assert len(data) == len(template.encode(0, (1.0, 2.0, 3.0)))
+
+
+def test_a_value_may_stand_in_several_places_but_not_in_none():
+    data = Template(message(slot(0), slot(0)), 1).encode(5, [2.5])
+    assert [joint.position for joint in JointStates.FromString(data).joints] == [2.5, 2.5]
+    with pytest.raises(ValueError, match="value 1 has no place"):
+        Template(message(slot(0)), 2)
+
+
+A = ChannelSpec("/a", "A", (FieldSpec("x", (3,)), FieldSpec("n", (), kind="int"), FieldSpec("twice", (2,))))
+B = ChannelSpec("/b", "B", (FieldSpec("y", (2, 2)), FieldSpec("z")))
+
+
+def test_rows_give_the_same_log_as_single_appends(tmp_path):
+    rng = np.random.default_rng(0)
+    with LogWriter(tmp_path / "rows.mcap", {}) as rows, LogWriter(tmp_path / "single.mcap", {}) as single:
+        a, b = rows.channel(A), rows.channel(B)
+        row = rows.rows(
+            ((b, ("y",)), (a, ("x",))), ((a, ("n",)), (b, ("z",))), ((a, ("twice",)),), lambda v, n: 2 * v[:, -2:], 2
+        )
+        one, two = single.channel(A), single.channel(B)
+        for tick in range(200):
+            x, y, extra = rng.normal(size=3), rng.normal(size=(2, 2)), rng.normal(size=2)
+            row.append(tick * 2_000_000, (tick, 0.5 * tick), y.ravel(), x, extra)
+            one.append(tick * 2_000_000, x, tick, 2 * extra)
+            two.append(tick * 2_000_000, y, 0.5 * tick)
+    first, second = read(tmp_path / "rows.mcap"), read(tmp_path / "single.mcap")
+    assert len(first["/a"]) == 200
+    assert all(first[topic].content() == second[topic].content() for topic in ("/a", "/b"))
+
+
+def test_a_row_must_be_complete(tmp_path):
+    with LogWriter(tmp_path / "log.mcap", {}) as writer:
+        a = writer.channel(A)
+        with pytest.raises(ValueError, match="every field"):
+            writer.rows(((a, ("x",)),), ((a, ("n",)),))
+
+
+def test_points_of_many_ticks_are_those_of_each():
+    rng = np.random.default_rng(1)
+    n = 50
+    wrench, position = rng.normal(size=(n, 2, 6)) * 50, rng.normal(size=(n, 2, 3))
+    wrench[:, :, 2] = rng.uniform(-20, 500, (n, 2))
+    wrench[0], wrench[1, 0] = 0.0, 0.0
+    rotation = np.linalg.qr(rng.normal(size=(n, 2, 3, 3)))[0]
+    with np.errstate(invalid="ignore"):
+        zmp, cop = contact_points(wrench, position, rotation)
+    for k in range(n):
+        assert np.allclose(zmp[k], measured_zmp(wrench[k], position[k], rotation[k]), rtol=1e-9, equal_nan=True)
+        for foot in range(2):
+            assert np.allclose(cop[k, foot], centre_of_pressure(wrench[k, foot]), equal_nan=True)

@@ -1,0 +1,104 @@
+"""Windows of logs, their export, and what bounds the memory."""
+
+import csv
+import sys
+
+import numpy as np
+import pytest
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.digest import RunView
+from surefoot.scenarios.judge.metric import compute, digest
+from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.show.export import columns, export, selected
+
+pytestmark = pytest.mark.unit
+
+SPEC = ChannelSpec("/x", "X", (FieldSpec("a"), FieldSpec("b", (2, 3)), FieldSpec("n", (), kind="int")))
+TICKS = 2000
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    path = tmp_path_factory.mktemp("logs") / "log.mcap"
+    with LogWriter(path, {}) as writer:
+        x = writer.channel(SPEC)
+        for tick in range(TICKS):
+            x.append(tick * 2_000_000, tick / 4, np.full((2, 3), tick), tick)
+    return read(path)
+
+
+@pytest.mark.parametrize(("start", "end"), [(0, 4), (1.0, 1.5), (0.0399, 0.0401), (-5, 0.1), (3.9, 99), (2.0, 2.0)])
+def test_a_window_is_the_part_of_the_whole_in_that_time(log, start, end):
+    whole = read(log.path)["/x"]
+    inside = (whole.time >= start - 1e-12) & (whole.time <= end + 1e-12)
+    part = log.window("/x", start, end)
+    assert np.array_equal(part.time_ns, whole.time_ns[inside])
+    assert np.array_equal(part.field("b"), whole.field("b")[inside])
+
+
+def test_a_window_decompresses_only_its_own_chunks(log, monkeypatch):
+    opened, loaded = read(log.path), []
+    original = opened._decompressed
+    monkeypatch.setattr(opened, "_decompressed", lambda chunk: loaded.append(chunk) or original(chunk))
+    opened.window("/x", 1.0, 1.2)
+    assert 0 < len(loaded) <= 4 < len(opened.contents.chunks)
+
+
+def test_windows_together_are_the_whole(log):
+    parts = [part["/x"] for part in log.windows(["/x"], 0.5)]
+    assert len(parts) > 5
+    assert np.array_equal(np.concatenate([part.field("n") for part in parts]), np.arange(TICKS))
+
+
+def test_metrics_of_a_log_in_parts_are_those_of_the_whole(tmp_path, motion, two_steps, robot, monkeypatch):
+    path = run_scenario(two_steps, tmp_path, simulate=motion(), robot=robot).log
+    parts, whole = compute(read(path)), RunView(read(path))
+    monkeypatch.setattr("surefoot.scenarios.log.reader.WINDOW", 1e9)
+    for function, values in digest(read(path)).reduced.items():
+        assert np.allclose(values, function(whole), equal_nan=True)
+    assert compute(read(path)) == parts
+
+
+def test_csv_npz_and_columns_agree(log, tmp_path):
+    part = selected(log, "/x", 1.0, 1.1, None)
+    export(part, tmp_path / "x.csv")
+    with (tmp_path / "x.csv").open(newline="") as file:
+        rows = list(csv.reader(file))
+    assert rows[0] == ["time", "a", *(f"b_{i}_{j}" for i in range(2) for j in range(3)), "n"]
+    assert np.array_equal(np.array(rows[1:], float), np.column_stack(list(columns(part).values())))
+    export(part, tmp_path / "x.npz")
+    with np.load(tmp_path / "x.npz") as data:
+        assert np.array_equal(data["b"], part.field("b"))
+        assert np.array_equal(data["time"], part.time)
+
+
+def test_one_field_alone(log, tmp_path):
+    export(selected(log, "/x", None, None, "n"), tmp_path / "n.csv")
+    assert (tmp_path / "n.csv").read_text().splitlines()[:2] == ["time,n", "0.0,0"]
+    with pytest.raises(LogError, match="no field 'm'"):
+        selected(log, "/x", None, None, "m")
+
+
+def test_parquet_needs_pyarrow(log, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(LogError, match="pip install pyarrow"):
+        export(selected(log, "/x", None, None, None), tmp_path / "x.parquet")
+
+
+def test_parquet_holds_the_columns(log, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    export(selected(log, "/x", 1.0, 1.1, None), tmp_path / "x.parquet")
+    table = parquet.read_table(tmp_path / "x.parquet")
+    assert np.array_equal(table["b_1_2"].to_numpy(), log.window("/x", 1.0, 1.1).field("b")[:, 1, 2])
+
+
+def test_what_cannot_be_exported_is_said(log, tmp_path):
+    part = selected(log, "/x", None, None, None)
+    with pytest.raises(LogError, match=r"unknown kind of file '\.xls'; end its name in \.csv, \.npz, \.parquet"):
+        export(part, tmp_path / "x.xls")
+    with pytest.raises(LogError, match="cannot be written"):
+        export(part, tmp_path / "none" / "x.csv")
+    with pytest.raises(LogError, match=r"no message of /x in that time; the log is from 0\.000 s to 3\.998 s"):
+        selected(log, "/x", 7.0, 8.0, None)

@@ -1,0 +1,72 @@
+"""What a run leaves on disk, however it ends."""
+
+import json
+
+import pytest
+import yaml
+
+from surefoot.scenarios.errors import LogError, ScenarioError
+from surefoot.scenarios.log import read
+from surefoot.scenarios.loop.run import run_scenario
+
+pytestmark = pytest.mark.unit
+
+
+def test_log_and_verdict_lie_side_by_side(tmp_path, robot, motion, two_steps):
+    told = []
+    result = run_scenario(two_steps, tmp_path / "new", told.append, motion(), robot)
+    assert result.log == tmp_path / "new" / "two-steps-0" / "log.mcap"
+    written = json.loads(result.log.with_name("verdict.json").read_text())
+    assert written == result.verdict.to_json()
+    assert written["verdict"] == "pass"
+    assert len(told) == 200
+
+
+def test_the_log_says_all_about_the_run(tmp_path, robot, motion, two_steps):
+    log = read(run_scenario(two_steps, tmp_path, None, motion(), robot).log)
+    assert yaml.safe_load(log.attachments["scenario.yaml"])["gait"]["steps"] == 2
+    assert log.attachments["robot.xml"] == b"<mujoco/>"
+    assert log.metadata["run"]["seed"] == "0"
+    assert {"mujoco", "pin", "numpy", "python", "git_revision"} <= log.metadata["versions"].keys()
+    assert log.metadata["end"]["kind"] == "completed"
+
+
+def test_the_same_run_gives_the_same_log(tmp_path, robot, motion, two_steps):
+    logs = [run_scenario(two_steps, tmp_path / name, None, motion(), robot).log for name in "ab"]
+    assert logs[0].read_bytes() == logs[1].read_bytes()
+    first, second = (read(log) for log in logs)
+    assert all(first[topic].content() == second[topic].content() for topic in first.topics)
+
+
+def test_interrupted_by_the_user_the_log_is_whole(tmp_path, robot, motion, two_steps):
+    result = run_scenario(two_steps, tmp_path, None, motion(stop_at=1.2, raises=KeyboardInterrupt()), robot)
+    assert result.interrupted
+    assert not read(result.log).truncated
+    assert result.verdict.reasons[0].endswith("interrupted by the user")
+
+
+def test_a_defect_is_raised_after_the_log_was_closed(tmp_path, robot, motion, two_steps):
+    with pytest.raises(ZeroDivisionError):
+        run_scenario(two_steps, tmp_path, None, motion(raises=ZeroDivisionError("x")), robot)
+    log = read(tmp_path / "two-steps-0" / "log.mcap")
+    assert not log.truncated
+    assert log.metadata["end"]["reason"] == "internal error, ZeroDivisionError: x"
+
+
+def test_a_scenario_that_the_loop_refuses_leaves_no_log(tmp_path, robot, motion, two_steps):
+    with pytest.raises(ScenarioError):
+        run_scenario(two_steps, tmp_path, None, motion(raises=ScenarioError(["planner.horizon is too short"])), robot)
+    assert list((tmp_path / "two-steps-0").iterdir()) == []
+
+
+def test_no_stale_verdict_beside_a_new_log(tmp_path, robot, motion, two_steps):
+    run_scenario(two_steps, tmp_path, None, motion(), robot)
+    with pytest.raises(ZeroDivisionError):
+        run_scenario(two_steps, tmp_path, None, motion(raises=ZeroDivisionError()), robot)
+    assert not (tmp_path / "two-steps-0" / "verdict.json").exists()
+
+
+def test_a_place_that_is_no_directory(tmp_path, robot, motion, two_steps):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(LogError, match="choose another directory with --out"):
+        run_scenario(two_steps, tmp_path / "file", None, motion(), robot)

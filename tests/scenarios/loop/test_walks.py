@@ -1,0 +1,50 @@
+"""Walks in full physics: the catalogue, and variations of one walk with nothing else changed."""
+
+import pytest
+from variations import COMMANDED, COMMANDS, SCENARIO, VARIATIONS
+
+from surefoot.scenarios import catalogue
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.load import load_scenario
+
+EVERY_CHANGE = [variation for variation in VARIATIONS if variation.every_change and variation.overrides]
+ON_DEMAND = [variation for variation in VARIATIONS if not variation.every_change]
+LONG_SCENARIOS = ("walk-turn", "walk-curve", "walk-backward", "slope", "blocks", "stairs-tall")
+SOUND = "criteria={fell: false, steps_taken: steps_planned, standing_time_final: {min: 1}, cop_ratio_p99: {max: 1},\
+ footstep_error_max: {max: 0.01}, foot_slip_max: {max: 0.01}, self_contact_time: {max: 0}, wbc_fallbacks: {max: 0},\
+ torque_at_limit_fraction: {max: 0.01}}"
+"""What any walk must meet, wherever its command leads."""
+
+
+def verdict(tmp_path, name, overrides=()):
+    return run_scenario(load_scenario(name, overrides), tmp_path).verdict
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("name", [name for name in catalogue.names() if name not in LONG_SCENARIOS])
+def test_catalogue(tmp_path, name):
+    assert verdict(tmp_path, name).reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", LONG_SCENARIOS)
+def test_long_scenario(tmp_path, name):
+    assert verdict(tmp_path, name).reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("variation", COMMANDS, ids=lambda variation: variation.name)
+def test_commanded_walk(tmp_path, variation):
+    assert verdict(tmp_path, COMMANDED, (*variation.overrides, SOUND)).reasons == ()
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("variation", EVERY_CHANGE, ids=lambda variation: variation.name)
+def test_variation(tmp_path, variation):
+    assert verdict(tmp_path, SCENARIO, variation.overrides).reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("variation", ON_DEMAND, ids=lambda variation: variation.name)
+def test_further_variation(tmp_path, variation):
+    assert verdict(tmp_path, SCENARIO, variation.overrides).reasons == ()

@@ -1,0 +1,30 @@
+"""What the whole-body controller is told of a plan."""
+
+import numpy as np
+import pytest
+
+from surefoot.planner.plan import PlanSampler
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import walk_pendulum
+from surefoot.planner.types import FeetState, PhaseKind
+from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
+from surefoot.scenarios.loop.planning import whole_body_reference
+
+pytestmark = pytest.mark.unit
+
+
+def test_a_foot_is_unloaded_only_before_it_lifts():
+    """At the end of a bout both feet stay loaded; before a step it is the foot that steps."""
+    stride, closing = Stride(0.2, 0.0, 0.0, 0.2), Stride(0.0, 0.0, 0.0, 0.2)
+    bouts = (Bout(0.2, (stride, closing)), Bout(0.0, (stride, closing)), Bout(0.4, (stride, closing)))
+    gait = GaitParameters(steps=6, bouts=bouts, single_support=0.5, double_support=0.2)
+    feet = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
+    planner = WalkingPlanner(gait, feet, 0.22, 0.11)
+    duration = 0.02 * planner.schedule.last
+    trace = walk_pendulum(planner, feet, duration, com=np.array([0.0, 0.0, 1.0]), substeps=1)
+    assert trace.fall_time is None
+    lifting = [whole_body_reference(plan, PlanSampler(plan).sample(plan.time)).lifting_foot for plan in trace.plans]
+    for tick, plan in enumerate(trace.plans):
+        after = next(phase for phase in planner.schedule.phases if phase.start > tick)
+        steps = plan.phase.kind is PhaseKind.DOUBLE and after.kind is PhaseKind.SINGLE
+        assert lifting[tick] == (after.stance.other if steps else -1)

@@ -1,0 +1,65 @@
+"""Reach of the legs and times of the gait."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from surefoot.scenarios.file.schema import Gait, PushSettings, Scenario
+from surefoot.scenarios.setup.checks import is_multiple
+from surefoot.scenarios.setup.gait import (
+    FINAL_STAND,
+    longest_step,
+    phase_duration,
+    phase_start,
+    push_time,
+    run_duration,
+)
+
+pytestmark = pytest.mark.unit
+
+
+@given(leg=st.floats(0.3, 1.5), bend=st.floats(0.5, 1.0), hips=st.floats(0.05, 0.4), feet=st.floats(0.05, 0.4))
+def test_at_the_longest_step_the_leg_is_straight(leg, bend, hips, feet):
+    height = leg * bend
+    step = longest_step(leg, height, hips, feet)
+    if math.isnan(step):
+        assert math.hypot(height, (feet - hips) / 2) > leg
+    else:
+        assert math.hypot(step / 2, (feet - hips) / 2, height) == pytest.approx(leg)
+
+
+def test_lower_hips_reach_farther():
+    assert longest_step(0.9, 0.8, 0.2, 0.25) > longest_step(0.9, 0.85, 0.2, 0.25)
+
+
+def test_phases_follow_each_other():
+    gait = Gait()
+    assert phase_start(gait, 1, "double") == gait.initial_stand
+    assert phase_start(gait, 1, "single") == gait.initial_stand + 2 * gait.double_support
+    for step in range(1, 5):
+        for phase, following in (("double", (step, "single")), ("single", (step + 1, "double"))):
+            end = phase_start(gait, step, phase) + phase_duration(gait, step, phase)
+            assert phase_start(gait, *following) == pytest.approx(end)
+
+
+def test_pushes_by_point_of_the_gait():
+    gait = Gait()
+    push = PushSettings(step=2, phase="single", fraction=0.5)
+    assert push_time(gait, push) == pytest.approx(1.0 + 1.0 + 2.0 + 0.75)
+    assert push_time(gait, PushSettings(time=2.2)) == 2.2
+    with pytest.raises(ValueError, match="needs a time"):
+        push_time(gait, PushSettings(step=2))
+
+
+def test_a_run_lasts_until_the_robot_has_stood():
+    assert run_duration(Scenario()) == pytest.approx(1.0 + 1.0 + 5 * 2.0 + FINAL_STAND)
+    assert run_duration(Scenario(duration=3.0)) == 3.0
+    assert run_duration(Scenario(gait=Gait(steps=0))) == 1.0 + FINAL_STAND
+
+
+def test_multiples_are_exact_to_rounding():
+    assert is_multiple(1.5, 0.02)
+    assert is_multiple(0.3, 0.1)
+    assert not is_multiple(0.51, 0.02)

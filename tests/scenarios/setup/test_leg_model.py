@@ -1,0 +1,64 @@
+"""The planner's legs against the robot's: posture and angular momentum of the same CoM and soles."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.scenarios.loop.full import leg_inertia
+from surefoot.scenarios.setup.stance import body_of
+from surefoot.wbc.ik import PostureTarget
+
+pytestmark = pytest.mark.unit
+
+STEP = 0.01
+
+
+@pytest.fixture(scope="module")
+def body():
+    return body_of(describe("humanoid100", RobotOptions(foot_length=0.22, foot_width=0.11)))
+
+
+def stride(time):
+    """CoM (3,) and soles (2, 3) in a step of half a metre in 0.4 s."""
+    share = time / 0.4
+    swung = 10.0 * share**3 - 15.0 * share**4 + 6.0 * share**5
+    swing = np.array([-0.5 + swung, -0.1, 0.2 * share * (1.0 - share)])
+    return np.array([-0.2 + time, 0.05, 0.94 + 0.01 * np.sin(8.0 * time)]), np.stack([[0.0, 0.1, 0.0], swing])
+
+
+def momentum(body, time):
+    """Angular momentum over mass of the whole robot whose trunk stays upright."""
+    ik, q = body.ik(body.robot.nominal_joint_positions), pin.neutral(body.model)
+    q[2], q[7:] = 0.9, body.robot.nominal_joint_positions
+    found = []
+    for t in (time - 2e-3, time + 2e-3):
+        com, soles = stride(t)
+        result = ik.solve(PostureTarget(soles, np.zeros(2), com, 0.0), q)
+        assert result.reached
+        q = result.q
+        found.append(q)
+    v = pin.difference(body.model, *found) / 4e-3
+    data = body.model.createData()
+    pin.computeCentroidalMomentum(body.model, data, found[0], v)
+    return data.hg.angular / pin.computeTotalMass(body.model)
+
+
+@pytest.mark.parametrize("time", [0.08, 0.2, 0.3])
+def test_momentum_rate_of_a_fast_step_is_that_of_the_robot(body, time):
+    q = (
+        body.ik(body.robot.nominal_joint_positions)
+        .solve(
+            PostureTarget(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), np.array([0.0, 0.0, 0.95]), 0.0),
+            pin.neutral(body.model),
+        )
+        .q
+    )
+    chain = leg_inertia(body, q).chain
+    com, soles = zip(*(stride(t) for t in time + STEP * np.arange(-1, 2)), strict=True)
+    rate = chain.momentum_rate(np.array(com), np.array(soles).transpose(1, 0, 2), np.zeros(3), STEP)[0]
+    truth = (momentum(body, time + STEP) - momentum(body, time - STEP)) / (2.0 * STEP)
+    assert np.abs(truth).max() > 0.1
+    np.testing.assert_allclose(rate, truth, atol=0.1)
+    assert abs(rate[1] - truth[1]) < 0.05 * abs(truth[1]) + 0.05

@@ -1,0 +1,59 @@
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.scenarios.file.schema import Gait, Scenario, Start
+from surefoot.scenarios.setup.stance import SOLE_SINKAGE, body_of, disturbed, feet_at, pressed, start_posture
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.fixture(scope="module")
+def body():
+    return body_of(describe("humanoid100", RobotOptions()))
+
+
+def soles(body, q):
+    data = body.model.createData()
+    pin.framesForwardKinematics(body.model, data, q)
+    return [data.oMf[body.model.getFrameId(name)] for name in body.frames.soles]
+
+
+def test_it_stands_where_the_scenario_says(body):
+    scenario = Scenario(start=Start(x=3.0, y=-2.0, yaw=1.0), gait=Gait(com_height=0.97, step_width=0.22))
+    q = start_posture(scenario, body)
+    com = pin.centerOfMass(body.model, body.model.createData(), q)
+    np.testing.assert_allclose(com, [3.0, -2.0, 0.97], atol=1e-6)
+    feet = feet_at(body, q)
+    assert np.linalg.norm(feet.position[0] - feet.position[1]) == pytest.approx(0.22, abs=1e-6)
+    np.testing.assert_allclose(feet.yaw, 1.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_moves_the_body_and_leaves_the_soles_flat_on_the_ground(body, seed):
+    scenario = Scenario(seed=seed, start=Start(position_noise=0.001, angle_noise=0.0175))
+    calm = start_posture(scenario, body)
+    q = disturbed(calm, scenario, body)
+    assert np.abs(q[7:] - calm[7:]).max() > 0.005
+    for sole in soles(body, q):
+        np.testing.assert_allclose(sole.rotation[2], [0.0, 0.0, 1.0], atol=1e-6)
+        assert sole.translation[2] == pytest.approx(0.0, abs=1e-6)
+    np.testing.assert_array_equal(disturbed(calm, scenario, body), q)
+
+
+def test_without_noise_nothing_moves(body):
+    scenario = Scenario()
+    calm = start_posture(scenario, body)
+    np.testing.assert_array_equal(disturbed(calm, scenario, body), calm)
+
+
+def test_pressed_soles_are_just_below_the_ground(body):
+    q = pressed(start_posture(Scenario(), body))
+    np.testing.assert_allclose([sole.translation[2] for sole in soles(body, q)], -SOLE_SINKAGE, atol=1e-6)
+
+
+def test_a_stance_out_of_reach_is_refused(body):
+    with pytest.raises(ValueError, match="cannot stand with gait"):
+        start_posture(Scenario(gait=Gait(com_height=1.2)), body)

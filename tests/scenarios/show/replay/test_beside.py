@@ -1,0 +1,65 @@
+"""Pictures of a run that is about to start or goes on."""
+
+import sys
+from pathlib import Path
+from typing import ClassVar
+
+import pytest
+from typer.testing import CliRunner
+
+from surefoot.scenarios.cli import app
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.loop.skeleton import Progress
+from surefoot.scenarios.show.replay import command as beside
+
+pytestmark = pytest.mark.unit
+
+
+class Process:
+    """Stands for the replay's process."""
+
+    started: ClassVar[list[list[str]]] = []
+
+    def __init__(self, command, **_):
+        self.started.append(command)
+        self.waited = self.ended = False
+
+    def wait(self):
+        self.waited = True
+        raise KeyboardInterrupt
+
+    def terminate(self):
+        self.ended = True
+
+
+def test_the_first_progress_opens_one_replay_of_the_log_until_ctrl_c(monkeypatch, tmp_path):
+    monkeypatch.setattr(beside.subprocess, "Popen", Process)
+    Process.started, told = [], []
+    live = beside.LiveView(tmp_path / "log.mcap", told.append)
+    live.wait()
+    for time in (0.1, 0.2):
+        live(Progress(time, 1.0, "standing", 1.0))
+    live.wait()
+    assert Process.started == [[sys.executable, "-m", "surefoot", "replay", str(tmp_path / "log.mcap"), "--live"]]
+    assert [progress.time for progress in told] == [0.1, 0.2]
+    assert live._process.waited
+    assert live._process.ended
+
+
+def test_a_pendulum_has_no_pictures():
+    with pytest.raises(LogError, match="has no body to show"):
+        beside.check("pendulum", video=Path("walk.mp4"), view=False)
+
+
+@pytest.mark.parametrize(("video", "view", "module"), [(Path("walk.mp4"), False, "av"), (None, True, "viser")])
+def test_a_missing_extra_is_said_before_the_run(video, view, module, monkeypatch):
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(LogError, match=f"needs the package {module}"):
+        beside.check("full", video=video, view=view)
+
+
+def test_the_command_line_refuses_them_for_a_pendulum_and_runs_nothing(tmp_path):
+    arguments = ["run", "stand", "--set", "fidelity=pendulum", "--view", "--out", str(tmp_path)]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code != 0
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,63 @@
+"""Triangles: closed, turned outwards, of the right volume, and all that MuJoCo shows."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.scenarios.show.replay.surfaces import box, capsule, cylinder, ellipsoid, surfaces
+
+pytestmark = pytest.mark.unit
+
+SOLIDS = {
+    "box": (box(np.array([0.1, 0.2, 0.3])), 8 * 0.1 * 0.2 * 0.3, 1e-12),
+    "ellipsoid": (ellipsoid(np.array([0.1, 0.2, 0.3])), 4 / 3 * np.pi * 0.006, 0.05),
+    "cylinder": (cylinder(0.1, 0.3), np.pi * 0.01 * 0.6, 0.02),
+    "capsule": (capsule(0.1, 0.3), np.pi * 0.01 * 0.6 + 4 / 3 * np.pi * 0.001, 0.05),
+}
+
+
+def volume(vertices: np.ndarray, faces: np.ndarray) -> float:
+    """Volume inside triangles that are counter-clockwise from outside, by the divergence theorem."""
+    a, b, c = np.moveaxis(vertices[faces], 1, 0)
+    return float(np.sum(a * np.cross(b, c)) / 6)
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_volume(name: str) -> None:
+    (vertices, faces), expected, tolerance = SOLIDS[name]
+    assert volume(vertices, faces) == pytest.approx(expected, rel=tolerance)
+    assert volume(vertices + np.array([1.0, 2.0, 3.0]), faces) == pytest.approx(volume(vertices, faces))
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_every_edge_has_two_sides(name: str) -> None:
+    (vertices, faces), _, _ = SOLIDS[name]
+    _, place = np.unique(vertices.round(9), axis=0, return_inverse=True)
+    corners = place[faces]
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    assert {tuple(edge) for edge in edges} == {tuple(edge) for edge in edges[:, ::-1]}
+
+
+def test_all_visible_geoms_of_the_robot_are_there() -> None:
+    model = mujoco.MjModel.from_xml_string(describe("humanoid100", RobotOptions()).mjcf)
+    found = surfaces(model)
+    visible = model.geom_group <= 2
+    assert {surface.body for surface in found} == set(model.geom_bodyid[visible].tolist())
+    left = next(
+        s for s in found if model.body(s.body).name == "left_foot" and s.color == pytest.approx((0.08, 0.08, 0.09))
+    )
+    sole = model.geom("left_sole_box")
+    assert left.vertices.min(axis=0) == pytest.approx(sole.pos - sole.size)
+    assert left.vertices.max(axis=0) == pytest.approx(sole.pos + sole.size)
+
+
+def test_a_mesh_is_taken_as_it_is() -> None:
+    text = """<mujoco><asset><mesh name="m" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/></asset>
+    <worldbody><body><geom type="mesh" mesh="m" mass="1"/></body></worldbody></mujoco>"""
+    (surface,) = surfaces(mujoco.MjModel.from_xml_string(text))
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    order = np.lexsort(surface.vertices.round(6).T)
+    assert surface.vertices[order] == pytest.approx(corners[np.lexsort(corners.T)], abs=1e-6)
+    assert volume(surface.vertices, surface.faces) == pytest.approx(1 / 6)

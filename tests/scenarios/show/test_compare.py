@@ -1,0 +1,169 @@
+"""Two logs side by side: settings, versions, metrics, channels; whatever state they are in."""
+
+import json
+import random
+import sys
+
+import pytest
+from mcap.writer import Writer
+
+from surefoot.scenarios import cli
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.show.compare.compare import compare
+from surefoot.scenarios.show.figures.page import plot
+
+pytestmark = pytest.mark.unit
+
+SHORT = (
+    *("fidelity=pendulum", "gait.steps=1", "gait.single_support=0.5", "gait.initial_stand=0.1", "duration=1.2"),
+    *("rates.control=100", "sensing.com_noise=0.0", "start.position_noise=0.001"),
+)
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory):
+    """Logs of seeds 1 and 2, and of seed 1 again."""
+
+    def run(seed):
+        scenario = load_scenario("diagonal-walk", (*SHORT, f"seed={seed}"))
+        return run_scenario(scenario, tmp_path_factory.mktemp("runs")).log
+
+    return run(1), run(2), run(1)
+
+
+@pytest.fixture
+def command(monkeypatch, capsys):
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["surefoot", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        captured = capsys.readouterr()
+        return ended.value.code or 0, captured.out, captured.err
+
+    return run
+
+
+def test_a_run_with_itself_and_with_its_repetition_is_identical(logs):
+    for other in (logs[0], logs[2]):
+        found, _, _ = compare(logs[0], other)
+        assert found.identical
+        assert found.summary == "identical apart from wall-clock timing"
+        assert found.settings == found.files == found.notes == ()
+        assert all(one.a == one.b for one in found.metrics if one.name == "com_error_rms.x")
+
+
+def test_two_seeds_part_with_the_true_state(logs):
+    found, _, _ = compare(*logs[:2])
+    assert not found.identical
+    assert [(one.name, one.a, one.b) for one in found.settings] == [("seed", 1, 2)]
+    assert (found.first.topic, found.first.exact.field, found.first.time) == ("/truth", "com[0]", 0.0)
+    assert found.summary.startswith("first divergence: /truth com[0] at 0.000 s: ")
+
+
+def test_a_truncated_log_is_compared_as_far_as_it_goes(logs, tmp_path):
+    data = logs[0].read_bytes()
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(data[: len(data) * 2 // 3])
+    found, _, _ = compare(logs[0], cut)
+    assert found.summary == "identical as far as both logs reach"
+    assert found.notes[0].startswith("B is truncated: it can be read up to")
+
+
+def test_other_fidelities_have_other_channels(logs, tmp_path, robot, motion, two_steps):
+    body = run_scenario(two_steps, tmp_path, None, motion(duration=1.0), robot).log
+    found, _, _ = compare(body, logs[0])
+    assert {"/measurement", "/torque", "/wbc"} <= set(found.only_a)
+    assert found.only_b == ("/footsteps",)
+    truth = next(one for one in found.channels if one.topic == "/truth")
+    assert "q only in A" in truth.layout
+    assert "external_force only in B" in truth.layout
+
+
+def test_foreign_logs_have_nothing_in_common_or_are_refused(logs, tmp_path):
+    foreign = tmp_path / "foreign.mcap"
+    with foreign.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        for topic in ("/json", "/truth"):
+            writer.add_message(writer.register_channel(topic, "json", 0), 1, b"{}", 1)
+        writer.finish()
+    found, _, _ = compare(logs[0], foreign)
+    assert found.only_b == ("/json",)
+    assert "no channel in common" in found.summary
+    assert "/truth of B has no layout of fixed size: not compared" in found.notes
+    with pytest.raises(LogError, match="holds no messages to draw"):
+        plot(foreign, tmp_path / "x.png")
+
+
+def test_damaged_logs_give_what_can_be_read_and_never_a_traceback(logs, tmp_path):
+    data, path, rng = logs[0].read_bytes(), tmp_path / "damaged.mcap", random.Random(4)
+    compared = 0
+    for trial in range(30):
+        damaged = bytearray(data[: rng.randrange(len(data))] if trial % 3 == 0 else data)
+        for _ in range(trial % 3):
+            if damaged:
+                damaged[rng.randrange(len(damaged))] ^= 1 << rng.randrange(8)
+        path.write_bytes(damaged)
+        try:
+            found, _, _ = compare(logs[0], path)
+            json.dumps(found.to_json(), allow_nan=False)
+            compared += 1
+            if trial % 15 == 0:
+                plot(path, tmp_path / "x.png", "balance")
+        except LogError:
+            continue
+    assert compared >= 20
+
+
+def test_the_command_answers_first_and_draws(command, logs, tmp_path):
+    code, out, err = command("compare", *logs[:2], "--out", tmp_path / "both.svg")
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[0].startswith("first divergence: /truth")
+    assert any(line.split() == ["seed", "1", "2"] for line in lines)
+    assert any(line.startswith("com_error_rms.x ") for line in lines)
+    assert (tmp_path / "both.svg").read_bytes().startswith(b"<?xml")
+
+
+def test_json_is_one_object(command, logs):
+    code, out, err = command("compare", *logs[:2], "--json")
+    found = json.loads(out)
+    assert (code, err) == (0, "")
+    assert found["identical"] is False
+    assert found["first_divergence"]["topic"] == "/truth"
+    assert found["first_divergence"]["exact"]["field"] == "com[0]"
+    assert found["settings"] == [{"name": "seed", "a": 1, "b": 2}]
+    assert set(found["metrics"]["speed_mean"]) == {"a", "b", "difference"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["compare", "/dev/null", "/dev/null"], "not an MCAP file"),
+        (["compare", "{log}", "/no/such"], "no such file"),
+        (["compare", "{log}", "{log}", "--tolerance", "-1"], "not a tolerance"),
+        (["compare", "{log}", "{log}", "--tolerance", "nan"], "not a tolerance"),
+        (["compare", "{log}", "{log}", "--out", "x.txt"], "end the file's name with one of them"),
+        (["compare", "{log}"], "Missing argument"),
+        (["plot", "{log}", "--what", "torque"], "did you mean 'torques'?"),
+        (["plot", "{log}", "--from", "99"], "holds nothing from 99 s on"),
+        (["plot", "/"], "a directory"),
+        (["plot"], "Missing argument"),
+    ],
+)
+def test_bad_input_is_one_message_and_2(command, logs, arguments, message):
+    code, out, err = command(*(argument.replace("{log}", str(logs[0])) for argument in arguments))
+    assert (code, out) == (2, "")
+    assert message in err
+    assert "Traceback" not in err
+
+
+def test_plot_prints_the_path_and_what_could_not_be_read(command, logs, tmp_path):
+    data = logs[0].read_bytes()
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(data[: len(data) // 2])
+    code, out, err = command("plot", cut, "--what", "height")
+    assert (code, out) == (0, f"{tmp_path / 'height.png'}\n")
+    assert err.startswith("note: the file is truncated: it can be read up to")

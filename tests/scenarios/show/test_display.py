@@ -1,0 +1,41 @@
+"""What people read: handy units, few digits, nothing rounded up to perfection."""
+
+import pytest
+
+from surefoot.scenarios.file.criteria import METRIC_NAMES, Bound
+from surefoot.scenarios.show.console import bound_text, shown_unit, value_text
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "text"),
+    [
+        ("com_error_rms", [7.039e-05, 0.000489, 0.0041], "0.0704  0.489  4.1"),
+        ("zmp_inside_fraction", 1.0, "100"),
+        ("zmp_inside_fraction", 0.99996, "99.99"),
+        ("zmp_inside_fraction", 0.29, "29"),
+        ("planner_time", {"median": 0.00051, "p99": 0.0012}, "median 0.51  p99 1.2"),
+        ("knee_angle_mean", 0.5235988, "30"),
+        ("log_bytes", 12_345_678, "12.3"),
+        ("fell", False, "false"),
+        ("fall_time", None, "-"),
+        ("foot_slip_max", 1.23456, "1235"),
+    ],
+)
+def test_values(name, value, text):
+    assert value_text(name, value) == text
+
+
+def test_bounds_are_shown_in_the_unit_of_the_value():
+    assert bound_text("zmp_error_rms", Bound(max=0.006)) == "<= 6"
+    assert bound_text("zmp_error_rms", Bound(max=(0.006, 0.002))) == "<= 6  2"
+    assert bound_text("speed_mean", Bound(min=0.4, max=1.0)) == ">= 0.4, <= 1"
+    assert bound_text("steps_taken", Bound(equals="steps_planned")) == "= steps_planned"
+    assert bound_text("speed_mean", None) == ""
+
+
+def test_lengths_are_in_millimetres():
+    assert all(
+        shown_unit(name) == "mm" for name in METRIC_NAMES if name.endswith("error_rms") or name.startswith("foot")
+    )

@@ -182,6 +182,7 @@ def test_inspect_a_topic(surefoot, scenario, tmp_path):
 
 
 def test_help_needs_no_heavy_package():
-    code = "import sys; import surefoot.scenarios.cli; print(*(m for m in ('numpy', 'mujoco', 'pydantic') if m in sys.modules))"
+    heavy = ("numpy", "mujoco", "pydantic")
+    code = f"import sys; import surefoot.scenarios.cli; print(*(m for m in {heavy} if m in sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == ""

@@ -1,0 +1,26 @@
+"""Errors that every layer raises alike: they carry the name of the value at fault, not a sentence to parse."""
+
+from collections.abc import Iterable
+
+
+class ParameterError(ValueError):
+    """A value that a part cannot work with.
+
+    A layer names its own parameters; where they came from (a key of a scenario file, say) is for the layer above to
+    know, which reads `key` and never the sentence.
+
+    Attributes:
+        key: the parameter, from the outside in, in the words of the layer that refuses it: ("gait", "single_support").
+        what: the fault, without a full stop.
+        right: what would be right, without a full stop.
+    """
+
+    def __init__(self, key: Iterable[str | int], what: str, right: str) -> None:
+        self.key = tuple(key)
+        self.what = what
+        self.right = right
+        super().__init__(f"{what}; {right}")
+
+    def __reduce__(self) -> tuple[type["ParameterError"], tuple[tuple[str | int, ...], str, str]]:
+        """Survive the way between processes."""
+        return type(self), (self.key, self.what, self.right)

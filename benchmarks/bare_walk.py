@@ -13,13 +13,13 @@ from threadpoolctl import threadpool_limits
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.loop.full import ClosedLoop
+from surefoot.scenarios.loop.run import closed_loop
+from surefoot.scenarios.loop.skeleton import ClosedLoop
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.setup.gait import run_duration
 from surefoot.scenarios.setup.load import load_scenario
-from surefoot.scenarios.setup.robot import describe
+from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.world import World
 from surefoot.wbc.controller import WholeBodyController
 
@@ -61,10 +61,10 @@ class BareWalk:
                     timed = _timed(getattr(owner, method), self.laps[part])
                     stack.enter_context(patch.object(owner, method, timed))
             writer = stack.enter_context(LogWriter(log, {}))
-            self.loop = ClosedLoop(self._scenario, describe(self._scenario), writer)
-            for tick in range(round(run_duration(self._scenario) * self.rate)):
-                self.loop.tick(tick)
-                yield tick / self.rate
+            self.loop = closed_loop(resolve(self._scenario), writer)
+            while not self.loop.done:
+                self.loop.step()
+                yield self.loop.time - 1.0 / self.rate
 
 
 def _timed(method: Callable[..., Any], spent: list[float]) -> Callable[..., Any]:

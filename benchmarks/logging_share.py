@@ -7,39 +7,24 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.loop.full import ClosedLoop
+from surefoot.scenarios.log import LogWriter, NoLog
+from surefoot.scenarios.loop.run import closed_loop
+from surefoot.scenarios.loop.skeleton import ClosedLoop
 from surefoot.scenarios.setup.load import load_scenario
-from surefoot.scenarios.setup.robot import describe
+from surefoot.scenarios.setup.walk import resolve
 
 TURN = 450
 """Ticks of a turn: a whole number of chunks, plans and pictures."""
 
 
-class Nothing:
-    """Records nothing."""
-
-    def __getattr__(self, name: str) -> Any:
-        return lambda *values: None
-
-
-def walk(writer: LogWriter, logged: bool) -> ClosedLoop:
-    scenario = load_scenario("diagonal-walk", [])
-    loop = ClosedLoop(scenario, describe(scenario), writer)
-    if not logged:
-        loop._recorder = loop._walk_recorder = loop._view = loop._planning._recorder = Nothing()
-    return loop
-
-
-def spent(loop: ClosedLoop, start: int) -> float:
+def spent(loop: ClosedLoop) -> float:
     begin = time.perf_counter()
-    for tick in range(start, start + TURN):
-        loop.tick(tick)
+    for _ in range(TURN):
+        loop.step()
     return time.perf_counter() - begin
 
 
@@ -49,10 +34,10 @@ def main() -> None:
         tempfile.TemporaryDirectory() as folder,
         threadpool_limits(1),
         LogWriter(Path(folder) / "on.mcap", {}) as on,
-        LogWriter(Path(folder) / "off.mcap", {}) as off,
     ):
-        loops = walk(on, True), walk(off, False)
-        turns = [[spent(loop, start) for loop in loops] for start in range(0, round(500 * seconds), TURN)]
+        walk = resolve(load_scenario("diagonal-walk"))
+        loops = closed_loop(walk, on), closed_loop(walk, NoLog())
+        turns = [[spent(loop) for loop in loops] for _ in range(0, round(500 * seconds), TURN)]
     logged, bare = np.array(turns).T
     print(
         f"median tick with all channels {1e6 * np.median(logged) / TURN:.0f} us, "

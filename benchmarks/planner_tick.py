@@ -19,9 +19,10 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.types import FeetState
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.scenarios.loop.full import assemble
+from surefoot.scenarios.log import NoLog
+from surefoot.scenarios.loop.run import closed_loop
 from surefoot.scenarios.setup.load import load_scenario
-from surefoot.scenarios.setup.robot import describe
+from surefoot.scenarios.setup.walk import resolve
 
 T, N = 0.02, 50
 
@@ -53,8 +54,7 @@ def print_matrices() -> None:
 
 
 def robot_legs() -> LegInertia:
-    scenario = load_scenario("diagonal-walk")
-    return assemble(scenario, describe(scenario)).planner.parameters.leg
+    return closed_loop(resolve(load_scenario("diagonal-walk")), NoLog()).planning.planner.parameters.leg
 
 
 def print_ticks(steps: int) -> None:

@@ -14,7 +14,14 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from surefoot.scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
-from surefoot.scenarios.file.schema import Fault, FootstepSettings, PushSettings, Scenario, VelocitySettings
+from surefoot.scenarios.file.schema import (
+    Fault,
+    FootstepSettings,
+    GroundError,
+    PushSettings,
+    Scenario,
+    VelocitySettings,
+)
 from surefoot.scenarios.judge.metric import describe_metric
 from surefoot.scenarios.log.spec import ChannelSpec
 from surefoot.scenarios.record import channels
@@ -42,6 +49,7 @@ _LISTS: dict[str, type[BaseModel]] = {
     "faults": Fault,
     "gait.velocity": VelocitySettings,
     "gait.footsteps": FootstepSettings,
+    "errors.ground": GroundError,
 }
 
 

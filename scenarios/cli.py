@@ -50,7 +50,8 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Run a scenario, write its log and judge it."""
-    from surefoot.scenarios.loop.run import LOG_NAME, run_scenario
+    from surefoot.scenarios.loop.run import run_scenario
+    from surefoot.scenarios.record.provenance import LOG_NAME
     from surefoot.scenarios.setup.load import load_scenario, locate, output_folder
     from surefoot.scenarios.show.console import ProgressLine, print_result
     from surefoot.scenarios.show.replay.command import LiveView, check

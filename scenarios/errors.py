@@ -41,7 +41,15 @@ class ScenarioError(Exception):
 
 
 class SetupError(Exception):
-    """A scenario that passed every check, but that a part of the stack refuses; one sentence says why."""
+    """A scenario that passed every check, but that a part of the stack refuses.
+
+    Attributes:
+        problem: which key is at fault, () when no single one is, what is wrong and what would be right.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        super().__init__(str(problem))
 
 
 class LogError(Exception):

@@ -25,11 +25,11 @@ class Registry(Mapping[str, Any]):
 
     Args:
         group: group of entry points, such as ``surefoot.profiles``.
-        kind: class that every object must be an instance of.
+        kind: class, or abstract one, that every object must be an instance of.
         own: the objects of this package.
     """
 
-    def __init__(self, group: str, kind: type, own: Mapping[str, Any]) -> None:
+    def __init__(self, group: str, kind: Any, own: Mapping[str, Any]) -> None:
         self.group = group
         self._kind = kind
         self._own = dict(own)

@@ -187,6 +187,18 @@ class Start(Group):
     angle_noise: Noise = Field(default=0.0, description="random offset of base and joint angles, soles flat [rad]")
 
 
+class GroundError(Group):
+    """A box on the ground that neither planner nor controller knows of, in the frame of the start, x ahead."""
+
+    x: Place = Field(description="middle, forward of the start [m]")
+    y: Place = Field(default=0.0, description="middle, to the left [m]")
+    length: Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)] = Field(description="forward [m]")
+    width: Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)] = Field(default=2.0, description="sideways [m]")
+    height: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = Field(
+        description="of its top over the ground at the start [m]"
+    )
+
+
 class BeliefErrors(Group):
     """The planner's belief minus the truth."""
 
@@ -197,6 +209,9 @@ class BeliefErrors(Group):
         default=1.0, description="believed over true mass [-]"
     )
     friction: Finite = Field(default=0.0, description="error of the friction coefficient [-]")
+    ground: Annotated[tuple[GroundError, ...], BeforeValidator(_tuple)] | None = Field(
+        default=None, description="boxes on the ground that are not believed in, null: none"
+    )
 
 
 class PushSettings(Group):

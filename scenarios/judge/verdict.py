@@ -15,7 +15,9 @@ from surefoot.scenarios.file.schema import Gait, Scenario, TerrainSettings
 from surefoot.scenarios.judge.digest import Digest
 from surefoot.scenarios.judge.metric import compute
 from surefoot.scenarios.log import Log
-from surefoot.scenarios.setup.gait import EQUAL_STEPS, commanded, gait_duration
+from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
+from surefoot.scenarios.setup.draft import Draft
+from surefoot.scenarios.setup.gait import EQUAL_STEPS, commanded
 
 _NO_CONTACT = (
     ("terrain", "friction"),
@@ -82,7 +84,7 @@ def _unshaped(terrain: TerrainSettings) -> Iterator[str]:
 
 
 def _cut_short(scenario: Scenario) -> Iterator[str]:
-    whole = gait_duration(scenario.gait)
+    whole = Draft(scenario).gait_duration
     if scenario.duration is not None and scenario.duration < whole:
         yield f"duration {scenario.duration:g} s ends before the gait does, which takes {whole:g} s"
 
@@ -97,12 +99,6 @@ def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
     elif failures:
         yield f"the whole-body QP needed its second solver at {failures} ticks"
 
-
-SCENARIO_FILE = "scenario.yaml"
-"""Attachment that holds the scenario as run."""
-
-END_RECORD = "end"
-"""Metadata record written last: how the run ended."""
 
 _ACCEPTED_ENDS = ("completed", "fall")
 

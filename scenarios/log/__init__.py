@@ -3,6 +3,16 @@
 from surefoot.scenarios.log.messages import ChannelData
 from surefoot.scenarios.log.reader import Log, read
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
-from surefoot.scenarios.log.writer import AttachedFile, LogWriter, PublishedSchema
+from surefoot.scenarios.log.writer import AttachedFile, LogWriter, NoLog, PublishedSchema
 
-__all__ = ["AttachedFile", "ChannelData", "ChannelSpec", "FieldSpec", "Log", "LogWriter", "PublishedSchema", "read"]
+__all__ = [
+    "AttachedFile",
+    "ChannelData",
+    "ChannelSpec",
+    "FieldSpec",
+    "Log",
+    "LogWriter",
+    "NoLog",
+    "PublishedSchema",
+    "read",
+]

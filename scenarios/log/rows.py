@@ -101,6 +101,11 @@ class ChannelWriter:
         self.times.extend(times_ns)
         self.count = len(times_ns)
 
+    def drop(self) -> None:
+        """Forget what waits."""
+        self.times.clear()
+        self.count = 0
+
     def take(self, offset: int) -> tuple[memoryview, bytes]:
         """Hand over what waits.
 
@@ -161,6 +166,12 @@ class MessageWriter:
         self.count += 1
         if time_ns >= self._clock.due:
             self._flush(time_ns)
+
+    def drop(self) -> None:
+        """Forget what waits."""
+        self.times.clear()
+        self._waiting.clear()
+        self.count = 0
 
     def take(self, offset: int) -> tuple[bytes, bytes]:
         """Hand over what waits, as `ChannelWriter.take` does."""
@@ -247,6 +258,11 @@ class RowWriter:
         self._times.append(time_ns)
         if time_ns >= self._clock.due or len(self._times) == self._capacity:
             self._flush(time_ns)
+
+    def drop(self) -> None:
+        """Forget the rows that wait."""
+        self._times.clear()
+        self._numbers.clear()
 
     def spread(self) -> None:
         """Hand the rows that wait over to the channels."""

@@ -250,3 +250,35 @@ class LogWriter:
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+class NoLog(LogWriter):
+    """Stands for a log where none is wanted: whatever records into it records into nothing."""
+
+    def __init__(self) -> None:
+        """Open nothing."""
+        self._channels = []
+        self._rows = []
+        self._clock = Clock(CHUNK_PERIOD_NS)
+
+    def _define(self, topic: str, schema: PublishedSchema, metadata: dict[str, str]) -> int:
+        return len(self._channels) + 1
+
+    def attach(self, file: AttachedFile) -> None:
+        """Keep nothing."""
+
+    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Keep nothing."""
+
+    def flush(self) -> None:
+        """Forget what waits."""
+        for waiting in (*self._rows, *self._channels):
+            waiting.drop()
+
+    def close(self) -> None:
+        """Forget what waits."""
+        self.flush()
+
+    def discard(self) -> None:
+        """Forget what waits."""
+        self.flush()

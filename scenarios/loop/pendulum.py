@@ -1,32 +1,30 @@
 """The closed loop of fidelity pendulum: the same planner on a point mass with ideal feet."""
 
 import math
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import convex_hull, sole_corners
 from surefoot.planner.parameters import LegInertia
-from surefoot.planner.plan import PlanSample, PlanSampler
+from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.plants import CartTable, IdealFeet, Pendulum, PointPush
-from surefoot.planner.types import GRAVITY, CentroidalState, Foot, Footstep, PhaseInfo
-from surefoot.scenarios.file.schema import PendulumSettings, Scenario
+from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep
+from surefoot.scenarios.file.schema import PendulumSettings
 from surefoot.scenarios.judge.walking import LOST_DISTANCE
 from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.loop.faults import FaultSchedule, RunFault
 from surefoot.scenarios.loop.planning import Planning
 from surefoot.scenarios.loop.sensing import PlannerSensing
-from surefoot.scenarios.loop.skeleton import End, FaultSchedule, OnProgress, RunFault, Watch, refusing, run_ticks
+from surefoot.scenarios.loop.skeleton import ClosedLoop
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import PointView
-from surefoot.scenarios.record.walk import PendulumRecorder, TickTiming, WalkRecorder
-from surefoot.scenarios.setup.gait import push_time, run_duration
-from surefoot.scenarios.setup.ground import start_com_height, terrain_of
-from surefoot.scenarios.setup.planner import planner_parameters, square_stance, walking_planner
-
-if TYPE_CHECKING:
-    from surefoot.models.types import RobotDescription
-
+from surefoot.scenarios.record.walk import PendulumRecorder, WalkRecorder
+from surefoot.scenarios.setup.walk import Walk
+from surefoot.sim.pushes import Push
 
 Array = NDArray[np.float64]
 
@@ -113,100 +111,119 @@ def true_stiffness(sample: PlanSample, height_error: float) -> float:
     return pressing / (pressing / sample.stiffness - height_error)
 
 
-def simulate(scenario: Scenario, robot: "RobotDescription", writer: LogWriter, on_progress: OnProgress) -> End:
-    """Run a scenario on the pendulum; arguments and errors as of the loop in full physics."""
-    with refusing():
-        loop = PendulumLoop(scenario, robot, writer)
-    return run_ticks(loop, scenario.rates.control, run_duration(scenario), on_progress)
+def pendulum_loop(walk: Walk, writer: LogWriter) -> ClosedLoop:
+    """Put the parts of one run on the pendulum together; the feet do what the plan says.
 
-
-class PendulumLoop:
-    """Plant, planner and recorders of one run; the feet do what the plan says.
-
-    The plant's true height is the planned one less the scenario's error of the CoM height.
+    Args:
+        walk: what to run.
+        writer: gets every boundary crossing.
 
     Raises:
         ValueError: the planner refuses the gait.
     """
+    planner = walk.planner(walk.stance, LegInertia())
+    sizes = Sizes(nj=0, nq=0, nv=0, horizon=planner.parameters.horizon)
+    point_recorder, recorder = PendulumRecorder(writer, sizes, walk.true_mass), WalkRecorder(writer, sizes)
+    view = PointView(writer, walk.sole, walk.rates.control)
+    faults = FaultSchedule(walk.faults, walk.rates.control)
+    planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates)
+    walker = PointMass(walk, point_recorder, view)
+    return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration)
 
-    def __init__(self, scenario: Scenario, robot: "RobotDescription", writer: LogWriter) -> None:
-        rates, feet = scenario.rates, square_stance(scenario)
-        self._rate, self._height_error = rates.control, scenario.errors.com_height
-        mass = robot.mass / scenario.errors.mass_scale
-        self._half_size = 0.5 * np.array([robot.sole_length, robot.sole_width])
-        parameters = planner_parameters(scenario, LegInertia())
-        planner = walking_planner(scenario, robot, terrain_of(scenario), feet, parameters)
-        sizes = Sizes(nj=0, nq=0, nv=0, horizon=planner.parameters.horizon)
-        self._recorder = PendulumRecorder(writer, sizes, mass)
-        self._walk_recorder = WalkRecorder(writer, sizes)
-        self._view = PointView(writer, (robot.sole_length, robot.sole_width), rates.control)
-        self._faults = FaultSchedule(scenario.faults, rates.control)
-        sensing = PlannerSensing(scenario, feet)
-        self._planning = Planning(planner, sensing, self._walk_recorder, self._faults, rates)
-        self._pushes = tuple(
-            PointPush(push_time(scenario.gait, push), push.duration, np.array(push.force[:2]))
-            for push in scenario.pushes
-        )
-        self._feet = IdealFeet(feet)
-        self._plant = plant(scenario.pendulum, mass, start_position(scenario), self._height_error)
-        self._can_fall = scenario.pendulum.plant == "pendulum"
-        self._height, self._climb = start_com_height(scenario), 0.0
+
+class PointMass:
+    """A point mass on ideal feet; a `Walker`.
+
+    The plant's true height is the planned one less the error of the CoM height.
+
+    Args:
+        walk: what is run.
+        recorder: of its channels.
+        view: of what MCAP viewers show.
+
+    Attributes:
+        state: true state of this tick.
+        zmp: true ZMP, shape (2,) [m].
+        feet: the ideal feet.
+    """
+
+    def __init__(self, walk: Walk, recorder: PendulumRecorder, view: PointView) -> None:
+        self._recorder, self._view = recorder, view
+        self._period, self._height_error = 1.0 / walk.rates.control, walk.height_error
+        self._half_size = 0.5 * np.array(walk.sole)
+        self._faults = FaultSchedule(walk.faults, walk.rates.control)
+        self._pushes = [PointPush(push.time, push.duration, push.force[:2]) for push in walk.pushes]
+        self._feet = IdealFeet(walk.stance)
+        self._plant = plant(walk.pendulum, walk.true_mass, start_position(walk), self._height_error)
+        self._can_fall = walk.pendulum.plant == "pendulum"
+        self._height, self._climb = walk.start_com_height, 0.0
         self._contacts, self._support = (False, False), np.zeros((0, 2))
+        self._sample: PlanSample
+        self._force = np.zeros(2)
+        self._now = 0.0
+        self.state: CentroidalState
 
     @property
-    def phase(self) -> PhaseInfo:
-        """Where the gait stands."""
-        return self._planning.phase
+    def zmp(self) -> Array:
+        """True ZMP of the last tick, shape (2,) [m]."""
+        return self._plant.zmp
 
-    def tick(self, tick: int) -> bool:
-        """One control tick; returns whether no foot could catch the mass any more.
+    @property
+    def feet(self) -> FeetState:
+        """The feet."""
+        return self._feet.state
 
-        Raises:
-            RunFault: the measured state is not finite.
-        """
-        watch = Watch.start()
-        begin = watch.last
-        now, now_ns, period = tick / self._rate, tick * 1_000_000_000 // self._rate, 1.0 / self._rate
-        state = self._sense(now, tick)
-        planning = self._planning
-        state_time = watch.lap()
-        planner_time = 0.0
-        if planning.due(tick):
-            planning.update(tick, now_ns, self._believed(state), self._plant.zmp, self._feet.state)
-            planner_time = watch.lap()
-        sample = planning.sampler.sample(now)
-        force = mean_force(self._pushes, now, period)
-        support = self._support_of(sample.contacts)
-        self._recorder.state(now_ns, state, self._feet.state, force)
-        self._recorder.contact(now_ns, self._plant.zmp, sample, self._feet.state)
-        self._walk_recorder.reference(now_ns, planning.plan, sample)
-        lost = self._lost(state, sample.omega)
-        plan, zmp = planning.plan, self._plant.zmp
-        self._view.events(now_ns, sample.contacts, force, plan, lost)
-        self._view.picture(tick, now_ns, state.com, state.com_velocity, zmp, plan, sample)
-        log_time = watch.lap()
-        self._advance(now, period, support, force)
-        parts = (state_time, 0.0, 0.0, planner_time, watch.lap(), log_time)
-        self._walk_recorder.timing(now_ns, TickTiming(*parts, watch.last - begin))
-        return lost
-
-    def _sense(self, now: float, tick: int) -> CentroidalState:
+    def sense(self, tick: int, now: float) -> None:
+        """See `Walker`."""
         position = np.append(self._plant.position, self._height - self._height_error)
         velocity = np.append(self._plant.velocity, self._climb)
         if self._faults.active("state_nan", tick) or not math.isfinite(float(position.sum() + velocity.sum())):
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
-        return CentroidalState(now, position, velocity)
+        self.state, self._now = CentroidalState(now, position, velocity), now
 
-    def _believed(self, state: CentroidalState) -> CentroidalState:
-        return CentroidalState(state.time, np.append(state.com[:2], self._height), state.com_velocity)
+    def measured(self, now: float) -> tuple[CentroidalState, Array, FeetState]:
+        """See `Walker`."""
+        state = self.state
+        believed = CentroidalState(state.time, np.append(state.com[:2], self._height), state.com_velocity)
+        return believed, self._plant.zmp, self._feet.state
 
-    def _advance(self, now: float, period: float, support: Array, force: Array) -> None:
+    def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
+        """See `Walker`."""
+        self._force = mean_force(self._pushes, self._now, self._period)
+        self._support = self._support_of(sample.contacts)
+        return 0.0, 0.0
+
+    def record(self, now_ns: int, sample: PlanSample) -> None:
+        """See `Walker`."""
+        self._recorder.state(now_ns, self.state, self._feet.state, self._force)
+        self._recorder.contact(now_ns, self._plant.zmp, sample, self._feet.state)
+
+    def fallen(self, sample: PlanSample) -> bool:
+        """Whether no foot could catch the mass any more."""
+        dcm = self.state.com[:2] + self.state.com_velocity[:2] / sample.omega
+        return self._can_fall and bool(np.hypot(*(dcm - self._plant.zmp)) > LOST_DISTANCE)
+
+    def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
+        """See `Walker`."""
+        self._view.events(now_ns, sample.contacts, self._force, plan, fallen)
+        state = self.state
+        self._view.picture(tick, now_ns, state.com, state.com_velocity, self._plant.zmp, plan, sample)
+
+    def advance(self, now: float, sampler: PlanSampler) -> None:
         """Drive the plant through the tick, then move feet and height to its end."""
-        sampler = self._planning.sampler
-        self._plant.drive(sampler, now, period, support, force)
+        period = self._period
+        self._plant.drive(sampler, now, period, self._support, self._force)
         end = sampler.sample(now + period)
         self._height, self._climb = float(end.com[2]), float(end.com_velocity[2])
         self._feet.follow(sampler, now + period)
+
+    def push(self, push: Push) -> None:
+        """See `Walker`."""
+        if push.force[2] != 0.0:
+            raise ParameterError(
+                ("force",), "a vertical push on a pendulum, whose height is prescribed", "use [x, y, 0]"
+            )
+        self._pushes.append(PointPush(push.time, push.duration, push.force[:2]))
 
     def _support_of(self, contacts: tuple[bool, bool]) -> Array:
         """Hull of the soles in contact, shape (v, 2); they rest, so it changes with the contacts only."""
@@ -217,19 +234,15 @@ class PendulumLoop:
             self._contacts = contacts
         return self._support
 
-    def _lost(self, state: CentroidalState, omega: float) -> bool:
-        dcm = state.com[:2] + state.com_velocity[:2] / omega
-        return self._can_fall and bool(np.hypot(*(dcm - self._plant.zmp)) > LOST_DISTANCE)
 
-
-def start_position(scenario: Scenario) -> Array:
+def start_position(walk: Walk) -> Array:
     """Where the mass rests at the start: over the middle of the feet, with the start noise, shape (2,) [m]."""
-    start = scenario.start
-    noise = np.random.default_rng(scenario.seed).uniform(-start.position_noise, start.position_noise, 2)
+    start = walk.start
+    noise = np.random.default_rng(walk.seed).uniform(-start.position_noise, start.position_noise, 2)
     return np.array([start.x, start.y]) + noise
 
 
-def mean_force(pushes: tuple[PointPush, ...], time: float, period: float) -> Array:
+def mean_force(pushes: Sequence[PointPush], time: float, period: float) -> Array:
     """Mean of the pushes from an instant on for a period, so that their impulses are exact, shape (2,) [N]."""
     total = np.zeros(2)
     for push in pushes:

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import sole_rates, sole_rotation
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
+from surefoot.planner.types import CentroidalState, FeetState, PhaseKind
 from surefoot.scenarios.file.schema import Rates
+from surefoot.scenarios.loop.faults import FaultSchedule
 from surefoot.scenarios.loop.sensing import PlannerSensing
-from surefoot.scenarios.loop.skeleton import FaultSchedule
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.wbc.types import WbcReference
 
@@ -20,6 +20,7 @@ class Planning:
     """Planner, its sensing, its latest plan, and the record of all.
 
     Attributes:
+        planner: what plans.
         plan: the latest plan; there is none before the first `update`.
         sampler: of the latest plan.
     """
@@ -32,16 +33,11 @@ class Planning:
         faults: FaultSchedule,
         rates: Rates,
     ) -> None:
-        self._planner, self._sensing, self._recorder, self._faults = planner, sensing, recorder, faults
+        self.planner, self._sensing, self._recorder, self._faults = planner, sensing, recorder, faults
         self._every = rates.control // rates.planner
         self.plan: WalkPlan
         self.sampler: PlanSampler
         self._started = False
-
-    @property
-    def phase(self) -> PhaseInfo:
-        """Where the gait stands."""
-        return self.plan.phase
 
     def due(self, tick: int) -> bool:
         """Whether the planner measures at a control tick."""
@@ -62,7 +58,7 @@ class Planning:
         self._recorder.planner_state(now_ns, sensed)
         if self._started and self._faults.active("planner_freeze", tick):
             return
-        self.plan = plan = self._planner.update(sensed.given, feet)
+        self.plan = plan = self.planner.update(sensed.given, feet)
         self.sampler = PlanSampler(plan)
         self._started = True
         self._recorder.plan(now_ns, plan)

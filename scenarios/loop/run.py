@@ -10,20 +10,23 @@ from threadpoolctl import threadpool_limits
 
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.judge.verdict import END_RECORD, SCENARIO_FILE, Verdict, judge
+from surefoot.scenarios.judge.verdict import Verdict, judge
 from surefoot.scenarios.log import AttachedFile, LogWriter, read
-from surefoot.scenarios.loop.skeleton import End, OnProgress, Progress
-from surefoot.scenarios.record.provenance import RECORD, RunConstants, versions
-from surefoot.scenarios.setup.gait import step_count
-from surefoot.scenarios.setup.ground import true_terrain_of
-from surefoot.scenarios.setup.robot import describe
+from surefoot.scenarios.loop.skeleton import ClosedLoop, End, OnProgress, Progress, refusing, run_loop
+from surefoot.scenarios.record.provenance import (
+    END_RECORD,
+    LOG_NAME,
+    RECORD,
+    SCENARIO_FILE,
+    VERDICT_NAME,
+    RunConstants,
+    versions,
+)
+from surefoot.scenarios.setup.walk import Walk, resolve
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
-
-
-LOG_NAME = "log.mcap"
-VERDICT_NAME = "verdict.json"
+    from surefoot.scenarios.loop.full import Parts
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +44,8 @@ class Result:
     interrupted: bool
 
 
-Simulate = Callable[[Scenario, "RobotDescription", LogWriter, OnProgress], End]
-"""The closed loop: opens its channels in the writer, appends to them and says how it ended."""
+Simulate = Callable[[Walk, LogWriter, OnProgress], End]
+"""The closed loop from begin to end: opens its channels in the writer, appends to them and says how it ended."""
 
 
 def run_scenario(
@@ -65,63 +68,95 @@ def run_scenario(
         LogError: the log or the verdict cannot be written.
         SetupError: the loop cannot be set up as the scenario asks; no log is left.
     """
-    simulate = simulate or closed_loop(scenario.fidelity)
-    robot = robot or describe(scenario)
-    folder = made_folder(out / f"{scenario.name}-{scenario.seed}")
-    one_thread = threadpool_limits(1)  # matrices of this size lose more in waiting than they gain in sharing
-    with one_thread, LogWriter(folder / LOG_NAME, _metadata(scenario, robot), _attachments(scenario, robot)) as writer:
+    with refusing():
+        walk = resolve(scenario, robot)
+    folder = made_folder(out / f"{walk.name}-{walk.seed}")
+    with one_thread(), open_log(folder / LOG_NAME, scenario, walk) as writer:
         (folder / VERDICT_NAME).unlink(missing_ok=True)
-        end = _watched(simulate, scenario, robot, writer, on_progress)
+        end = _watched(simulate or _simulate, walk, writer, on_progress)
     verdict = judge(read(folder / LOG_NAME))
     verdict.write(folder / VERDICT_NAME)
     return Result(verdict, folder / LOG_NAME, end.kind == "interrupted")
 
 
-def closed_loop(fidelity: str) -> Simulate:
-    """The closed loop of a fidelity, imported only when it is needed."""
-    if fidelity == "pendulum":
-        from surefoot.scenarios.loop import pendulum as pendulum_loop
+def one_thread() -> threadpool_limits:
+    """One thread for linear algebra: matrices of this size lose more in waiting than they gain in sharing."""
+    return threadpool_limits(1)
 
-        return pendulum_loop.simulate
-    from surefoot.scenarios.loop import full as loop
 
-    return loop.simulate
+def closed_loop(walk: Walk, writer: LogWriter, parts: "Parts | None" = None) -> ClosedLoop:
+    """The closed loop of a walk's fidelity at its start; what it needs is imported only then.
+
+    Args:
+        walk: what to run.
+        writer: gets every boundary crossing.
+        parts: of the loop in full physics that a user replaces.
+
+    Raises:
+        SetupError: a part refuses the walk.
+    """
+    with refusing():
+        if walk.fidelity == "pendulum":
+            from surefoot.scenarios.loop.pendulum import pendulum_loop
+
+            return pendulum_loop(walk, writer)
+        from surefoot.scenarios.loop.full import full_loop
+
+        return full_loop(walk, writer, parts)
+
+
+def _simulate(walk: Walk, writer: LogWriter, on_progress: OnProgress) -> End:
+    return run_loop(closed_loop(walk, writer), on_progress)
+
+
+def open_log(path: Path, scenario: Scenario, walk: Walk) -> LogWriter:
+    """A log that says what its run is, before anything has happened.
+
+    Raises:
+        LogError: it cannot be written.
+    """
+    metadata = {RECORD: run_constants(walk).to_metadata(), "versions": versions()}
+    attachments = [
+        AttachedFile(SCENARIO_FILE, "application/yaml", scenario_yaml(scenario).encode()),
+        AttachedFile("robot.xml", "application/xml", walk.robot.mjcf.encode()),
+    ]
+    return LogWriter(path, metadata, attachments)
 
 
 def scenario_yaml(scenario: Scenario) -> str:
-    """The scenario as run: every key with its value."""
-    return yaml.safe_dump(scenario.model_dump(mode="json", exclude_none=True), sort_keys=False)
+    """The scenario as run: every key with its value, but for keys and groups in which everything is left null."""
+    keys = scenario.model_dump(mode="json", exclude_none=True)
+    return yaml.safe_dump({key: value for key, value in keys.items() if value != {}}, sort_keys=False)
 
 
-def run_constants(scenario: Scenario, robot: "RobotDescription") -> RunConstants:
-    """Collect what the metrics need of a scenario and its robot."""
+def run_constants(walk: Walk) -> RunConstants:
+    """Collect what the metrics need of a walk and its robot."""
+    robot = walk.robot
     return RunConstants(
-        scenario=scenario.name,
-        fidelity=scenario.fidelity,
-        seed=scenario.seed,
-        steps_planned=step_count(scenario.gait),
-        mass=float(robot.mass) / scenario.errors.mass_scale,
-        com_height=scenario.gait.com_height - scenario.errors.com_height,
+        scenario=walk.name,
+        fidelity=walk.fidelity,
+        seed=walk.seed,
+        steps_planned=walk.gait.steps,
+        mass=walk.true_mass,
+        com_height=walk.true_com_height,
         foot_length=float(robot.sole_length),
         foot_width=float(robot.sole_width),
-        control_rate=scenario.rates.control,
-        sample_time=scenario.planner.sample_time,
+        control_rate=walk.rates.control,
+        sample_time=walk.parameters.sample_time,
         joint_names=tuple(robot.joint_names),
         torque_limit=tuple(float(value) for value in robot.torque_limit),
         position_lower=tuple(float(value) for value in robot.position_lower),
         position_upper=tuple(float(value) for value in robot.position_upper),
-        terrain=scenario.terrain.kind,
-        plant=scenario.pendulum.plant,
+        terrain=walk.terrain_kind,
+        plant=walk.pendulum.plant,
         boxes=tuple(
             (*box.center.tolist(), *box.half_size.tolist(), *box.rotation.ravel().tolist())
-            for box in true_terrain_of(scenario).boxes
+            for box in walk.true_terrain.boxes
         ),
     )
 
 
-def _watched(
-    simulate: Simulate, scenario: Scenario, robot: "RobotDescription", writer: LogWriter, on_progress: OnProgress | None
-) -> End:
+def _watched(simulate: Simulate, walk: Walk, writer: LogWriter, on_progress: OnProgress | None) -> End:
     """Run the loop and write into the log how it ended, however it ended."""
     last = Progress(0.0, 0.0, "", 0.0)
 
@@ -132,7 +167,7 @@ def _watched(
             on_progress(progress)
 
     try:
-        end = simulate(scenario, robot, writer, note)
+        end = simulate(walk, writer, note)
     except KeyboardInterrupt:
         end = End("interrupted", last.time, "interrupted by the user")
     except LogError:
@@ -141,25 +176,15 @@ def _watched(
         writer.discard()
         raise
     except Exception as error:
-        _write_end(writer, End("fault", last.time, f"internal error, {type(error).__name__}: {error}"))
+        write_end(writer, End("fault", last.time, f"internal error, {type(error).__name__}: {error}"))
         raise
-    _write_end(writer, end)
+    write_end(writer, end)
     return end
 
 
-def _write_end(writer: LogWriter, end: End) -> None:
+def write_end(writer: LogWriter, end: End) -> None:
+    """Write how a run ended, the last record of its log."""
     writer.add_metadata(END_RECORD, {"kind": end.kind, "time": f"{end.time:.6f}", "reason": end.reason})
-
-
-def _metadata(scenario: Scenario, robot: "RobotDescription") -> dict[str, dict[str, str]]:
-    return {RECORD: run_constants(scenario, robot).to_metadata(), "versions": versions()}
-
-
-def _attachments(scenario: Scenario, robot: "RobotDescription") -> list[AttachedFile]:
-    return [
-        AttachedFile(SCENARIO_FILE, "application/yaml", scenario_yaml(scenario).encode()),
-        AttachedFile("robot.xml", "application/xml", robot.mjcf.encode()),
-    ]
 
 
 def made_folder(path: Path) -> Path:

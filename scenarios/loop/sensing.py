@@ -5,9 +5,10 @@ from numpy.typing import NDArray
 
 from surefoot.planner.model.filter import ZMP_ONLY, CentroidalFilter, FilterNoise
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.types import GRAVITY, CentroidalState, FeetState
-from surefoot.scenarios.file.schema import Scenario, Sensing
+from surefoot.planner.types import GRAVITY, CentroidalState
+from surefoot.scenarios.file.schema import Sensing
 from surefoot.scenarios.record.walk import PlannerState
+from surefoot.scenarios.setup.walk import Walk
 
 Array = NDArray[np.float64]
 
@@ -31,23 +32,22 @@ _STREAM = 1
 
 
 class PlannerSensing:
-    """Noisy measurement and filter of a scenario.
+    """Noisy measurement and filter of a walk.
 
     Horizontal CoM position, velocity and ZMP are noisy; the CoM height needs no measurement, since the planner uses its
     own. One Gaussian sample per plan, clipped; always as many are drawn, so that one noise does not change another.
 
     Args:
-        scenario: its sensing, its filter and its seed.
-        feet: where the robot stands at the start.
+        walk: its sensing, its filter, its seed, and where the feet stand at the start.
     """
 
-    def __init__(self, scenario: Scenario, feet: FeetState) -> None:
-        sensing = scenario.sensing
+    def __init__(self, walk: Walk) -> None:
+        sensing = walk.sensing
         com = sensing.com_noise
         self._deviation = np.repeat([sensing.zmp_noise, com, VELOCITY_NOISE * com], 2).reshape(3, 2)
-        self._rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(_STREAM,)))
-        self._filter = _filter(scenario, feet)
-        self._ground = float(feet.position[:, 2].mean())
+        self._rng = np.random.default_rng(np.random.SeedSequence(walk.seed, spawn_key=(_STREAM,)))
+        self._filter = _filter(walk)
+        self._ground = float(walk.stance.position[:, 2].mean())
 
     def sense(self, state: CentroidalState, zmp: Array, plan: WalkPlan | None) -> PlannerState:
         """Measure, and estimate from all measurements so far.
@@ -84,22 +84,15 @@ class PlannerSensing:
         kalman.update(zmp - offset, measured.com[:2], measured.com_velocity[:2], stiffness)
 
 
-def _filter(scenario: Scenario, feet: FeetState) -> CentroidalFilter | None:
-    """The scenario's filter, believing that the robot stands still over the middle of its feet."""
-    kind = filter_kind(scenario)
-    if kind == "none":
+def _filter(walk: Walk) -> CentroidalFilter | None:
+    """The walk's filter, believing that the robot stands still over the middle of its feet."""
+    if walk.filter == "none":
         return None
     mean = np.zeros((3, 2))
-    mean[0] = feet.position[:, :2].mean(axis=0)
-    noise = filter_noise(scenario.sensing)
-    sensors = ZMP_ONLY if kind == "zmp_only" else (True, True, True)
-    return CentroidalFilter(scenario.planner.sample_time, noise, mean, _PRIOR, sensors)
-
-
-def filter_kind(scenario: Scenario) -> str:
-    """The filter of a scenario; when it names none, the Kalman filter if there is noise."""
-    sensing = scenario.sensing
-    return scenario.planner.filter or ("kalman" if sensing.zmp_noise > 0.0 or sensing.com_noise > 0.0 else "none")
+    mean[0] = walk.stance.position[:, :2].mean(axis=0)
+    noise = filter_noise(walk.sensing)
+    sensors = ZMP_ONLY if walk.filter == "zmp_only" else (True, True, True)
+    return CentroidalFilter(walk.parameters.sample_time, noise, mean, _PRIOR, sensors)
 
 
 def filter_noise(sensing: Sensing) -> FilterNoise:

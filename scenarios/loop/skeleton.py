@@ -1,14 +1,27 @@
 """What every closed loop has in common: it goes tick by tick until its time is over, it falls or it meets a fault."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from surefoot.planner.types import PhaseInfo, PhaseKind
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
+from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
-from surefoot.scenarios.file.schema import Fault
+from surefoot.scenarios.loop.faults import RunFault
+from surefoot.scenarios.loop.planning import Planning
+from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
+from surefoot.scenarios.setup.keys import scenario_problem
+from surefoot.sim.pushes import Push
+
+AFTER_FALL = 0.3
+"""How long a run goes on after a fall, so that the log shows it [s]."""
+
+_PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,34 +59,6 @@ class End:
 OnProgress = Callable[[Progress], None]
 
 
-class FaultSchedule:
-    """Time windows of the scenario's faults on the control clock."""
-
-    def __init__(self, faults: Sequence[Fault], control_rate: int) -> None:
-        """Faults with times in seconds, on a clock of ``control_rate`` [Hz]."""
-        self._windows = tuple(
-            (fault.kind, round(fault.time * control_rate), _end(fault, control_rate)) for fault in faults
-        )
-
-    def active(self, kind: str, tick: int) -> bool:
-        """Whether a fault of that kind acts at that control tick."""
-        return any(name == kind and start <= tick < end for name, start, end in self._windows)
-
-
-def _end(fault: Fault, control_rate: int) -> float:
-    return float("inf") if fault.duration is None else round((fault.time + fault.duration) * control_rate)
-
-
-AFTER_FALL = 0.3
-"""How long a run goes on after a fall, so that the log shows it [s]."""
-
-_PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}
-
-
-class RunFault(Exception):  # noqa: N818  the event, not a mistake of the caller
-    """What ends a run before its time, in words."""
-
-
 @contextmanager
 def refusing() -> Iterator[None]:
     """Turn the refusal of a part to be built as the scenario asks into an error that the user can mend.
@@ -84,23 +69,57 @@ def refusing() -> Iterator[None]:
     try:
         yield
     except ValueError as refusal:
-        raise SetupError(str(refusal)) from refusal
+        raise SetupError(scenario_problem(refusal)) from refusal
 
 
-class Loop(Protocol):
-    """A closed loop."""
+class Walker(Protocol):
+    """What walks in a closed loop: a simulated robot under its whole-body controller, or a point mass on ideal feet.
 
-    def tick(self, tick: int) -> bool:
-        """Go through one control tick; returns whether the robot has fallen.
+    The skeleton calls its verbs in the order in which they stand here, once per control tick.
+    """
+
+    def sense(self, tick: int, now: float) -> None:
+        """Measure.
 
         Raises:
-            RunFault: the run cannot go on.
+            RunFault: what is measured is not finite.
         """
         ...
 
-    @property
-    def phase(self) -> PhaseInfo:
-        """Where the gait stands; asked only after a tick."""
+    def measured(self, now: float) -> tuple[CentroidalState, NDArray[np.float64], FeetState]:
+        """What the planner may measure, without noise: CoM, ZMP, shape (2,) [m], and feet."""
+        ...
+
+    def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
+        """Decide what to do about the plan; returns the time to build and to solve the controller's QP [s]."""
+        ...
+
+    def record(self, now_ns: int, sample: PlanSample) -> None:
+        """Write the tick into the log's channels."""
+        ...
+
+    def fallen(self, sample: PlanSample) -> bool:
+        """Whether it has fallen."""
+        ...
+
+    def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
+        """Write what MCAP viewers show of the tick."""
+        ...
+
+    def advance(self, now: float, sampler: PlanSampler) -> None:
+        """Simulate until the next tick.
+
+        Raises:
+            RunFault: the simulation diverged.
+        """
+        ...
+
+    def push(self, push: Push) -> None:
+        """Take a push that begins at the next tick.
+
+        Raises:
+            ValueError: it cannot act on this walker.
+        """
         ...
 
 
@@ -127,34 +146,110 @@ class Watch:
         return passed
 
 
-def run_ticks(loop: Loop, rate: int, duration: float, on_progress: OnProgress) -> End:
+class ClosedLoop:
+    """One run: a walker, its planner and their records on one integer clock.
+
+    Args:
+        walker: what walks.
+        planning: its planner.
+        recorder: gets the reference and the timing of every tick.
+        rate: of the control ticks [Hz].
+        duration: simulated time [s].
+
+    Attributes:
+        walker: what walks.
+        planning: its planner.
+        rate: of the control ticks [Hz].
+        tick: number of the next tick.
+        end: how the run ended, or will have ended if nothing happens.
+        fell: whether the walker has fallen.
+        done: whether the run is over: its time, a while after a fall, or a fault.
+    """
+
+    def __init__(self, walker: Walker, planning: Planning, recorder: WalkRecorder, rate: int, duration: float) -> None:
+        self.walker, self.planning = walker, planning
+        self._recorder, self.rate = recorder, rate
+        self._ticks = self._last = round(duration * rate)
+        self.tick = 0
+        self.end = End("completed", self._ticks / rate)
+        self.fell = False
+        self.done = self._last == 0
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the next tick [s]."""
+        return self.tick / self.rate
+
+    @property
+    def duration(self) -> float:
+        """Simulated time that the run takes at most [s]."""
+        return self._ticks / self.rate
+
+    @property
+    def phase(self) -> PhaseInfo:
+        """Where the gait stands; asked only after a step."""
+        return self.planning.plan.phase
+
+    def step(self) -> PlanSample | None:
+        """Go through one control tick; returns the reference of the tick, None when a fault ended the run."""
+        tick, rate = self.tick, self.rate
+        try:
+            sample, fallen = self._step(tick)
+        except RunFault as fault:
+            self.end, self.done = End("fault", tick / rate, str(fault)), True
+            return None
+        if fallen and not self.fell:
+            self.fell = True
+            self.end = End("fall", tick / rate, f"the robot fell at {tick / rate:.3f} s")
+            self._last = min(self._last, tick + round(AFTER_FALL * rate))
+        self.tick = tick + 1
+        self.done = self.tick >= self._last
+        return sample
+
+    def _step(self, tick: int) -> tuple[PlanSample, bool]:
+        watch = Watch.start()
+        begin = watch.last
+        walker, planning, rate = self.walker, self.planning, self.rate
+        now, now_ns = tick / rate, tick * 1_000_000_000 // rate
+        walker.sense(tick, now)
+        state_time = watch.lap()
+        planner_time = 0.0
+        if planning.due(tick):
+            planning.update(tick, now_ns, *walker.measured(now))
+            planner_time = watch.lap()
+        plan = planning.plan
+        sample = planning.sampler.sample(now)
+        build_time, solve_time = walker.act(tick, plan, sample)
+        watch.lap()
+        walker.record(now_ns, sample)
+        self._recorder.reference(now_ns, plan, sample)
+        fallen = walker.fallen(sample)
+        walker.draw(tick, now_ns, plan, sample, fallen)
+        log_time = watch.lap()
+        walker.advance(now, planning.sampler)
+        physics_time = watch.lap()
+        parts = (state_time, build_time, solve_time, planner_time, physics_time, log_time)
+        self._recorder.timing(now_ns, TickTiming(*parts, watch.last - begin))
+        return sample, fallen
+
+
+def run_loop(loop: ClosedLoop, on_progress: OnProgress) -> End:
     """Run a closed loop to the end, to shortly after a fall, or to a fault.
 
     Args:
         loop: the closed loop, at its start.
-        rate: of its ticks [Hz].
-        duration: simulated time [s].
         on_progress: is told where the run is, every simulated tenth of a second.
     """
-    started = time.perf_counter()
-    ticks = round(duration * rate)
-    end, last = End("completed", ticks / rate), ticks
-    tick = 0
-    try:
-        while tick < last:
-            if loop.tick(tick) and end.kind == "completed":
-                end = End("fall", tick / rate, f"the robot fell at {tick / rate:.3f} s")
-                last = min(last, tick + round(AFTER_FALL * rate))
-            tick += 1
-            if tick % (rate // 10 or 1) == 0:
-                on_progress(_progress(loop.phase, tick / rate, ticks / rate, time.perf_counter() - started))
-    except RunFault as fault:
-        return End("fault", tick / rate, str(fault))
-    return end
+    started, every = time.perf_counter(), loop.rate // 10 or 1
+    while not loop.done and loop.step() is not None:
+        if loop.tick % every == 0:
+            on_progress(_progress(loop, time.perf_counter() - started))
+    return loop.end
 
 
-def _progress(phase: PhaseInfo, now: float, duration: float, wall: float) -> Progress:
+def _progress(loop: ClosedLoop, wall: float) -> Progress:
+    phase = loop.phase
     name = _PHASE_NAMES[phase.kind]
     if phase.kind is PhaseKind.SINGLE:
         name = f"{name}, step {phase.step}"
-    return Progress(now, duration, name, now / wall if wall > 0.0 else 0.0)
+    return Progress(loop.time, loop.duration, name, loop.time / wall if wall > 0.0 else 0.0)

@@ -9,11 +9,11 @@ from typing import Any
 
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.judge.verdict import END_RECORD, SCENARIO_FILE, judge
+from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
-from surefoot.scenarios.loop.run import LOG_NAME, run_scenario, scenario_yaml
+from surefoot.scenarios.loop.run import run_scenario, scenario_yaml
 from surefoot.scenarios.paper.studies import PROFILES, WORLD_SETTINGS, Experiment, Study, World
-from surefoot.scenarios.record.provenance import versions
+from surefoot.scenarios.record.provenance import END_RECORD, LOG_NAME, SCENARIO_FILE, versions
 from surefoot.scenarios.setup.load import load_scenario
 
 ENDED = ("completed", "fall")

@@ -19,6 +19,15 @@ RECORD = "run"
 WORLD_FILE = "world.xml"
 """Attachment that holds the simulated world as MJCF, the robot in it."""
 
+SCENARIO_FILE = "scenario.yaml"
+"""Attachment that holds the scenario as run."""
+
+END_RECORD = "end"
+"""Metadata record written last: how the run ended."""
+
+LOG_NAME, VERDICT_NAME = "log.mcap", "verdict.json"
+"""Files of a run in its folder."""
+
 
 @dataclass(frozen=True, slots=True)
 class RunConstants:

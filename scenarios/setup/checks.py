@@ -5,10 +5,10 @@ from collections.abc import Iterator
 
 from surefoot.scenarios.errors import Problem, nearest
 from surefoot.scenarios.file.criteria import ELEMENTS
-from surefoot.scenarios.file.schema import Gait, PushSettings, Scenario
-from surefoot.scenarios.setup.gait import commanded, longest_step, step_count, uncommanded
+from surefoot.scenarios.file.schema import PushSettings
+from surefoot.scenarios.setup.draft import Draft
+from surefoot.scenarios.setup.gait import longest_step, uncommanded
 from surefoot.scenarios.setup.robot import RobotFacts, Robots
-from surefoot.scenarios.setup.terrain_checks import rough_problems, stair_problems
 from surefoot.scenarios.setup.walk_checks import (
     FEWEST_SWING_SAMPLES,
     command_problems,
@@ -19,20 +19,20 @@ from surefoot.scenarios.setup.walk_checks import (
 )
 
 
-def check(scenario: Scenario, robots: Robots) -> list[Problem]:
+def check(draft: Draft, robots: Robots) -> list[Problem]:
     """List what does not fit together."""
-    commands = command_problems(scenario)
+    commands = command_problems(draft)
     if commands:
-        scenario = scenario.model_copy(update={"gait": uncommanded(scenario.gait)})
+        draft = Draft(draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)}))
     return [
         *commands,
-        *_rates(scenario),
-        *_durations(scenario),
-        *_pushes(scenario),
-        *_criteria(scenario),
-        *_beliefs(scenario),
-        *walk_problems(scenario),
-        *_robot(scenario, robots),
+        *_rates(draft),
+        *_durations(draft),
+        *_pushes(draft),
+        *_criteria(draft),
+        *_beliefs(draft),
+        *walk_problems(draft),
+        *_robot(draft, robots),
     ]
 
 
@@ -42,24 +42,24 @@ def is_multiple(value: float, unit: float) -> bool:
     return math.isclose(ratio, round(ratio), rel_tol=1e-9, abs_tol=1e-9)
 
 
-def _rates(scenario: Scenario) -> Iterator[Problem]:
-    rates = scenario.rates
+def _rates(draft: Draft) -> Iterator[Problem]:
+    rates = draft.keys.rates
     for fast, slow in (("physics", "control"), ("control", "planner")):
         above, below = getattr(rates, fast), getattr(rates, slow)
         if above % below:
             right = f"use a divisor of {above} Hz"
             yield Problem(("rates", slow), f"rates.{slow} {below} Hz does not divide rates.{fast} {above} Hz", right)
-    sample_time = scenario.planner.sample_time
+    sample_time = draft.keys.planner.sample_time
     if not math.isclose(rates.planner * sample_time, 1.0, rel_tol=1e-9):
         what = f"planner.sample_time {sample_time} s is not the period of rates.planner {rates.planner} Hz"
         yield Problem(("planner", "sample_time"), what, f"use {1 / rates.planner:.6g} s, or rates.planner to match")
 
 
-def _durations(scenario: Scenario) -> Iterator[Problem]:
-    sample_time = scenario.planner.sample_time
+def _durations(draft: Draft) -> Iterator[Problem]:
+    sample_time = draft.keys.planner.sample_time
     for name in ("single_support", "double_support", "initial_stand"):
-        value = getattr(scenario.gait, name)
-        if name == "single_support" and swing_too_short(scenario):
+        value = getattr(draft.keys.gait, name)
+        if name == "single_support" and swing_too_short(draft):
             what = f"gait.{name} {value} s is too short for a swing of the foot"
             yield Problem(("gait", name), what, f"use at least {FEWEST_SWING_SAMPLES * sample_time:g} s")
         elif not is_multiple(value, sample_time):
@@ -68,8 +68,8 @@ def _durations(scenario: Scenario) -> Iterator[Problem]:
             yield Problem(("gait", name), what, f"use for example {near:.6g} s")
 
 
-def _pushes(scenario: Scenario) -> Iterator[Problem]:
-    for index, push in enumerate(scenario.pushes):
+def _pushes(draft: Draft) -> Iterator[Problem]:
+    for index, push in enumerate(draft.keys.pushes):
         key = ("pushes", index)
         by_gait = (push.step, push.phase, push.fraction)
         if push.time is not None and by_gait != (None, None, None):
@@ -77,18 +77,18 @@ def _pushes(scenario: Scenario) -> Iterator[Problem]:
         elif push.time is None and (push.step is None or push.phase is None):
             yield Problem(key, "a push without a begin", "give time, or step, phase and fraction")
         else:
-            yield from _within_gait(scenario, push, index)
+            yield from _within_gait(draft, push, index)
 
 
-def _within_gait(scenario: Scenario, push: PushSettings, index: int) -> Iterator[Problem]:
-    steps = step_count(scenario.gait)
+def _within_gait(draft: Draft, push: PushSettings, index: int) -> Iterator[Problem]:
+    steps = draft.gait.steps
     if push.step is not None and push.step > steps:
         what = f"a push in step {push.step} of a gait of {steps} steps"
         yield Problem(("pushes", index, "step"), what, f"give a step of at most {steps}")
 
 
-def _criteria(scenario: Scenario) -> Iterator[Problem]:
-    for name, bound in scenario.criteria.items():
+def _criteria(draft: Draft) -> Iterator[Problem]:
+    for name, bound in draft.keys.criteria.items():
         low, high = bound.min, bound.max
         if isinstance(low, float) and isinstance(high, float) and low > high:
             yield Problem(("criteria", name), f"criteria.{name}: min {low} exceeds max {high}", "swap them")
@@ -99,40 +99,33 @@ def _criteria(scenario: Scenario) -> Iterator[Problem]:
                 yield Problem(("criteria", name, side), what, f"give one number, or {size} of them")
 
 
-def _beliefs(scenario: Scenario) -> Iterator[Problem]:
-    height, error = scenario.gait.com_height, scenario.errors.com_height
+def _beliefs(draft: Draft) -> Iterator[Problem]:
+    height, error = draft.keys.gait.com_height, draft.keys.errors.com_height
     if error > 0.5 * height:
         what = f"errors.com_height {error} m leaves {height - error:.3g} m of gait.com_height {height} m as the truth"
         yield Problem(("errors", "com_height"), what, f"use at most {0.5 * height:.3g} m")
 
 
-def _robot(scenario: Scenario, robots: Robots) -> Iterator[Problem]:
+def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
     names = robots.names()
-    if scenario.robot not in names:
-        yield Problem(("robot",), f"unknown robot '{scenario.robot}'", nearest(scenario.robot, names))
+    if draft.keys.robot not in names:
+        yield Problem(("robot",), f"unknown robot '{draft.keys.robot}'", nearest(draft.keys.robot, names))
         return
     try:
-        facts = robots.facts(scenario)
+        facts = robots.facts(draft.keys.robot, draft.keys.robot_options)
     except ValueError as error:
         yield Problem(("robot_options",), str(error).rstrip("."), "change robot_options")
         return
-    bodies = [(("pushes", i, "body"), push.body) for i, push in enumerate(scenario.pushes)]
-    for key, body in (*bodies, (("robot_options", "payload_body"), scenario.robot_options.payload_body)):
+    bodies = [(("pushes", i, "body"), push.body) for i, push in enumerate(draft.keys.pushes)]
+    for key, body in (*bodies, (("robot_options", "payload_body"), draft.keys.robot_options.payload_body)):
         if body is not None and body not in facts.bodies:
-            yield Problem(key, f"unknown body '{body}' of {scenario.robot}", nearest(body, facts.bodies))
-    reach = list(_reach(scenario.gait, facts))
-    steps = commanded_step_problems if commanded(scenario.gait) else footstep_problems
-    yield from (
-        reach
-        or list(steps(scenario, facts))
-        or [
-            *stair_problems(scenario, facts),
-            *rough_problems(scenario, facts),
-        ]
-    )
+            yield Problem(key, f"unknown body '{body}' of {draft.keys.robot}", nearest(body, facts.bodies))
+    steps = commanded_step_problems if draft.commanded else footstep_problems
+    yield from list(_reach(draft, facts)) or list(steps(draft, facts)) or draft.kind.problems(draft, facts)
 
 
-def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:
+def _reach(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
+    gait = draft.keys.gait
     sideways = (gait.step_width - facts.hip_width) / 2
     if abs(sideways) >= facts.leg_length:
         what = f"gait.step_width {gait.step_width} m is out of reach of the legs"
@@ -143,6 +136,6 @@ def _reach(gait: Gait, facts: RobotFacts) -> Iterator[Problem]:
         highest = facts.com_above_hip + math.sqrt(facts.leg_length**2 - sideways**2)
         what = f"gait.com_height {gait.com_height} m is out of reach with feet {gait.step_width} m apart"
         yield Problem(("gait", "com_height"), what, f"use less than {highest:.3f} m")
-    elif gait.steps and not commanded(gait) and abs(gait.step_length) > longest:
+    elif gait.steps and not draft.commanded and abs(gait.step_length) > longest:
         what = f"gait.step_length {gait.step_length} m is out of reach at com_height {gait.com_height} m"
         yield Problem(("gait", "step_length"), what, f"use at most {longest:.3f} m, or lower gait.com_height")

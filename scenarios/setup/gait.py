@@ -1,4 +1,4 @@
-"""A scenario's gait in the planner's terms, whichever way it is commanded, and its place in time."""
+"""The keys of a gait in the planner's terms, whichever way it is commanded, and the gait's place in time."""
 
 import math
 from collections.abc import Sequence
@@ -19,7 +19,95 @@ from surefoot.planner.walk.commands import (
 )
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import StepRegion, landing
-from surefoot.scenarios.file.schema import FootstepSettings, Gait, PushSettings, Scenario, VelocitySettings
+from surefoot.scenarios.file.schema import FootstepSettings, Gait, PushSettings, VelocitySettings
+
+EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
+"""Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
+
+SHANKS_APART = 0.11
+"""Distance beside at which upright shanks, a decimetre thick, keep a centimetre apart; soles may be narrower [m]."""
+
+FINAL_STAND = 2.5
+"""Standing after the last double support that ends a run whose duration is not given [s]."""
+
+
+def commanded(keys: Gait) -> bool:
+    """Whether the gait is given by a velocity or by footsteps."""
+    return bool(keys.velocity or keys.footsteps)
+
+
+def uncommanded(keys: Gait) -> Gait:
+    """The same gait without velocity and footsteps."""
+    return keys.model_copy(update={"velocity": (), "footsteps": ()})
+
+
+def gait_of(keys: Gait) -> GaitParameters:
+    """The gait in the planner's terms; the widths of its strides are not yet fitted to where feet may land.
+
+    Raises:
+        ParameterError: velocity or footsteps cannot be walked.
+    """
+    plain = GaitParameters(
+        steps=0 if commanded(keys) else keys.steps,
+        step_length=keys.step_length,
+        step_width=keys.step_width,
+        lateral_step=keys.lateral_step,
+        turn=keys.turn,
+        single_support=keys.single_support,
+        double_support=keys.double_support,
+        swing_height=keys.swing_height,
+        com_height=keys.com_height,
+        initial_stand=keys.initial_stand,
+        apex_ss=keys.apex_single,
+        apex_ds=keys.apex_double,
+        heel_off=keys.heel_off,
+    )
+    if keys.velocity:
+        bouts = velocity_bouts(timeline_of(keys.velocity), plain)
+        return walk_of(plain, bouts, leading_foot(bouts))
+    if keys.footsteps:
+        footsteps = footsteps_of(keys.footsteps)
+        return walk_of(plain, footstep_bouts(footsteps, plain), footsteps[0].foot)
+    return plain
+
+
+def fitted_to(region: StepRegion, gait: GaitParameters, keys: Gait) -> GaitParameters:
+    """The gait with the widths of a velocity's strides fitted to where feet may land."""
+    return fitted(gait, region) if keys.velocity else gait
+
+
+def longest_landing(gait: GaitParameters) -> float:
+    """How far ahead of or behind its stance foot a step lands at most, either foot leading [m]."""
+    places = [landing(stride, foot) for stride in gait.strides for foot in Foot]
+    return max((abs(place.ahead) for place in places), default=0.0)
+
+
+def twist_of(command: VelocitySettings) -> Twist:
+    """The velocity that a command asks for."""
+    return Twist(command.v_x, command.v_y, command.yaw_rate)
+
+
+def timeline_of(commands: Sequence[VelocitySettings]) -> VelocityTimeline:
+    """Velocity commands in the planner's terms.
+
+    Raises:
+        ParameterError: they are out of order or end in motion.
+    """
+    return VelocityTimeline([VelocityCommand(command.time, twist_of(command)) for command in commands])
+
+
+def footsteps_of(footsteps: Sequence[FootstepSettings]) -> list[Footstep]:
+    """Footsteps in the planner's terms, in the frame between the start feet."""
+    return [Footstep(Foot[step.foot.upper()], np.array([step.x, step.y, 0.0]), step.yaw) for step in footsteps]
+
+
+def step_region(
+    parameters: PlannerParameters, sole: tuple[float, float], leg_span: float = math.inf, hip_width: float = 0.0
+) -> StepRegion:
+    """Where commanded steps may land: within the planner's reach, and the legs' if they are given."""
+    near, far = parameters.reach_width
+    width = (max(near, SHANKS_APART), far)
+    return StepRegion(parameters.reach_length, width, sole, leg_span=leg_span, hip_width=hip_width)
 
 
 def longest_step(leg_length: float, hip_height: float, hip_width: float, step_width: float) -> float:
@@ -42,119 +130,7 @@ def longest_step(leg_length: float, hip_height: float, hip_width: float, step_wi
     return 2 * math.sqrt(square) if square >= 0 else math.nan
 
 
-EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
-"""Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
-
-SHANKS_APART = 0.11
-"""Distance beside at which upright shanks, a decimetre thick, keep a centimetre apart; soles may be narrower [m]."""
-
-
-def commanded(gait: Gait) -> bool:
-    """Whether the gait is given by a velocity or by footsteps."""
-    return bool(gait.velocity or gait.footsteps)
-
-
-def uncommanded(gait: Gait) -> Gait:
-    """The same gait without velocity and footsteps."""
-    return gait.model_copy(update={"velocity": (), "footsteps": ()})
-
-
-def gait_of(gait: Gait, region: StepRegion | None = None) -> GaitParameters:
-    """The gait in the planner's terms.
-
-    Args:
-        gait: the keys.
-        region: where steps may land, to which the widths of a velocity's strides are fitted; None leaves them.
-
-    Raises:
-        ValueError: velocity or footsteps cannot be walked.
-    """
-    plain = GaitParameters(
-        steps=0 if commanded(gait) else gait.steps,
-        step_length=gait.step_length,
-        step_width=gait.step_width,
-        lateral_step=gait.lateral_step,
-        turn=gait.turn,
-        single_support=gait.single_support,
-        double_support=gait.double_support,
-        swing_height=gait.swing_height,
-        com_height=gait.com_height,
-        initial_stand=gait.initial_stand,
-        apex_ss=gait.apex_single,
-        apex_ds=gait.apex_double,
-        heel_off=gait.heel_off,
-    )
-    if gait.velocity:
-        bouts = velocity_bouts(timeline_of(gait.velocity), plain)
-        walk = walk_of(plain, bouts, leading_foot(bouts))
-        return walk if region is None else fitted(walk, region)
-    if gait.footsteps:
-        footsteps = footsteps_of(gait.footsteps)
-        return walk_of(plain, footstep_bouts(footsteps, plain), footsteps[0].foot)
-    return plain
-
-
-def longest_landing(gait: Gait) -> float:
-    """How far ahead of or behind its stance foot a commanded step lands at most, either foot leading [m]."""
-    places = [landing(stride, foot) for stride in gait_of(gait).strides for foot in Foot]
-    return max((abs(place.ahead) for place in places), default=0.0)
-
-
-def twist_of(command: VelocitySettings) -> Twist:
-    """The velocity that a command asks for."""
-    return Twist(command.v_x, command.v_y, command.yaw_rate)
-
-
-def timeline_of(commands: Sequence[VelocitySettings]) -> VelocityTimeline:
-    """Velocity commands in the planner's terms.
-
-    Raises:
-        ValueError: they are out of order or end in motion.
-    """
-    return VelocityTimeline([VelocityCommand(command.time, twist_of(command)) for command in commands])
-
-
-def footsteps_of(footsteps: Sequence[FootstepSettings]) -> list[Footstep]:
-    """Footsteps in the planner's terms, in the frame between the start feet."""
-    return [Footstep(Foot[step.foot.upper()], np.array([step.x, step.y, 0.0]), step.yaw) for step in footsteps]
-
-
-def step_region(
-    parameters: PlannerParameters, sole: tuple[float, float], leg_span: float = math.inf, hip_width: float = 0.0
-) -> StepRegion:
-    """Where commanded steps may land: within the planner's reach, and the legs' if they are given."""
-    near, far = parameters.reach_width
-    width = (max(near, SHANKS_APART), far)
-    return StepRegion(parameters.reach_length, width, sole, leg_span=leg_span, hip_width=hip_width)
-
-
-FINAL_STAND = 2.5
-"""Standing after the last double support that ends a run whose duration is not given [s]."""
-
-
-def step_count(gait: Gait) -> int:
-    """Number of footsteps."""
-    return gait_of(gait).steps
-
-
-def phase_start(gait: Gait, step: int, phase: str) -> float:
-    """Begin [s] of a support phase of a footstep; step 1 is the first, its double support comes first.
-
-    The double support before the first step of a bout shifts the weight from rest and lasts twice as long as the
-    others.
-    """
-    single = _lift_off(gait, step)
-    return single if phase == "single" else single - phase_duration(gait, step, phase)
-
-
-def phase_duration(gait: Gait, step: int, phase: str) -> float:
-    """Duration [s] of a support phase of a footstep."""
-    if phase == "single":
-        return gait.single_support
-    return gait.double_support * (2 if step in _first_steps(gait) else 1)
-
-
-def push_time(gait: Gait, push: PushSettings) -> float:
+def push_time(gait: GaitParameters, push: PushSettings) -> float:
     """Begin [s] of a push, given directly or by step, phase and fraction."""
     if push.time is not None:
         return push.time
@@ -165,20 +141,31 @@ def push_time(gait: Gait, push: PushSettings) -> float:
     )
 
 
-def gait_duration(gait: Gait) -> float:
+def phase_start(gait: GaitParameters, step: int, phase: str) -> float:
+    """Begin [s] of a support phase of a footstep; step 1 is the first, its double support comes first.
+
+    The double support before the first step of a bout shifts the weight from rest and lasts twice as long as the
+    others.
+    """
+    single = _lift_off(gait, step)
+    return single if phase == "single" else single - phase_duration(gait, step, phase)
+
+
+def phase_duration(gait: GaitParameters, step: int, phase: str) -> float:
+    """Duration [s] of a support phase of a footstep."""
+    if phase == "single":
+        return gait.single_support
+    return gait.double_support * (2 if step in _first_steps(gait) else 1)
+
+
+def gait_duration(gait: GaitParameters) -> float:
     """Time from the start to the end of the last double support [s]."""
-    steps = step_count(gait)
-    return gait.initial_stand if steps == 0 else _lift_off(gait, steps + 1)
+    return gait.initial_stand if gait.steps == 0 else _lift_off(gait, gait.steps + 1)
 
 
-def run_duration(scenario: Scenario) -> float:
-    """Simulated time [s]: as given, or the gait and a while of standing."""
-    return gait_duration(scenario.gait) + FINAL_STAND if scenario.duration is None else scenario.duration
-
-
-def _lift_off(gait: Gait, step: int) -> float:
+def _lift_off(gait: GaitParameters, step: int) -> float:
     """Time at which a foot lifts off; of a step after the last one when it would if the walk went on [s]."""
-    begin, before, walk = 0.0, 0, gait_of(gait).walk
+    begin, before, walk = 0.0, 0, gait.walk
     for number, bout in enumerate(walk, start=1):
         first = begin + bout.stand + 2 * gait.double_support
         if step <= before + len(bout.strides) or number == len(walk):
@@ -188,7 +175,7 @@ def _lift_off(gait: Gait, step: int) -> float:
     raise ValueError(f"step {step} is none of a gait that stands")
 
 
-def _first_steps(gait: Gait) -> list[int]:
+def _first_steps(gait: GaitParameters) -> list[int]:
     """Numbers of the steps that begin a bout."""
-    counts = [len(bout.strides) for bout in gait_of(gait).walk]
+    counts = [len(bout.strides) for bout in gait.walk]
     return [1 + sum(counts[:i]) for i in range(len(counts))]

@@ -1,6 +1,5 @@
 """From a scenario's name, file or log to a checked scenario: every fault of a file is reported at once."""
 
-import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,10 +12,10 @@ from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario, Sensing
 from surefoot.scenarios.file.source import MAX_BYTES, apply_override, parse
 from surefoot.scenarios.file.translate import problems_of, unknown_metrics, without
-from surefoot.scenarios.judge.verdict import SCENARIO_FILE
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop.run import LOG_NAME
+from surefoot.scenarios.record.provenance import LOG_NAME, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
 
 _SENSED = ("zmp_noise", "com_noise")
@@ -24,7 +23,6 @@ _SENSED = ("zmp_noise", "com_noise")
 
 _AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
-    ("terrain", "kind"): ("flat", "stairs", "slope", "blocks"),
     ("planner", "step_adaptation"): ("none", "location"),
     **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
 }
@@ -123,7 +121,7 @@ def load_scenario(reference: str, overrides: Sequence[str] = (), robots: Robots 
 
 
 def locate(reference: str, overrides: Sequence[str], refusal: SetupError) -> ScenarioError:
-    """Say where the cause of a refusal stands: at the first key that its sentence names, else at the scenario's begin.
+    """Say where the cause of a refusal stands: at the key that it names, else at the scenario's begin.
 
     Args:
         reference: as given to `load_scenario`, as are the overrides.
@@ -134,18 +132,7 @@ def locate(reference: str, overrides: Sequence[str], refusal: SetupError) -> Sce
     source = parse(text, name)
     for override in overrides:
         apply_override(source, override)
-    what, _, right = str(refusal).rstrip(".").partition("; ")
-    problem = Problem(_named_key(what), what, right or "change the scenario so that it fits")
-    return ScenarioError([source.describe(problem)])
-
-
-def _named_key(sentence: str) -> Key:
-    """The first scenario key that a sentence names, such as gait.com_height; () when it names none."""
-    for group, name in re.findall(r"\b([a-z_]+)\.([a-z_]+)\b", sentence):
-        fields = getattr(Scenario.model_fields.get(group), "annotation", None)
-        if name in getattr(fields, "model_fields", {}):
-            return (group, name)
-    return ()
+    return ScenarioError([source.describe(refusal.problem)])
 
 
 def read_scenario(text: str, name: str, stem: str, overrides: Sequence[str], robots: Robots) -> Scenario:
@@ -161,7 +148,8 @@ def read_scenario(text: str, name: str, stem: str, overrides: Sequence[str], rob
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
-    semantic = [*check(scenario, robots), *unavailable(scenario)]
+    draft = Draft(scenario)
+    semantic = [*check(draft, robots), *unavailable(draft.keys)]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:
         raise ScenarioError(source.describe(problem) for problem in sorted(problems, key=source.spot))

@@ -1,9 +1,9 @@
-"""What the scenario checks need of a robot, with the robot descriptions imported only when asked."""
+"""The robot of a scenario: its description with the chosen options, what bounds its walk, and what it is in truth."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
@@ -37,8 +37,8 @@ class Robots(Protocol):
         """Names of all robots."""
         ...
 
-    def facts(self, scenario: Scenario) -> RobotFacts:
-        """Facts of a scenario's robot with its options.
+    def facts(self, name: str, options: RobotSettings) -> RobotFacts:
+        """Facts of a robot with its options.
 
         Raises:
             ValueError: the robot cannot have these options.
@@ -55,10 +55,9 @@ class RegisteredRobots:
 
         return robot_names()
 
-    def facts(self, scenario: Scenario) -> RobotFacts:
-        """Facts of a scenario's robot; which body carries the payload does not matter to them."""
-        options = scenario.robot_options.model_copy(update={"payload_body": None})
-        description = describe(scenario.model_copy(update={"robot_options": options}))
+    def facts(self, name: str, options: RobotSettings) -> RobotFacts:
+        """Facts of a robot with its options; which body carries the payload does not matter to them."""
+        description = describe(name, options.model_copy(update={"payload_body": None}))
         return RobotFacts(
             bodies=description.bodies,
             leg_length=description.leg_length,
@@ -69,12 +68,23 @@ class RegisteredRobots:
         )
 
 
-def describe(scenario: Scenario) -> "RobotDescription":
-    """Describe a scenario's robot with its options."""
+def describe(name: str, options: RobotSettings) -> "RobotDescription":
+    """Describe a robot with its options."""
     from surefoot.models.registry import describe as describe_robot
     from surefoot.models.types import RobotOptions
 
-    return describe_robot(scenario.robot, RobotOptions(**scenario.robot_options.model_dump()))
+    return describe_robot(name, RobotOptions(**options.model_dump()))
+
+
+def true_robot(errors: BeliefErrors, robot: "RobotDescription") -> "RobotDescription":
+    """The robot as it is; itself when nothing about its mass is believed wrongly."""
+    from surefoot.models.belief import with_com_raised, with_mass_scaled
+
+    if errors.com_height != 0.0:
+        robot = with_com_raised(robot, -errors.com_height)
+    if errors.mass_scale != 1.0:
+        robot = with_mass_scaled(robot, 1.0 / errors.mass_scale)
+    return robot
 
 
 def _straight_com_height(description: "RobotDescription") -> float:

@@ -7,12 +7,11 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.planner.types import FeetState
-from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.setup.ground import standing_height, start_height
-from surefoot.scenarios.setup.planner import square_stance
+from surefoot.scenarios.setup.walk import Walk
 from surefoot.wbc.ik import PostureIk, PostureTarget
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames
@@ -53,20 +52,24 @@ def body_of(robot: RobotDescription) -> Body:
     return Body(
         robot=robot,
         model=pinocchio_model(robot),
-        frames=BodyFrames(soles=robot.sole_sites, torso=robot.torso_body),
+        frames=frames_of(robot),
         limits=JointLimits(robot.torque_limit, robot.velocity_limit, robot.position_lower, robot.position_upper),
         leg_joints=np.array([any(part in name for part in _LEG_JOINTS) for name in robot.joint_names]),
     )
 
 
-def start_posture(scenario: Scenario, body: Body) -> Array:
+def frames_of(robot: RobotDescription) -> BodyFrames:
+    """The frames of a described robot that the controller steers."""
+    return BodyFrames(soles=robot.sole_sites, torso=robot.torso_body)
+
+
+def start_posture(walk: Walk, body: Body) -> Array:
     """Configuration, shape (nq,), that stands with the CoM at its height over the middle of the feet.
 
     Raises:
-        ValueError: if the legs cannot reach that stance.
+        ParameterError: the legs cannot reach that stance.
     """
-    feet, start, height = square_stance(scenario), scenario.start, standing_height(scenario)
-    ground = start_height(scenario)
+    feet, start, height, ground = walk.stance, walk.start, walk.standing_height, walk.start_height
     target = PostureTarget(feet.position, feet.yaw, np.array([start.x, start.y, ground + height]), start.yaw)
     robot = body.robot
     q = pin.neutral(body.model)
@@ -75,26 +78,27 @@ def start_posture(scenario: Scenario, body: Body) -> Array:
     q[7:] = robot.nominal_joint_positions
     result = body.ik(robot.nominal_joint_positions).solve(target, q)
     if not result.reached:
-        raise ValueError(
+        raise ParameterError(
+            ("gait", "com_height"),
             f"robot '{robot.name}' cannot stand with gait.com_height {height:g} m and gait.step_width "
-            f"{scenario.gait.step_width:g} m, {result.error:.3f} m are missing; "
-            f"use for example {robot.com_height:g} m and {robot.hip_width:g} m"
+            f"{walk.gait.step_width:g} m, {result.error:.3f} m are missing",
+            f"use for example {robot.com_height:g} m and {robot.hip_width:g} m",
         )
     return result.q
 
 
-def disturbed(q: Array, scenario: Scenario, body: Body) -> Array:
+def disturbed(q: Array, walk: Walk, body: Body) -> Array:
     """The posture, shape (nq,), with the start noises on base position, base attitude and every joint.
 
     The legs then give way until both soles, wherever the noise has put and turned them, lie flat on the ground.
 
     Raises:
-        ValueError: if they cannot.
+        ParameterError: they cannot.
     """
-    start = scenario.start
+    start = walk.start
     if start.position_noise == 0.0 and start.angle_noise == 0.0:
         return q
-    rng = np.random.default_rng(scenario.seed)
+    rng = np.random.default_rng(walk.seed)
     nv = body.model.nv
     offset = np.zeros(nv)
     offset[:3] = rng.uniform(-start.position_noise, start.position_noise, 3)
@@ -102,12 +106,14 @@ def disturbed(q: Array, scenario: Scenario, body: Body) -> Array:
     q = pin.integrate(body.model, q, offset)
     feet = feet_at(body, q)
     soles = feet.position.copy()
-    soles[:, 2] = start_height(scenario)
+    soles[:, 2] = walk.start_height
     result = body.ik(q[7:]).solve(PostureTarget(soles, feet.yaw), q)
     if not result.reached:
-        raise ValueError(
+        raise ParameterError(
+            ("start", "angle_noise"),
             f"robot '{body.robot.name}' cannot stand with start.angle_noise {start.angle_noise:g} rad and "
-            f"start.position_noise {start.position_noise:g} m: {result.error:.3f} m or rad are missing; reduce them"
+            f"start.position_noise {start.position_noise:g} m: {result.error:.3f} m or rad are missing",
+            "reduce them",
         )
     return result.q
 

@@ -14,9 +14,9 @@ from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import Stride
 from surefoot.planner.walk.reach import StepRegion, landing
 from surefoot.scenarios.errors import Problem
-from surefoot.scenarios.file.schema import Gait, Scenario
-from surefoot.scenarios.setup.gait import commanded, gait_duration, gait_of, longest_step, step_region, twist_of
-from surefoot.scenarios.setup.planner import LONGEST_REACH, gait_parameters, planner_profile, square_stance, step_reach
+from surefoot.scenarios.file.schema import Gait
+from surefoot.scenarios.setup.draft import LONGEST_REACH, Draft
+from surefoot.scenarios.setup.gait import longest_step, step_region, twist_of
 from surefoot.scenarios.setup.robot import RobotFacts
 
 MOST_SAMPLES = 1_000_000
@@ -32,30 +32,30 @@ _PERIOD = 4
 """Footsteps after which a gait on flat ground only repeats itself: the first, one of each foot, the last."""
 
 
-def swing_too_short(scenario: Scenario) -> bool:
+def swing_too_short(draft: Draft) -> bool:
     """Whether a single support leaves no time for a swing of the foot."""
-    return scenario.gait.single_support < (FEWEST_SWING_SAMPLES - 0.5) * scenario.planner.sample_time
+    return draft.keys.gait.single_support < (FEWEST_SWING_SAMPLES - 0.5) * draft.keys.planner.sample_time
 
 
-def walk_problems(scenario: Scenario) -> Iterator[Problem]:
+def walk_problems(draft: Draft) -> Iterator[Problem]:
     """List what cannot be planned whatever the robot."""
-    gait, sample_time = scenario.gait, scenario.planner.sample_time
-    yield from _moves(scenario)
-    if gait_duration(gait) > MOST_SAMPLES * sample_time:
-        what = f"a gait of {gait_duration(gait):.6g} s"
+    gait, sample_time = draft.keys.gait, draft.keys.planner.sample_time
+    yield from _moves(draft)
+    if draft.gait_duration > MOST_SAMPLES * sample_time:
+        what = f"a gait of {draft.gait_duration:.6g} s"
         yield Problem(
             ("gait", "steps"), what, f"it may last {MOST_SAMPLES * sample_time:g} s; use fewer or faster steps"
         )
-    if scenario.duration is not None and scenario.duration * scenario.rates.control < 1.0:
-        what = f"duration {scenario.duration} s is shorter than one control tick"
-        yield Problem(("duration",), what, f"use at least {1 / scenario.rates.control:g} s")
-    if not swing_too_short(scenario):
+    if draft.keys.duration is not None and draft.keys.duration * draft.keys.rates.control < 1.0:
+        what = f"duration {draft.keys.duration} s is shorter than one control tick"
+        yield Problem(("duration",), what, f"use at least {1 / draft.keys.rates.control:g} s")
+    if not swing_too_short(draft):
         yield from _apexes(gait)
 
 
-def _moves(scenario: Scenario) -> Iterator[Problem]:
+def _moves(draft: Draft) -> Iterator[Problem]:
     """List moves of the jerk that the profile has not got, or that begin after the horizon."""
-    profile, settings = planner_profile(scenario), scenario.planner
+    profile, settings = draft.profile, draft.keys.planner
     if not profile.moves:
         if settings.control_horizon is not None:
             what = f"planner.control_horizon with profile {profile.name!r}, which optimises no moves of the jerk"
@@ -71,30 +71,31 @@ def _moves(scenario: Scenario) -> Iterator[Problem]:
         yield Problem(("planner", "horizon"), what, f"use at least {profile.parameters.moves[-1] + 1}")
 
 
-def footstep_problems(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
+def footstep_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
     """List footsteps out of reach of the planner, and feet that would touch each other."""
-    gait = scenario.gait
+    gait = draft.keys.gait
     if gait.step_width < facts.foot_width:
         what = f"gait.step_width {gait.step_width} m lets feet {facts.foot_width:g} m wide touch"
         yield Problem(("gait", "step_width"), what, f"use more than {facts.foot_width:g} m")
         return
-    found = (_footstep_problem(gait, facts, *step) for step in _displacements(scenario))
+    found = (_footstep_problem(draft, facts, *step) for step in _displacements(draft))
     yield from [problem for problem in found if problem is not None][:1]
 
 
-def _displacements(scenario: Scenario) -> Iterator[tuple[int, Foot, float, float, float]]:
+def _displacements(draft: Draft) -> Iterator[tuple[int, Foot, float, float, float]]:
     """Number and foot of footsteps, and their place and turn from the stance foot in its frame [m, m, rad]."""
-    gait = replace(gait_parameters(scenario), steps=min(scenario.gait.steps, _PERIOD))
-    footsteps = plan_footsteps(gait, square_stance(scenario), flat())
+    gait = replace(draft.gait, steps=min(draft.keys.gait.steps, _PERIOD))
+    footsteps = plan_footsteps(gait, draft.stance, flat())
     for row in range(2, footsteps.steps + 2):
         x, y = footsteps.increment[row] @ frame_rotation(float(footsteps.yaw[row - 1]))
         yield row - 1, footsteps.feet[row], float(x), float(y), float(footsteps.yaw[row] - footsteps.yaw[row - 1])
 
 
 def _footstep_problem(
-    gait: Gait, facts: RobotFacts, number: int, foot: Foot, ahead: float, left: float, turn: float
+    draft: Draft, facts: RobotFacts, number: int, foot: Foot, ahead: float, left: float, turn: float
 ) -> Problem | None:
-    low, high = reach_box(PlannerParameters(reach_length=step_reach(gait)), 1.0)
+    gait = draft.keys.gait
+    low, high = reach_box(PlannerParameters(reach_length=draft.reach), 1.0)
     beside = left if foot is Foot.LEFT else -left
     if not low[0] - 1e-9 <= ahead <= high[0] + 1e-9:
         what = f"footstep {number} would land {ahead:.3f} m ahead of its stance foot"
@@ -127,25 +128,25 @@ _VELOCITY = ("gait", "velocity")
 _FOOTSTEPS = ("gait", "footsteps")
 
 
-def command_problems(scenario: Scenario) -> list[Problem]:
+def command_problems(draft: Draft) -> list[Problem]:
     """List what makes velocity or footsteps no walk at all, whatever the robot."""
-    gait = scenario.gait
+    gait = draft.keys.gait
     if gait.velocity and gait.footsteps:
         return [Problem(_FOOTSTEPS, "footsteps beside gait.velocity", "give one of them", at_key=True)]
-    problems = [*_times(scenario), *_feet(gait)]
-    if problems or not commanded(gait):
+    problems = [*_times(draft), *_feet(gait)]
+    if problems or not draft.commanded:
         return problems
     try:
-        gait_of(gait)
+        _ = draft.gait
     except ValueError as error:
         what, _, right = str(error).rstrip(".").partition(", but ")
         return [Problem(_VELOCITY if gait.velocity else _FOOTSTEPS, what, right or "give others")]
     return []
 
 
-def commanded_step_problems(scenario: Scenario, facts: RobotFacts) -> Iterator[Problem]:
+def commanded_step_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
     """Name velocities whose steps are out of reach with the fastest possible, or the first footstep that is."""
-    gait = scenario.gait
+    gait = draft.keys.gait
     sole, span = (facts.foot_length, facts.foot_width), _leg_span(gait, facts)
     region = step_region(PlannerParameters(reach_length=LONGEST_REACH), sole, span, facts.hip_width)
     for index, command in enumerate(gait.velocity):
@@ -155,7 +156,7 @@ def commanded_step_problems(scenario: Scenario, facts: RobotFacts) -> Iterator[P
             what = f"gait.velocity.{index} asks for steps of {_step_text(stride)} in {_period(gait):g} s, out of reach"
             yield Problem((*_VELOCITY, index), what, right)
     if gait.footsteps:
-        walk = gait_of(gait)
+        walk = draft.gait
         for index, stride in enumerate(walk.strides):
             why = region.why_not(landing(stride, walk.step_foot(index + 1)))
             if why is not None:
@@ -163,8 +164,8 @@ def commanded_step_problems(scenario: Scenario, facts: RobotFacts) -> Iterator[P
                 return
 
 
-def _times(scenario: Scenario) -> Iterator[Problem]:
-    sample_time, commands = scenario.planner.sample_time, scenario.gait.velocity
+def _times(draft: Draft) -> Iterator[Problem]:
+    sample_time, commands = draft.keys.planner.sample_time, draft.keys.gait.velocity
     for index, command in enumerate(commands):
         count = command.time / sample_time
         what = f"gait.velocity.{index}.time {command.time} s"

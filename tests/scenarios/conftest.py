@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.schema import RobotSettings, Scenario
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.loop.skeleton import End, Progress
 from surefoot.scenarios.record import channels
@@ -28,11 +28,11 @@ class FakeRobots:
     def names(self) -> tuple[str, ...]:
         return ("humanoid100", "talos")
 
-    def facts(self, scenario: Scenario) -> RobotFacts:
-        width = scenario.robot_options.foot_width or FOOT
+    def facts(self, name: str, options: RobotSettings) -> RobotFacts:
+        width = options.foot_width or FOOT
         return RobotFacts(
             bodies=("pelvis", "torso"), leg_length=0.92, hip_width=0.2, com_above_hip=0.114,
-            foot_length=scenario.robot_options.foot_length or FOOT, foot_width=width,
+            foot_length=options.foot_length or FOOT, foot_width=width,
         )  # fmt: skip
 
 
@@ -56,7 +56,7 @@ class Motion:
     end: End = field(default_factory=lambda: End("completed", 4.0))
     raises: BaseException | None = None
 
-    def __call__(self, scenario: Any, robot: Any, writer: LogWriter, on_progress: Callable[[Progress], None]) -> End:
+    def __call__(self, walk: Any, writer: LogWriter, on_progress: Callable[[Progress], None]) -> End:
         _Loop(self, writer).run(on_progress)
         if self.raises is not None:
             raise self.raises

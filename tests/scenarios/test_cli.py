@@ -6,10 +6,13 @@ import sys
 
 import pytest
 
+from surefoot.errors import ParameterError
 from surefoot.scenarios import cli
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop import run
+from surefoot.scenarios.setup import walk
+from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot import RegisteredRobots
 
 pytestmark = pytest.mark.unit
@@ -21,10 +24,10 @@ def surefoot(monkeypatch, capsys, robot, robots, motion):
 
     def command(*arguments, loop=None):
         monkeypatch.setattr(sys, "argv", ["surefoot", *map(str, arguments)])
-        monkeypatch.setattr(run, "describe", lambda scenario: robot)
-        monkeypatch.setattr(run, "closed_loop", lambda fidelity: loop or motion())
+        monkeypatch.setattr(walk, "describe", lambda name, options: robot)
+        monkeypatch.setattr(run, "_simulate", loop or motion())
         monkeypatch.setattr(RegisteredRobots, "names", lambda self: robots.names())
-        monkeypatch.setattr(RegisteredRobots, "facts", lambda self, scenario: robots.facts(scenario))
+        monkeypatch.setattr(RegisteredRobots, "facts", lambda self, *robot: robots.facts(*robot))
         with pytest.raises(SystemExit) as ended:
             cli.main()
         captured = capsys.readouterr()
@@ -94,15 +97,18 @@ def test_a_defect_is_no_verdict(surefoot, scenario, tmp_path, motion):
 @pytest.mark.parametrize(
     ("refusal", "message"),
     [
+        (ParameterError(("gait", "steps"), "no stance", "use 3"), "two-steps.yaml:1:15: no stance; use 3"),
+        (ParameterError(("gait", "apex_ss"), "too high", "use 0"), "two-steps.yaml:1:7: too high; use 0"),
         (
-            "no stance with gait.steps 2 and x.y; use 3.",
-            "two-steps.yaml:1:15: no stance with gait.steps 2 and x.y; use 3",
+            ValueError("The legs are too short."),
+            "two-steps.yaml:1:1: The legs are too short; change the scenario so that it fits",
         ),
-        ("The legs are too short.", "two-steps.yaml:1:1: The legs are too short; change the scenario so that it fits"),
     ],
 )
 def test_what_a_part_refuses_is_bad_input_at_the_key_it_names(surefoot, scenario, tmp_path, motion, refusal, message):
-    code, out, err = surefoot("run", scenario, "--out", tmp_path, loop=motion(raises=SetupError(refusal)))
+    code, out, err = surefoot(
+        "run", scenario, "--out", tmp_path, loop=motion(raises=SetupError(scenario_problem(refusal)))
+    )
     assert code == 2
     assert out == ""
     assert err.strip().endswith(message)

@@ -7,9 +7,8 @@ from typing import Any
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.source import parse
 from surefoot.scenarios.judge.metric import compute
-from surefoot.scenarios.judge.verdict import SCENARIO_FILE
 from surefoot.scenarios.log import Log
-from surefoot.scenarios.record.provenance import RECORD
+from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE
 
 WALL_CLOCK_METRICS = ("planner_time", "wbc_time", "real_time_factor", "log_bytes")
 """Metrics that differ between any two runs: times, and the size of the log that holds them compressed."""

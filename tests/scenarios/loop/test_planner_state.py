@@ -8,9 +8,9 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.loop.sensing import PlannerSensing, filter_kind, filter_noise
+from surefoot.scenarios.loop.sensing import PlannerSensing, filter_noise
 from surefoot.scenarios.setup.load import load_scenario
-from surefoot.scenarios.setup.planner import square_stance
+from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
 
@@ -33,7 +33,7 @@ def noisy(walk):
 
 def measured(scenario, count=4000):
     """Noise alone: deviations of a standing mass, shape (count, 3, 2) for ZMP, CoM and velocity."""
-    sensing = PlannerSensing(scenario, square_stance(scenario))
+    sensing = PlannerSensing(resolve(scenario))
     still = CentroidalState(0.0, np.array([0.0, 0.0, 1.0]), np.zeros(3))
     states = [sensing.sense(still, np.zeros(2), None) for _ in range(count)]
     return np.array([(s.measured_zmp, s.measured.com[:2], s.measured.com_velocity[:2]) for s in states])
@@ -61,10 +61,10 @@ def test_noise_follows_the_seed_and_each_sensor_has_its_own():
 
 
 def test_a_filter_is_used_when_there_is_noise_or_when_asked_for():
-    assert filter_kind(Scenario()) == "none"
-    assert filter_kind(Scenario(sensing={"zmp_noise": 0.01})) == "kalman"
-    assert filter_kind(Scenario(sensing={"com_noise": 0.01}, planner={"filter": "none"})) == "none"
-    assert filter_kind(Scenario(planner={"filter": "zmp_only"})) == "zmp_only"
+    assert resolve(Scenario()).filter == "none"
+    assert resolve(Scenario(sensing={"zmp_noise": 0.01})).filter == "kalman"
+    assert resolve(Scenario(sensing={"com_noise": 0.01}, planner={"filter": "none"})).filter == "none"
+    assert resolve(Scenario(planner={"filter": "zmp_only"})).filter == "zmp_only"
     noise = filter_noise(Scenario(sensing={"com_noise": 0.004}).sensing)
     assert (noise.zmp, noise.com, noise.com_velocity) == (0.01, 0.004, 0.02)
 

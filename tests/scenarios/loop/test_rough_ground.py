@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.ground import start_height, terrain_of, true_terrain_of
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load_scenario, read_scenario
 
 FAST = "robot_options: {foot_length: 0.22, foot_width: 0.11}\n"
@@ -54,20 +54,20 @@ def test_what_cannot_be_walked_is_refused_with_the_reason(robots, text):
 def test_a_walk_starts_on_level_ground_at_its_height(robots):
     for text in (SLOPE % "", (SLOPE % "").replace("0.17", "-0.17"), BLOCKS % ""):
         scenario = read_scenario(text, "f.yaml", "f", (), robots)
-        terrain = terrain_of(scenario)
-        np.testing.assert_allclose(terrain.heights(np.array([[0.0, 0.1], [0.1, -0.1]])), start_height(scenario))
+        terrain = Draft(scenario).terrain
+        np.testing.assert_allclose(terrain.heights(np.array([[0.0, 0.1], [0.1, -0.1]])), Draft(scenario).start_height)
         np.testing.assert_array_equal(terrain.normal(0.0, 0.1), [0.0, 0.0, 1.0])
 
 
 @pytest.mark.unit
 def test_the_seed_is_that_of_the_blocks(robots):
     scenario = read_scenario(BLOCKS % "", "f.yaml", "f", (), robots)
-    fields = [terrain_of(scenario.model_copy(update={"seed": seed})) for seed in (0, 0, 1)]
+    fields = [Draft(scenario.model_copy(update={"seed": seed})).terrain for seed in (0, 0, 1)]
     tops = [[box.center.tolist() for box in field.boxes] for field in fields]
     assert tops[0] == tops[1] != tops[2]
     noisy = read_scenario(BLOCKS % ", height_noise: 0.01", "f.yaml", "f", (), robots)
-    points = np.array([box.center[:2] for box in terrain_of(noisy).boxes])
-    wrong = true_terrain_of(noisy).heights(points) - terrain_of(noisy).heights(points)
+    points = np.array([box.center[:2] for box in Draft(noisy).terrain.boxes])
+    wrong = Draft(noisy).true_terrain.heights(points) - Draft(noisy).terrain.heights(points)
     assert wrong[0] == 0.0
     assert 0.0 < np.abs(wrong).max() < 0.0105
 

@@ -15,9 +15,9 @@ from mcap_protobuf.decoder import DecoderFactory
 from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.recover import recover
-from surefoot.scenarios.loop.full import WORLD_FILE
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
+from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.setup.load import load_scenario
 
 pytestmark = pytest.mark.physics

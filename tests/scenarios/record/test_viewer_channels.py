@@ -82,7 +82,7 @@ def test_the_schemas_in_the_file_decode_too(log):
 
 
 def test_frame_transforms_are_the_forward_kinematics_of_the_logged_state(log, walk):
-    model = pinocchio_model(describe(walk))
+    model = pinocchio_model(describe(walk.robot, walk.robot_options))
     data, truth = model.createData(), log["/truth"]
     messages = decoded(log, "/tf")
     assert len(messages) == pytest.approx(RATE * 3.9, abs=1)
@@ -104,7 +104,7 @@ def test_joint_states_are_the_measured_ones(log, walk):
     measured = log["/measurement"]
     for time, message in decoded(log, "/joint_states")[::11]:
         row = np.searchsorted(measured.time_ns, time)
-        assert tuple(joint.name for joint in message.joints) == describe(walk).joint_names
+        assert tuple(joint.name for joint in message.joints) == describe(walk.robot, walk.robot_options).joint_names
         for name, field in (("position", "position"), ("velocity", "velocity"), ("effort", "torque")):
             values = [getattr(joint, name) for joint in message.joints]
             assert np.array_equal(values, measured.field(f"joint_{field}")[row])
@@ -128,7 +128,7 @@ def test_points_and_forces_are_where_the_numbers_say(log):
 def test_the_scene_has_every_link_in_its_own_frame(log, walk):
     (_, scene), *_ = decoded(log, "/scene/world")
     entities = {entity.id: entity for entity in scene.entities}
-    assert set(entities) <= {"world", *describe(walk).bodies}
+    assert set(entities) <= {"world", *describe(walk.robot, walk.robot_options).bodies}
     assert {"torso", "left_foot", "right_shank", "head"} <= set(entities)
     assert all(entity.frame_locked and entity.frame_id == entity.id for entity in entities.values())
 
@@ -153,7 +153,7 @@ def test_arrows_point_along_their_force():
 
 
 def test_body_poses_belong_to_the_state_given_not_to_the_step_before(walk):
-    robot = describe(walk)
+    robot = describe(walk.robot, walk.robot_options)
     world = World(robot, flat(), 1000)
     model = pinocchio_model(robot)
     q = pin.neutral(model)

@@ -13,9 +13,9 @@ from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.judge.verdict import notes
 from surefoot.scenarios.loop.run import scenario_yaml
-from surefoot.scenarios.setup.gait import gait_of, step_count
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.planner import planner_parameters, square_stance, walking_planner
+from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
 
@@ -70,18 +70,18 @@ def test_what_cannot_be_walked_is_refused_with_one_message(robots, text):
 )
 def test_what_is_just_within_reach_is_accepted_and_reads_back_as_itself(robots, twist):
     scenario = read(robots, FAST + VELOCITY % twist)
-    assert step_count(scenario.gait) == 8
+    assert Draft(scenario).gait.steps == 8
     assert read(robots, scenario_yaml(scenario)) == scenario
-    robot = SimpleNamespace(sole_length=0.22, sole_width=0.11)
-    parameters = planner_parameters(scenario, LegInertia())
-    planner = walking_planner(scenario, robot, flat(), square_stance(scenario), parameters)
+    robot = SimpleNamespace(sole_length=0.22, sole_width=0.11, mass=100.0)
+    walk = resolve(scenario, robot)
+    planner = walk.planner(walk.stance, LegInertia())
     assert planner.gait.steps == 8
 
 
 def test_footsteps_are_relative_to_the_start_stance(robots):
     text = FOOTSTEPS % "{foot: right, x: 0.2, y: -0.1, yaw: -0.2}, {foot: left, x: 0.3, y: 0.1}"
     scenario = read(robots, text + "\nstart: {x: 5, y: 2, yaw: 1.5707963267948966}")
-    steps = plan_footsteps(gait_of(scenario.gait), square_stance(scenario), flat())
+    steps = plan_footsteps(Draft(scenario).gait, Draft(scenario).stance, flat())
     assert steps.feet[2:] == (Foot.RIGHT, Foot.LEFT)
     np.testing.assert_allclose(steps.position[2:, :2], [[5.1, 2.2], [4.9, 2.3]], atol=1e-12)
     np.testing.assert_allclose(steps.yaw[2:], [np.pi / 2 - 0.2, np.pi / 2])

@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 
 from surefoot.scenarios.file.schema import Gait, PushSettings, Scenario
 from surefoot.scenarios.setup.checks import is_multiple
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
     longest_step,
     phase_duration,
     phase_start,
     push_time,
-    run_duration,
 )
 
 pytestmark = pytest.mark.unit
@@ -35,7 +35,7 @@ def test_lower_hips_reach_farther():
 
 
 def test_phases_follow_each_other():
-    gait = Gait()
+    gait = Draft(Scenario()).gait
     assert phase_start(gait, 1, "double") == gait.initial_stand
     assert phase_start(gait, 1, "single") == gait.initial_stand + 2 * gait.double_support
     for step in range(1, 5):
@@ -45,7 +45,7 @@ def test_phases_follow_each_other():
 
 
 def test_pushes_by_point_of_the_gait():
-    gait = Gait()
+    gait = Draft(Scenario()).gait
     push = PushSettings(step=2, phase="single", fraction=0.5)
     assert push_time(gait, push) == pytest.approx(1.0 + 1.0 + 2.0 + 0.75)
     assert push_time(gait, PushSettings(time=2.2)) == 2.2
@@ -54,9 +54,9 @@ def test_pushes_by_point_of_the_gait():
 
 
 def test_a_run_lasts_until_the_robot_has_stood():
-    assert run_duration(Scenario()) == pytest.approx(1.0 + 1.0 + 5 * 2.0 + FINAL_STAND)
-    assert run_duration(Scenario(duration=3.0)) == 3.0
-    assert run_duration(Scenario(gait=Gait(steps=0))) == 1.0 + FINAL_STAND
+    assert Draft(Scenario()).duration == pytest.approx(1.0 + 1.0 + 5 * 2.0 + FINAL_STAND)
+    assert Draft(Scenario(duration=3.0)).duration == 3.0
+    assert Draft(Scenario(gait=Gait(steps=0))).duration == 1.0 + FINAL_STAND
 
 
 def test_multiples_are_exact_to_rounding():

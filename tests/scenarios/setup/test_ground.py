@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.setup.ground import start_height, terrain_of, true_terrain_of
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load_scenario, read_scenario
 
 pytestmark = pytest.mark.unit
@@ -17,28 +17,28 @@ def scenario(robots, more="", gait="{steps: 4}"):
 
 
 def test_the_first_footstep_lands_in_the_middle_of_the_first_tread(robots):
-    ground = terrain_of(scenario(robots))
+    ground = Draft(scenario(robots)).terrain
     assert [ground.height(x, 0.0) for x in (0.0, 0.099, 0.101, 0.299, 0.301, 0.51, 1.0)] == pytest.approx(
         [0.0, 0.0, 0.1, 0.1, 0.2, 0.3, 0.3]
     )
 
 
 def test_a_walk_down_starts_on_the_highest_platform(robots):
-    assert start_height(scenario(robots, ", direction: down")) == pytest.approx(0.3)
+    assert Draft(scenario(robots, ", direction: down")).start_height == pytest.approx(0.3)
 
 
 def test_truth_differs_from_belief_by_the_noise_but_not_where_the_robot_starts(robots):
     noisy = scenario(robots, ", direction: down, height_noise: 0.02")
-    belief, truth = terrain_of(noisy), true_terrain_of(noisy)
+    belief, truth = Draft(noisy).terrain, Draft(noisy).true_terrain
     points = np.array([[0.0, 0.0], [0.2, 0.0], [0.4, 0.0]])
     difference = truth.heights(points) - belief.heights(points)
     assert difference[0] == 0.0
     assert 0.0 < np.abs(difference[1:]).max() <= 0.02
     other = noisy.model_copy(update={"seed": 1})
-    assert not np.array_equal(true_terrain_of(other).heights(points), truth.heights(points))
+    assert not np.array_equal(Draft(other).true_terrain.heights(points), truth.heights(points))
     assert (
-        true_terrain_of(scenario(robots)).boxes[0].center.tolist()
-        == terrain_of(scenario(robots)).boxes[0].center.tolist()
+        Draft(scenario(robots)).true_terrain.boxes[0].center.tolist()
+        == Draft(scenario(robots)).terrain.boxes[0].center.tolist()
     )
 
 

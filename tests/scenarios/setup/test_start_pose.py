@@ -6,6 +6,7 @@ from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.scenarios.file.schema import Gait, Scenario, Start
 from surefoot.scenarios.setup.stance import SOLE_SINKAGE, body_of, disturbed, feet_at, pressed, start_posture
+from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
 
@@ -22,8 +23,8 @@ def soles(body, q):
 
 
 def test_it_stands_where_the_scenario_says(body):
-    scenario = Scenario(start=Start(x=3.0, y=-2.0, yaw=1.0), gait=Gait(com_height=0.97, step_width=0.22))
-    q = start_posture(scenario, body)
+    walk = resolve(Scenario(start=Start(x=3.0, y=-2.0, yaw=1.0), gait=Gait(com_height=0.97, step_width=0.22)))
+    q = start_posture(walk, body)
     com = pin.centerOfMass(body.model, body.model.createData(), q)
     np.testing.assert_allclose(com, [3.0, -2.0, 0.97], atol=1e-6)
     feet = feet_at(body, q)
@@ -33,27 +34,27 @@ def test_it_stands_where_the_scenario_says(body):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_noise_moves_the_body_and_leaves_the_soles_flat_on_the_ground(body, seed):
-    scenario = Scenario(seed=seed, start=Start(position_noise=0.001, angle_noise=0.0175))
-    calm = start_posture(scenario, body)
-    q = disturbed(calm, scenario, body)
+    walk = resolve(Scenario(seed=seed, start=Start(position_noise=0.001, angle_noise=0.0175)))
+    calm = start_posture(walk, body)
+    q = disturbed(calm, walk, body)
     assert np.abs(q[7:] - calm[7:]).max() > 0.005
     for sole in soles(body, q):
         np.testing.assert_allclose(sole.rotation[2], [0.0, 0.0, 1.0], atol=1e-6)
         assert sole.translation[2] == pytest.approx(0.0, abs=1e-6)
-    np.testing.assert_array_equal(disturbed(calm, scenario, body), q)
+    np.testing.assert_array_equal(disturbed(calm, walk, body), q)
 
 
 def test_without_noise_nothing_moves(body):
-    scenario = Scenario()
-    calm = start_posture(scenario, body)
-    np.testing.assert_array_equal(disturbed(calm, scenario, body), calm)
+    walk = resolve(Scenario())
+    calm = start_posture(walk, body)
+    np.testing.assert_array_equal(disturbed(calm, walk, body), calm)
 
 
 def test_pressed_soles_are_just_below_the_ground(body):
-    q = pressed(start_posture(Scenario(), body))
+    q = pressed(start_posture(resolve(Scenario()), body))
     np.testing.assert_allclose([sole.translation[2] for sole in soles(body, q)], -SOLE_SINKAGE, atol=1e-6)
 
 
 def test_a_stance_out_of_reach_is_refused(body):
     with pytest.raises(ValueError, match="cannot stand with gait"):
-        start_posture(Scenario(gait=Gait(com_height=1.2)), body)
+        start_posture(resolve(Scenario(gait=Gait(com_height=1.2))), body)

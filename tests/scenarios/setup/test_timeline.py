@@ -3,15 +3,12 @@ import pytest
 from surefoot.planner.types import PhaseKind
 from surefoot.planner.walk.clock import schedule
 from surefoot.scenarios.file.schema import Gait, Scenario
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
-    gait_duration,
     phase_duration,
     phase_start,
-    run_duration,
-    step_count,
 )
-from surefoot.scenarios.setup.planner import gait_parameters
 
 pytestmark = pytest.mark.unit
 
@@ -19,28 +16,29 @@ pytestmark = pytest.mark.unit
 @pytest.mark.parametrize("stand", [0.0, 1.0])
 def test_times_are_those_of_the_planners_schedule(stand):
     scenario = Scenario(gait=Gait(steps=4, single_support=0.6, double_support=0.2, initial_stand=stand))
-    phases = schedule(gait_parameters(scenario), 0.02, 10).phases
+    phases = schedule(Draft(scenario).gait, 0.02, 10).phases
     singles = [phase for phase in phases if phase.kind is PhaseKind.SINGLE]
     doubles = [phase for phase in phases if phase.kind is PhaseKind.DOUBLE]
     for step, (single, double) in enumerate(zip(singles, doubles, strict=False), start=1):
         for name, phase in (("single", single), ("double", double)):
-            assert phase_start(scenario.gait, step, name) == pytest.approx(0.02 * phase.start)
-            assert phase_duration(scenario.gait, step, name) == pytest.approx(0.02 * phase.samples)
-    assert run_duration(scenario) == pytest.approx(0.02 * phases[-1].start + FINAL_STAND)
+            assert phase_start(Draft(scenario).gait, step, name) == pytest.approx(0.02 * phase.start)
+            assert phase_duration(Draft(scenario).gait, step, name) == pytest.approx(0.02 * phase.samples)
+    assert Draft(scenario).duration == pytest.approx(0.02 * phases[-1].start + FINAL_STAND)
 
 
 def test_times_of_a_walk_that_stops():
     velocity = ({"time": 0.0, "v_x": 0.3}, {"time": 4.0}, {"time": 8.0, "v_x": 0.2}, {"time": 10.0})
     scenario = Scenario(gait=Gait(single_support=0.6, double_support=0.2, velocity=velocity))
-    phases = schedule(gait_parameters(scenario), 0.02, 10).phases
+    phases = schedule(Draft(scenario).gait, 0.02, 10).phases
     singles = [index for index, phase in enumerate(phases) if phase.kind is PhaseKind.SINGLE]
-    assert step_count(scenario.gait) == len(singles)
+    assert Draft(scenario).gait.steps == len(singles)
     for step, index in enumerate(singles, start=1):
         for name, phase in (("single", phases[index]), ("double", phases[index - 1])):
-            assert phase_start(scenario.gait, step, name) == pytest.approx(0.02 * phase.start)
-            assert phase_duration(scenario.gait, step, name) == pytest.approx(0.02 * phase.samples)
-    assert run_duration(scenario) == pytest.approx(0.02 * phases[-1].start + FINAL_STAND)
+            assert phase_start(Draft(scenario).gait, step, name) == pytest.approx(0.02 * phase.start)
+            assert phase_duration(Draft(scenario).gait, step, name) == pytest.approx(0.02 * phase.samples)
+    assert Draft(scenario).duration == pytest.approx(0.02 * phases[-1].start + FINAL_STAND)
 
 
 def test_a_gait_without_motion_lasts_its_stand():
-    assert gait_duration(Gait(velocity=({"time": 3.0},))) == gait_duration(Gait(steps=0)) == 1.0
+    standing = (Gait(velocity=({"time": 3.0},)), Gait(steps=0))
+    assert [Draft(Scenario(gait=gait)).gait_duration for gait in standing] == [1.0, 1.0]

@@ -9,11 +9,11 @@ from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.judge.verdict import SCENARIO_FILE
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.loop.run import run_constants, scenario_yaml
 from surefoot.scenarios.record import channels
-from surefoot.scenarios.record.provenance import RECORD, WORLD_FILE
+from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE, WORLD_FILE
+from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.world import World
 
 RATE = 500
@@ -50,7 +50,7 @@ def write(path: Path, duration: float = DURATION, world: bytes | None = None, fi
     """Write the log."""
     robot = describe("humanoid100", RobotOptions())
     scenario = Scenario(name="invented", pushes=[{"time": 0.51, "force": (0, 150, 0), "body": "pelvis"}])
-    constants = run_constants(scenario.model_copy(update={"fidelity": fidelity}), robot)
+    constants = run_constants(resolve(scenario.model_copy(update={"fidelity": fidelity}), robot))
     text = World(robot, flat(), 1000).mjcf().encode() if world is None else world
     attached = [AttachedFile(SCENARIO_FILE, "application/yaml", scenario_yaml(scenario).encode())]
     attached += [AttachedFile(WORLD_FILE, "application/xml", text)] if text else []

@@ -1,0 +1,205 @@
+"""A scenario on the way to a walk: what follows from its keys, each thing in one place, derived once, when asked."""
+
+import math
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from surefoot.planner.ground.terrain import Box, Terrain, flat
+from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.planner.parameters import GroundSearch, PlannerParameters, StepAdaptation
+from surefoot.planner.references.com_height import (
+    BENT_KNEES,
+    BentKneeHeight,
+    HeightProfile,
+    PaperHeight,
+    Rise,
+    SmoothHeight,
+)
+from surefoot.planner.types import Array, FeetState
+from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
+from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.reach import StepRegion
+from surefoot.scenarios.file.schema import GroundError, Scenario
+from surefoot.scenarios.setup.gait import (
+    FINAL_STAND,
+    commanded,
+    fitted_to,
+    gait_duration,
+    gait_of,
+    longest_landing,
+    step_region,
+)
+from surefoot.scenarios.setup.terrain import KINDS, TerrainKind
+
+SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
+"""Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait [m]."""
+
+
+class Draft:
+    """What a scenario means, before anyone knows whether it can be run.
+
+    The checks look at it, and `surefoot.scenarios.setup.walk.resolve` freezes it. A property raises `ParameterError`
+    where the planner refuses the keys.
+
+    Attributes:
+        keys: the scenario as the user wrote it; nobody below this room sees it.
+    """
+
+    def __init__(self, keys: Scenario) -> None:
+        self.keys = keys
+
+    @cached_property
+    def commanded(self) -> bool:
+        """Whether the gait is given by a velocity or by footsteps."""
+        return commanded(self.keys.gait)
+
+    @cached_property
+    def gait(self) -> GaitParameters:
+        """The gait in the planner's terms, its strides as wide as asked for."""
+        return gait_of(self.keys.gait)
+
+    @cached_property
+    def gait_duration(self) -> float:
+        """Time from the start to the end of the last double support [s]."""
+        return gait_duration(self.gait)
+
+    @cached_property
+    def duration(self) -> float:
+        """Simulated time: as given, or the gait and a while of standing [s]."""
+        return self.gait_duration + FINAL_STAND if self.keys.duration is None else self.keys.duration
+
+    @cached_property
+    def origin(self) -> Array:
+        """Middle of the start feet, x and y, shape (2,) [m]."""
+        return np.array([self.keys.start.x, self.keys.start.y])
+
+    @cached_property
+    def kind(self) -> TerrainKind:
+        """The kind of ground."""
+        return KINDS[self.keys.terrain.kind]
+
+    @cached_property
+    def terrain(self) -> Terrain:
+        """The ground as the planner believes it to be."""
+        return self.kind.build(self)
+
+    @cached_property
+    def true_terrain(self) -> Terrain:
+        """The ground as it is: treads higher or lower than believed, by the seed, and what the planner knows not of.
+
+        Where the robot starts is known.
+        """
+        terrain, noise = self.terrain, self.keys.terrain.height_noise
+        boxes = terrain.boxes
+        if noise != 0.0:
+            errors = np.random.default_rng(self.keys.seed).uniform(-noise, noise, len(boxes))
+            boxes = tuple(
+                box if box.top(self.origin[None])[1][0] >= 0.0 else _raised(box, error)
+                for box, error in zip(boxes, errors, strict=True)
+            )
+        hidden = tuple(self._hidden(error) for error in self.keys.errors.ground or ())
+        return replace(terrain, boxes=(*boxes, *hidden)) if hidden or noise != 0.0 else terrain
+
+    def _hidden(self, error: GroundError) -> Box:
+        """A box that is there and that nobody believes in, laid along the start heading."""
+        c, s = math.cos(self.keys.start.yaw), math.sin(self.keys.start.yaw)
+        rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        base = self.start_height
+        center = rotation @ (error.x, error.y, 0.0) + (*self.origin, base + 0.5 * error.height)
+        return Box(center, 0.5 * np.array([error.length, error.width, error.height]), rotation)
+
+    @cached_property
+    def start_height(self) -> float:
+        """Height of the ground on which the robot starts [m]."""
+        return self.kind.start_height(self)
+
+    @cached_property
+    def search(self) -> GroundSearch:
+        """How a swing foot that has not felt the ground goes on downwards.
+
+        Where the ground has steps its heights are believed less: a foot that finds no tread by the end of single
+        support hurries after one that lies lower, since waiting for it costs balance.
+        """
+        lead = PlannerParameters().touchdown_lead
+        return GroundSearch(hurry_after=lead) if self.kind.stepped else GroundSearch()
+
+    @cached_property
+    def stance(self) -> FeetState:
+        """Where the feet stand at the start: side by side at the start position and heading, on the ground there."""
+        return self._stance(self.start_height)
+
+    @cached_property
+    def level_footsteps(self) -> FootstepPlan:
+        """The footsteps on level ground."""
+        return plan_footsteps(self.gait, self._stance(0.0), flat())
+
+    def _stance(self, height: float) -> FeetState:
+        yaw, width = self.keys.start.yaw, self.keys.gait.step_width
+        left = 0.5 * width * np.array([-math.sin(yaw), math.cos(yaw), 0.0])
+        origin = np.append(self.origin, height)
+        return FeetState(np.array([origin + left, origin - left]), np.full(2, yaw), (True, True))
+
+    @cached_property
+    def profile(self) -> Profile:
+        """The formulation of the planner."""
+        profile: Profile = PROFILES[self.keys.planner.profile]
+        return profile
+
+    @cached_property
+    def heights(self) -> HeightProfile:
+        """The height law: where the CoM climbs follows from the fidelity unless the scenario says it.
+
+        The paper's profile has the paper's own law, in double support and with its jumps. A pendulum can do what the
+        paper does, and climbs in double support; legs cannot, and climb in single support.
+        """
+        planner = self.keys.planner
+        if planner.profile == "paper" and planner.knee == "stretched":
+            return PaperHeight()
+        rise = Rise(planner.rise or ("double" if self.keys.fidelity == "pendulum" else "single"))
+        return BentKneeHeight(rise) if planner.knee == "bent" else SmoothHeight(rise)
+
+    @cached_property
+    def standing_height(self) -> float:
+        """CoM height over the soles at which the walk begins and ends [m]."""
+        return self.keys.gait.com_height - (BENT_KNEES if self.keys.planner.knee == "bent" else 0.0)
+
+    @cached_property
+    def reach(self) -> float:
+        """How far ahead of its stance foot the planner may place a footstep: a decimetre beyond the gait's own [m]."""
+        own = longest_landing(self.gait) if self.commanded else abs(self.keys.gait.step_length)
+        return min(max(own + 0.1, SHORTEST_REACH), LONGEST_REACH)
+
+    @cached_property
+    def parameters(self) -> PlannerParameters:
+        """The profile's parameters with what the scenario changes of them, for legs without inertia."""
+        keys = self.keys.planner
+        chosen: dict[str, Any] = {
+            "horizon": keys.horizon,
+            "moves": None if keys.control_horizon is None else tuple(range(keys.control_horizon)),
+            "jerk_limit": keys.jerk_limit,
+            "jerk_rate_limit": keys.jerk_rate_limit,
+            "search": self.search,
+        }
+        return replace(
+            self.profile.parameters,
+            sample_time=keys.sample_time,
+            reach_length=self.reach,
+            step_adaptation=StepAdaptation(keys.step_adaptation),
+            **{name: value for name, value in chosen.items() if value is not None},
+        )
+
+    def region(self, sole: tuple[float, float]) -> StepRegion:
+        """Where steps may land, for soles of this length and width [m]."""
+        return step_region(self.parameters, sole)
+
+    def fitted_gait(self, sole: tuple[float, float]) -> GaitParameters:
+        """The gait that is walked, for soles of this length and width [m]."""
+        return fitted_to(self.region(sole), self.gait, self.keys.gait)
+
+
+def _raised(box: Box, height: float) -> Box:
+    up = np.array([0.0, 0.0, 0.5 * height])
+    return replace(box, center=box.center + up, half_size=box.half_size + up)

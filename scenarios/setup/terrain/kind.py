@@ -1,0 +1,85 @@
+"""What a kind of terrain is, and the checks that several kinds share."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from surefoot.planner.geometry import sole_corners
+from surefoot.planner.ground.terrain import Terrain
+from surefoot.planner.types import Array
+from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
+from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.setup.robot import RobotFacts
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.setup.draft import Draft
+
+PLATFORM = 1.0
+"""Level ground kept before the first and after the last footstep on a platform [m]."""
+
+FOLDED = 0.5
+"""Length of a leg with a deeply bent knee over its length with a straight one [-]."""
+
+MOST_STEPS = 2000
+"""Footsteps that are looked at; those after the last stair stand on its platform [-]."""
+
+
+class TerrainKind:
+    """A kind of terrain: how it is built of a scenario's keys, and what makes it impossible.
+
+    To add one is a subclass in a file of its own, and its line in `KINDS`.
+
+    Attributes:
+        name: value of ``terrain.kind``.
+        keys: keys of ``terrain`` that shape it; friction is of all.
+        stepped: whether its heights change at edges, so that they are believed less than those of level ground.
+    """
+
+    name: str
+    keys: tuple[str, ...] = ()
+    stepped: bool = False
+
+    def build(self, draft: "Draft") -> Terrain:
+        """The ground as the planner believes it to be."""
+        raise NotImplementedError
+
+    def start_height(self, draft: "Draft") -> float:
+        """Height of the ground on which the robot starts [m]."""
+        return draft.terrain.height(draft.keys.start.x, draft.keys.start.y)
+
+    def problems(self, draft: "Draft", facts: RobotFacts) -> list[Problem]:
+        """List what makes it impossible for a robot and its gait."""
+        return []
+
+
+def way(draft: "Draft") -> float:
+    """Way that the steps go at most [m]."""
+    keys = draft.keys.gait
+    if not draft.commanded:
+        return keys.steps * abs(keys.step_length)
+    return sum(abs(stride.length) for stride in draft.gait.strides)
+
+
+def climb_problems(draft: "Draft", facts: RobotFacts, risers: int = 1) -> Iterator[Problem]:
+    """List a terrain.riser of which a step goes up so many at once, which the legs cannot.
+
+    The hips are at their height above the lower foot while the other leg folds on the tread above.
+    """
+    hips, riser = draft.standing_height - facts.com_above_hip, draft.keys.terrain.riser
+    highest = (hips - FOLDED * facts.leg_length) / risers
+    if riser > highest:
+        what = f"terrain.riser {riser} m is out of reach of legs {facts.leg_length:.3f} m long"
+        yield Problem(("terrain", "riser"), what, f"use at most {highest:.3f} m")
+
+
+def planned_soles(draft: "Draft", facts: RobotFacts) -> tuple[FootstepPlan, Array]:
+    """The footsteps, and the corners of their soles, start feet first, shape (n + 2, 4, 2) [m]."""
+    gait = draft.gait
+    if not draft.commanded:
+        gait = replace(gait, steps=min(gait.steps, MOST_STEPS))
+    plan = plan_footsteps(gait, draft.stance, draft.terrain)
+    half_size = 0.5 * np.array([facts.foot_length, facts.foot_width])
+    soles = [plan.footstep(row) for row in range(plan.steps + 2)]
+    return plan, np.array([sole_corners(sole, half_size) for sole in soles])

@@ -1,0 +1,186 @@
+"""A scenario resolved: what it means, computed once, in the terms of the layers below; nobody there sees a scenario."""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from surefoot.planner.ground.terrain import Terrain
+from surefoot.planner.laws.profiles import Profile
+from surefoot.planner.parameters import LegInertia, PlannerParameters
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.references.com_height import HeightProfile
+from surefoot.planner.types import FeetState
+from surefoot.planner.walk.gait import GaitParameters
+from surefoot.scenarios.file.schema import Fault, PendulumSettings, Rates, Scenario, Sensing, Start
+from surefoot.scenarios.setup.draft import Draft
+from surefoot.scenarios.setup.gait import push_time
+from surefoot.scenarios.setup.robot import describe, true_robot
+from surefoot.sim.pushes import Push
+from surefoot.wbc.controller import WbcParameters
+
+if TYPE_CHECKING:
+    from surefoot.models.types import RobotDescription
+
+LEAST_BELIEVED_FRICTION = 0.05
+"""The controller counts on at least this friction, so that its wrench cones keep an inside."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Walk:
+    """Everything that a run is made of.
+
+    What "is believed" is what planner and controller are told; the simulated world may differ.
+
+    Attributes:
+        name: of the scenario.
+        fidelity: full or pendulum.
+        seed: of everything random.
+        duration: simulated time [s].
+        gait_duration: until the end of the last double support [s].
+        rates: of the clock.
+        robot: as believed.
+        true_robot: as simulated; the same object when nothing about it is believed wrongly.
+        true_mass: [kg].
+        true_com_height: nominal, above the soles [m].
+        height_error: believed minus true CoM height [m].
+        friction: as believed [-].
+        gait: what is walked.
+        heights: law of the CoM height.
+        standing_height: CoM over the soles at begin and end [m].
+        terrain: the ground as believed.
+        true_terrain: the ground as simulated.
+        terrain_kind: name of its kind.
+        start: where the walk starts, with its noises.
+        start_height: of the ground there [m].
+        stance: the feet there, side by side.
+        profile: formulation of the planner.
+        parameters: of the planner, for legs without inertia.
+        controller: weights and gains of the whole-body controller.
+        sensing: noises of what is measured.
+        filter: filter of the planner's state: none, kalman or zmp_only.
+        pushes: on bodies, world frame.
+        faults: injected.
+        pendulum: the plant of fidelity pendulum.
+    """
+
+    name: str
+    fidelity: str
+    seed: int
+    duration: float
+    gait_duration: float
+    rates: Rates
+    robot: "RobotDescription"
+    true_robot: "RobotDescription"
+    true_mass: float
+    true_com_height: float
+    height_error: float
+    friction: float
+    gait: GaitParameters
+    heights: HeightProfile
+    standing_height: float
+    terrain: Terrain
+    true_terrain: Terrain
+    terrain_kind: str
+    start: Start
+    start_height: float
+    stance: FeetState
+    profile: Profile
+    parameters: PlannerParameters
+    controller: WbcParameters
+    sensing: Sensing
+    filter: str
+    pushes: tuple[Push, ...]
+    faults: tuple[Fault, ...]
+    pendulum: PendulumSettings
+
+    @property
+    def start_com_height(self) -> float:
+        """CoM height in the world at the start [m]."""
+        return self.start_height + self.standing_height
+
+    @property
+    def sole(self) -> tuple[float, float]:
+        """Length and width of the soles [m]."""
+        return self.robot.sole_length, self.robot.sole_width
+
+    def planner(self, feet: FeetState, leg: LegInertia) -> Any:
+        """The planner of this walk: the profile's own, or the walking planner with the profile's law.
+
+        Args:
+            feet: where the feet stand at the start.
+            leg: inertia of the legs.
+
+        Raises:
+            ParameterError: it cannot plan this gait.
+        """
+        make: Any = getattr(self.profile, "planner", None) or WalkingPlanner
+        parameters = replace(self.parameters, leg=leg)
+        return make(self.gait, feet, *self.sole, self.terrain, parameters, self.heights, self.profile)
+
+
+def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:
+    """Say what a checked scenario means.
+
+    Args:
+        scenario: fit to run.
+        robot: in place of the one that it names.
+        profile: in place of the planner's profile that it names.
+
+    Raises:
+        ParameterError: a part refuses its parameters.
+    """
+    draft, keys = Draft(scenario), scenario
+    if profile is not None:
+        draft.profile = profile
+    robot = robot or describe(keys.robot, keys.robot_options)
+    sole = (robot.sole_length, robot.sole_width)
+    near, far = draft.parameters.reach_width
+    apart = max(near, robot.sole_width + 0.5 * draft.region(sole).gap)
+    return Walk(
+        name=keys.name,
+        fidelity=keys.fidelity,
+        seed=keys.seed,
+        duration=draft.duration,
+        gait_duration=draft.gait_duration,
+        rates=keys.rates,
+        robot=robot,
+        true_robot=true_robot(keys.errors, robot) if keys.fidelity == "full" else robot,
+        true_mass=float(robot.mass) / keys.errors.mass_scale,
+        true_com_height=keys.gait.com_height - keys.errors.com_height,
+        height_error=keys.errors.com_height,
+        friction=max(keys.terrain.friction + keys.errors.friction, LEAST_BELIEVED_FRICTION),
+        gait=draft.fitted_gait(sole),
+        heights=draft.heights,
+        standing_height=draft.standing_height,
+        terrain=draft.terrain,
+        true_terrain=draft.true_terrain,
+        terrain_kind=keys.terrain.kind,
+        start=keys.start,
+        start_height=draft.start_height,
+        stance=draft.stance,
+        profile=draft.profile,
+        # Adaptation leaves at least half the planned gap between soles.
+        parameters=replace(draft.parameters, reach_width=(apart, far)),
+        controller=WbcParameters(),
+        sensing=keys.sensing,
+        filter=_filter(draft),
+        pushes=_pushes(draft, robot),
+        faults=keys.faults,
+        pendulum=keys.pendulum,
+    )
+
+
+def _filter(draft: Draft) -> str:
+    """The filter of the planner's state; when the scenario names none, the Kalman filter if there is noise."""
+    sensing = draft.keys.sensing
+    noisy = sensing.zmp_noise > 0.0 or sensing.com_noise > 0.0
+    return draft.keys.planner.filter or ("kalman" if noisy else "none")
+
+
+def _pushes(draft: Draft, robot: "RobotDescription") -> tuple[Push, ...]:
+    """The pushes with their times and bodies; one without a body acts on the torso."""
+    return tuple(
+        Push(push_time(draft.gait, push), push.duration, np.array(push.force), push.body or robot.torso_body)
+        for push in draft.keys.pushes
+    )

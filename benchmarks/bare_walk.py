@@ -18,7 +18,7 @@ from surefoot.scenarios.loop.skeleton import ClosedLoop
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.world import World
 from surefoot.wbc.controller import WholeBodyController

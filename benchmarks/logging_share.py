@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 from surefoot.scenarios.log import LogWriter, NoLog
 from surefoot.scenarios.loop.run import closed_loop
 from surefoot.scenarios.loop.skeleton import ClosedLoop
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import resolve
 
 TURN = 450

@@ -21,7 +21,7 @@ from surefoot.planner.types import FeetState
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.scenarios.log import NoLog
 from surefoot.scenarios.loop.run import closed_loop
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import resolve
 
 T, N = 0.02, 50

@@ -52,7 +52,8 @@ def run(
     """Run a scenario, write its log and judge it."""
     from surefoot.scenarios.loop.run import run_scenario
     from surefoot.scenarios.record.provenance import LOG_NAME
-    from surefoot.scenarios.setup.load import load_scenario, locate, output_folder
+    from surefoot.scenarios.setup.load import load as load_scenario
+    from surefoot.scenarios.setup.load import locate, output_folder
     from surefoot.scenarios.show.console import ProgressLine, print_result
     from surefoot.scenarios.show.replay.command import LiveView, check
 

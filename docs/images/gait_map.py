@@ -70,7 +70,7 @@ def answer(cell: Cell) -> Answer:
     """Walk a cell with the CoM as high as its steps are accepted."""
     from surefoot.scenarios.errors import ScenarioError, SetupError
     from surefoot.scenarios.loop.run import run_scenario
-    from surefoot.scenarios.setup.load import load_scenario
+    from surefoot.scenarios.setup.load import load as load_scenario
 
     for height in HEIGHTS:
         try:

@@ -4,9 +4,11 @@ One frozen model per group. Every key has a default, so a scenario file states o
 relates several keys (rates that divide, steps within reach) is checked in ``checks``.
 """
 
+from collections.abc import Callable, Iterable
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import PydanticCustomError, core_schema
 
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 
@@ -23,6 +25,51 @@ Speed = Annotated[float, Field(ge=-10, le=10, allow_inf_nan=False)]
 Noise = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000)]
+
+
+class OneOf:
+    """One of the names that a registry has when a value is checked: other packages may bring more of them.
+
+    Args:
+        default: one that is always there; it is accepted without a look at the others.
+        names: gives them all; asked at each check of another name, so that nothing is imported before.
+    """
+
+    def __init__(self, default: str, names: Callable[[], Iterable[str]]) -> None:
+        self._default, self._names = default, names
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        """Check as a literal would, with its message."""
+        return core_schema.no_info_after_validator_function(self._check, core_schema.str_schema(strict=True))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """Describe as a literal would."""
+        return {"enum": list(self._names()), "type": "string"}
+
+    def _check(self, value: str) -> str:
+        if value == self._default or value in (known := list(self._names())):
+            return value
+        names = [repr(name) for name in known]
+        expected = " or ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else names[0]
+        raise PydanticCustomError("literal_error", "{expected}", {"expected": expected})
+
+
+def _terrain_kinds() -> Iterable[str]:
+    from surefoot.scenarios.setup.terrain import KINDS
+
+    return KINDS
+
+
+def _profiles() -> Iterable[str]:
+    from surefoot.planner.laws.profiles import PROFILES
+
+    return PROFILES
+
+
+def _estimators() -> Iterable[str]:
+    from surefoot.scenarios.loop.estimator import ESTIMATORS
+
+    return ESTIMATORS
 
 
 def _tuple(value: Any) -> Any:
@@ -52,7 +99,7 @@ class RobotSettings(Group):
 class TerrainSettings(Group):
     """The ground."""
 
-    kind: Literal["flat", "stairs", "blocks", "slope"] = Field(default="flat", description="shape of the ground")
+    kind: Annotated[str, OneOf("flat", _terrain_kinds)] = Field(default="flat", description="shape of the ground")
     riser: NonNegative = Field(
         default=0.1, description="height of a stair, or how much higher or lower a block may be [m]"
     )
@@ -132,7 +179,7 @@ class Gait(Group):
 class PlannerSettings(Group):
     """The walking planner."""
 
-    profile: Literal["default", "paper", "repaired", "lti", "preview", "dcm"] = Field(
+    profile: Annotated[str, OneOf("default", _profiles)] = Field(
         default="default", description="formulation of the planner"
     )
     horizon: Annotated[int, Field(ge=2, le=1000)] | None = Field(
@@ -165,7 +212,9 @@ class PlannerSettings(Group):
 class Sensing(Group):
     """What planner and controller know of the robot; noises are standard deviations."""
 
-    source: Literal["truth", "estimated"] = Field(default="truth", description="state given to planner and controller")
+    source: Annotated[str, OneOf("truth", _estimators)] = Field(
+        default="truth", description="estimator of the state that controller and planner are given"
+    )
     zmp_noise: NonNegative = Field(default=0.0, description="of the ZMP that the planner measures [m]")
     com_noise: NonNegative = Field(
         default=0.0, description="of the CoM that the planner measures [m]; of its velocity 5 / s times as much"

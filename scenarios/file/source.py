@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -166,27 +167,48 @@ def _spot(node: yaml.Node) -> tuple[int, int]:
     return node.start_mark.line + 1, node.start_mark.column + 1
 
 
-def apply_override(source: Source, override: str) -> None:
-    """Set one value in place.
+Overrides = Sequence[str] | Mapping[str, Any]
+"""Values set over those of a scenario: ``key=value`` with YAML values, or values by dotted key."""
+
+
+def apply_overrides(source: Source, overrides: Overrides) -> None:
+    """Set values in place, in order; list elements are reached by index.
 
     Args:
         source: the scenario's values.
-        override: ``key=value``; the key dotted, list elements by index, the value YAML.
+        overrides: what to set.
 
     Raises:
-        ScenarioError: it is no such pair, or the key leads into a scalar or past the end of a list.
+        ScenarioError: one is no setting, or its key leads into a scalar or past the end of a list.
     """
-    name, equals, text = override.partition("=")
-    name = name.strip()
-    if not equals or not name:
-        raise ScenarioError([f"--set {override}: not a setting; write --set key=value"])
+    if isinstance(overrides, Mapping):
+        for name, value in overrides.items():
+            _set(source, name, _plain(value))
+        return
+    for override in overrides:
+        name, equals, text = override.partition("=")
+        if not equals or not name.strip():
+            raise ScenarioError([f"--set {override}: not a setting; write --set key=value"])
+        parsed = parse(text, f"--set {name.strip()}")
+        if parsed.problems:
+            raise ScenarioError([parsed.describe(problem) for problem in parsed.problems])
+        _set(source, name.strip(), parsed.value)
+
+
+def _set(source: Source, name: str, value: Any) -> None:
     place = f"--set {name}"
-    value = parse(text, place)
-    if value.problems:
-        raise ScenarioError([value.describe(problem) for problem in value.problems])
     key: Key = tuple(int(part) if part.isdecimal() and len(part) < 6 else part for part in name.split("."))
-    _assign(source.value, key, value.value, place)
+    _assign(source.value, key, value, place)
     source.overridden[key] = place
+
+
+def _plain(value: Any) -> Any:
+    """A value as YAML would give it: numpy's numbers and arrays, and tuples, as plain ones."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items()}
+    return [_plain(inner) for inner in value] if isinstance(value, list | tuple) else value
 
 
 def _assign(group: Any, key: Key, value: Any, place: str) -> None:

@@ -1,7 +1,8 @@
 """The closed loop in full physics: a simulated robot under its whole-body controller, planner and log around it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +14,11 @@ from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.scenarios.judge.walking import FALLEN_HEIGHT, FALLEN_TILT
 from surefoot.scenarios.log import AttachedFile, LogWriter
-from surefoot.scenarios.loop.estimator import Estimator, TrueState
+from surefoot.scenarios.loop.estimator import ESTIMATORS, Estimator
 from surefoot.scenarios.loop.faults import FaultSchedule, RunFault
 from surefoot.scenarios.loop.planning import Planning, whole_body_reference
 from surefoot.scenarios.loop.sensing import PlannerSensing
-from surefoot.scenarios.loop.skeleton import ClosedLoop
+from surefoot.scenarios.loop.skeleton import ClosedLoop, Look
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import BodyView
@@ -53,11 +54,23 @@ class Parts:
 
     Attributes:
         controller: makes the whole-body controller; takes the arguments of `WholeBodyController` by name.
-        estimator: makes the state estimator of a walk.
+        estimator: makes the state estimator of a walk; None for the one that the scenario names.
     """
 
     controller: Callable[..., WholeBodyController] = WholeBodyController
-    estimator: Callable[[Walk], Estimator] = field(default=TrueState)
+    estimator: Callable[[Walk], Estimator] | None = None
+
+    @classmethod
+    def of(cls, **chosen: Any) -> "Parts":
+        """Parts of which None stands for surefoot's own."""
+        return cls(**{name: part for name, part in chosen.items() if part is not None})
+
+    def given(self) -> dict[str, object]:
+        """Those that are not surefoot's own, by name."""
+        own = Parts()
+        return {
+            e.name: getattr(self, e.name) for e in fields(self) if getattr(self, e.name) is not getattr(own, e.name)
+        }
 
 
 def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> ClosedLoop:
@@ -85,9 +98,10 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     layout = controller.layout
     sizes = Sizes(nj=layout.joints, nq=len(q), nv=layout.nv, horizon=planner.parameters.horizon)
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
+    estimator = (parts.estimator or ESTIMATORS[walk.sensing.source])(walk)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    walker = SimulatedRobot(walk, world, controller, parts.estimator(walk), body_recorder, view)
+    walker = SimulatedRobot(walk, world, controller, estimator, body_recorder, view)
     faults = FaultSchedule(walk.faults, walk.rates.control)
     planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates)
     return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration)
@@ -201,6 +215,13 @@ class SimulatedRobot:
             self.world.advance(self._torque, self._steps)
         except SimulationDiverged as fault:
             raise RunFault(str(fault)) from None
+
+    def look(self) -> Look:
+        """See `Walker`."""
+        truth = self._truth
+        zmp = measured_zmp(self.measurement.wrench, truth.sole_position, truth.sole_rotation)
+        com, velocity = truth.com.copy(), truth.com_velocity.copy()
+        return Look(com, velocity, np.array(zmp[:2]), self.state, self.report, self.measurement)
 
     def push(self, push: Push) -> None:
         """See `Walker`."""

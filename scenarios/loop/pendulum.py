@@ -19,7 +19,7 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.loop.faults import FaultSchedule, RunFault
 from surefoot.scenarios.loop.planning import Planning
 from surefoot.scenarios.loop.sensing import PlannerSensing
-from surefoot.scenarios.loop.skeleton import ClosedLoop
+from surefoot.scenarios.loop.skeleton import ClosedLoop, Look
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import PointView
 from surefoot.scenarios.record.walk import PendulumRecorder, WalkRecorder
@@ -216,6 +216,10 @@ class PointMass:
         end = sampler.sample(now + period)
         self._height, self._climb = float(end.com[2]), float(end.com_velocity[2])
         self._feet.follow(sampler, now + period)
+
+    def look(self) -> Look:
+        """See `Walker`."""
+        return Look(self.state.com, self.state.com_velocity, self._plant.zmp)
 
     def push(self, push: Push) -> None:
         """See `Walker`."""

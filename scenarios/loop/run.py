@@ -1,6 +1,6 @@
 """Runs a scenario: the log is written while the loop goes on, and the verdict is then computed from the log file."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import yaml
 from threadpoolctl import threadpool_limits
 
+from surefoot.planner.laws.profiles import Profile
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import Verdict, judge
@@ -16,12 +17,14 @@ from surefoot.scenarios.loop.skeleton import ClosedLoop, End, OnProgress, Progre
 from surefoot.scenarios.record.provenance import (
     END_RECORD,
     LOG_NAME,
+    PARTS_RECORD,
     RECORD,
     SCENARIO_FILE,
     VERDICT_NAME,
     RunConstants,
     versions,
 )
+from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
 
 if TYPE_CHECKING:
@@ -43,9 +46,54 @@ class Result:
     log: Path
     interrupted: bool
 
+    def __repr__(self) -> str:
+        """The verdict in a word, with its reasons, and where the log is."""
+        why = f" ({'; '.join(self.verdict.reasons)})" if self.verdict.reasons else ""
+        return f"<Result {'pass' if self.verdict.passed else 'fail'}{why}, log {self.log}>"
+
 
 Simulate = Callable[[Walk, LogWriter, OnProgress], End]
 """The closed loop from begin to end: opens its channels in the writer, appends to them and says how it ended."""
+
+
+def run(
+    scenario: Scenario | str | Path,
+    seed: int | None = None,
+    out: str | Path = "runs",
+    *,
+    planner: Profile | None = None,
+    parts: "Parts | None" = None,
+    robot: "RobotDescription | None" = None,
+) -> Result:
+    """Run a scenario, log it and judge the log.
+
+        result = surefoot.run("walk", seed=3)
+        result.verdict["cop_ratio_p99"], surefoot.read(result.log)["/truth"].field("com")
+
+    Args:
+        scenario: a scenario, or what `surefoot.load` takes to find one.
+        seed: over that of the scenario.
+        out: directory that gets ``<scenario>-<seed>/log.mcap`` and ``verdict.json``.
+        planner: a profile in place of the one that the scenario names.
+        parts: of the loop in full physics, in place of surefoot's own.
+        robot: a description in place of the robot that the scenario names.
+
+    Raises:
+        ScenarioError: the scenario cannot be found, read or run.
+        SetupError: a part refuses it; no log is left.
+        LogError: the log or the verdict cannot be written.
+    """
+    loaded = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
+    if seed is not None:
+        loaded = loaded.model_copy(update={"seed": seed})
+    given: dict[str, object] = {"planner": planner, "robot": robot, **({} if parts is None else parts.given())}
+
+    def simulate(walk: Walk, writer: LogWriter, on_progress: OnProgress) -> End:
+        loop = closed_loop(walk, writer, parts)
+        note_parts(writer, given)
+        return run_loop(loop, on_progress)
+
+    return run_scenario(loaded, Path(out), None, simulate, robot, planner)
 
 
 def run_scenario(
@@ -54,6 +102,7 @@ def run_scenario(
     on_progress: OnProgress | None = None,
     simulate: Simulate | None = None,
     robot: "RobotDescription | None" = None,
+    profile: Profile | None = None,
 ) -> Result:
     """Run a scenario and judge it.
 
@@ -63,13 +112,14 @@ def run_scenario(
         on_progress: is told where the run is.
         simulate: the closed loop; that of the scenario's fidelity by default.
         robot: its robot; described from the scenario by default.
+        profile: the planner's profile; the one that the scenario names by default.
 
     Raises:
         LogError: the log or the verdict cannot be written.
         SetupError: the loop cannot be set up as the scenario asks; no log is left.
     """
     with refusing():
-        walk = resolve(scenario, robot)
+        walk = resolve(scenario, robot, profile)
     folder = made_folder(out / f"{walk.name}-{walk.seed}")
     with one_thread(), open_log(folder / LOG_NAME, scenario, walk) as writer:
         (folder / VERDICT_NAME).unlink(missing_ok=True)
@@ -103,6 +153,13 @@ def closed_loop(walk: Walk, writer: LogWriter, parts: "Parts | None" = None) -> 
         from surefoot.scenarios.loop.full import full_loop
 
         return full_loop(walk, writer, parts)
+
+
+def note_parts(writer: LogWriter, given: Mapping[str, object]) -> None:
+    """Write down which parts a program has put in the place of surefoot's own, for no log can carry them."""
+    others = {name: repr(part) for name, part in given.items() if part is not None}
+    if others:
+        writer.add_metadata(PARTS_RECORD, others)
 
 
 def _simulate(walk: Walk, writer: LogWriter, on_progress: OnProgress) -> End:

@@ -16,7 +16,9 @@ from surefoot.scenarios.loop.faults import RunFault
 from surefoot.scenarios.loop.planning import Planning
 from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
 from surefoot.scenarios.setup.keys import scenario_problem
+from surefoot.sim.measurement import Measurement
 from surefoot.sim.pushes import Push
+from surefoot.wbc.types import RobotState, WbcReport
 
 AFTER_FALL = 0.3
 """How long a run goes on after a fall, so that the log shows it [s]."""
@@ -72,6 +74,27 @@ def refusing() -> Iterator[None]:
         raise SetupError(scenario_problem(refusal)) from refusal
 
 
+@dataclass(frozen=True, slots=True)
+class Look:
+    """A look at a walker after a step; arrays may be overwritten by the next one.
+
+    Attributes:
+        com: true CoM, shape (3,) [m].
+        com_velocity: shape (3,) [m/s].
+        zmp: true ZMP, shape (2,) [m]; NaN in flight.
+        state: state that the controller was given; None without one, as are the following.
+        report: what the controller did.
+        measurement: what the sensors said.
+    """
+
+    com: NDArray[np.float64]
+    com_velocity: NDArray[np.float64]
+    zmp: NDArray[np.float64]
+    state: RobotState | None = None
+    report: WbcReport | None = None
+    measurement: Measurement | None = None
+
+
 class Walker(Protocol):
     """What walks in a closed loop: a simulated robot under its whole-body controller, or a point mass on ideal feet.
 
@@ -112,6 +135,10 @@ class Walker(Protocol):
         Raises:
             RunFault: the simulation diverged.
         """
+        ...
+
+    def look(self) -> Look:
+        """What there is to see of the tick."""
         ...
 
     def push(self, push: Push) -> None:

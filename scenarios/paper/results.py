@@ -14,7 +14,7 @@ from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.loop.run import run_scenario, scenario_yaml
 from surefoot.scenarios.paper.studies import PROFILES, WORLD_SETTINGS, Experiment, Study, World
 from surefoot.scenarios.record.provenance import END_RECORD, LOG_NAME, SCENARIO_FILE, versions
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 
 ENDED = ("completed", "fall")
 """How a run ends that is a result; a fall is one."""

@@ -25,6 +25,12 @@ SCENARIO_FILE = "scenario.yaml"
 END_RECORD = "end"
 """Metadata record written last: how the run ended."""
 
+PUSH_RECORD = "push "
+"""Beginning of the names of metadata records that hold a push given while the run went on, each with its number."""
+
+PARTS_RECORD = "parts"
+"""Metadata record of what a user's program put in place of a part, which a log cannot carry."""
+
 LOG_NAME, VERDICT_NAME = "log.mcap", "verdict.json"
 """Files of a run in its folder."""
 

@@ -1,25 +1,27 @@
 """From a scenario's name, file or log to a checked scenario: every fault of a file is reported at once."""
 
-from collections.abc import Iterator, Sequence
+import json
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import yaml
 from pydantic import ValidationError
 
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, dotted, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario, Sensing
-from surefoot.scenarios.file.source import MAX_BYTES, apply_override, parse
+from surefoot.scenarios.file.source import MAX_BYTES, Overrides, apply_overrides, parse
 from surefoot.scenarios.file.translate import problems_of, unknown_metrics, without
 from surefoot.scenarios.log import read
-from surefoot.scenarios.record.provenance import LOG_NAME, SCENARIO_FILE
+from surefoot.scenarios.record.provenance import LOG_NAME, PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
 
-_SENSED = ("zmp_noise", "com_noise")
-"""Noises of what the planner measures; those of the whole-body controller's sensors need its estimator."""
+_SENSED = ("source", "zmp_noise", "com_noise")
+"""What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
 
 _AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
@@ -73,13 +75,26 @@ def attached_scenario(path: str) -> tuple[str, str]:
     """
     try:
         log = read(path)
-        text = log.attachments[SCENARIO_FILE].decode()
+        text = _with_pushes(log.attachments[SCENARIO_FILE].decode(), log.metadata)
     except LogError as error:
         raise ScenarioError([str(error)]) from None
     except (KeyError, UnicodeDecodeError):
         what = f"{path}: carries no readable {SCENARIO_FILE}, so it cannot be run again"
         raise ScenarioError([f"{what}; give a log that `surefoot run` has written"]) from None
+    if PARTS_RECORD in log.metadata:
+        parts = ", ".join(f"{name} {part}" for name, part in log.metadata[PARTS_RECORD].items())
+        what = f"{path}: was made by a program with parts of its own ({parts}), which no log can carry"
+        raise ScenarioError([f"{what}; run that program again"])
     return text, f"{path}/{SCENARIO_FILE}"
+
+
+def _with_pushes(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
+    """The text of a scenario with the pushes that were given while it ran."""
+    given = [json.loads(record["push"]) for name, record in metadata.items() if name.startswith(PUSH_RECORD)]
+    if not given:
+        return text
+    keys = yaml.safe_load(text)
+    return yaml.safe_dump({**keys, "pushes": [*keys.get("pushes", []), *given]}, sort_keys=False)
 
 
 def output_folder(reference: str, scenario: Scenario, chosen: Path | None) -> Path:
@@ -102,12 +117,14 @@ def output_folder(reference: str, scenario: Scenario, chosen: Path | None) -> Pa
     return AGAIN
 
 
-def load_scenario(reference: str, overrides: Sequence[str] = (), robots: Robots | None = None) -> Scenario:
+def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None = None) -> Scenario:
     """Load a scenario.
+
+        load("walk", {"gait.steps": 12, "terrain.friction": 0.5})
 
     Args:
         reference: a catalogue name, the path of a YAML file, or that of a log to run again.
-        overrides: ``key=value`` with dotted keys and YAML values, applied in order.
+        overrides: values by dotted key, or ``key=value`` with YAML values as on the command line, applied in order.
         robots: the robots it may name; those of ``models`` by default.
 
     Returns:
@@ -116,34 +133,32 @@ def load_scenario(reference: str, overrides: Sequence[str] = (), robots: Robots 
     Raises:
         ScenarioError: it cannot be found, read or run; lists every fault with its place.
     """
-    text, name, stem = _text(reference)
+    text, name, stem = _text(str(reference))
     return read_scenario(text, name, stem, overrides, robots or RegisteredRobots())
 
 
-def locate(reference: str, overrides: Sequence[str], refusal: SetupError) -> ScenarioError:
+def locate(reference: str, overrides: Overrides, refusal: SetupError) -> ScenarioError:
     """Say where the cause of a refusal stands: at the key that it names, else at the scenario's begin.
 
     Args:
-        reference: as given to `load_scenario`, as are the overrides.
+        reference: as given to `load`, as are the overrides.
         overrides: ``key=value``.
         refusal: of a part of the stack.
     """
     text, name, _ = _text(reference)
     source = parse(text, name)
-    for override in overrides:
-        apply_override(source, override)
+    apply_overrides(source, overrides)
     return ScenarioError([source.describe(refusal.problem)])
 
 
-def read_scenario(text: str, name: str, stem: str, overrides: Sequence[str], robots: Robots) -> Scenario:
-    """Check a scenario's text; arguments and errors as of `load_scenario`, with `name` used in messages."""
+def read_scenario(text: str, name: str, stem: str, overrides: Overrides, robots: Robots) -> Scenario:
+    """Check a scenario's text; arguments and errors as of `load`, with `name` used in messages."""
     source = parse(text, name)
     if source.value is None:
         raise ScenarioError([f"{name}:1:1: the file is empty; give at least 'name: {stem}'"])
     if not isinstance(source.value, dict):
         raise ScenarioError([f"{name}:1:1: a scenario is a group of keys; write 'key: value' lines"])
-    for override in overrides:
-        apply_override(source, override)
+    apply_overrides(source, overrides)
     source.value.setdefault("name", stem)
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]

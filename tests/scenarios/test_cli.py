@@ -119,7 +119,7 @@ def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("surefoot.scenarios.setup.load.load_scenario", interrupt)
+    monkeypatch.setattr("surefoot.scenarios.setup.load.load", interrupt)
     code, _, err = surefoot("run", scenario)
     assert code in (1, 130)
     assert "Traceback" not in err

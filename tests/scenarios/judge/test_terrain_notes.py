@@ -1,7 +1,7 @@
 import pytest
 
 from surefoot.scenarios.judge.verdict import notes
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.unit
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 
 NOISE = ("start.position_noise=0.001", f"start.angle_noise={math.radians(1.0)}")
 VARIED = (

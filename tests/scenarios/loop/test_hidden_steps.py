@@ -3,7 +3,7 @@
 import pytest
 
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.physics
 

@@ -8,7 +8,7 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.pendulum import mean_force
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.unit
 

@@ -9,7 +9,7 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.loop.sensing import PlannerSensing, filter_noise
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit

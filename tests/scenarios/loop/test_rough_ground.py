@@ -10,7 +10,8 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.load import load_scenario, read_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.setup.load import read_scenario
 
 FAST = "robot_options: {foot_length: 0.22, foot_width: 0.11}\n"
 GAIT = "gait: {steps: 6, step_length: 0.3, com_height: 0.94%s}\n"

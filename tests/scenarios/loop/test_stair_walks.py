@@ -5,7 +5,7 @@ from itertools import product
 import pytest
 
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 
 HUMAN = ("robot_options.foot_length=0.22", "robot_options.foot_width=0.11")
 

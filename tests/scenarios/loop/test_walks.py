@@ -5,7 +5,7 @@ from variations import COMMANDED, COMMANDS, SCENARIO, VARIATIONS
 
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 
 EVERY_CHANGE = [variation for variation in VARIATIONS if variation.every_change and variation.overrides]
 ON_DEMAND = [variation for variation in VARIATIONS if not variation.every_change]

@@ -72,7 +72,7 @@ COMMANDS = (
 def run(variation: Variation) -> dict[str, object]:
     """Metrics of one variation, computed from its log."""
     from surefoot.scenarios.loop.run import run_scenario
-    from surefoot.scenarios.setup.load import load_scenario
+    from surefoot.scenarios.setup.load import load as load_scenario
 
     scenario = load_scenario(SCENARIO, list(variation.overrides))
     with tempfile.TemporaryDirectory() as folder:

@@ -10,7 +10,7 @@ from surefoot.scenarios.paper import results as module
 from surefoot.scenarios.paper.results import execute, is_done
 from surefoot.scenarios.paper.studies import Experiment, Study, experiments
 from surefoot.scenarios.record.provenance import source_digest
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.unit
 

@@ -18,7 +18,7 @@ from surefoot.scenarios.log.recover import recover
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
 from surefoot.scenarios.record.provenance import WORLD_FILE
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.physics
 

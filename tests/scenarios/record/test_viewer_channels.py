@@ -15,7 +15,7 @@ from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.record.foxglove.drawing import METRES_PER_NEWTON, force_arrow
 from surefoot.scenarios.record.foxglove.views import RATE
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.robot import describe
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.world import World

@@ -5,7 +5,8 @@ import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.load import load_scenario, read_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.setup.load import read_scenario
 
 pytestmark = pytest.mark.unit
 

@@ -7,7 +7,8 @@ import pytest
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.load import AGAIN, RUNS, load_scenario, output_folder
+from surefoot.scenarios.setup.load import AGAIN, RUNS, output_folder
+from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.unit
 

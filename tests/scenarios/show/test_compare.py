@@ -10,7 +10,7 @@ from mcap.writer import Writer
 from surefoot.scenarios import cli
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.show.compare.compare import compare
 from surefoot.scenarios.show.figures.page import plot
 

@@ -12,7 +12,7 @@ from matplotlib.text import Text
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.show.figures.balance import support_bounds, true_dcm
 from surefoot.scenarios.show.figures.page import FIGURES, page, plot, single
 from surefoot.scenarios.show.figures.shading import background, stretches

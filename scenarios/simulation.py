@@ -1,0 +1,249 @@
+"""A simulation that is stepped from outside, one control tick at a time: looked into, pushed, stopped at will."""
+
+import json
+import math
+from collections.abc import Callable
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from surefoot.errors import ParameterError
+from surefoot.planner.laws.profiles import Profile
+from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.types import PhaseKind
+from surefoot.scenarios.errors import LogError, nearest
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.log import LogWriter, NoLog
+from surefoot.scenarios.loop.faults import RunFault
+from surefoot.scenarios.loop.full import Parts
+from surefoot.scenarios.loop.run import closed_loop, note_parts, one_thread, open_log, write_end
+from surefoot.scenarios.loop.skeleton import ClosedLoop, End, refusing
+from surefoot.scenarios.record.provenance import PUSH_RECORD
+from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.setup.walk import Walk, resolve
+from surefoot.sim.measurement import Measurement
+from surefoot.sim.pushes import Push
+from surefoot.wbc.types import RobotState, WbcReport
+
+if TYPE_CHECKING:
+    from surefoot.models.types import RobotDescription
+    from surefoot.scenarios.loop.estimator import Estimator
+    from surefoot.wbc.controller import WholeBodyController
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Tick:
+    """What happened in one control tick; its arrays are its own.
+
+    Attributes:
+        time: begin of the tick [s].
+        com: true CoM, shape (3,) [m].
+        com_velocity: shape (3,) [m/s].
+        zmp: true ZMP, shape (2,) [m]; NaN in flight.
+        plan: the plan that is followed.
+        reference: its references at this instant.
+        fell: whether the robot has fallen, now or before.
+        state: state that the controller was given; None on a pendulum.
+        report: what the whole-body controller did, its torques and contact wrenches; None on a pendulum.
+        measurement: what the sensors said, and the true state; None on a pendulum.
+    """
+
+    time: float
+    com: Array
+    com_velocity: Array
+    zmp: Array
+    plan: WalkPlan
+    reference: PlanSample
+    fell: bool
+    state: RobotState | None
+    report: WbcReport | None
+    measurement: Measurement | None
+
+    def __repr__(self) -> str:
+        """A line: when, where in the gait, where the CoM is."""
+        phase, (x, y, z) = self.plan.phase, self.com.tolist()
+        where = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support"}.get(phase.kind, "single support")
+        fallen = ", fallen" if self.fell else ""
+        return f"<Tick {self.time:.3f} s, {where}, step {phase.step}, CoM ({x:.3f}, {y:.3f}, {z:.3f}) m{fallen}>"
+
+
+class Simulation:
+    """A walk in simulation, from outside.
+
+        sim = Simulation("walk", seed=3)
+        while not sim.done:
+            tick = sim.step()
+
+    While one is open, numpy's linear algebra keeps to one thread. Usable as a context manager.
+
+    Args:
+        scenario: a scenario, or what `surefoot.load` takes to find one.
+        seed: over that of the scenario.
+        log: file that becomes the log; None for none. An existing file is not replaced.
+        planner: a `Profile` in place of the scenario's: one's own law of motion, or a whole planner in it.
+        controller: makes the whole-body controller; called with the arguments of `WholeBodyController` by name.
+        estimator: makes the state estimator from the walk; see `surefoot.scenarios.loop.estimator.Estimator`.
+        robot: a description in place of the robot that the scenario names.
+
+    Attributes:
+        scenario: what is simulated.
+        walk: what it means.
+
+    Raises:
+        ScenarioError: the scenario cannot be found or run.
+        SetupError: a part refuses it.
+        LogError: the log exists or cannot be written.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario | str,
+        seed: int | None = None,
+        log: str | Path | None = None,
+        *,
+        planner: Profile | None = None,
+        controller: "Callable[..., WholeBodyController] | None" = None,
+        estimator: "Callable[[Walk], Estimator] | None" = None,
+        robot: "RobotDescription | None" = None,
+    ) -> None:
+        loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
+        self.scenario = loaded if seed is None else loaded.model_copy(update={"seed": seed})
+        with refusing():
+            self.walk = resolve(self.scenario, robot, planner)
+        self._parts = Parts.of(controller=controller, estimator=estimator)
+        self._given = {"planner": planner, "robot": robot, "controller": controller, "estimator": estimator}
+        self._path = None if log is None else Path(log)
+        self._writer: LogWriter
+        self._loop: ClosedLoop
+        self._pushes, self._closed = 0, False
+        self._threads = one_thread()
+        self._begin()
+
+    def _begin(self) -> None:
+        if self._path is None:
+            self._writer = NoLog()
+        elif self._path.exists():
+            raise LogError(f"{self._path}: exists already; choose another file, or delete it")
+        else:
+            self._writer = open_log(self._path, self.scenario, self.walk)
+        try:
+            self._loop = closed_loop(self.walk, self._writer, self._parts)
+            note_parts(self._writer, self._given)
+        except BaseException:
+            self._writer.discard()
+            raise
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the next tick [s]."""
+        return self._loop.time
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing more to step: the time is over, the robot has fallen, or a fault ended the run."""
+        return self._loop.done
+
+    @property
+    def fell(self) -> bool:
+        """Whether the robot has fallen."""
+        return self._loop.fell
+
+    @property
+    def end(self) -> End:
+        """How the run ended, or will if nothing happens."""
+        return self._loop.end
+
+    def step(self) -> Tick:
+        """Go through one control tick.
+
+        Raises:
+            RunFault: the run is over; says since when and why. `reset` begins anew.
+        """
+        loop = self._loop
+        if loop.done:
+            raise RunFault(f"the run is over at {loop.end.time:.3f} s, {loop.end.kind}; reset() begins anew")
+        time, sample = loop.time, loop.step()
+        if sample is None:
+            raise RunFault(f"{loop.end.reason}; reset() begins anew")
+        seen = loop.walker.look()
+        return Tick(
+            time=time,
+            com=seen.com,
+            com_velocity=seen.com_velocity,
+            zmp=seen.zmp,
+            plan=loop.planning.plan,
+            reference=sample,
+            fell=loop.fell,
+            state=deepcopy(seen.state),
+            report=deepcopy(seen.report),
+            measurement=deepcopy(seen.measurement),
+        )
+
+    def push(self, force: ArrayLike, duration: float = 0.1, body: str | None = None) -> None:
+        """Push the robot, from the next tick on.
+
+        Args:
+            force: in the world frame, shape (3,) [N].
+            duration: how long it acts [s].
+            body: on whose CoM it acts; the torso if None, the point mass on a pendulum.
+
+        Raises:
+            ParameterError: the force is not finite or not of three numbers, the time is not positive, the body unknown.
+        """
+        vector = np.array(force, dtype=np.float64)
+        if vector.shape != (3,) or not np.isfinite(vector).all():
+            raise ParameterError(("force",), f"a push of {force!r} N", "give three finite numbers, in the world frame")
+        if not 0.0 < duration < math.inf:
+            raise ParameterError(("duration",), f"a push for {duration} s", "give a time of more than 0 s")
+        body = body or self.walk.robot.torso_body
+        if body not in self.walk.robot.bodies:
+            right = nearest(body, self.walk.robot.bodies)
+            raise ParameterError(("body",), f"unknown body '{body}' of {self.walk.robot.name}", right)
+        push = Push(self.time, float(duration), vector, body)
+        self._loop.walker.push(push)
+        self._pushes += 1
+        keys = {"time": push.time, "duration": push.duration, "force": vector.tolist(), "body": body}
+        self._writer.add_metadata(f"{PUSH_RECORD}{self._pushes}", {"push": json.dumps(keys)})
+
+    def reset(self) -> None:
+        """Begin anew, without the pushes that were given from outside.
+
+        Raises:
+            LogError: a log is written, which holds one run only.
+        """
+        if self._path is not None:
+            raise LogError(f"{self._path}: a log holds one run; make another Simulation with a file of its own")
+        self._pushes = 0
+        self._begin()
+
+    def close(self) -> None:
+        """End the run and make its log whole; a second call does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        end = self._loop.end if self._loop.done else End("interrupted", self.time, "stopped from outside")
+        write_end(self._writer, end)
+        self._writer.close()
+        self._threads.restore_original_limits()
+
+    def __enter__(self) -> Self:
+        """For ``with Simulation(...) as sim``."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close, whatever has happened."""
+        self.close()
+
+    def __repr__(self) -> str:
+        """What is simulated, and how far it is."""
+        state = f"over: {self.end.kind}" if self.done else "goes on"
+        return f"<Simulation of {self.walk.name}, seed {self.walk.seed}, at {self.time:.3f} s, {state}>"

@@ -1,0 +1,14 @@
+"""Weights and gains of the whole-body controller, from Python as from a file: what does a softer swing foot cost?"""
+
+import surefoot
+
+for stiffness in (400.0, 200.0):
+    keys = {"wbc.gains.swing": [stiffness, 2.0 * stiffness**0.5], "wbc.weights.swing": 5.0, "gait.steps": 5}
+    sim = surefoot.Simulation(surefoot.load("walk", keys))
+    strain = 0.0
+    while not sim.done:
+        tick = sim.step()
+        if tick.report is not None:
+            strain = max(strain, float(abs(tick.report.torque / sim.walk.robot.torque_limit).max()))
+    print(f"{stiffness:.0f} / s^2: {'fell' if sim.fell else 'walked'}, largest torque {100 * strain:.1f} % of the limit")
+    sim.close()

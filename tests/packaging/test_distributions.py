@@ -3,8 +3,10 @@
 import os
 import subprocess
 import sys
+import sysconfig
 import tarfile
 import tomllib
+import venv
 import zipfile
 from pathlib import Path
 
@@ -32,18 +34,12 @@ def run(folder, unpacked, *command):
 
 
 def test_the_wheel_holds_the_package_whole_and_nothing_beside_it(distributions):
+    walk = os.walk(ROOT / "surefoot", followlinks=True)
+    paths = {Path(folder, name) for folder, _, names in walk for name in names if "__pycache__" not in folder}
     packed = {name: data for name, data in files_of(distributions[0]).items() if ".dist-info/" not in name}
-    tree = [ROOT / "surefoot", *(ROOT / part for part in PARTS)]
-    paths = {path for folder in tree for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts}
-    prefix = {ROOT / "surefoot": ""}
-    expected = {}
-    for path in paths:
-        inside = path.relative_to(ROOT)
-        expected[f"{prefix.get(ROOT / inside.parts[0], 'surefoot/')}{inside.as_posix()}"] = path.read_bytes()
-    assert packed == expected
-    assert {"surefoot/py.typed", "surefoot/scenarios/paper/style.css", "surefoot/scenarios/catalogue/walk.yaml"} <= {
-        *packed
-    }
+    assert packed == {path.relative_to(ROOT).as_posix(): path.read_bytes() for path in paths}
+    data = ("py.typed", "scenarios/paper/style.css", "scenarios/paper/sections.yaml", "scenarios/catalogue/walk.yaml")
+    assert {f"surefoot/{name}" for name in data} <= set(packed)
 
 
 def test_the_wheel_of_the_sdist_is_the_same(distributions, wheel_from_sdist):
@@ -94,3 +90,22 @@ def test_no_text_teaches_an_import_that_is_not_installed():
         if line.lstrip().startswith(starts)
     ]
     assert not bare
+
+
+@pytest.mark.physics
+def test_a_type_checker_reads_the_installed_package(tmp_path, distributions):
+    venv.create(tmp_path / "env", with_pip=False)
+    (site,) = (tmp_path / "env").glob("lib/python*/site-packages")
+    with zipfile.ZipFile(distributions[0]) as archive:
+        archive.extractall(site)
+    (site / "others.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
+    (tmp_path / "right.py").write_text(
+        "import surefoot\nfrom surefoot.models.registry import describe\nfrom surefoot.models.types import RobotOptions\n"
+        "mass: float = describe('humanoid100', RobotOptions()).mass\nversion: str = surefoot.__version__\n"
+    )
+    wrong = (tmp_path / "right.py").read_text().replace("float", "str") + "surefoot.nothing\n"
+    (tmp_path / "wrong.py").write_text(wrong)
+    python = str(tmp_path / "env" / "bin" / "python")
+    checker = [sys.executable, "-m", "mypy", "--strict", "--python-executable", python]
+    found = subprocess.run([*checker, "right.py", "wrong.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert [line.split(":")[:2] for line in found.stdout.splitlines()[:-1]] == [["wrong.py", "4"], ["wrong.py", "6"]]

@@ -7,8 +7,7 @@ import mujoco
 import numpy as np
 
 from surefoot.models.convert import pinocchio_to_mujoco
-from surefoot.models.options import nearest
-from surefoot.models.types import RobotDescription
+from surefoot.models.types import RobotDescription, nearest
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.errors import SimulationDiverged, WorldError
 from surefoot.sim.measurement import Array, Measurement

@@ -77,7 +77,7 @@ def walking_planner(
         ValueError: it cannot plan this gait; one sentence says why.
     """
     sole = (robot.sole_length, robot.sole_width)
-    region = step_region(parameters, sole)
+    region = step_region(parameters, sole, robot.shank_spacing)
     gait = gait_of(scenario.gait, region)
     near, far = parameters.reach_width
     adapting = replace(parameters, reach_width=(max(near, robot.sole_width + 0.5 * region.gap), far))

@@ -1,4 +1,4 @@
-"""What the package needs of others: declared, pinned, under licences that ask nothing of its users, and told if missing."""
+"""What the package needs of others: declared, pinned, free of the GPL, and told if missing."""
 
 import re
 import subprocess

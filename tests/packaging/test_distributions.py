@@ -1,4 +1,4 @@
-"""What is installed: one import name, whole, wherever it is built from, and with no name that can get in a user's way."""
+"""What is installed: one import name, whole, wherever it is built from, and no name that can get in a user's way."""
 
 import os
 import subprocess
@@ -100,7 +100,8 @@ def test_a_type_checker_reads_the_installed_package(tmp_path, distributions):
         archive.extractall(site)
     (site / "others.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
     (tmp_path / "right.py").write_text(
-        "import surefoot\nfrom surefoot.models.registry import describe\nfrom surefoot.models.types import RobotOptions\n"
+        "import surefoot\nfrom surefoot.models.registry import describe\n"
+        "from surefoot.models.types import RobotOptions\n"
         "mass: float = describe('humanoid100', RobotOptions()).mass\nversion: str = surefoot.__version__\n"
     )
     wrong = (tmp_path / "right.py").read_text().replace("float", "str") + "surefoot.nothing\n"

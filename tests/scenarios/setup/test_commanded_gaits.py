@@ -72,7 +72,7 @@ def test_what_is_just_within_reach_is_accepted_and_reads_back_as_itself(robots, 
     scenario = read(robots, FAST + VELOCITY % twist)
     assert step_count(scenario.gait) == 8
     assert read(robots, scenario_yaml(scenario)) == scenario
-    robot = SimpleNamespace(sole_length=0.22, sole_width=0.11)
+    robot = SimpleNamespace(sole_length=0.22, sole_width=0.11, shank_spacing=0.11)
     parameters = planner_parameters(scenario, LegInertia())
     planner = walking_planner(scenario, robot, flat(), square_stance(scenario), parameters)
     assert planner.gait.steps == 8

@@ -127,11 +127,7 @@ class RobotDescription:
 
     def __post_init__(self) -> None:
         """Refuse what contradicts itself."""
-        for name in ("torque_limit", "velocity_limit", "position_lower", "position_upper", "nominal_joint_positions"):
-            shape = np.shape(getattr(self, name))
-            if shape != (len(self.joint_names),):
-                what = f"{name} of {self.name} has the shape {shape}"
-                raise RobotError((name,), what, f"it must have one number for each of {len(self.joint_names)} joints")
+        self._check_joint_arrays()
         for field in ("pelvis_body", "torso_body"):
             self._check_names((field,), (getattr(self, field),), self.bodies, "body")
         self._check_roles()
@@ -142,6 +138,24 @@ class RobotDescription:
     def joint_indices(self, names: Iterable[str]) -> tuple[int, ...]:
         """Places of joints in the order of the joints, as those of a role."""
         return tuple(self.joint_names.index(name) for name in names)
+
+    def _check_joint_arrays(self) -> None:
+        for name in ("torque_limit", "velocity_limit", "position_lower", "position_upper", "nominal_joint_positions"):
+            values = np.asarray(getattr(self, name))
+            if values.shape != (len(self.joint_names),):
+                what = f"{name} of {self.name} has the shape {values.shape}"
+                raise RobotError((name,), what, f"it must have one number for each of {len(self.joint_names)} joints")
+            self._refuse(name, ~np.isfinite(values), "must be a finite number")
+        for name in ("torque_limit", "velocity_limit"):
+            self._refuse(name, getattr(self, name) <= 0.0, "must be positive")
+        self._refuse("position_upper", self.position_upper <= self.position_lower, "must exceed position_lower")
+
+    def _refuse(self, name: str, wrong: NDArray[np.bool_], rule: str) -> None:
+        """Refuse the value of the first wrong joint of an array."""
+        if wrong.any():
+            joint = int(np.argmax(wrong))
+            what = f"{name} of joint '{self.joint_names[joint]}' of {self.name} is {getattr(self, name)[joint]}"
+            raise RobotError((name, joint), what, f"it {rule}")
 
     def _check_roles(self) -> None:
         roles = self.roles

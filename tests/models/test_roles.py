@@ -88,6 +88,14 @@ def roles(**changes):
         ({"roles": roles(waist=("hip",))}, ("roles", "waist"), "no joint of it"),
         ({"torso_body": "chest"}, ("torso_body",), "names 'chest', which is no body of it; choose from pelvis"),
         ({"torque_limit": np.ones(24)}, ("torque_limit",), "one number for each of 25 joints"),
+        (
+            {"velocity_limit": np.full(25, np.inf)},
+            ("velocity_limit", 0),
+            "'left_hip_yaw' of humanoid100 is inf; it must",
+        ),
+        ({"torque_limit": np.zeros(25)}, ("torque_limit", 0), "it must be positive"),
+        ({"position_lower": np.full(25, np.nan)}, ("position_lower", 0), "must be a finite number"),
+        ({"position_upper": ROBOT.position_lower}, ("position_upper", 0), "must exceed position_lower"),
         ({"shank_spacing": 0.0}, ("shank_spacing",), "must be a positive distance"),
     ],
 )

@@ -16,6 +16,8 @@ gate: $(VENV)/.installed-dev
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/deptry planner wbc sim models scenarios surefoot
+	$(BIN)/deptry tests benchmarks docs $(wildcard examples) --exclude runs --ignore DEP002,DEP004
 
 unit: $(VENV)/.installed-dev
 	$(BIN)/pytest -m unit -n auto --dist loadscope

@@ -1,4 +1,4 @@
-"""The planner alone, fed with a state of one's own: here a pendulum that does exactly what the plan says, but is pushed."""
+"""The planner alone, fed with a state of one's own: a mass that does exactly what the plan says, but is pushed once."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ while time < 6.0:
     reference = PlanSampler(plan).sample(time + period)
     time, com, velocity = time + period, reference.com, reference.com_velocity
     if abs(time - 2.5) < 1e-9:
-        velocity = velocity + (0.05, 0.0, 0.0)  # what 5 N s do to 100 kg
+        velocity = velocity + np.array([0.05, 0.0, 0.0])  # what 5 N s do to 100 kg
     if plan.swing is not None:  # feet that follow the plan
         position = feet.position.copy()
         position[plan.swing.foot] = plan.swing.evaluate(min(time, plan.swing.touchdown_time))[0, :3]

@@ -1,4 +1,4 @@
-"""Weights and gains of the whole-body controller, from Python as from a file: what does a softer swing foot cost?"""
+"""Weights and gains of the whole-body controller, from Python as from a file: a softer swing foot, and what it costs."""
 
 import surefoot
 
@@ -10,5 +10,6 @@ for stiffness in (400.0, 200.0):
         tick = sim.step()
         if tick.report is not None:
             strain = max(strain, float(abs(tick.report.torque / sim.walk.robot.torque_limit).max()))
-    print(f"{stiffness:.0f} / s^2: {'fell' if sim.fell else 'walked'}, largest torque {100 * strain:.1f} % of the limit")
+    outcome = "fell" if sim.fell else "walked"
+    print(f"{stiffness:.0f} / s^2: {outcome}, largest torque {100 * strain:.1f} % of the limit")
     sim.close()

@@ -23,7 +23,8 @@ def with_com_raised(description: RobotDescription, height: float) -> RobotDescri
         RobotError: the height is not finite.
     """
     if not math.isfinite(height):
-        raise RobotError(f"the CoM of {description.name} shall rise by {height} m, it must be a finite height")
+        what = f"the CoM of {description.name} shall rise by {height} m"
+        raise RobotError(("height",), what, "it must be a finite height")
     root = ElementTree.fromstring(description.mjcf)
     inertials = list(_trunk(root, description))
     lift = height * description.mass / sum(float(inertial.attrib["mass"]) for inertial in inertials)
@@ -40,7 +41,8 @@ def with_mass_scaled(description: RobotDescription, factor: float) -> RobotDescr
         RobotError: the factor is not a positive number.
     """
     if not 0.0 < factor < math.inf:
-        raise RobotError(f"the mass of {description.name} shall be scaled by {factor}, it must be a positive number")
+        what = f"the mass of {description.name} shall be scaled by {factor}"
+        raise RobotError(("factor",), what, "it must be a positive number")
     root = ElementTree.fromstring(description.mjcf)
     for inertial in root.iter("inertial"):
         inertial.set("mass", repr(factor * float(inertial.attrib["mass"])))
@@ -54,7 +56,8 @@ def _trunk(root: ElementTree.Element, description: RobotDescription) -> Iterator
         if any(inner.get("name") == description.torso_body for inner in body.iter("body")):
             inertial = body.find("inertial")
             if inertial is None:
-                raise RobotError(f"body {body.get('name')} of {description.name} has no inertial, it must have one")
+                what = f"body {body.get('name')} of {description.name} has no inertial"
+                raise RobotError(("mjcf",), what, "it must have one")
             yield inertial
 
 

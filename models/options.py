@@ -1,17 +1,10 @@
 """Options every robot offers, checked and applied to its tree."""
 
-import difflib
 import math
 from dataclasses import replace
 
-from surefoot.models.tree import Body
-from surefoot.models.types import RobotError, RobotOptions
-
-
-def nearest(name: str, valid: tuple[str, ...]) -> str:
-    """A hint for an unknown name: the nearest valid one, or all of them."""
-    close = difflib.get_close_matches(name, valid, n=1)
-    return f"did you mean '{close[0]}'?" if close else f"choose from {', '.join(valid)}"
+from surefoot.models.mjcf import Body
+from surefoot.models.types import RobotError, RobotOptions, nearest
 
 
 def foot_size(options: RobotOptions, length: float, width: float) -> tuple[float, float]:
@@ -24,7 +17,7 @@ def foot_size(options: RobotOptions, length: float, width: float) -> tuple[float
     width = width if options.foot_width is None else options.foot_width
     for key, value in (("foot_length", length), ("foot_width", width)):
         if not 0.01 <= value <= 0.5:
-            raise RobotError(f"robot option {key} is {value} m, it must lie within 0.01 and 0.5 m")
+            raise RobotError((key,), f"robot option {key} is {value} m", "it must lie within 0.01 and 0.5 m")
     return length, width
 
 
@@ -36,11 +29,13 @@ def with_payload(base: Body, options: RobotOptions, default_body: str) -> Body:
     """
     mass = options.payload_mass
     if not (math.isfinite(mass) and mass >= 0):
-        raise RobotError(f"robot option payload_mass is {mass} kg, it must be a finite mass of at least 0 kg")
+        what = f"robot option payload_mass is {mass} kg"
+        raise RobotError(("payload_mass",), what, "it must be a finite mass of at least 0 kg")
     names = tuple(body.name for body in base.walk())
     carrier = default_body if options.payload_body is None else options.payload_body
     if carrier not in names:
-        raise RobotError(f"robot option payload_body '{carrier}' is no body of this robot: {nearest(carrier, names)}")
+        what = f"robot option payload_body '{carrier}' is no body of this robot"
+        raise RobotError(("payload_body",), what, nearest(carrier, names))
     return _loaded(base, carrier, mass)
 
 

@@ -22,14 +22,12 @@ def pinocchio_model(description: RobotDescription) -> pin.Model:
     model = _read(description.mjcf)
     mass = sum(inertia.mass for inertia in model.inertias)
     if abs(mass - description.mass) > 1e-9 * description.mass:
-        raise RobotError(
-            f"Pinocchio reads {mass} kg from the MJCF of {description.name}, it must be {description.mass} kg"
-        )
+        what = f"Pinocchio reads {mass} kg from the MJCF of {description.name}"
+        raise RobotError(("mass",), what, f"it must be {description.mass} kg")
     joints = tuple(model.names)[2:]
     if joints != description.joint_names:
-        raise RobotError(
-            f"Pinocchio reads the joints {joints} of {description.name}, it must be {description.joint_names}"
-        )
+        what = f"Pinocchio reads the joints {joints} of {description.name}"
+        raise RobotError(("joint_names",), what, f"they must be {description.joint_names}")
     base_effort = np.zeros(6)
     model.upperEffortLimit = np.concatenate((base_effort, description.torque_limit))
     model.lowerEffortLimit = -model.upperEffortLimit

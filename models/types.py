@@ -1,15 +1,28 @@
 """What a robot is to the rest of the stack: one MJCF text and the numbers that were written into it."""
 
+import difflib
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
+
 Array = NDArray[np.float64]
 
 
-class RobotError(ValueError):
-    """A robot was asked for in a way that no robot can have, or a description contradicts itself."""
+class RobotError(ParameterError):
+    """A robot was asked for in a way that it cannot have, or a description contradicts itself.
+
+    The key is an option's name, or the fields of `RobotDescription` down to the fault.
+    """
+
+
+def nearest(name: str, valid: tuple[str, ...]) -> str:
+    """A hint for an unknown name: the nearest valid one, or all of them."""
+    close = difflib.get_close_matches(name, valid, n=1)
+    return f"did you mean '{close[0]}'?" if close else f"choose from {', '.join(valid)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,17 +43,45 @@ class RobotOptions:
 
 
 @dataclass(frozen=True, slots=True)
+class JointRoles:
+    """What the joints are for, by name, so that nobody guesses it from how they are called.
+
+    Attributes:
+        left_leg: from the hip to the ankle, in the order of the chain.
+        right_leg: likewise.
+        knees: left and right; at zero the leg is straight.
+        waist: between pelvis and torso, in the order of the chain.
+        arm_swing: left and right joint that swings the arm, back with positive angles; None without such arms.
+    """
+
+    left_leg: tuple[str, ...]
+    right_leg: tuple[str, ...]
+    knees: tuple[str, str]
+    waist: tuple[str, ...] = ()
+    arm_swing: tuple[str, str] | None = None
+
+    @property
+    def legs(self) -> tuple[str, ...]:
+        """Joints of the left leg, then of the right one."""
+        return self.left_leg + self.right_leg
+
+
+@dataclass(frozen=True, slots=True)
 class RobotDescription:
     """A robot, complete: `mjcf` is read by MuJoCo and by Pinocchio, the rest repeats facts of that text.
 
     Joints are revolute, one motor each, in the order of the MJCF, which is the order of both engines. Arrays are
     read-only.
 
+    Raises:
+        RobotError: a name or a shape does not fit the others.
+
     Attributes:
         name: name in the registry.
         mjcf: XML of the robot alone: free joint, explicit inertials, motors, sole and IMU sites, materials.
         mass: total mass with the payload [kg].
         joint_names: actuated joints, length nj.
+        roles: what the joints are for.
         torque_limit: peak joint torque, shape (nj,) [N m].
         velocity_limit: no-load joint speed, shape (nj,) [rad/s].
         position_lower: lower joint limits, shape (nj,) [rad].
@@ -53,6 +94,8 @@ class RobotDescription:
         imu_site: site of the IMU; it coincides with the frame of the floating base.
         hip_width: distance between the hip centres [m].
         leg_length: hip centre to sole with a straight leg [m].
+        shank_spacing: lateral distance of the sole centres at which upright shanks keep a centimetre apart; soles may
+            be narrower [m].
         nominal_joint_positions: mild crouch with relaxed arms, the start of an IK, shape (nj,) [rad].
         com_height: nominal CoM height above the soles in walking [m].
         bodies: all body names.
@@ -63,6 +106,7 @@ class RobotDescription:
     mjcf: str
     mass: float
     joint_names: tuple[str, ...]
+    roles: JointRoles
     torque_limit: Array
     velocity_limit: Array
     position_lower: Array
@@ -75,7 +119,70 @@ class RobotDescription:
     imu_site: str
     hip_width: float
     leg_length: float
+    shank_spacing: float
     nominal_joint_positions: Array
     com_height: float
     bodies: tuple[str, ...]
     kept_apart: tuple[tuple[str, str], ...]
+
+    def __post_init__(self) -> None:
+        """Refuse what contradicts itself."""
+        self._check_joint_arrays()
+        for field in ("pelvis_body", "torso_body"):
+            self._check_names((field,), (getattr(self, field),), self.bodies, "body")
+        self._check_roles()
+        if not 0.0 < self.shank_spacing < np.inf:
+            what = f"shank_spacing of {self.name} is {self.shank_spacing} m"
+            raise RobotError(("shank_spacing",), what, "it must be a positive distance")
+
+    def joint_indices(self, names: Iterable[str]) -> tuple[int, ...]:
+        """Places of joints in the order of the joints, as those of a role."""
+        return tuple(self.joint_names.index(name) for name in names)
+
+    def _check_joint_arrays(self) -> None:
+        for name in ("torque_limit", "velocity_limit", "position_lower", "position_upper", "nominal_joint_positions"):
+            values = np.asarray(getattr(self, name))
+            if values.shape != (len(self.joint_names),):
+                what = f"{name} of {self.name} has the shape {values.shape}"
+                raise RobotError((name,), what, f"it must have one number for each of {len(self.joint_names)} joints")
+            self._refuse(name, ~np.isfinite(values), "must be a finite number")
+        for name in ("torque_limit", "velocity_limit"):
+            self._refuse(name, getattr(self, name) <= 0.0, "must be positive")
+        self._refuse("position_upper", self.position_upper <= self.position_lower, "must exceed position_lower")
+
+    def _refuse(self, name: str, wrong: NDArray[np.bool_], rule: str) -> None:
+        """Refuse the value of the first wrong joint of an array."""
+        if wrong.any():
+            joint = int(np.argmax(wrong))
+            what = f"{name} of joint '{self.joint_names[joint]}' of {self.name} is {getattr(self, name)[joint]}"
+            raise RobotError((name, joint), what, f"it {rule}")
+
+    def _check_roles(self) -> None:
+        roles = self.roles
+        for role in ("left_leg", "right_leg", "knees", "waist", "arm_swing"):
+            self._check_names(("roles", role), getattr(roles, role) or (), self.joint_names, "joint")
+        if len(set(roles.legs)) != len(roles.legs):
+            raise RobotError(("roles",), f"a joint of {self.name} is twice in the legs", "it must be in one place")
+        for knee, leg in zip(roles.knees, (roles.left_leg, roles.right_leg), strict=True):
+            if knee not in leg[1:-1]:
+                what = f"knee '{knee}' of {self.name} is not inside its leg {', '.join(leg)}"
+                raise RobotError(("roles", "knees"), what, "it must have joints of the leg above and below it")
+
+    def _check_names(self, key: tuple[str, ...], names: tuple[str, ...], valid: tuple[str, ...], kind: str) -> None:
+        for name in names:
+            if name not in valid:
+                what = f"{'.'.join(key)} of {self.name} names '{name}', which is no {kind} of it"
+                raise RobotError(key, what, nearest(name, valid))
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """A robot as other packages bring it, by an entry point of its name in the group `surefoot.robots`.
+
+    Attributes:
+        name: of the entry point, and of every description.
+        build: description with the chosen options; raises `RobotError` for those that it cannot have.
+    """
+
+    name: str
+    build: Callable[[RobotOptions], RobotDescription]

@@ -27,6 +27,24 @@ MISSED, BAD_INPUT, DEFECT, INTERRUPTED = 1, 2, 70, 130
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 
 
+def _print_version(wanted: bool) -> None:
+    """Print the version and end, if it is wanted."""
+    if wanted:
+        import surefoot
+
+        typer.echo(f"surefoot {surefoot.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _surefoot(
+    version: Annotated[
+        bool, typer.Option("--version", help="Print the version.", is_eager=True, callback=_print_version)
+    ] = False,
+) -> None:
+    """Take the options that need no command."""
+
+
 @app.command("list")
 def list_() -> None:
     """List scenarios and robots, one line each."""

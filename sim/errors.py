@@ -1,5 +1,7 @@
 """What can go wrong in the simulator."""
 
+from surefoot.errors import ParameterError
+
 
 class SimulationDiverged(RuntimeError):  # noqa: N818  the event, not a mistake of the caller
     """The state or the commanded torque is no longer finite; the world holds the last finite state.
@@ -15,5 +17,5 @@ class SimulationDiverged(RuntimeError):  # noqa: N818  the event, not a mistake 
         self.cause = cause
 
 
-class WorldError(ValueError):
-    """A world was asked for that cannot be built, or a call does not fit it."""
+class WorldError(ParameterError):
+    """A world was asked for that cannot be built, or a call does not fit it; the key starts with the argument."""

@@ -34,20 +34,17 @@ class PushSchedule:
 
     A window that begins or ends inside a physics step acts in that step with the share of the step it covers, so that
     the impulse of a push is force times duration whatever the rates.
+
+    Attributes:
+        total: sum of the applied forces, world frame, shape (3,) [N].
+        active: bodies and the forces applied to them.
     """
 
     def __init__(self, pushes: Sequence[Push], body_ids: Sequence[int], physics_rate: int) -> None:
-        windows = [_window(push, physics_rate) for push in pushes]
-        cuts = {corner for start, end in windows for corner in _corners(start, end)}
-        self._ticks = [*sorted({0, *cuts}), NEVER]
-        self._forces = [
-            [
-                (body, share * np.asarray(push.force, dtype=np.float64))
-                for push, body, window in zip(pushes, body_ids, windows, strict=True)
-                if (share := _share(tick, window)) > 0.0
-            ]
-            for tick in self._ticks[:-1]
-        ]
+        self._rate = physics_rate
+        self._scheduled = [_acting(push, body, physics_rate) for push, body in zip(pushes, body_ids, strict=True)]
+        self._ticks, self._forces = _timeline(self._scheduled, 0)
+        self._live, self._first = self._scheduled, (self._ticks, self._forces)
         self._index = 0
         self.total = np.zeros(3)
         self.active: list[tuple[int, Array]] = []
@@ -58,7 +55,8 @@ class PushSchedule:
         return self._ticks[self._index + 1]
 
     def rewind(self, xfrc_applied: Array) -> None:
-        """Apply the forces of tick 0; `xfrc_applied` is MuJoCo's (nbody, 6) array."""
+        """Apply the forces of tick 0 without added pushes; `xfrc_applied` is MuJoCo's (nbody, 6) array."""
+        self._live, (self._ticks, self._forces) = self._scheduled, self._first
         self._index = 0
         self._apply(xfrc_applied)
 
@@ -66,6 +64,12 @@ class PushSchedule:
         """Apply the forces that hold from `next_change` on."""
         self._index += 1
         self._apply(xfrc_applied)
+
+    def add(self, push: Push, body: int, tick: int) -> None:
+        """Add a push from the present tick on; what is applied changes with the next `step_over`, at that tick."""
+        self._live = [*(other for other in self._live if other.end > tick), _acting(push, body, self._rate)]
+        self._ticks, self._forces = _timeline(self._live, tick)
+        self._index = -1
 
     def _apply(self, xfrc_applied: Array) -> None:
         xfrc_applied[:] = 0.0
@@ -76,17 +80,41 @@ class PushSchedule:
             self.total += force
 
 
-def _window(push: Push, rate: int) -> tuple[float, float]:
-    """Start and end in physics ticks, free of rounding noise."""
-    return round(push.time * rate, 6), round((push.time + push.duration) * rate, 6)
+@dataclass(frozen=True, slots=True)
+class _Acting:
+    """A push on the physics clock: number of the body, force [N], start and end [ticks]."""
+
+    body: int
+    force: Array
+    start: float
+    end: float
 
 
-def _corners(start: float, end: float) -> tuple[int, ...]:
+def start_tick(push: Push, rate: int) -> float:
+    """Start in physics ticks, free of rounding noise."""
+    return round(push.time * rate, 6)
+
+
+def _acting(push: Push, body: int, rate: int) -> _Acting:
+    end = round((push.time + push.duration) * rate, 6)
+    return _Acting(body, np.array(push.force, dtype=np.float64), start_tick(push, rate), end)
+
+
+def _timeline(pushes: Sequence[_Acting], begin: int) -> tuple[list[int], list[list[tuple[int, Array]]]]:
+    """Ticks from the begin on at which the forces change, ended by `NEVER`, and the forces from each of them on."""
+    cuts = {corner for push in pushes for corner in _corners(push) if corner > begin}
+    ticks = sorted({begin, *cuts})
+    forces = [
+        [(push.body, share * push.force) for push in pushes if (share := _share(tick, push)) > 0.0] for tick in ticks
+    ]
+    return [*ticks, NEVER], forces
+
+
+def _corners(push: _Acting) -> tuple[int, ...]:
     """Ticks between which every step is covered by the same share."""
-    return math.floor(start), math.ceil(start), math.floor(end), math.ceil(end)
+    return math.floor(push.start), math.ceil(push.start), math.floor(push.end), math.ceil(push.end)
 
 
-def _share(tick: int, window: tuple[float, float]) -> float:
-    """Share of the step from this tick to the next that the window covers."""
-    start, end = window
-    return min(end, tick + 1.0) - max(start, float(tick))
+def _share(tick: int, push: _Acting) -> float:
+    """Share of the step from this tick to the next that the push covers."""
+    return min(push.end, tick + 1.0) - max(push.start, float(tick))

@@ -4,6 +4,7 @@ from xml.etree import ElementTree
 
 from surefoot.models.types import RobotDescription
 from surefoot.planner.ground.terrain import Terrain
+from surefoot.sim.errors import WorldError
 from surefoot.sim.terrain import add_terrain
 
 GRAVITY = 9.81
@@ -26,7 +27,8 @@ def world_mjcf(description: RobotDescription, terrain: Terrain, timestep: float)
     worldbody = root.find("worldbody")
     asset = root.find("asset")
     if worldbody is None or asset is None:
-        raise ValueError(f"the MJCF of {description.name} lacks a worldbody or asset element, it must have both")
+        what = f"the MJCF of {description.name} lacks a worldbody or asset element"
+        raise WorldError(("description", "mjcf"), what, "it must have both")
     _add_floor_materials(asset)
     add_terrain(worldbody, terrain)
     _add_sun(worldbody, description.pelvis_body)

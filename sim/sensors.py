@@ -124,7 +124,5 @@ def _check_imu(model: mujoco.MjModel, description: RobotDescription, base: int) 
     site = model.site(description.imu_site).id
     at_base = model.site_bodyid[site] == base and not model.site_pos[site].any()
     if not (at_base and np.array_equal(model.site_quat[site], (1.0, 0.0, 0.0, 0.0))):
-        raise WorldError(
-            f"site {description.imu_site} of {description.name} is not the frame of {description.pelvis_body}, "
-            "it must coincide with the floating base"
-        )
+        what = f"site {description.imu_site} of {description.name} is not the frame of {description.pelvis_body}"
+        raise WorldError(("description", "imu_site"), what, "it must coincide with the floating base")

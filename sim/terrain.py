@@ -4,18 +4,13 @@ Terrain has contype 1 and conaffinity 0, robots 2 and 3: a robot touches the ter
 Priority 1 makes MuJoCo take friction and contact stiffness from the terrain alone instead of the larger of the two.
 """
 
-from collections.abc import Iterable
 from xml.etree import ElementTree
 
+from surefoot.models.mjcf import numbers
 from surefoot.planner.ground.terrain import Box, Terrain
 
 GROUND = "ground"
 """Name of the ground plane's geom; boxes are `terrain_0`, `terrain_1`, ..."""
-
-
-def numbers(values: Iterable[float]) -> str:
-    """Numbers as an XML attribute; reading them back gives the same doubles."""
-    return " ".join(repr(float(value)) for value in values)
 
 
 def add_terrain(worldbody: ElementTree.Element, terrain: Terrain) -> None:

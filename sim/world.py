@@ -7,12 +7,11 @@ import mujoco
 import numpy as np
 
 from surefoot.models.convert import pinocchio_to_mujoco
-from surefoot.models.options import nearest
-from surefoot.models.types import RobotDescription
+from surefoot.models.types import RobotDescription, nearest
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.errors import SimulationDiverged, WorldError
 from surefoot.sim.measurement import Array, Measurement
-from surefoot.sim.pushes import Push, PushSchedule
+from surefoot.sim.pushes import Push, PushSchedule, start_tick
 from surefoot.sim.scene import world_mjcf
 from surefoot.sim.sensors import SensorReader
 
@@ -45,8 +44,8 @@ class World:
     def __init__(
         self, description: RobotDescription, terrain: Terrain, physics_rate: int, pushes: Sequence[Push] = ()
     ) -> None:
-        for push in pushes:
-            _check_push(push, description)
+        for index, push in enumerate(pushes):
+            _check_push(push, description, ("pushes", index))
         self.description = description
         self.physics_rate = physics_rate
         self.tick = 0
@@ -70,7 +69,7 @@ class World:
         return self._mjcf
 
     def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
-        """Start at tick 0 from a state in Pinocchio's convention.
+        """Start at tick 0 from a state in Pinocchio's convention, without the pushes that were added since.
 
         Args:
             q: configuration, shape (7 + nj,).
@@ -88,6 +87,21 @@ class World:
     def measure(self) -> Measurement:
         """What the sensors say now."""
         return self._sensors.read(self.time, self._pushes)
+
+    def push(self, push: Push) -> None:
+        """Add a push while the world runs; it acts beside the others, with its whole impulse, until the next reset.
+
+        Args:
+            push: starts at `time` or later.
+
+        Raises:
+            WorldError: it starts in the past, or could not have been given to the constructor.
+        """
+        _check_push(push, self.description, ("push",))
+        if start_tick(push, self.physics_rate) < self.tick:
+            what = f"push on '{push.body}' at {push.time} s, which is in the past"
+            raise WorldError(("push", "time"), what, f"it must start at {self.time} s or later")
+        self._pushes.add(push, self.model.body(push.body).id, self.tick)
 
     def advance(self, torque: Array, steps: int) -> None:
         """Simulate with constant commanded torques.
@@ -136,11 +150,15 @@ def _log_warnings() -> None:
         mujoco.set_mju_user_warning(_LOG.warning)
 
 
-def _check_push(push: Push, description: RobotDescription) -> None:
+def _check_push(push: Push, description: RobotDescription, key: tuple[str | int, ...]) -> None:
     if push.body not in description.bodies:
-        raise WorldError(f"push on unknown body '{push.body}': {nearest(push.body, description.bodies)}")
-    if not (push.time >= 0.0 and 0.0 < push.duration < np.inf and np.isfinite(push.force).all()):
-        raise WorldError(
-            f"push on '{push.body}' at {push.time} s for {push.duration} s with {push.force} N must start at 0 s or "
-            "later, last longer than 0 s and have a finite force"
-        )
+        raise WorldError((*key, "body"), f"push on unknown body '{push.body}'", nearest(push.body, description.bodies))
+    sound = {
+        "time": (0.0 <= push.time < np.inf, "start at 0 s or later"),
+        "duration": (0.0 < push.duration < np.inf, "last longer than 0 s"),
+        "force": (np.shape(push.force) == (3,) and np.isfinite(push.force).all(), "have a finite force along x, y, z"),
+    }
+    for name, (right, rule) in sound.items():
+        if not right:
+            what = f"push on '{push.body}' at {push.time} s for {push.duration} s with {push.force} N"
+            raise WorldError((*key, name), what, f"it must {rule}")

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from surefoot.scenarios.simulation import Simulation as Simulation
     from surefoot.scenarios.simulation import Tick as Tick
 
-    __version__: str
+__version__: str
 
 _HOMES = {
     "LogError": ("scenarios.errors", "LogError"),
@@ -58,19 +58,47 @@ _HOMES = {
 }
 """Module, below this package, and name there of everything on the face."""
 
-__all__ = [*sorted(_HOMES), "__version__"]
+__all__ = [
+    "Log",
+    "LogError",
+    "ParameterError",
+    "Parts",
+    "PluginError",
+    "Result",
+    "RunFault",
+    "Scenario",
+    "ScenarioError",
+    "SetupError",
+    "Simulation",
+    "Tick",
+    "Verdict",
+    "__version__",
+    "judge",
+    "load",
+    "read",
+    "run",
+]
 
 
-def __getattr__(name: str) -> Any:
-    """Import a name of the face when it is first asked for."""
-    if name == "__version__":
-        from importlib.metadata import version
+if not TYPE_CHECKING:  # a type checker shall still refuse names that are not there
 
+    def __getattr__(name: str) -> Any:
+        """Import a name of the face when it is first asked for."""
+        if name == "__version__":
+            return _version()
+        if name not in _HOMES:
+            raise AttributeError(f"module 'surefoot' has no attribute '{name}'")
+        module, inner = _HOMES[name]
+        return getattr(import_module(f"surefoot.{module}"), inner)
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
         return version("surefoot")
-    if name not in _HOMES:
-        raise AttributeError(f"module 'surefoot' has no attribute '{name}'")
-    module, inner = _HOMES[name]
-    return getattr(import_module(f"surefoot.{module}"), inner)
+    except PackageNotFoundError:  # a source tree on the path that was never installed
+        return "0+unknown"
 
 
 def __dir__() -> list[str]:

@@ -1,5 +1,5 @@
 """The 100 kg humanoid of the paper's table."""
 
-from surefoot.models.humanoid100.robot import describe
+from surefoot.models.humanoid100.description import HUMANOID100
 
-__all__ = ["describe"]
+__all__ = ["HUMANOID100"]

@@ -3,6 +3,8 @@
 import math
 from collections.abc import Iterator
 
+from surefoot.errors import ParameterError
+from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Problem, nearest
 from surefoot.scenarios.file.criteria import ELEMENTS
 from surefoot.scenarios.file.schema import PushSettings
@@ -113,8 +115,11 @@ def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
         return
     try:
         facts = robots.facts(draft.keys.robot, draft.keys.robot_options)
-    except ValueError as error:
-        yield Problem(("robot_options",), str(error).rstrip("."), "change robot_options")
+    except ParameterError as error:
+        yield Problem(("robot_options", *error.key), error.what, error.right)
+        return
+    except PluginError as error:
+        yield Problem(("robot",), str(error), "use another robot")
         return
     bodies = [(("pushes", i, "body"), push.body) for i, push in enumerate(draft.keys.pushes)]
     for key, body in (*bodies, (("robot_options", "payload_body"), draft.keys.robot_options.payload_body)):

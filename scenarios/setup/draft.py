@@ -191,13 +191,13 @@ class Draft:
             **{name: value for name, value in chosen.items() if value is not None},
         )
 
-    def region(self, sole: tuple[float, float]) -> StepRegion:
-        """Where steps may land, for soles of this length and width [m]."""
-        return step_region(self.parameters, sole)
+    def region(self, sole: tuple[float, float], shank_spacing: float) -> StepRegion:
+        """Where steps may land, for soles of this length and width, and shanks that keep this distance [m]."""
+        return step_region(self.parameters, sole, shank_spacing)
 
-    def fitted_gait(self, sole: tuple[float, float]) -> GaitParameters:
-        """The gait that is walked, for soles of this length and width [m]."""
-        return fitted_to(self.region(sole), self.gait, self.keys.gait)
+    def fitted_gait(self, region: StepRegion) -> GaitParameters:
+        """The gait that is walked where feet may land in this region."""
+        return fitted_to(region, self.gait, self.keys.gait)
 
 
 def _raised(box: Box, height: float) -> Box:

@@ -24,9 +24,6 @@ from surefoot.scenarios.file.schema import FootstepSettings, Gait, PushSettings,
 EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
 
-SHANKS_APART = 0.11
-"""Distance beside at which upright shanks, a decimetre thick, keep a centimetre apart; soles may be narrower [m]."""
-
 FINAL_STAND = 2.5
 """Standing after the last double support that ends a run whose duration is not given [s]."""
 
@@ -102,11 +99,15 @@ def footsteps_of(footsteps: Sequence[FootstepSettings]) -> list[Footstep]:
 
 
 def step_region(
-    parameters: PlannerParameters, sole: tuple[float, float], leg_span: float = math.inf, hip_width: float = 0.0
+    parameters: PlannerParameters,
+    sole: tuple[float, float],
+    shank_spacing: float,
+    leg_span: float = math.inf,
+    hip_width: float = 0.0,
 ) -> StepRegion:
     """Where commanded steps may land: within the planner's reach, and the legs' if they are given."""
     near, far = parameters.reach_width
-    width = (max(near, SHANKS_APART), far)
+    width = (max(near, shank_spacing), far)
     return StepRegion(parameters.reach_length, width, sole, leg_span=leg_span, hip_width=hip_width)
 
 

@@ -20,6 +20,7 @@ class RobotFacts:
         com_above_hip: CoM height over the hip centres, standing straight [m].
         foot_length: of the soles [m].
         foot_width: of the soles [m].
+        shank_spacing: lateral distance of the soles at which upright shanks keep apart [m].
     """
 
     bodies: tuple[str, ...]
@@ -28,6 +29,7 @@ class RobotFacts:
     com_above_hip: float
     foot_length: float
     foot_width: float
+    shank_spacing: float
 
 
 class Robots(Protocol):
@@ -65,6 +67,7 @@ class RegisteredRobots:
             com_above_hip=_straight_com_height(description) - description.leg_length,
             foot_length=description.sole_length,
             foot_width=description.sole_width,
+            shank_spacing=description.shank_spacing,
         )
 
 

@@ -21,8 +21,6 @@ Array = NDArray[np.float64]
 SOLE_SINKAGE = 5e-5
 """How far the soles sink into the simulated ground under the robot's weight [m]."""
 
-_LEG_JOINTS = ("hip", "knee", "ankle")
-
 
 @dataclass(frozen=True, slots=True)
 class Body:
@@ -54,7 +52,7 @@ def body_of(robot: RobotDescription) -> Body:
         model=pinocchio_model(robot),
         frames=frames_of(robot),
         limits=JointLimits(robot.torque_limit, robot.velocity_limit, robot.position_lower, robot.position_upper),
-        leg_joints=np.array([any(part in name for part in _LEG_JOINTS) for name in robot.joint_names]),
+        leg_joints=np.isin(robot.joint_names, robot.roles.legs),
     )
 
 

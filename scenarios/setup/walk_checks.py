@@ -148,7 +148,8 @@ def commanded_step_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem
     """Name velocities whose steps are out of reach with the fastest possible, or the first footstep that is."""
     gait = draft.keys.gait
     sole, span = (facts.foot_length, facts.foot_width), _leg_span(gait, facts)
-    region = step_region(PlannerParameters(reach_length=LONGEST_REACH), sole, span, facts.hip_width)
+    parameters = PlannerParameters(reach_length=LONGEST_REACH)
+    region = step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
     for index, command in enumerate(gait.velocity):
         right = _too_fast(gait, twist_of(command), region)
         if right is not None:

@@ -1,7 +1,10 @@
+from dataclasses import replace
+from importlib.metadata import EntryPoint
+
 import pytest
 
-from surefoot.models.registry import UnknownRobotError, describe, robot_names
-from surefoot.models.types import RobotError, RobotOptions
+from surefoot import plugins
+from surefoot.models import ROBOTS, Robot, RobotError, RobotOptions, UnknownRobotError, describe, robot_names
 
 pytestmark = pytest.mark.unit
 
@@ -17,16 +20,46 @@ def test_unknown_robot_gets_the_nearest_name() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "message"),
+    ("options", "key", "message"),
     [
-        (RobotOptions(foot_length=0.0), "foot_length is 0.0 m, it must lie within"),
-        (RobotOptions(foot_width=float("nan")), "foot_width is nan m, it must lie within"),
-        (RobotOptions(payload_mass=-1.0), "payload_mass is -1.0 kg, it must be"),
-        (RobotOptions(payload_mass=float("inf")), "payload_mass is inf kg, it must be"),
-        (RobotOptions(payload_mass=1.0, payload_body="torsoo"), "did you mean 'torso'"),
-        (RobotOptions(payload_body="xyz"), "choose from pelvis"),
+        (RobotOptions(foot_length=0.0), "foot_length", "foot_length is 0.0 m; it must lie within"),
+        (RobotOptions(foot_width=float("nan")), "foot_width", "foot_width is nan m; it must lie within"),
+        (RobotOptions(payload_mass=-1.0), "payload_mass", "payload_mass is -1.0 kg; it must be"),
+        (RobotOptions(payload_mass=float("inf")), "payload_mass", "payload_mass is inf kg; it must be"),
+        (RobotOptions(payload_mass=1.0, payload_body="torsoo"), "payload_body", "did you mean 'torso'"),
+        (RobotOptions(payload_body="xyz"), "payload_body", "choose from pelvis"),
     ],
 )
-def test_impossible_options_are_refused_in_one_sentence(options: RobotOptions, message: str) -> None:
-    with pytest.raises(RobotError, match=message):
+def test_impossible_options_are_refused_in_one_sentence(options: RobotOptions, key: str, message: str) -> None:
+    with pytest.raises(RobotError, match=message) as refused:
         describe("humanoid100", options)
+    assert refused.value.key == (key,)
+
+
+def shorty(options: RobotOptions):
+    """A robot of another package: ours with less peak torque."""
+    known = describe("humanoid100", options)
+    return replace(known, name="shorty", torque_limit=0.5 * known.torque_limit)
+
+
+SHORTY = Robot("shorty", shorty)
+
+
+def test_a_robot_of_another_package_is_found_by_its_entry_point(monkeypatch) -> None:
+    entry = EntryPoint("shorty", f"{__name__}:SHORTY", "surefoot.robots")
+    monkeypatch.setattr(plugins, "entry_points", lambda group: [entry] if group == entry.group else [])
+    monkeypatch.setattr(ROBOTS, "_loaded", {})
+    assert robot_names() == ("humanoid100", "shorty")
+    options = RobotOptions(foot_length=0.2)
+    found = describe("shorty", options)
+    assert (found.name, found.sole_length) == ("shorty", 0.2)
+    assert (found.torque_limit < describe("humanoid100", options).torque_limit).all()
+
+
+def test_a_robot_that_calls_itself_otherwise_is_refused() -> None:
+    ROBOTS.add("tall", Robot("tall", shorty))
+    try:
+        with pytest.raises(RobotError, match="'tall' describes itself as 'shorty'"):
+            describe("tall", RobotOptions())
+    finally:
+        ROBOTS.discard("tall")

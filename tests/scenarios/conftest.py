@@ -32,7 +32,7 @@ class FakeRobots:
         width = options.foot_width or FOOT
         return RobotFacts(
             bodies=("pelvis", "torso"), leg_length=0.92, hip_width=0.2, com_above_hip=0.114,
-            foot_length=options.foot_length or FOOT, foot_width=width,
+            foot_length=options.foot_length or FOOT, foot_width=width, shank_spacing=0.11,
         )  # fmt: skip
 
 
@@ -145,6 +145,7 @@ def robot() -> SimpleNamespace:
         mass=100.0,
         sole_length=FOOT,
         sole_width=FOOT,
+        shank_spacing=0.11,
         joint_names=JOINTS,
         torque_limit=np.full(4, 100.0),
         position_lower=np.full(4, -0.6),

@@ -84,7 +84,7 @@ def test_it_begins_anew_and_ends_once(scenario):
     while not sim.done:
         sim.step()
     assert sim.end.kind == "completed"
-    with pytest.raises(surefoot.RunFault, match="over at 0.600 s, completed"):
+    with pytest.raises(surefoot.RunFault, match=r"over at 0\.600 s, completed"):
         sim.step()
     sim.close()
     sim.close()
@@ -118,9 +118,9 @@ def test_an_impossible_push_is_refused(scenario, push, message):
 
 
 def test_a_vertical_push_means_nothing_to_a_pendulum():
-    with surefoot.Simulation(surefoot.load("walk", {**BRIEF, "fidelity": "pendulum"})) as sim:
-        with pytest.raises(surefoot.ParameterError, match="vertical push"):
-            sim.push((0.0, 0.0, 1.0))
+    pendulum = surefoot.Simulation(surefoot.load("walk", {**BRIEF, "fidelity": "pendulum"}))
+    with pendulum as sim, pytest.raises(surefoot.ParameterError, match="vertical push"):
+        sim.push((0.0, 0.0, 1.0))
 
 
 class Leaning(TrueState):
@@ -144,11 +144,11 @@ def test_an_estimator_of_ones_own_gives_the_state_and_the_truth_stays_in_the_log
 
 def test_a_controller_of_ones_own_is_asked(scenario):
     class Slack(WholeBodyController):
-        """Gives half of every torque."""
+        """Gives no torque."""
 
         def update(self, *arguments):
             report = super().update(*arguments)
-            report.torque[:] *= 0.5
+            report.torque[:] = 0.0
             return report
 
     with surefoot.Simulation(scenario, controller=Slack) as sim:

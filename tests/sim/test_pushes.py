@@ -82,14 +82,96 @@ def test_reset_starts_the_pushes_again() -> None:
 
 
 @pytest.mark.parametrize(
-    ("push", "message"),
+    ("push", "key", "message"),
     [
-        (Push(0.0, 0.1, FORCE, "torsoo"), "push on unknown body 'torsoo': did you mean 'torso'"),
-        (Push(-0.1, 0.1, FORCE, "torso"), "must start at 0 s"),
-        (Push(0.0, 0.0, FORCE, "torso"), "last longer than 0 s"),
-        (Push(0.0, 0.1, FORCE * np.nan, "torso"), "finite force"),
+        (Push(0.0, 0.1, FORCE, "torsoo"), "body", "push on unknown body 'torsoo'; did you mean 'torso'"),
+        (Push(-0.1, 0.1, FORCE, "torso"), "time", "must start at 0 s"),
+        (Push(np.nan, 0.1, FORCE, "torso"), "time", "must start at 0 s"),
+        (Push(0.0, 0.0, FORCE, "torso"), "duration", "last longer than 0 s"),
+        (Push(0.0, 0.1, FORCE * np.nan, "torso"), "force", "finite force"),
+        (Push(0.0, 0.1, FORCE[:2], "torso"), "force", "along x, y, z"),
     ],
 )
-def test_impossible_pushes_are_refused(push: Push, message: str) -> None:
-    with pytest.raises(WorldError, match=message):
-        _floating((push,))
+def test_impossible_pushes_are_refused(push: Push, key: str, message: str) -> None:
+    with pytest.raises(WorldError, match=message) as refused:
+        _floating((Push(0.0, 0.1, FORCE, "torso"), push))
+    assert refused.value.key == ("pushes", 1, key)
+    with pytest.raises(WorldError, match=message) as refused:
+        _floating(()).push(push)
+    assert refused.value.key == ("push", key)
+
+
+def _advance(world: World, until: int, control_steps: int = 1) -> None:
+    while world.tick < until:
+        world.advance(np.zeros(25), control_steps)
+
+
+@pytest.mark.parametrize("control_steps", [1, 2, 5])
+@pytest.mark.parametrize(("wait", "duration"), [(0.0, 0.01), (0.0031, 0.0042), (0.0, 0.0003), (0.002, 0.004)])
+def test_a_push_added_on_the_way_has_its_whole_impulse(control_steps: int, wait: float, duration: float) -> None:
+    world = _floating((Push(0.005, 0.012, -0.5 * FORCE, "pelvis"),))
+    _advance(world, 10, control_steps)
+    world.push(Push(world.time + wait, duration, FORCE, "torso"))
+    _advance(world, 40, control_steps)
+    np.testing.assert_allclose(_momentum(world), FORCE * (duration - 0.006), rtol=0.002, atol=0.002)
+
+
+def test_pushes_added_at_any_tick_leave_the_others_their_impulse() -> None:
+    """Bodies 1 and 2 have scheduled pushes, 3 those that come on the way, one of them within another."""
+    scheduled = (Push(0.0012, 0.0301, FORCE, "a"), Push(0.02, 0.0205, -FORCE, "b"))
+    added = {0: Push(0.0, 0.0015, FORCE, "c"), 7: Push(0.0121, 0.02, FORCE, "c"), 20: Push(0.02, 0.005, -FORCE, "c")}
+    schedule = PushSchedule(scheduled, (1, 2), 1000)
+    forces, impulse = np.zeros((4, 6)), np.zeros((4, 6))
+    schedule.rewind(forces)
+    for tick in range(60):
+        if tick in added:
+            before = schedule.total.copy()
+            schedule.add(added[tick], 3, tick)
+            np.testing.assert_array_equal(schedule.total, before)
+        if tick >= schedule.next_change:
+            schedule.step_over(forces)
+        np.testing.assert_allclose(schedule.total, forces[:, :3].sum(axis=0), atol=1e-12)
+        impulse += forces / 1000
+    expected = np.outer((0.0, 0.0301, -0.0205, 0.0015 + 0.02 - 0.005), FORCE)
+    np.testing.assert_allclose(impulse[:, :3], expected, atol=1e-9)
+    assert not schedule.active
+
+
+def test_adding_a_push_changes_nothing_before_it_begins() -> None:
+    """Bit for bit, in the middle of a scheduled push; afterwards it does."""
+    plain, pushed = (_floating((Push(0.003, 0.02, FORCE, "left_foot"),)) for _ in range(2))
+    for world in (plain, pushed):
+        _advance(world, 8)
+    pushed.push(Push(0.0125, 0.01, FORCE, "torso"))
+    np.testing.assert_array_equal(pushed.measure().external_force, plain.measure().external_force)
+    for world in (plain, pushed):
+        _advance(world, 12)
+    np.testing.assert_array_equal(pushed.data.qvel, plain.data.qvel)
+    for world in (plain, pushed):
+        _advance(world, 13)
+    np.testing.assert_allclose(pushed.measure().external_force - plain.measure().external_force, 0.5 * FORCE)
+
+
+def test_reset_drops_the_pushes_that_were_added() -> None:
+    q = np.concatenate(([0.0, 0.0, 50.0, 0.0, 0.0, 0.0, 1.0], np.zeros(25)))
+    world = _floating((Push(0.0, 0.004, FORCE, "torso"),))
+    world.reset(q)
+    _advance(world, 30)
+    first = world.data.qvel.copy()
+    world.reset(q)
+    world.push(Push(0.001, 0.5, -FORCE, "head"))
+    _advance(world, 30)
+    assert np.abs(world.data.qvel - first).max() > 1e-3
+    world.reset(q)
+    _advance(world, 30)
+    np.testing.assert_array_equal(world.data.qvel, first)
+
+
+def test_a_push_into_the_past_is_refused() -> None:
+    world = _floating(())
+    _advance(world, 10)
+    with pytest.raises(WorldError, match=r"in the past; it must start at 0\.01 s or later") as refused:
+        world.push(Push(0.0099, 0.1, FORCE, "torso"))
+    assert refused.value.key == ("push", "time")
+    world.push(Push(0.1 * 0.1, 0.1, FORCE, "torso"))  # 0.010000000000000002
+    world.push(Push(0.01 - 1e-16, 0.1, FORCE, "torso"))

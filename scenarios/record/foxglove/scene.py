@@ -10,66 +10,37 @@ from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from numpy.typing import NDArray
 
-from surefoot.scenarios.record.foxglove.drawing import WORLD, color, pose
-
-HIDDEN_GROUP = 3
-"""Geom groups from here on are not drawn, as in MuJoCo's own viewer."""
-
-_Geom = mujoco.mjtGeom
+from surefoot.scenarios.record.foxglove.drawing import color, pose
+from surefoot.sim.shapes import Shape, drawn_shapes
 
 
 def world_scene(mjcf: str) -> SceneUpdate:
     """Turn the geoms of an MJCF text into one entity per body; the ground plane is left to the viewer's grid."""
-    model = mujoco.MjModel.from_xml_string(mjcf)
-    entities = {body: _entity(model, body) for body in range(model.nbody)}
-    for geom in range(model.ngeom):
-        if model.geom_group[geom] < HIDDEN_GROUP:
-            _add(model, geom, entities[int(model.geom_bodyid[geom])])
-    return SceneUpdate(entities=[entity for entity in entities.values() if _drawn(entity)])
-
-
-def _entity(model: mujoco.MjModel, body: int) -> SceneEntity:
-    name = model.body(body).name if body else WORLD
-    return SceneEntity(frame_id=name, id=name, frame_locked=True)
+    entities: dict[int, SceneEntity] = {}
+    for shape in drawn_shapes(mujoco.MjModel.from_xml_string(mjcf)):
+        name = shape.body_name
+        _add(shape, entities.setdefault(shape.body, SceneEntity(frame_id=name, id=name, frame_locked=True)))
+    return SceneUpdate(entities=[entities[body] for body in sorted(entities) if _drawn(entities[body])])
 
 
 def _drawn(entity: SceneEntity) -> bool:
     return bool(entity.cubes or entity.spheres or entity.cylinders)
 
 
-def _add(model: mujoco.MjModel, geom: int, entity: SceneEntity) -> None:
-    """Add a geom to an entity; kinds that have no primitive are left out."""
-    kind, size = int(model.geom_type[geom]), model.geom_size[geom]
-    position, quaternion = model.geom_pos[geom], model.geom_quat[geom]
-    place, tint = pose(position, np.roll(quaternion, -1)), color(_rgba(model, geom))
-    if kind == _Geom.mjGEOM_BOX:
-        entity.cubes.append(CubePrimitive(size=_vector(2.0 * size), pose=place, color=tint))
-    elif kind == _Geom.mjGEOM_SPHERE:
-        entity.spheres.append(SpherePrimitive(size=_vector(2.0 * size[[0, 0, 0]]), pose=place, color=tint))
-    elif kind == _Geom.mjGEOM_ELLIPSOID:
-        entity.spheres.append(SpherePrimitive(size=_vector(2.0 * size), pose=place, color=tint))
-    elif kind in (_Geom.mjGEOM_CYLINDER, _Geom.mjGEOM_CAPSULE):
-        shape = _vector(2.0 * size[[0, 0, 1]])
-        entity.cylinders.append(CylinderPrimitive(size=shape, bottom_scale=1.0, top_scale=1.0, pose=place, color=tint))
-    if kind == _Geom.mjGEOM_CAPSULE:
-        for end in _ends(position, quaternion, size[1]):
-            ball = pose(end, np.roll(quaternion, -1))
-            entity.spheres.append(SpherePrimitive(size=_vector(2.0 * size[[0, 0, 0]]), pose=ball, color=tint))
-
-
-def _ends(
-    position: NDArray[np.float64], quaternion: NDArray[np.float64], half: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Centres of a capsule's caps."""
-    axis = np.zeros(3)
-    mujoco.mju_rotVecQuat(axis, np.array([0.0, 0.0, half]), quaternion)
-    return position - axis, position + axis
-
-
-def _rgba(model: mujoco.MjModel, geom: int) -> list[float]:
-    material = int(model.geom_matid[geom])
-    rgba: list[float] = (model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]).tolist()
-    return rgba
+def _add(shape: Shape, entity: SceneEntity) -> None:
+    """Add a shape to an entity; meshes, which have no primitive, are left out."""
+    turn, tint = np.roll(shape.quaternion, -1), color(shape.color)
+    size, place = _vector(2.0 * shape.half_size), pose(shape.position, turn)
+    if shape.kind == "box":
+        entity.cubes.append(CubePrimitive(size=size, pose=place, color=tint))
+    elif shape.kind == "ellipsoid":
+        entity.spheres.append(SpherePrimitive(size=size, pose=place, color=tint))
+    elif shape.kind in ("cylinder", "capsule"):
+        entity.cylinders.append(CylinderPrimitive(size=size, bottom_scale=1.0, top_scale=1.0, pose=place, color=tint))
+    if shape.kind == "capsule":
+        ball = _vector(2.0 * shape.half_size[[0, 0, 0]])
+        for end in shape.ends:
+            entity.spheres.append(SpherePrimitive(size=ball, pose=pose(end, turn), color=tint))
 
 
 def _vector(size: NDArray[np.float64]) -> Vector3:

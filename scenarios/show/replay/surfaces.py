@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.scenarios.show.replay.content import Array, Color, Surface
+from surefoot.sim.shapes import Shape, drawn_shapes
 
 Faces = NDArray[np.int64]
 Triangles = tuple[Array, Faces]
@@ -12,32 +13,19 @@ Triangles = tuple[Array, Faces]
 SEGMENTS = 20
 """Around the axis of a lathed body; half as many from pole to pole."""
 
-LAST_VISIBLE_GROUP = 2
-"""MuJoCo's viewers show the geoms of groups 0 to 2; higher ones are for inertia and contact."""
-
 
 def surfaces(model: mujoco.MjModel) -> tuple[Surface, ...]:
     """Every visible geom but the endless ground, geoms of one body and one colour merged."""
     groups: dict[tuple[int, Color], list[Triangles]] = {}
-    for geom in range(model.ngeom):
-        if model.geom_group[geom] <= LAST_VISIBLE_GROUP and model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_PLANE:
-            key = (int(model.geom_bodyid[geom]), _color(model, geom))
-            groups.setdefault(key, []).append(_placed(model, geom))
+    for shape in drawn_shapes(model):
+        groups.setdefault((shape.body, shape.color[:3]), []).append(_placed(shape))
     return tuple(Surface(body, color, *_merged(parts)) for (body, color), parts in groups.items())
 
 
-def _color(model: mujoco.MjModel, geom: int) -> Color:
-    material = model.geom_matid[geom]
-    red, green, blue = (model.mat_rgba[material] if material >= 0 else model.geom_rgba[geom])[:3].tolist()
-    return red, green, blue
-
-
-def _placed(model: mujoco.MjModel, geom: int) -> Triangles:
-    """Triangles of a geom in the frame of its body."""
-    vertices, faces = _triangles(model, geom)
-    rotation = np.empty(9)
-    mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
-    return vertices @ rotation.reshape(3, 3).T + model.geom_pos[geom], faces
+def _placed(shape: Shape) -> Triangles:
+    """Triangles of a shape in the frame of its body."""
+    vertices, faces = _triangles(shape)
+    return vertices @ shape.rotation.T + shape.position, faces
 
 
 def _merged(parts: list[Triangles]) -> Triangles:
@@ -46,24 +34,17 @@ def _merged(parts: list[Triangles]) -> Triangles:
     return np.concatenate([vertices for vertices, _ in parts]), np.concatenate(faces)
 
 
-def _triangles(model: mujoco.MjModel, geom: int) -> Triangles:
-    kind, size = mujoco.mjtGeom(int(model.geom_type[geom])), model.geom_size[geom]
-    if kind == mujoco.mjtGeom.mjGEOM_BOX:
-        return box(size)
-    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
-        return cylinder(size[0], size[1])
-    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
-        return capsule(size[0], size[1])
-    if kind == mujoco.mjtGeom.mjGEOM_MESH:
-        return _mesh(model, int(model.geom_dataid[geom]))
-    return ellipsoid(size if kind == mujoco.mjtGeom.mjGEOM_ELLIPSOID else np.full(3, size[0]))
-
-
-def _mesh(model: mujoco.MjModel, mesh: int) -> Triangles:
-    first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
-    face, faces = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
-    vertices = model.mesh_vert[first : first + count].astype(np.float64)
-    return vertices, model.mesh_face[face : face + faces].astype(np.int64)
+def _triangles(shape: Shape) -> Triangles:
+    radius, _, half_length = shape.half_size
+    if shape.mesh is not None:
+        return shape.mesh.vertices, shape.mesh.faces
+    if shape.kind == "box":
+        return box(shape.half_size)
+    if shape.kind == "cylinder":
+        return cylinder(radius, half_length)
+    if shape.kind == "capsule":
+        return capsule(radius, half_length)
+    return ellipsoid(shape.half_size)
 
 
 def ellipsoid(radii: Array) -> Triangles:

@@ -172,7 +172,7 @@ def test_a_full_disk_on_the_way_keeps_what_was_written_under_another_name(tmp_pa
 _ENDLESS = """
 import sys
 from pathlib import Path
-from scenarios.log import ChannelSpec, FieldSpec, LogWriter
+from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter
 writer = LogWriter(Path(sys.argv[1]), {"run": {"seed": "3"}})
 channel = writer.channel(ChannelSpec("/x", "X", (FieldSpec("a"),)))
 tick = 0

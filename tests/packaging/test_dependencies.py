@@ -1,0 +1,112 @@
+"""What the package needs of others: declared, pinned, free of the GPL, and told if missing."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from surefoot.scenarios.show.replay.content import MissingExtraError, require
+
+pytestmark = pytest.mark.unit
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+COPYLEFT = re.compile(r"\bA?GPL|(?<!Lesser )General Public License|Affero", re.IGNORECASE)
+"""Names of licences that would hold for a program as a whole that needs the package; the Lesser GPL does not."""
+
+_EVERYTHING = """
+import pkgutil, sys
+sys.modules.update(dict.fromkeys(("av", "viser", "pyarrow", "pandas")))
+import surefoot
+for module in pkgutil.walk_packages(surefoot.__path__, "surefoot."):
+    if module.name != "surefoot.__main__":
+        __import__(module.name)
+"""
+
+
+def needed(requirements, extra=""):
+    """Names of all packages that requirements bring with them on this machine, themselves included."""
+    found, ahead = set(), [(Requirement(text), extra) for text in requirements]
+    while ahead:
+        requirement, extra = ahead.pop()
+        if requirement.marker and not requirement.marker.evaluate({"extra": extra}):
+            continue
+        name = canonicalize_name(requirement.name)
+        for inner in ("", *requirement.extras):
+            if (name, inner) not in found:
+                found.add((name, inner))
+                ahead += [(Requirement(text), inner) for text in declared(name)]
+    return {name for name, _ in found}
+
+
+def declared(name):
+    """Requirements of a package; those of this one are the tree's, which may be younger than the installed."""
+    if name == PROJECT["name"]:
+        extras = PROJECT["optional-dependencies"].items()
+        return [*PROJECT["dependencies"], *(f"{line}; extra == '{extra}'" for extra, lines in extras for line in lines)]
+    try:
+        return distribution(name).requires or []
+    except PackageNotFoundError:
+        pytest.fail(f"{name} is required and not installed")
+
+
+def licences(metadata):
+    """What a package says of its licence; of a text only the first line, since texts quote the licences of others."""
+    texts = (metadata.get(key, "").strip().split("\n")[0] for key in ("License-Expression", "License"))
+    return [text for text in (*texts, *(metadata.get_all("Classifier") or ())) if not text.startswith("Topic")]
+
+
+def copyleft(licence):
+    """Whether a licence leaves no choice but the GPL."""
+    return all(COPYLEFT.search(choice) for choice in re.split(r"\bOR\b", licence))
+
+
+@pytest.mark.parametrize(
+    ("licence", "refused"),
+    [
+        ("GPL-2.0-or-later", True),
+        ("AGPL-3.0-only", True),
+        ("GPLv3", True),
+        ("License :: OSI Approved :: GNU General Public License v2 (GPLv2)", True),
+        ("License :: OSI Approved :: GNU Affero General Public License v3", True),
+        ("BSD-3-Clause AND GPL-3.0-only", True),
+        ("LGPL-3.0-or-later", False),
+        ("License :: OSI Approved :: GNU Lesser General Public License v3 (LGPLv3)", False),
+        ("MIT OR GPL-2.0-only", False),
+        ("Apache-2.0", False),
+    ],
+)
+def test_licences_are_told_apart(licence, refused):
+    assert copyleft(licence) == refused
+
+
+def test_nothing_that_is_required_is_under_the_gpl():
+    names = needed(["surefoot"]) - {"surefoot"}
+    assert {"mujoco", "pin", "libpinocchio", "numpy"} <= names
+    assert not [(name, text) for name in names for text in licences(distribution(name).metadata) if copyleft(text)]
+
+
+def test_the_constraints_pin_what_every_extra_needs():
+    pins = dict(line.split("==") for line in (ROOT / "constraints.txt").read_text().splitlines())
+    wanted = needed([f"surefoot[{','.join(PROJECT['optional-dependencies'])}]"]) - {"surefoot"}
+    assert wanted <= {canonicalize_name(name) for name in pins}
+    assert not [version for version in pins.values() if not re.fullmatch(r"[\w.]+", version)]
+
+
+def test_every_module_can_be_imported_without_the_extras():
+    done = subprocess.run([sys.executable, "-c", _EVERYTHING], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(("module", "extra"), [("av", "video"), ("viser", "replay")])
+def test_a_missing_extra_says_how_to_install_it(module, extra, monkeypatch):
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(MissingExtraError, match=rf"a film needs the package {module}.*'surefoot\[{extra}\]'"):
+        require(module, extra, "a film")
+    assert extra in PROJECT["optional-dependencies"]

@@ -1,0 +1,112 @@
+"""What is installed: one import name, whole, wherever it is built from, and no name that can get in a user's way."""
+
+import os
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import tomllib
+import venv
+import zipfile
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.unit
+
+ROOT = Path(__file__).parents[2]
+PARTS = ("models", "planner", "scenarios", "sim", "wbc")
+"""Folders of the root that the package holds as links, names that a user's own files may well have."""
+
+
+def files_of(wheel):
+    """Content of the files of a wheel by path; the list of hashes follows from the rest."""
+    with zipfile.ZipFile(wheel) as archive:
+        return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/RECORD")}
+
+
+def run(folder, unpacked, *command):
+    """A command of a user whose environment holds the wheel."""
+    environment = {**os.environ, "PYTHONPATH": str(unpacked)}
+    return subprocess.run(
+        [sys.executable, *command], cwd=folder, env=environment, capture_output=True, text=True, timeout=60
+    )
+
+
+def test_the_wheel_holds_the_package_whole_and_nothing_beside_it(distributions):
+    walk = os.walk(ROOT / "surefoot", followlinks=True)
+    paths = {Path(folder, name) for folder, _, names in walk for name in names if "__pycache__" not in folder}
+    packed = {name: data for name, data in files_of(distributions[0]).items() if ".dist-info/" not in name}
+    assert packed == {path.relative_to(ROOT).as_posix(): path.read_bytes() for path in paths}
+    data = ("py.typed", "scenarios/paper/style.css", "scenarios/paper/sections.yaml", "scenarios/catalogue/walk.yaml")
+    assert {f"surefoot/{name}" for name in data} <= set(packed)
+
+
+def test_the_wheel_of_the_sdist_is_the_same(distributions, wheel_from_sdist):
+    assert files_of(wheel_from_sdist) == files_of(distributions[0])
+
+
+def test_the_sdist_holds_each_file_once(distributions):
+    with tarfile.open(distributions[1]) as archive:
+        names = [name.split("/", 1)[1] for name in archive.getnames()]
+    assert len(names) == len(set(names))
+    assert not [name for name in names if name.startswith(PARTS)]
+    assert {"README.md", "LICENSE", "pyproject.toml", "PKG-INFO", "surefoot/planner/planner.py"} <= set(names)
+
+
+def test_a_script_beside_namesakes_of_our_parts_gets_both(tmp_path, unpacked):
+    for part in PARTS[:-1]:
+        (tmp_path / f"{part}.py").write_text("MINE = True\n")
+    (tmp_path / "wbc").mkdir()
+    (tmp_path / "wbc" / "__init__.py").write_text("MINE = True\n")
+    imports = "".join(f"import {part}\nassert {part}.MINE\n" for part in PARTS)
+    (tmp_path / "script.py").write_text(
+        imports + "import surefoot\nfrom surefoot.planner.planner import WalkingPlanner\n"
+        "from surefoot.models.registry import describe\nfrom surefoot.sim.world import World\n"
+        "from surefoot.wbc.controller import WholeBodyController\n"
+        "from surefoot.scenarios.setup.load import load\n"
+        "load('walk')\nprint(surefoot.__file__, World.__module__)\n"
+    )
+    done = run(tmp_path, unpacked, "script.py")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == [str(unpacked / "surefoot" / "__init__.py"), "surefoot.sim.world"]
+
+
+def test_the_version_has_one_owner(tmp_path, unpacked):
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert run(tmp_path, unpacked, "-m", "surefoot", "--version").stdout == f"surefoot {version}\n"
+    assert run(tmp_path, unpacked, "-c", "import surefoot; print(surefoot.__version__)").stdout == f"{version}\n"
+    assert run(tmp_path, unpacked, "-c", "from surefoot import nothing").returncode == 1
+
+
+def test_no_text_teaches_an_import_that_is_not_installed():
+    """Ruff bans the bare names in code; this looks into documents, and into the programs inside tests."""
+    told = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "tests").rglob("*.py")]
+    starts = tuple(f"{word} {part}{end}" for word in ("import", "from") for part in PARTS for end in (".", " ", "\n"))
+    bare = [
+        f"{path.relative_to(ROOT)}:{number}"
+        for path in told
+        for number, line in enumerate(path.read_text().splitlines(keepends=True), start=1)
+        if line.lstrip().startswith(starts)
+    ]
+    assert not bare
+
+
+@pytest.mark.physics
+def test_a_type_checker_reads_the_installed_package(tmp_path, distributions):
+    venv.create(tmp_path / "env", with_pip=False)
+    (site,) = (tmp_path / "env").glob("lib/python*/site-packages")
+    with zipfile.ZipFile(distributions[0]) as archive:
+        archive.extractall(site)
+    (site / "others.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
+    (tmp_path / "right.py").write_text(
+        "import surefoot\nfrom surefoot.models.registry import describe\n"
+        "from surefoot.models.types import RobotOptions\n"
+        "mass: float = describe('humanoid100', RobotOptions()).mass\nversion: str = surefoot.__version__\n"
+    )
+    wrong = (tmp_path / "right.py").read_text().replace("float", "str") + "surefoot.nothing\n"
+    (tmp_path / "wrong.py").write_text(wrong)
+    python = str(tmp_path / "env" / "bin" / "python")
+    checker = [sys.executable, "-m", "mypy", "--strict", "--python-executable", python]
+    found = subprocess.run([*checker, "right.py", "wrong.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert [line.split(":")[:2] for line in found.stdout.splitlines()[:-1]] == [["wrong.py", "4"], ["wrong.py", "6"]]

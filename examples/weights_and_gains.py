@@ -1,4 +1,4 @@
-"""Weights and gains of the whole-body controller, from Python as from a file: a softer swing foot, and what it costs."""
+"""Weights and gains of the whole-body controller, from Python as from a file: what a softer swing foot costs."""
 
 import surefoot
 

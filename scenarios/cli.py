@@ -255,6 +255,17 @@ def paper(
 
 
 @app.command()
+def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.")]) -> None:
+    """Print the commented YAML of a catalogue scenario, to start one's own from."""
+    from surefoot.scenarios import catalogue
+    from surefoot.scenarios.errors import nearest
+
+    if scenario not in catalogue.names():
+        raise ScenarioError([f"{scenario}: no such catalogue name; {nearest(scenario, catalogue.names())}"])
+    typer.echo(catalogue.text(scenario), nl=False)
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors."""
     from surefoot.scenarios.file.schema import Scenario

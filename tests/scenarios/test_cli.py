@@ -13,6 +13,7 @@ from surefoot.scenarios.log import read
 from surefoot.scenarios.loop import run
 from surefoot.scenarios.setup import walk
 from surefoot.scenarios.setup.keys import scenario_problem
+from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.robot import RegisteredRobots
 
 pytestmark = pytest.mark.unit
@@ -48,6 +49,16 @@ def test_list(surefoot):
     assert code == 0
     assert "diagonal-walk" in out
     assert "robot     humanoid100" in out
+
+
+def test_show_prints_a_file_that_runs(surefoot, tmp_path):
+    code, out, _ = surefoot("show", "diagonal-walk")
+    assert code == 0
+    (tmp_path / "mine.yaml").write_text(out)
+    assert load(str(tmp_path / "mine.yaml")) == load("diagonal-walk")
+    code, _, err = surefoot("show", "diagonal-wlk")
+    assert code == 2
+    assert "did you mean 'diagonal-walk'" in err
 
 
 def test_schema_is_json(surefoot):

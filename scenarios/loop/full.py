@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from surefoot.models.belief import with_com_raised, with_mass_scaled
 from surefoot.models.pinocchio import limb_shapes, pinocchio_model
 from surefoot.models.types import RobotDescription
-from surefoot.planner.model.leg_chain import LegChain, Link
-from surefoot.planner.parameters import LegInertia
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo
 from surefoot.scenarios.file.schema import BeliefErrors, Scenario
@@ -25,15 +23,16 @@ from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
 from surefoot.scenarios.setup.gait import push_time, run_duration
 from surefoot.scenarios.setup.ground import terrain_of, true_terrain_of
+from surefoot.scenarios.setup.leg_model import leg_inertia
 from surefoot.scenarios.setup.planner import planner_parameters, square_stance, walking_planner
-from surefoot.scenarios.setup.stance import Body, body_of, disturbed, feet_at, pressed, start_posture
+from surefoot.scenarios.setup.stance import body_of, disturbed, feet_at, pressed, start_posture
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.pushes import Push
 from surefoot.sim.world import World
-from surefoot.wbc.controller import Sole, WbcParameters, WholeBodyController
-from surefoot.wbc.leg_mass import LinkMass, leg_mass
+from surefoot.wbc.controller import Sole, WholeBodyController
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.statics import standing_torque
 from surefoot.wbc.types import FootSensing, RobotState
 from surefoot.wbc.zmp import measured_zmp
@@ -85,8 +84,10 @@ def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:
         control_period=1.0 / scenario.rates.control,
         parameters=WbcParameters(),
         limbs=limb_shapes(robot, body.model),
+        arm_joints=shoulder_pitches(robot.joint_names),
     )
-    parameters = planner_parameters(scenario, leg_inertia(body, posture))
+    leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)
+    parameters = planner_parameters(scenario, leg)
     truth = controller.terms if actual is robot else RobotTerms(pinocchio_model(actual), body.frames)
     return Rig(world, truth, controller, walking_planner(scenario, robot, terrain, feet_at(body, q), parameters))
 
@@ -105,23 +106,12 @@ def believed_friction(scenario: Scenario) -> float:
     return max(scenario.terrain.friction + scenario.errors.friction, LEAST_BELIEVED_FRICTION)
 
 
-def leg_inertia(body: Body, q: Array) -> LegInertia:
-    """The robot's legs as the planner sees them, from its start posture q, shape (nq,)."""
-    leg = leg_mass(body.model, body.frames, q, body.leg_joints)
-    chain = LegChain(
-        hip_half_width=leg.hip_half_width,
-        trunk=leg.trunk,
-        thigh=_link(leg.thigh),
-        shank=_link(leg.shank),
-        foot_mass=leg.foot_mass,
-        foot_centre=leg.foot_centre,
-        ankle=leg.ankle,
-    )
-    return LegInertia(leg.ratio, chain)
-
-
-def _link(link: LinkMass) -> Link:
-    return Link(link.length, link.mass, link.centre, link.inertia)
+def shoulder_pitches(names: tuple[str, ...]) -> tuple[int, int] | None:
+    """Indices of the left and right joint called so; None for a robot that has none."""
+    found = [index for index, name in enumerate(names) if "shoulder_pitch" in name]
+    left = [index for index in found if "left" in names[index]]
+    right = [index for index in found if "right" in names[index]]
+    return (left[0], right[0]) if left and right else None
 
 
 def pushes(scenario: Scenario, robot: RobotDescription) -> tuple[Push, ...]:
@@ -164,7 +154,8 @@ class ClosedLoop:
         rates = scenario.rates
         self.rig: Rig = assemble(scenario, robot)
         layout, nq = self.rig.controller.layout, len(robot.joint_names) + 7
-        sizes = Sizes(nj=layout.joints, nq=nq, nv=layout.nv, horizon=self.rig.planner.parameters.horizon)
+        horizon, tasks = self.rig.planner.parameters.horizon, self.rig.controller.task_layout
+        sizes = Sizes(nj=layout.joints, nq=nq, nv=layout.nv, horizon=horizon, tasks=tasks)
         writer.attach(AttachedFile(WORLD_FILE, "application/xml", self.rig.world.mjcf().encode()))
         self._recorder = Recorder(writer, sizes, robot.torque_limit)
         self._walk_recorder = WalkRecorder(writer, sizes)

@@ -3,8 +3,8 @@ import pinocchio as pin
 import pytest
 
 from surefoot.wbc.arm_swing import ArmSwing, shoulder_pitches
-from surefoot.wbc.controller import WbcParameters
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.types import FootSensing, RobotState
 
 pytestmark = pytest.mark.unit

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from surefoot.wbc.controller import WbcParameters
+from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.tasks import ANGULAR, LINEAR, PELVIS, SWING, TORSO, TaskWeights
 
 pytestmark = pytest.mark.unit

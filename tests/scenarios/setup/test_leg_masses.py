@@ -3,7 +3,6 @@ from dataclasses import astuple
 import numpy as np
 import pinocchio as pin
 import pytest
-
 from surefoot.wbc.leg_mass import leg_mass
 
 pytestmark = pytest.mark.unit

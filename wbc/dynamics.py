@@ -103,8 +103,9 @@ class HardConstraints:
         target -= terms.sole_bias
         # Rotation vector, in the sole frame, that turns the sole's normal to the ground's.
         normal = np.matmul(ground_normal[:, None, :], terms.contact_rotation)[:, 0]
-        target[:, 3] -= levelling * normal[:, 1]
-        target[:, 4] += levelling * normal[:, 0]
+        for k, (x, y, _) in enumerate(normal.tolist()):
+            target[k, 3] -= levelling * y
+            target[k, 4] += levelling * x
         if contacts.rolling != self._rolling:
             self._roll(contacts.rolling)
         if contacts.rolling >= 0:

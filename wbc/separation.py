@@ -44,6 +44,8 @@ class Separation:
         """Take the shapes whose collision pairs are to be kept apart."""
         self._model, self._geometry, self._parameters = model, geometry, parameters
         self._data = pin.GeometryData(geometry)
+        # The results are updated in place; to walk through Pinocchio's vector of them costs more than the distances.
+        self._results = list(self._data.distanceResults)
         self._joints = [
             tuple(geometry.geometryObjects[shape].parentJoint for shape in (pair.first, pair.second))
             for pair in geometry.collisionPairs
@@ -62,7 +64,7 @@ class Separation:
         p = self._parameters
         pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
         pin.computeDistances(self._geometry, self._data)
-        distances = [result.min_distance for result in self._data.distanceResults]
+        distances = [result.min_distance for result in self._results]
         near = [k for k, distance in enumerate(distances) if 0.0 < distance < p.attention]
         near.sort(key=distances.__getitem__)
         for slot in range(p.slots):
@@ -76,7 +78,7 @@ class Separation:
 
     def _gradient(self, data: pin.Data, pair: int) -> Array:
         """Jacobian of a distance, shape (nv,)."""
-        result = self._data.distanceResults[pair]
+        result = self._results[pair]
         normal = -np.asarray(result.normal)
         row = np.zeros(self._model.nv)
         for sign, joint, point in zip(

@@ -92,6 +92,10 @@ def test_a_posture_step_can_be_built_without_being_solved(robot):
     np.testing.assert_allclose(free, np.diag(np.diag(free)), atol=1e-12)
     assert np.diag(free).min() > 0.0
     assert np.diag(free).max() < 1e-8
+    near = ik.build_step(target, robot.standing, nearness=1e-3)
+    away = robot.nominal - robot.standing[7:]
+    np.testing.assert_allclose(near.g[6:] + J[:, 6:].T @ e, -1e-3 * away, atol=1e-12)
+    assert np.abs(away).max() > 0.01
     dq = ik.solve_step(step)
     gradient = step.H @ dq + step.g
     inside = (dq > step.lower + 1e-9) & (dq < step.upper - 1e-9)

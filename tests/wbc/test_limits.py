@@ -58,6 +58,14 @@ def test_the_velocity_bound_lets_a_joint_reach_its_limit_and_no_more():
     assert v.max() == pytest.approx(8.0, abs=1e-6)
 
 
+def test_the_velocity_limit_is_met_within_its_horizon():
+    v = np.array([7.0])
+    lower, upper = bounds(np.array([0.0]), v, lower=np.array([-1e3]), upper=np.array([1e3]))
+    horizon = limits().velocity_horizon
+    assert v + horizon * upper == pytest.approx(8.0)
+    assert v + horizon * lower == pytest.approx(-8.0)
+
+
 def test_bounds_never_cross():
     rng = np.random.default_rng(0)
     for q, v in zip(rng.uniform(-1, 3, (500, 1)), rng.uniform(-20, 20, (500, 1)), strict=True):

@@ -8,7 +8,7 @@ import pytest
 
 from surefoot.plugins import PluginError
 from surefoot.wbc.parameters import WbcParameters
-from surefoot.wbc.tasks import DEFAULT_LAYOUT, TASKS, Task, TaskWeights, angular_acceleration
+from surefoot.wbc.tasks import DEFAULT_LAYOUT, TASKS, Task, TaskWeights, Weighted, angular_acceleration
 from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit
@@ -117,6 +117,19 @@ def test_tasks_from_outside_come_after_the_default_ones(robot, references, loade
         a = task.write(controller.terms, reference, np.ones((3, 1)), J)
         np.testing.assert_allclose(error, J @ x - a, atol=1e-9)
     assert np.abs(report.torque - default.torque).max() > 1e-3
+
+
+def test_a_task_can_be_given_another_weight(robot, references, loaded, rng):
+    state, task = robot.moved(rng, 0.02, 0.2), Elbow(robot.model, robot.frames, weight=1.0)
+    rows, errors = [], []
+    for given in (task, Weighted(task, 4.0)):
+        controller = robot.controller(tasks=(given,))
+        controller.observe(state)
+        errors.append(controller.update(references[0](), loaded).task_error[18:].copy())
+        rows.append(controller.tasks.rows[18:])
+        assert controller.task_layout[-1] == ("left elbow", 3)
+    np.testing.assert_allclose(rows[1], 2.0 * rows[0])
+    assert np.linalg.norm(errors[1]) < np.linalg.norm(errors[0])
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import WRENCH_UNIT, QpLayout, allocate
 from surefoot.wbc.tasks import DEFAULT_LAYOUT, TaskGains, TaskStack, TaskWeights
 from surefoot.wbc.tasks.default import default_tasks
+from surefoot.wbc.tasks.swing import SwingFoot
 from surefoot.wbc.types import GRAVITY
 
 pytestmark = pytest.mark.unit
@@ -205,3 +206,35 @@ def test_the_swing_task_is_absent_when_both_feet_stand(robot, references, loaded
     report = controller.update(references[0](), loaded)
     assert not controller.tasks.rows[swing].any()
     assert not report.task_error[swing].any()
+
+
+def test_a_rolling_foot_is_steered_by_its_toe_edge(robot, state, references):
+    """The edge goes to that of the planned sole, and the pitch is damped towards the planned one."""
+    terms, roll, (k, d) = robot.controller().observe(state), (0.3, 0.5, 2.0), TaskGains().swing
+    terms.shift_foot(1, TOE, roll[0])
+    task = SwingFoot(TaskWeights(), TaskGains(), TOE)
+    targets = []
+    for rolling in (1, -1):
+        reference, J = references[1](rolling_foot=rolling, roll=roll), np.zeros((6, robot.nv + 12))
+        targets.append(np.array(task.write(terms, reference, np.ones((6, 1)), J)))
+        np.testing.assert_array_equal(J[:, : robot.nv], terms.sole_jacobian[1])
+    ahead = terms.contact_rotation[1].T @ (k * TOE * reference.swing_rotation[:, 0])
+    np.testing.assert_allclose(targets[0] - targets[1], [*ahead, 0.0, d * 0.5 + 2.0, 0.0], atol=1e-9)
+
+
+def test_diagonal_terms_ask_for_posture_share_and_rest(robot, state, references, loaded):
+    """What each single variable would be if nothing else weighed it."""
+    controller = robot.controller(WbcParameters(arm_swing=0.0))
+    controller.observe(state)
+    controller.update(references[0](load_share=(0.7, 0.3)), loaded)
+    terms, tasks, weights = controller.terms, controller.tasks, TaskWeights()
+    k, d = TaskGains().posture
+    posture = np.where(robot.leg_joints, weights.leg_posture, weights.upper_posture)
+    wanted = posture * (k * (robot.standing[7:] - state.q[7:]) - d * state.v[6:])
+    np.testing.assert_allclose(tasks.linear[6 : robot.nv], wanted, atol=1e-12)
+    np.testing.assert_allclose(tasks.diagonal[6 : robot.nv], posture + weights.acceleration)
+    assert not tasks.linear[:6].any()
+    wrench = WRENCH_UNIT * (tasks.linear / tasks.diagonal)[robot.nv :].reshape(2, 6)
+    load = terms.mass * GRAVITY
+    np.testing.assert_allclose(wrench[:, 2], [0.7 * load, 0.3 * load])
+    assert not np.delete(wrench, 2, axis=1).any()

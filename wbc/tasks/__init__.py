@@ -14,7 +14,7 @@ from surefoot.plugins import Registry
 from surefoot.wbc.tasks.default import DEFAULT_LAYOUT
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.stack import TaskStack
-from surefoot.wbc.tasks.task import Task, TaskFactory, TaskLayout, angular_acceleration
+from surefoot.wbc.tasks.task import Task, TaskFactory, TaskLayout, Weighted, angular_acceleration
 
 __all__ = [
     "DEFAULT_LAYOUT",
@@ -25,6 +25,7 @@ __all__ = [
     "TaskLayout",
     "TaskStack",
     "TaskWeights",
+    "Weighted",
     "angular_acceleration",
 ]
 

@@ -1,6 +1,7 @@
 """What a task is to the whole-body QP, and what several tasks have in common."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Protocol
 
 import pinocchio as pin
@@ -55,6 +56,34 @@ class Task(Protocol):
 
 TaskFactory = Callable[[pin.Model, BodyFrames], Task]
 """Makes a task for a robot; what is registered under a name in ``surefoot.wbc.tasks.TASKS``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Weighted:
+    """A task with another weight than its own.
+
+    Attributes:
+        task: the task.
+        weight: cost of a squared residual, of all rows or of each, shape (size,).
+    """
+
+    task: Task
+    weight: float | Array
+
+    @property
+    def name(self) -> str:
+        """See ``Task.name``."""
+        return self.task.name
+
+    @property
+    def size(self) -> int:
+        """See ``Task.size``."""
+        return self.task.size
+
+    @property
+    def write(self) -> Callable[[RobotTerms, WbcReference, Array, Array], Iterable[float]]:
+        """See ``Task.write``."""
+        return self.task.write
 
 
 def layout_of(tasks: Iterable[Task]) -> TaskLayout:

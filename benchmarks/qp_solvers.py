@@ -18,7 +18,7 @@ from bare_walk import BareWalk
 from scipy.optimize import nnls
 
 from surefoot.wbc.qp import EQUALITY_ROWS, QpData
-from surefoot.wbc.solvers import Daqp, EqualityFirst, ProxQp, QpSolution, QpSolver, Quadprog
+from surefoot.wbc.solvers import Daqp, EqualityFirst, ProxQp, QpSolution, QpSolver
 
 
 class DaqpModel:
@@ -52,7 +52,6 @@ SOLVERS: dict[str, Callable[[], QpSolver]] = {
     "daqp workspace, warm": lambda: DaqpModel(warm_start=True),
     "proxqp": ProxQp,
     "proxqp, warm": lambda: ProxQp(warm_start=True),
-    "quadprog": Quadprog,
 }
 
 

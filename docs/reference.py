@@ -8,7 +8,7 @@ Each table stands between two comment lines, `<!-- table: name -->` and `<!-- en
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -97,12 +97,18 @@ def _key_rows(prefix: str, group: type[BaseModel]) -> list[str]:
     rows: list[str] = []
     for name, field in group.model_fields.items():
         element = _LISTS.get(prefix + name)
-        inner = element or field.annotation
+        inner = element or _group_of(field.annotation)
         if isinstance(inner, type) and issubclass(inner, BaseModel):
             rows += _key_rows(f"{prefix}{name}{'[]' if element else ''}.", inner)
         else:
             rows.append(_key_row(prefix + name, field))
     return rows
+
+
+def _group_of(annotation: Any) -> Any:
+    """The group that may stand in a key, also where null may."""
+    models = [a for a in get_args(annotation) if isinstance(a, type) and issubclass(a, BaseModel)]
+    return models[0] if models else annotation
 
 
 def _key_row(name: str, field: FieldInfo) -> str:

@@ -25,7 +25,9 @@ class Spring:
             jerk = (stiffness * (state[0] - zmp) - state[2]) / 0.1
             jerks.append(np.clip(jerk, -p.jerk_limit, p.jerk_limit))
             t = p.sample_time
-            state += np.stack((t * state[1] + t * t / 2 * state[2] + t**3 / 6 * jerk, t * state[2] + t * t / 2 * jerk, t * jerk))
+            state += np.stack(
+                (t * state[1] + t * t / 2 * state[2] + t**3 / 6 * jerk, t * state[2] + t * t / 2 * jerk, t * jerk)
+            )
         return Motion(np.array(jerks), np.zeros((2, 2)), np.zeros(2), np.zeros(2))
 
 

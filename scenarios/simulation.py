@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
     from surefoot.scenarios.loop.estimator import Estimator
     from surefoot.wbc.controller import WholeBodyController
+    from surefoot.wbc.tasks import TaskFactory
 
 Array = NDArray[np.float64]
 
@@ -91,6 +92,7 @@ class Simulation:
         controller: makes the whole-body controller; called with the arguments of `WholeBodyController` by name.
         estimator: makes the state estimator from the walk; see `surefoot.scenarios.loop.estimator.Estimator`.
         robot: a description in place of the robot that the scenario names.
+        tasks: make tasks for the whole-body QP beside its own; see `surefoot.wbc.tasks.Task`.
 
     Attributes:
         scenario: what is simulated.
@@ -112,13 +114,14 @@ class Simulation:
         controller: "Callable[..., WholeBodyController] | None" = None,
         estimator: "Callable[[Walk], Estimator] | None" = None,
         robot: "RobotDescription | None" = None,
+        tasks: "Sequence[TaskFactory]" = (),
     ) -> None:
         loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
         self.scenario = loaded if seed is None else loaded.model_copy(update={"seed": seed})
         with refusing():
             self.walk = resolve(self.scenario, robot, planner)
-        self._parts = Parts.of(controller=controller, estimator=estimator)
-        self._given = {"planner": planner, "robot": robot, "controller": controller, "estimator": estimator}
+        self._parts = Parts.of(controller=controller, estimator=estimator, tasks=tuple(tasks) or None)
+        self._given = {"planner": planner, "robot": robot, **self._parts.given()}
         self._path = None if log is None else Path(log)
         self._writer: LogWriter
         self._loop: ClosedLoop

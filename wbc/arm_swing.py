@@ -33,11 +33,3 @@ class ArmSwing:
         vx, vy, _ = (velocity[0] - velocity[1]).tolist()
         scale = self.gain / max(length, 1e-3)
         return scale * (x * dx + y * dy), scale * (x * vx + y * vy)
-
-
-def shoulder_pitches(names: tuple[str, ...]) -> tuple[int, int] | None:
-    """Indices of the left and right joint called so; None for a robot that has none."""
-    found = [index for index, name in enumerate(names) if "shoulder_pitch" in name]
-    left = [index for index in found if "left" in names[index]]
-    right = [index for index in found if "right" in names[index]]
-    return (left[0], right[0]) if left and right else None

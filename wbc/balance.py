@@ -6,24 +6,27 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from surefoot.wbc.tunable import check, number
 from surefoot.wbc.types import Array, WbcReference
 
 
 @dataclass(frozen=True, slots=True)
 class BalanceGains:
-    """Gains of the CoM law.
+    """Gains of the CoM law. The DCM error decays at the rate (dcm - 1) ω, so ``dcm`` has to be above 1 to balance.
 
-    Attributes:
-        dcm: ZMP moved per DCM error [-]; above 1 the DCM error decays, at rate (dcm - 1) ω.
-        height_stiffness: vertical stiffness per mass [1/s^2].
-        height_damping: vertical damping per mass [1/s].
-        polygon_share: share of the support polygon that the commanded ZMP may use [-].
+    Raises:
+        ParameterError: a gain is negative or not finite, or the share is not within 0 and 1.
     """
 
-    dcm: float = 3.0
-    height_stiffness: float = 60.0
-    height_damping: float = 15.0
-    polygon_share: float = 0.95
+    dcm: float = number(3.0, "-", "ZMP moved per DCM error")
+    height_stiffness: float = number(60.0, "1/s^2", "vertical stiffness per mass")
+    height_damping: float = number(15.0, "1/s", "vertical damping per mass")
+    polygon_share: float = number(
+        0.95, "-", "share of the support polygon that the commanded ZMP may use", positive=True, most=1.0
+    )
+
+    def __post_init__(self) -> None:
+        check(self, "wbc", "balance")
 
 
 class SupportRegion:

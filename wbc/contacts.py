@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from surefoot.wbc.tunable import check, number
 from surefoot.wbc.types import FootSensing, WbcReference
 
 
@@ -9,23 +10,26 @@ from surefoot.wbc.types import FootSensing, WbcReference
 class ContactParameters:
     """Thresholds of the contact schedule.
 
-    Attributes:
-        felt_force: a foot feels the ground above this normal force [N].
-        felt_ticks: for so many consecutive control ticks [-].
-        early_progress: a swing foot may land from this share of its swing on [-].
-        early_cap: load allowed on a foot that landed before its time [N].
-        loading_time: time in which a landed foot's allowed load grows to the full weight [s].
-        unloading_time: time before lift-off in which a foot's allowed load shrinks to its planned share [s].
-        share_margin: allowed load above the planned share at the start of unloading [-].
+    Raises:
+        ParameterError: one is negative or not finite, a time or a number of ticks is zero, or a share is above 1.
     """
 
-    felt_force: float = 20.0
-    felt_ticks: int = 2
-    early_progress: float = 0.6
-    early_cap: float = 50.0
-    loading_time: float = 0.05
-    unloading_time: float = 0.1
-    share_margin: float = 0.5
+    felt_force: float = number(20.0, "N", "normal force above which a foot feels the ground")
+    felt_ticks: int = number(2, "-", "consecutive control ticks of that force before it counts", positive=True)
+    early_progress: float = number(0.6, "-", "share of its swing from which a swing foot may land", most=1.0)
+    early_cap: float = number(50.0, "N", "load allowed on a foot that landed before its time")
+    loading_time: float = number(
+        0.05, "s", "time in which a landed foot's allowed load grows to the full weight", positive=True
+    )
+    unloading_time: float = number(
+        0.1, "s", "time before lift-off in which a foot's allowed load shrinks to its planned share", positive=True
+    )
+    share_margin: float = number(
+        0.5, "-", "allowed load above the planned share at the start of unloading, of the weight"
+    )
+
+    def __post_init__(self) -> None:
+        check(self, "wbc", "schedule")
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,28 +2,32 @@
 
 import math
 import time
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from surefoot.wbc.arm_swing import ArmSwing, shoulder_pitches
-from surefoot.wbc.balance import BalanceGains, SupportRegion, com_acceleration
+from surefoot.wbc.arm_swing import ArmSwing
+from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.cone import CONE_ROWS, wrench_cone
-from surefoot.wbc.contacts import ContactParameters, ContactSchedule, ContactState
-from surefoot.wbc.dynamics import ContactGains, HardConstraints
+from surefoot.wbc.contacts import ContactSchedule, ContactState
+from surefoot.wbc.dynamics import HardConstraints
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
-from surefoot.wbc.qp import UNBOUNDED, QpData, QpLayout, allocate
-from surefoot.wbc.separation import Separation, SeparationParameters
+from surefoot.wbc.parameters import WbcParameters
+from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
+from surefoot.wbc.separation import Separation
 from surefoot.wbc.solvers import QpSolution, equalities_only, make_solver
-from surefoot.wbc.tasks import TaskGains, TaskStack, TaskWeights
+from surefoot.wbc.tasks.default import default_tasks
+from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
+from surefoot.wbc.tasks.stack import TaskStack
+from surefoot.wbc.tasks.task import Task, TaskLayout
 from surefoot.wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
 
 ACCEPTED_VIOLATION = 1e-3
 """A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""
-
 
 TOE_DEPTH = 0.003
 """Half length of the strip that stands for a toe edge in its wrench cone [m]."""
@@ -41,38 +45,40 @@ class Sole:
 
 
 @dataclass(frozen=True, slots=True)
-class WbcParameters:
-    """Everything one may turn.
+class WbcAnswer:
+    """What a solution means for the robot. Arrays are overwritten by the next one.
 
     Attributes:
-        weights: of the tasks.
-        gains: of the tasks.
-        balance: gains of the CoM law.
-        contact: gains of the rigid contacts.
-        schedule: thresholds of the contact schedule.
-        separation: when limbs keep away from each other.
-        solver: the solver tried first, chosen by ``benchmarks/qp_solvers.py``.
-        second_solver: the one tried when the first fails.
-        arm_swing: swing of the shoulders per stride [rad/m].
+        torque: joint torques within their limits, shape (nj,) [N·m].
+        acceleration: planned generalised acceleration, shape (nv,).
+        wrench: planned contact wrenches, in the sole frames, shape (2, 6) [N, N·m].
+        task_error: residuals of all tasks before weighting, shape (rows,).
     """
 
-    weights: TaskWeights = field(default_factory=TaskWeights)
-    gains: TaskGains = field(default_factory=TaskGains)
-    balance: BalanceGains = field(default_factory=BalanceGains)
-    contact: ContactGains = field(default_factory=ContactGains)
-    schedule: ContactParameters = field(default_factory=ContactParameters)
-    separation: SeparationParameters = field(default_factory=SeparationParameters)
-    solver: str = "equality-first"
-    second_solver: str = "proxqp"
-    arm_swing: float = 0.6
+    torque: Array
+    acceleration: Array
+    wrench: Array
+    task_error: Array
 
 
 class WholeBodyController:
-    """Weighted inverse-dynamics QP, solved once per control tick.
+    """Weighted inverse-dynamics QP, built, solved and interpreted once per control tick.
 
     Herzog et al., "Momentum control with hierarchical inverse dynamics", Autonomous Robots 2016, in its weighted form,
-    with the CoM law of ``wbc.balance``. A tick that no solver answers degrades as ``SolveStatus`` says; it never
-    raises.
+    with the CoM law of ``surefoot.wbc.balance``. A tick that no solver answers degrades as ``SolveStatus`` says; it
+    never raises. ``update`` is a whole tick; its parts can be called one by one:
+
+        terms = controller.observe(state)
+        qp = controller.build(terms, reference, contacts)       # qp.copy() survives the next tick
+        status, solution = controller.solve(qp)
+        answer = controller.interpret(terms, solution)
+
+    Attributes:
+        terms: of the state last observed.
+        layout: where everything is in the QP.
+        qp: the QP, as last built.
+        schedule: which contacts the QP holds, from plan and feeling.
+        tasks: the weighted tasks.
     """
 
     def __init__(
@@ -86,6 +92,8 @@ class WholeBodyController:
         control_period: float,
         parameters: WbcParameters,
         limbs: pin.GeometryModel | None = None,
+        arm_joints: tuple[int, int] | None = None,
+        tasks: Sequence[Task] = (),
     ) -> None:
         """Build the QP for a robot.
 
@@ -99,42 +107,47 @@ class WholeBodyController:
             control_period: time between two updates [s].
             parameters: weights and gains.
             limbs: shapes with the collision pairs that are kept apart; None looks at none.
+            arm_joints: which joints are the left and the right shoulder pitch, positive angles swinging back; None for
+                arms that do not swing.
+            tasks: others, after the default ones.
+
+        Raises:
+            ValueError: a frame does not exist, a sole has no extent, or a task no name of its own, size or weight.
         """
         self.terms = RobotTerms(model, frames)
-        self._separation = Separation(model, limbs, parameters.separation) if limbs is not None else None
         self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
         self.qp: QpData = allocate(self.layout)
-        shoulders = shoulder_pitches(tuple(model.names)[2:])
-        arms = ArmSwing(shoulders, parameters.arm_swing) if shoulders and parameters.arm_swing else None
-        share = sole.cop_share
+        self._separation = Separation(model, limbs, parameters.separation) if limbs is not None else None
         gaps = self.layout.separation
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
-        friction = sole.friction / np.sqrt(2.0)
-        cone = wrench_cone(share * sole.half_length, share * sole.half_width, friction)
-        edge = wrench_cone(TOE_DEPTH, share * sole.half_width, friction)
-        self._hard = HardConstraints(self.qp, self.layout, (cone, edge), limits, parameters.contact)
-        mass, weights, gains = self.terms.mass, parameters.weights, parameters.gains
-        self._toe = sole.half_length
-        self._tasks = TaskStack(self.qp, self.layout, mass, weights, gains, posture, leg_joints, arms, self._toe)
-        self._contacts = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
+        self._hard = HardConstraints(self.qp, self.layout, _cones(sole), limits, parameters.contact)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
-        self._edge: tuple[int, Array] | None = None
-        self._balance = parameters.balance
+        arms = ArmSwing(arm_joints, parameters.arm_swing) if arm_joints and parameters.arm_swing else None
+        weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
+        default = default_tasks(weights, gains, parameters.balance, self._region, toe)
+        diagonal = (
+            Regularisation(weights),
+            Posture(weights, gains, posture, leg_joints, arms),
+            ForceDistribution(weights),
+        )
+        self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal)
+        self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
-        self._limits = limits
-        self._period = control_period
-        self._state = RobotState(pin.neutral(model), np.zeros(model.nv))
-        self._torque, self._torque_rows = np.zeros(self.layout.joints), self.qp.A[self.layout.torque_rows]
-        self._acceleration = np.zeros(self.layout.nv)
-        self._wrench_flat = np.zeros(12)
-        self._wrench = self._wrench_flat.reshape(2, 6)
-        self._task_error = np.zeros(18)
+        self._limits, self._toe, self._period = limits, toe, control_period
+        self._edge: tuple[int, Array] | None = None
+        self._torque_rows, self._wrench_flat = self.qp.A[self.layout.torque_rows], np.zeros(12)
+        wrench, error = self._wrench_flat.reshape(2, 6), np.zeros_like(self.tasks.target)
+        self._answer = WbcAnswer(np.zeros(self.layout.joints), np.zeros(self.layout.nv), wrench, error)
+
+    @property
+    def task_layout(self) -> TaskLayout:
+        """Names and sizes of the tasks, in the order of ``WbcReport.task_error``."""
+        return self.tasks.layout
 
     def observe(self, state: RobotState) -> RobotTerms:
         """Take the measured or estimated state of this tick; returns its terms, which the next call overwrites."""
-        self._state = state
         self.terms.update(state.q, state.v)
         return self.terms
 
@@ -146,73 +159,96 @@ class WholeBodyController:
             sensing: what the feet feel.
             fail_solvers: pretend that both QP solvers failed, to exercise the fallback.
         """
-        start, state = time.perf_counter(), self._state
-        contacts = self._contacts.update(reference, sensing)
-        self._assemble(state, reference, contacts)
+        start = time.perf_counter()
+        contacts = self.schedule.update(reference, sensing)
+        qp = self.build(self.terms, reference, contacts)
         built = time.perf_counter()
-        status, solution = self._solve(fail_solvers)
-        if solution is not None:
-            self._apply(solution)
-        else:
-            self._hold(state.v)
+        status, solution = self.solve(qp, fail_solvers)
+        answer = self.interpret(self.terms, solution)
         solved = time.perf_counter()
         return WbcReport(
-            torque=self._torque,
+            torque=answer.torque,
             status=status,
             iterations=solution.iterations if solution else 0,
             primal_residual=solution.violation if solution else math.inf,
             dual_residual=solution.dual_residual if solution else math.nan,
-            acceleration=self._acceleration,
-            wrench=self._wrench,
+            acceleration=answer.acceleration,
+            wrench=answer.wrench,
             active=contacts.active,
             felt=contacts.felt,
-            task_error=self._task_error,
+            task_error=answer.task_error,
             build_time=built - start,
             solve_time=solved - built,
         )
 
-    def _assemble(self, state: RobotState, reference: WbcReference, contacts: ContactState) -> None:
-        terms, rolling, self._edge = self.terms, reference.rolling_foot, None
-        if rolling >= 0 and (rolling == contacts.rolling or not contacts.active[rolling]):
-            self._edge = rolling, terms.shift_foot(rolling, self._toe, reference.roll[0])
+    def build(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> QpData:
+        """The QP of a state, a reference and contacts, written over the last one.
+
+        A rolling foot's terms are seen from its toe edge from here on (see ``RobotTerms.shift_foot``).
+        """
+        self._shift(terms, reference, contacts)
         holding = (contacts.active, contacts.rolling)
         if holding != self._region_contacts and np.isfinite(terms.sole_position).all():
             self._region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
             self._region_contacts = holding
-        acceleration = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
-        self._tasks.write(terms, state.q, state.v, acceleration, reference)
-        self._hard.write(terms, state.q, state.v, contacts, reference.ground_normal, reference.roll[1:])
+        self.tasks.write(terms, reference)
+        self._hard.write(terms, terms.q, terms.v, contacts, reference.ground_normal, reference.roll[1:])
         if self._separation is not None:
-            self._separation.write(terms.data, state.v, self._gap_rows, self._gap_lower, UNBOUNDED)
+            self._separation.write(terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
+        return self.qp
 
-    def _solve(self, fail_solvers: bool) -> tuple[SolveStatus, QpSolution | None]:
+    def solve(self, qp: QpData, fail_solvers: bool = False) -> tuple[SolveStatus, QpSolution | None]:
+        """A solution by the first solver whose answer holds, else by the equalities alone; None if there is none."""
         if not fail_solvers:
             for status, solver in zip((SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER), self._solvers, strict=True):
-                solution = solver.solve(self.qp)
+                solution = solver.solve(qp)
                 if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
                     return status, solution
-        solution = equalities_only(self.qp)
+        solution = equalities_only(qp)
         return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution
 
-    def _apply(self, solution: QpSolution) -> None:
-        """Interpret the solution into torque, acceleration and wrenches."""
+    def interpret(self, terms: RobotTerms, solution: QpSolution | None) -> WbcAnswer:
+        """Torque, acceleration, wrenches and task errors of a solution of the QP last built, from the same terms.
+
+        Without a solution the last torque fades; acceleration, wrenches and task errors stay as they were.
+        """
+        answer = self._answer
+        if solution is None:
+            self._fade(answer.torque, terms.v)
+            return answer
         x, nv = solution.x, self.layout.nv
-        np.matmul(self._torque_rows, x, out=self._torque)
-        self._torque += self.terms.bias[6:]
-        self._clip()
-        self._acceleration[:] = x[:nv]
-        np.multiply(x[nv:], self.layout.wrench_unit, out=self._wrench_flat)
+        np.matmul(self._torque_rows, x, out=answer.torque)
+        np.add(answer.torque, terms.bias[6:], out=answer.torque)
+        self._clip(answer.torque)
+        answer.acceleration[:] = x[:nv]
+        np.multiply(x[nv:], WRENCH_UNIT, out=self._wrench_flat)
         if self._edge is not None:
             foot, to_sole = self._edge
-            self._wrench[foot] = to_sole @ self._wrench[foot]
-        self._task_error[:] = self._tasks.residual(x)
+            answer.wrench[foot] = to_sole @ answer.wrench[foot]
+        answer.task_error[:] = self.tasks.residual(x)
+        return answer
 
-    def _clip(self) -> None:
-        np.minimum(self._torque, self._limits.torque, out=self._torque)
-        np.maximum(self._torque, -self._limits.torque, out=self._torque)
+    def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
+        """See a rolling foot from its toe edge, the others from their soles."""
+        rolling, self._edge = reference.rolling_foot, None
+        terms.unshift(0)
+        terms.unshift(1)
+        if rolling >= 0 and (rolling == contacts.rolling or not contacts.active[rolling]):
+            self._edge = rolling, terms.shift_foot(rolling, self._toe, reference.roll[0])
 
-    def _hold(self, v: Array) -> None:
+    def _clip(self, torque: Array) -> None:
+        np.minimum(torque, self._limits.torque, out=torque)
+        np.maximum(torque, -self._limits.torque, out=torque)
+
+    def _fade(self, torque: Array, v: Array) -> None:
         """Fade the last torque out within about 50 ms while damping the joints whose velocity is known."""
         rate = np.where(np.isfinite(v[6:]), v[6:], 0.0)
-        self._torque += self._period / 0.05 * (-0.02 * self._limits.torque * rate - self._torque)
-        self._clip()
+        torque += self._period / 0.05 * (-0.02 * self._limits.torque * rate - torque)
+        self._clip(torque)
+
+
+def _cones(sole: Sole) -> tuple[Array, Array]:
+    """Rows of the wrench cones of the sole and of its toe edge; the pyramid lies inside the circular cone."""
+    share, friction = sole.cop_share, sole.friction / np.sqrt(2.0)
+    width = share * sole.half_width
+    return wrench_cone(share * sole.half_length, width, friction), wrench_cone(TOE_DEPTH, width, friction)

@@ -7,7 +7,8 @@ import numpy as np
 from surefoot.wbc.contacts import ContactState
 from surefoot.wbc.limits import AccelerationBounds, JointLimits
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.qp import FOOT_ROWS, QpData, QpLayout
+from surefoot.wbc.qp import FOOT_ROWS, WRENCH_UNIT, QpData, QpLayout
+from surefoot.wbc.tunable import check, number
 from surefoot.wbc.types import Array
 
 
@@ -15,13 +16,17 @@ from surefoot.wbc.types import Array
 class ContactGains:
     """Stabilisation of the rigid contacts.
 
-    Attributes:
-        damping: decay of a sole's remaining velocity [1/s].
-        levelling: stiffness that turns an active sole flat on the ground of its planned normal [1/s^2].
+    Raises:
+        ParameterError: a gain is negative or not finite.
     """
 
-    damping: float = 20.0
-    levelling: float = 100.0
+    damping: float = number(20.0, "1/s", "decay of a sole's remaining velocity")
+    levelling: float = number(
+        100.0, "1/s^2", "stiffness that turns an active sole flat on the ground of its planned normal"
+    )
+
+    def __post_init__(self) -> None:
+        check(self, "wbc", "contact")
 
 
 class HardConstraints:
@@ -37,7 +42,7 @@ class HardConstraints:
         self, qp: QpData, layout: QpLayout, cones: tuple[Array, Array], limits: JointLimits, gains: ContactGains
     ) -> None:
         """Write the rows that change with the contacts only; cones of the sole and of its toe edge, shape (rows, 6)."""
-        self._gains, self._unit = gains, layout.wrench_unit
+        self._gains = gains
         self._joints = AccelerationBounds(limits)
         self._torque_span = np.concatenate([np.zeros(6), limits.torque])
         self._target, self._active = np.zeros((2, 6)), (False, False)
@@ -85,7 +90,7 @@ class HardConstraints:
 
     def _motion(self, terms: RobotTerms) -> None:
         self._mass[:] = terms.mass_matrix
-        np.multiply(terms.contact_jacobian.T, -self._unit, out=self._forces)
+        np.multiply(terms.contact_jacobian.T, -WRENCH_UNIT, out=self._forces)
         np.negative(terms.bias, out=self._motion_lower)
         np.add(self._motion_lower, self._torque_span, out=self._motion_upper)
         self._motion_lower -= self._torque_span
@@ -98,8 +103,9 @@ class HardConstraints:
         target -= terms.sole_bias
         # Rotation vector, in the sole frame, that turns the sole's normal to the ground's.
         normal = np.matmul(ground_normal[:, None, :], terms.contact_rotation)[:, 0]
-        target[:, 3] -= levelling * normal[:, 1]
-        target[:, 4] += levelling * normal[:, 0]
+        for k, (x, y, _) in enumerate(normal.tolist()):
+            target[k, 3] -= levelling * y
+            target[k, 4] += levelling * x
         if contacts.rolling != self._rolling:
             self._roll(contacts.rolling)
         if contacts.rolling >= 0:
@@ -110,7 +116,7 @@ class HardConstraints:
         self._contact_lower[:] = target
         self._contact_upper[:] = target
         left, right = contacts.force_cap
-        self._force_caps[:] = (left / self._unit, right / self._unit)
+        self._force_caps[:] = (left / WRENCH_UNIT, right / WRENCH_UNIT)
 
     def _follow(self, k: int, terms: RobotTerms, active: bool) -> None:
         if active:

@@ -45,6 +45,26 @@ class PostureResult:
     iterations: int
 
 
+@dataclass(frozen=True, slots=True)
+class PostureStep:
+    """QP of one step: minimise 1/2 dqᵀ H dq + gᵀ dq subject to lower <= dq <= upper.
+
+    Attributes:
+        H: shape (nv, nv), positive definite.
+        g: shape (nv,).
+        lower, upper: shape (nv,) [m, rad].
+        q: where it begins, shape (nq,).
+        error: largest error there [m, rad].
+    """
+
+    H: Array
+    g: Array
+    lower: Array
+    upper: Array
+    q: Array
+    error: float
+
+
 class PostureIk:
     """Gauss-Newton on the manifold of configurations; each step is a QP within the joint limits.
 
@@ -76,14 +96,16 @@ class PostureIk:
         """
         error = np.inf
         for iteration in range(max_iterations):
-            J, e = self._tasks(q, target)
-            error = float(np.abs(e).max())
+            step = self.build_step(target, q, nearness)
+            error = step.error
             if error <= tolerance:
                 return PostureResult(q, error, True, iteration)
-            q = pin.integrate(self._model, q, self._step(J, e, q, nearness))
+            q = pin.integrate(self._model, q, self.solve_step(step))
         return PostureResult(q, error, False, max_iterations)
 
-    def _step(self, J: Array, e: Array, q: Array, nearness: float) -> Array:
+    def build_step(self, target: PostureTarget, q: Array, nearness: float = 1e-9) -> PostureStep:
+        """The QP of the step from q, shape (nq,); ``nearness`` as in ``solve``."""
+        J, e = self.linearise(target, q)
         nv = self._model.nv
         H = J.T @ J + 1e-10 * np.eye(nv)
         H[6:, 6:] += nearness * np.eye(nv - 6)
@@ -93,14 +115,23 @@ class PostureIk:
         lower, upper = np.full(nv, -0.3), np.full(nv, 0.3)
         lower[6:] = np.minimum(np.maximum(lower[6:], self._limits.lower - q[7:]), 0.3)
         upper[6:] = np.maximum(np.minimum(upper[6:], self._limits.upper - q[7:]), lower[6:])
-        step = qpsolvers.solve_qp(H, g, lb=lower, ub=upper, solver="daqp")
-        if step is None:
-            raise ArithmeticError(
-                f"posture step of robot '{self._model.name}' has no solution: joint positions {q[7:]}"
-            )
-        return np.asarray(step, dtype=np.float64)
+        return PostureStep(H, g, lower, upper, q, float(np.abs(e).max()))
 
-    def _tasks(self, q: Array, target: PostureTarget) -> tuple[Array, Array]:
+    def solve_step(self, step: PostureStep) -> Array:
+        """The step dq, shape (nv,) [m, rad].
+
+        Raises:
+            ArithmeticError: the solver finds none, since the problem is no number.
+        """
+        found = qpsolvers.solve_qp(step.H, step.g, lb=step.lower, ub=step.upper, solver="daqp")
+        if found is None:
+            raise ArithmeticError(
+                f"posture step of robot '{self._model.name}' has no solution: joint positions {step.q[7:]}"
+            )
+        return np.asarray(found, dtype=np.float64)
+
+    def linearise(self, target: PostureTarget, q: Array) -> tuple[Array, Array]:
+        """J, shape (rows, nv), and e, shape (rows,), of all tasks at q, shape (nq,), each in its local frame."""
         model, data = self._model, self._data
         pin.computeJointJacobians(model, data, q)
         pin.updateFramePlacements(model, data)

@@ -35,6 +35,8 @@ class RobotTerms:
     sole Jacobians, velocities and biases, and the wrench map, are then of that frame.
 
     Attributes:
+        model, data: Pinocchio's, the latter as ``pin.computeAllTerms`` leaves it.
+        q, v: the state of the last update, shape (nq,) and (nv,).
         mass: total mass [kg].
         mass_matrix: M, shape (nv, nv).
         bias: Coriolis, centrifugal and gravity terms h, shape (nv,).
@@ -61,6 +63,8 @@ class RobotTerms:
             )
         self.model = model
         self.data = data = model.createData()
+        self.q: Array = pin.neutral(model)
+        self.v: Array = np.zeros(model.nv)
         self._soles = tuple(_frame_id(model, name) for name in frames.soles)
         self._torso = _frame_id(model, frames.torso)
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
@@ -85,9 +89,11 @@ class RobotTerms:
         self.sole_wrench_map = np.zeros((6, 12))
         self.torso_jacobian = np.zeros((3, nv))
         self.torso_velocity, self.torso_bias = np.zeros(3), np.zeros(3)
+        self._shifted = [False, False]
 
     def update(self, q: Array, v: Array) -> None:
         """Compute every term at configuration q, shape (nq,), and velocity v, shape (nv,)."""
+        self.q, self.v = q, v
         # Leaves in data.a the velocity-product accelerations, those of zero generalised acceleration.
         pin.computeAllTerms(self.model, self.data, q, v)
         np.divide(self._linear_momentum, self.mass, out=self.com_velocity)
@@ -107,6 +113,7 @@ class RobotTerms:
         self.sole_jacobian[k] = pin.getFrameJacobian(model, data, frame, _LOCAL)
         self.sole_velocity[k] = pin.getFrameVelocity(model, data, frame, _LOCAL).vector
         self.sole_bias[k] = pin.getFrameClassicalAcceleration(model, data, frame, _LOCAL).vector
+        self._shifted[k] = False
 
     def level_soles(self, toe: float) -> Array:
         """Where the soles' centres would be if each foot turned level about its toe edge, shape (2, 3) [m].
@@ -120,7 +127,7 @@ class RobotTerms:
         return np.asarray(self.sole_position + toe * (ahead - level))
 
     def shift_foot(self, k: int, forward: float, pitch: float) -> Array:
-        """See foot k from a frame at a point ahead of its sole's centre, turned back by a pitch, until the next update.
+        """See foot k from a frame at a point ahead of its sole's centre, turned back by a pitch, until it is unshifted.
 
         Args:
             k: foot.
@@ -130,6 +137,8 @@ class RobotTerms:
         Returns:
             What takes a wrench from the new frame to the sole's, shape (6, 6).
         """
+        self.unshift(k)
+        self._shifted[k] = True
         turned = pin.SE3(pin.utils.rotate("y", -pitch), np.array([forward, 0.0, 0.0]))
         action = turned.toActionMatrixInverse()
         spin = self.sole_velocity[k, 3:]
@@ -143,6 +152,11 @@ class RobotTerms:
         self.sole_wrench_map[:, 6 * k : 6 * k + 6] = placement.toDualActionMatrix()
         to_sole: Array = turned.toDualActionMatrix()
         return to_sole
+
+    def unshift(self, k: int) -> None:
+        """See foot k from its sole again, as after an update."""
+        if self._shifted[k]:
+            self._update_sole(k)
 
     def _update_torso(self) -> None:
         model, data, frame = self.model, self.data, self._torso

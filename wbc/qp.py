@@ -9,6 +9,9 @@ from surefoot.wbc.types import Array
 
 FOOT_ROWS = 6
 EQUALITY_ROWS = 2 * FOOT_ROWS + 6
+WRENCH_UNIT = 100.0
+"""Unit of the wrench variables [N, N·m]. With forces in units near their size over that of the accelerations, H has a
+condition number of about 1e5; in newtons it had 1e8."""
 UNBOUNDED = 1e9
 """Stands for an absent bound: far beyond any physical value, yet finite for every solver."""
 
@@ -17,7 +20,8 @@ UNBOUNDED = 1e9
 class QpLayout:
     """Where everything is in the QP.
 
-    Variables ``x = [q̈ (nv), w_left (6), w_right (6)]`` with sole wrenches in the sole frames; rows: contact of the left
+    Variables ``x = [q̈ (nv), w_left (6), w_right (6)]`` with sole wrenches in the sole frames, in units of
+    ``WRENCH_UNIT``; rows: contact of the left
     and of the right foot (6 each), equations of motion (6 of the floating base, then nj joint torques), wrench cones
     (2 x cone_rows), distances between limbs (separation_rows).
 
@@ -25,14 +29,11 @@ class QpLayout:
         nv: size of the generalised acceleration.
         cone_rows: rows of one wrench cone.
         separation_rows: rows of distances between limbs.
-        wrench_unit: unit of the wrench variables [N, N·m]. With forces in units near their size over that of the
-            accelerations, H has a condition number of about 1e5; in newtons it had 1e8.
     """
 
     nv: int
     cone_rows: int
     separation_rows: int = 0
-    wrench_unit: float = 100.0
 
     @property
     def joints(self) -> int:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from surefoot.wbc.tunable import check, number
 from surefoot.wbc.types import Array
 
 _WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
@@ -12,19 +13,19 @@ _WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 @dataclass(frozen=True, slots=True)
 class SeparationParameters:
-    """When limbs keep away from each other.
+    """When limbs keep away from each other. An approach of up to attention / horizon can be stopped.
 
-    Attributes:
-        clearance: distance that must remain [m].
-        attention: distance from which a pair is looked at; an approach of up to attention / horizon can be stopped [m].
-        horizon: T of the critically damped approach [s].
-        slots: pairs that are looked at in one tick, the nearest ones.
+    Raises:
+        ParameterError: one is negative or not finite, or the attention or the horizon is zero.
     """
 
-    clearance: float = 0.003
-    attention: float = 0.04
-    horizon: float = 0.02
-    slots: int = 3
+    clearance: float = number(0.003, "m", "distance that must remain")
+    attention: float = number(0.04, "m", "distance from which a pair is looked at", positive=True)
+    horizon: float = number(0.02, "s", "time constant T of the critically damped approach", positive=True)
+    slots: int = number(3, "-", "pairs that are looked at in one tick, the nearest ones")
+
+    def __post_init__(self) -> None:
+        check(self, "wbc", "separation")
 
 
 class Separation:
@@ -43,6 +44,8 @@ class Separation:
         """Take the shapes whose collision pairs are to be kept apart."""
         self._model, self._geometry, self._parameters = model, geometry, parameters
         self._data = pin.GeometryData(geometry)
+        # The results are updated in place; to walk through Pinocchio's vector of them costs more than the distances.
+        self._results = list(self._data.distanceResults)
         self._joints = [
             tuple(geometry.geometryObjects[shape].parentJoint for shape in (pair.first, pair.second))
             for pair in geometry.collisionPairs
@@ -61,7 +64,7 @@ class Separation:
         p = self._parameters
         pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
         pin.computeDistances(self._geometry, self._data)
-        distances = [result.min_distance for result in self._data.distanceResults]
+        distances = [result.min_distance for result in self._results]
         near = [k for k, distance in enumerate(distances) if 0.0 < distance < p.attention]
         near.sort(key=distances.__getitem__)
         for slot in range(p.slots):
@@ -75,7 +78,7 @@ class Separation:
 
     def _gradient(self, data: pin.Data, pair: int) -> Array:
         """Jacobian of a distance, shape (nv,)."""
-        result = self._data.distanceResults[pair]
+        result = self._results[pair]
         normal = -np.asarray(result.normal)
         row = np.zeros(self._model.nv)
         for sign, joint, point in zip(

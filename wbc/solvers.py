@@ -7,11 +7,10 @@ from typing import Protocol
 
 import daqp
 import numpy as np
-import quadprog
 from proxsuite import proxqp
 from scipy.linalg import lapack
 
-from surefoot.wbc.qp import EQUALITY_ROWS, UNBOUNDED, QpData
+from surefoot.wbc.qp import EQUALITY_ROWS, QpData
 from surefoot.wbc.types import Array
 
 
@@ -120,29 +119,6 @@ class Daqp:
         return QpSolution(x, qp.violation(x), int(info["iterations"]))
 
 
-class Quadprog:
-    """quadprog: the dual active-set method of Goldfarb and Idnani (Mathematical Programming 1983)."""
-
-    name = "quadprog"
-
-    def solve(self, qp: QpData) -> QpSolution | None:
-        """See ``QpSolver.solve``."""
-        if not qp.is_finite():
-            return None
-        n, eq = qp.g.shape[0], EQUALITY_ROWS
-        rows = np.vstack([np.eye(n), qp.A])
-        upper, lower = qp.bounds_upper < UNBOUNDED, qp.bounds_lower > -UNBOUNDED
-        equality = slice(n, n + eq)
-        upper[equality] = lower[equality] = False
-        G = np.vstack([qp.A[:eq], rows[lower], -rows[upper]])
-        b = np.concatenate([qp.bounds_lower[equality], qp.bounds_lower[lower], -qp.bounds_upper[upper]])
-        try:
-            x, _, _, iterations, _, _ = quadprog.solve_qp(qp.H, -qp.g, G.T.copy(), b, meq=eq)
-        except ValueError:  # quadprog's word for an infeasible or indefinite problem
-            return None
-        return QpSolution(x, qp.violation(x), int(iterations[0]))
-
-
 class EqualityFirst:
     """The minimiser under the equalities alone where it breaks no inequality, which makes it the minimiser; else DAQP.
 
@@ -186,15 +162,20 @@ def equalities_only(qp: QpData) -> QpSolution | None:
     return QpSolution(x, violation, 0) if math.isfinite(violation) else None
 
 
+SOLVERS: dict[str, Callable[[], QpSolver]] = {
+    EqualityFirst.name: EqualityFirst,
+    Daqp.name: Daqp,
+    ProxQp.name: ProxQp,
+}
+"""Makers of the solvers by name."""
+
+
 def make_solver(name: str) -> QpSolver:
     """The solver of that name.
 
     Raises:
         ValueError: for an unknown name.
     """
-    solvers: dict[str, Callable[[], QpSolver]] = {
-        EqualityFirst.name: EqualityFirst, Daqp.name: Daqp, ProxQp.name: ProxQp, Quadprog.name: Quadprog,
-    }  # fmt: skip
-    if name not in solvers:
-        raise ValueError(f"unknown QP solver '{name}'; choose one of {', '.join(sorted(solvers))}")
-    return solvers[name]()
+    if name not in SOLVERS:
+        raise ValueError(f"unknown QP solver '{name}'; choose one of {', '.join(sorted(SOLVERS))}")
+    return SOLVERS[name]()

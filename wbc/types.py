@@ -126,8 +126,8 @@ class WbcReport:
         wrench: planned contact wrenches, shape (2, 6) [N, N·m].
         active: contacts held by the QP, (left, right).
         felt: contacts felt by the feet, (left, right).
-        task_error: weighted-task residuals before weighting, shape (18,): CoM acceleration 3, angular momentum rate
-            over mass 3, pelvis 3, torso 3, swing foot 6.
+        task_error: residuals of all tasks before weighting, shape (rows,); names and sizes of the tasks are
+            ``WholeBodyController.task_layout``.
         build_time: wall-clock time of terms and assembly [s].
         solve_time: wall-clock time of the solve [s].
     """

@@ -4,18 +4,18 @@ One frozen model per group. Every key has a default, so a scenario file states o
 relates several keys (rates that divide, steps within reach) is checked in ``checks``.
 """
 
-from collections.abc import Callable, Iterable
-from typing import Annotated, Any, Literal
+from collections.abc import Iterable
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import PydanticCustomError, core_schema
+from pydantic import BeforeValidator, Field
 
+from surefoot.scenarios.file.controller import ControllerSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
+from surefoot.scenarios.file.group import Finite, Group, OneOf, as_tuple
 
 LONGEST_RUN = 86_400.0
 """Bound on the simulated time [s]."""
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 FootSize = Annotated[float, Field(ge=0.01, le=0.5)]
@@ -25,33 +25,6 @@ Speed = Annotated[float, Field(ge=-10, le=10, allow_inf_nan=False)]
 Noise = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000)]
-
-
-class OneOf:
-    """One of the names that a registry has when a value is checked: other packages may bring more of them.
-
-    Args:
-        default: one that is always there; it is accepted without a look at the others.
-        names: gives them all; asked at each check of another name, so that nothing is imported before.
-    """
-
-    def __init__(self, default: str, names: Callable[[], Iterable[str]]) -> None:
-        self._default, self._names = default, names
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Check as a literal would, with its message."""
-        return core_schema.no_info_after_validator_function(self._check, core_schema.str_schema(strict=True))
-
-    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        """Describe as a literal would."""
-        return {"enum": list(self._names()), "type": "string"}
-
-    def _check(self, value: str) -> str:
-        if value == self._default or value in (known := list(self._names())):
-            return value
-        names = [repr(name) for name in known]
-        expected = " or ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else names[0]
-        raise PydanticCustomError("literal_error", "{expected}", {"expected": expected})
 
 
 def _terrain_kinds() -> Iterable[str]:
@@ -72,17 +45,7 @@ def _estimators() -> Iterable[str]:
     return ESTIMATORS
 
 
-def _tuple(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
-
-
-Vector = Annotated[tuple[Finite, Finite, Finite], BeforeValidator(_tuple)]
-
-
-class Group(BaseModel):
-    """A group of keys: immutable, strictly typed, closed to unknown keys."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, validate_default=True)
+Vector = Annotated[tuple[Finite, Finite, Finite], BeforeValidator(as_tuple)]
 
 
 class RobotSettings(Group):
@@ -165,10 +128,10 @@ class Gait(Group):
     apex_double: NonNegative = Field(
         default=0.00135, description="apex of the CoM rise in double support, A_ds of the paper [m]"
     )
-    velocity: Annotated[tuple[VelocitySettings, ...], BeforeValidator(_tuple)] = Field(
+    velocity: Annotated[tuple[VelocitySettings, ...], BeforeValidator(as_tuple)] = Field(
         default=(), description="velocity commands over time, in place of equal steps; the last one must stop"
     )
-    footsteps: Annotated[tuple[FootstepSettings, ...], BeforeValidator(_tuple)] = Field(
+    footsteps: Annotated[tuple[FootstepSettings, ...], BeforeValidator(as_tuple)] = Field(
         default=(), description="every footstep, in place of equal steps"
     )
     heel_off: Annotated[float, Field(ge=0, le=1.0, allow_inf_nan=False)] = Field(
@@ -258,7 +221,7 @@ class BeliefErrors(Group):
         default=1.0, description="believed over true mass [-]"
     )
     friction: Finite = Field(default=0.0, description="error of the friction coefficient [-]")
-    ground: Annotated[tuple[GroundError, ...], BeforeValidator(_tuple)] | None = Field(
+    ground: Annotated[tuple[GroundError, ...], BeforeValidator(as_tuple)] | None = Field(
         default=None, description="boxes on the ground that are not believed in, null: none"
     )
 
@@ -330,8 +293,11 @@ class Scenario(Group):
     sensing: Sensing = Field(default=Sensing(), description="the sensors")
     start: Start = Field(default=Start(), description="the start pose")
     errors: BeliefErrors = Field(default=BeliefErrors(), description="the planner's belief minus the truth")
+    wbc: ControllerSettings | None = Field(default=None, description="the whole-body controller, null: as it is")
     pendulum: PendulumSettings = Field(default=PendulumSettings(), description="the plant of fidelity pendulum")
-    pushes: Annotated[tuple[PushSettings, ...], BeforeValidator(_tuple)] = Field(default=(), description="disturbances")
-    faults: Annotated[tuple[Fault, ...], BeforeValidator(_tuple)] = Field(default=(), description="injected faults")
+    pushes: Annotated[tuple[PushSettings, ...], BeforeValidator(as_tuple)] = Field(
+        default=(), description="disturbances"
+    )
+    faults: Annotated[tuple[Fault, ...], BeforeValidator(as_tuple)] = Field(default=(), description="injected faults")
     rates: Rates = Field(default=Rates(), description="the clock")
     criteria: dict[str, Bound] = Field(default_factory=standing_walk, description="bounds on metrics")

@@ -8,8 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.models.pinocchio import limb_shapes, pinocchio_model
-from surefoot.planner.model.leg_chain import LegChain, Link
-from surefoot.planner.parameters import LegInertia
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.scenarios.judge.walking import FALLEN_HEIGHT, FALLEN_TILT
@@ -24,6 +22,7 @@ from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
+from surefoot.scenarios.setup.leg_model import leg_inertia
 from surefoot.scenarios.setup.stance import (
     Body,
     body_of,
@@ -39,9 +38,9 @@ from surefoot.sim.measurement import Measurement
 from surefoot.sim.pushes import Push
 from surefoot.sim.world import World
 from surefoot.wbc.controller import Sole, WholeBodyController
-from surefoot.wbc.leg_mass import LinkMass, leg_mass
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.statics import standing_torque
+from surefoot.wbc.tasks import TASKS, TaskFactory
 from surefoot.wbc.types import FootSensing, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
@@ -55,10 +54,12 @@ class Parts:
     Attributes:
         controller: makes the whole-body controller; takes the arguments of `WholeBodyController` by name.
         estimator: makes the state estimator of a walk; None for the one that the scenario names.
+        tasks: make tasks of the whole-body QP, which go after the default ones and those that the scenario names.
     """
 
     controller: Callable[..., WholeBodyController] = WholeBodyController
     estimator: Callable[[Walk], Estimator] | None = None
+    tasks: tuple[TaskFactory, ...] = ()
 
     @classmethod
     def of(cls, **chosen: Any) -> "Parts":
@@ -94,9 +95,11 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     torque = standing_torque(body.model, body.frames, q)
     world.reset(q, torque=torque)
     controller = _controller(walk, body, posture, parts)
-    planner = walk.planner(feet_at(body, q), leg_inertia(body, posture))
+    planner = walk.planner(feet_at(body, q), leg_inertia(body.model, body.frames, posture, body.leg_joints))
     layout = controller.layout
-    sizes = Sizes(nj=layout.joints, nq=len(q), nv=layout.nv, horizon=planner.parameters.horizon)
+    sizes = Sizes(
+        nj=layout.joints, nq=len(q), nv=layout.nv, horizon=planner.parameters.horizon, tasks=controller.task_layout
+    )
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
     estimator = (parts.estimator or ESTIMATORS[walk.sensing.source])(walk)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
@@ -230,6 +233,8 @@ class SimulatedRobot:
 
 def _controller(walk: Walk, body: Body, posture: Array, parts: Parts) -> WholeBodyController:
     robot = walk.robot
+    shoulders = robot.joint_indices(robot.roles.arm_swing or ())
+    makers = (*(TASKS[name] for name in walk.tasks), *parts.tasks)
     return parts.controller(
         model=body.model,
         frames=body.frames,
@@ -240,23 +245,6 @@ def _controller(walk: Walk, body: Body, posture: Array, parts: Parts) -> WholeBo
         control_period=1.0 / walk.rates.control,
         parameters=walk.controller,
         limbs=limb_shapes(robot, body.model),
+        arm_joints=(shoulders[0], shoulders[1]) if shoulders else None,
+        tasks=tuple(make(body.model, body.frames) for make in makers),
     )
-
-
-def leg_inertia(body: Body, q: Array) -> LegInertia:
-    """The robot's legs as the planner sees them, from its start posture q, shape (nq,)."""
-    leg = leg_mass(body.model, body.frames, q, body.leg_joints)
-    chain = LegChain(
-        hip_half_width=leg.hip_half_width,
-        trunk=leg.trunk,
-        thigh=_link(leg.thigh),
-        shank=_link(leg.shank),
-        foot_mass=leg.foot_mass,
-        foot_centre=leg.foot_centre,
-        ankle=leg.ankle,
-    )
-    return LegInertia(leg.ratio, chain)
-
-
-def _link(link: LinkMass) -> Link:
-    return Link(link.length, link.mass, link.centre, link.inertia)

@@ -6,6 +6,7 @@ Feet are ordered left, right; wrenches force first; poses x y z qx qy qz qw; q a
 from dataclasses import dataclass
 
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
+from surefoot.wbc.tasks import DEFAULT_LAYOUT, TaskLayout
 
 SUPPORT_VERTICES = 8
 """Vertices that a planned support polygon is padded to."""
@@ -20,12 +21,14 @@ class Sizes:
         nq: configuration coordinates.
         nv: velocity coordinates.
         horizon: samples of the planner's preview.
+        tasks: names and sizes of the whole-body tasks.
     """
 
     nj: int
     nq: int
     nv: int
     horizon: int
+    tasks: TaskLayout = DEFAULT_LAYOUT
 
 
 def _real(name: str, shape: int | tuple[int, ...], unit: str, frame: str, doc: str) -> FieldSpec:
@@ -190,6 +193,7 @@ def footstep(_: Sizes) -> ChannelSpec:
 
 def wbc(n: Sizes) -> ChannelSpec:
     """The whole-body QP's solution, every control tick."""
+    rows, tasks = sum(size for _, size in n.tasks), ", ".join(f"{name} {size}" for name, size in n.tasks)
     fields = (
         _int("status", "0 solved"),
         _int("solver", "0 default, 1 second solver"),
@@ -200,7 +204,7 @@ def wbc(n: Sizes) -> ChannelSpec:
         _real("acceleration", n.nv, "m/s^2, rad/s^2", "base", "planned"),
         _real("wrench_left", 6, "N, N m", "left sole", "planned"),
         _real("wrench_right", 6, "N, N m", "right sole", "planned"),
-        _real("task_error", 18, "mixed", "", "CoM 3, angular momentum 3, pelvis 3, torso 3, swing foot 6"),
+        _real("task_error", rows, "mixed", "", tasks),
     )
     return ChannelSpec("/wbc", "WholeBodyControl", fields, wbc.__doc__ or "")
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Problem, nearest
+from surefoot.scenarios.file.controller import controller_parameters
 from surefoot.scenarios.file.criteria import ELEMENTS
 from surefoot.scenarios.file.schema import PushSettings
 from surefoot.scenarios.setup.draft import Draft
@@ -33,6 +34,7 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
         *_pushes(draft),
         *_criteria(draft),
         *_beliefs(draft),
+        *_controller(draft),
         *walk_problems(draft),
         *_robot(draft, robots),
     ]
@@ -106,6 +108,13 @@ def _beliefs(draft: Draft) -> Iterator[Problem]:
     if error > 0.5 * height:
         what = f"errors.com_height {error} m leaves {height - error:.3g} m of gait.com_height {height} m as the truth"
         yield Problem(("errors", "com_height"), what, f"use at most {0.5 * height:.3g} m")
+
+
+def _controller(draft: Draft) -> Iterator[Problem]:
+    try:
+        controller_parameters(draft.keys.wbc)
+    except ParameterError as error:
+        yield Problem(error.key, error.what, error.right)
 
 
 def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:

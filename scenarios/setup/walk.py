@@ -12,12 +12,13 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.types import FeetState
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.scenarios.file.controller import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, Rates, Scenario, Sensing, Start
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import push_time
 from surefoot.scenarios.setup.robot import describe, true_robot
 from surefoot.sim.pushes import Push
-from surefoot.wbc.controller import WbcParameters
+from surefoot.wbc.parameters import WbcParameters
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
@@ -57,6 +58,7 @@ class Walk:
         profile: formulation of the planner.
         parameters: of the planner, for legs without inertia.
         controller: weights and gains of the whole-body controller.
+        tasks: of other packages in its QP, by name.
         sensing: noises of what is measured.
         filter: filter of the planner's state: none, kalman or zmp_only.
         pushes: on bodies, world frame.
@@ -88,6 +90,7 @@ class Walk:
     profile: Profile
     parameters: PlannerParameters
     controller: WbcParameters
+    tasks: tuple[str, ...]
     sensing: Sensing
     filter: str
     pushes: tuple[Push, ...]
@@ -163,7 +166,8 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         profile=draft.profile,
         # Adaptation leaves at least half the planned gap between soles.
         parameters=replace(draft.parameters, reach_width=(apart, far)),
-        controller=WbcParameters(),
+        controller=controller_parameters(keys.wbc),
+        tasks=keys.wbc.tasks if keys.wbc is not None else (),
         sensing=keys.sensing,
         filter=_filter(draft),
         pushes=_pushes(draft, robot),

@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,11 +8,13 @@ import pytest
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.wbc.controller import Sole, WbcParameters, WholeBodyController
+from surefoot.wbc.controller import Sole, WholeBodyController
 from surefoot.wbc.ik import PostureIk, PostureTarget
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames
+from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import QpData
+from surefoot.wbc.tasks import Task
 from surefoot.wbc.types import FootSensing, RobotState, WbcReference
 
 PERIOD = 0.002
@@ -39,12 +41,21 @@ class Robot:
     def ik(self) -> PostureIk:
         return PostureIk(self.model, self.frames, self.limits, self.nominal)
 
+    @property
+    def shoulders(self) -> tuple[int, int]:
+        """Left and right shoulder pitch among the actuated joints."""
+        left, right = (self.model.getJointId(f"{side}_shoulder_pitch") - 2 for side in ("left", "right"))
+        return left, right
+
     def controller(
-        self, parameters: WbcParameters | None = None, limbs: pin.GeometryModel | None = None
+        self,
+        parameters: WbcParameters | None = None,
+        limbs: pin.GeometryModel | None = None,
+        tasks: Sequence[Task] = (),
     ) -> WholeBodyController:
         return WholeBodyController(
             self.model, self.frames, Sole(HALF_SOLE, HALF_SOLE, 0.8), self.limits, self.standing[7:], self.leg_joints,
-            PERIOD, parameters or WbcParameters(), limbs,
+            PERIOD, parameters or WbcParameters(), limbs, self.shoulders, tasks,
         )  # fmt: skip
 
     def moved(self, rng: np.random.Generator, offset: float = 0.05, speed: float = 0.3) -> RobotState:

@@ -2,9 +2,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.wbc.arm_swing import ArmSwing, shoulder_pitches
-from surefoot.wbc.controller import WbcParameters
+from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.types import FootSensing, RobotState
 
 pytestmark = pytest.mark.unit
@@ -17,7 +17,7 @@ def terms(robot):
 
 @pytest.fixture
 def swing(robot):
-    return ArmSwing(shoulder_pitches(tuple(robot.model.names)[2:]), 0.6)
+    return ArmSwing(robot.shoulders, 0.6)
 
 
 def stride(robot, left=-0.3, right=0.2):
@@ -26,12 +26,6 @@ def stride(robot, left=-0.3, right=0.2):
     for name, angle in (("left_hip_pitch", left), ("right_hip_pitch", right)):
         q[robot.model.joints[robot.model.getJointId(name)].idx_q] += angle
     return q
-
-
-def test_shoulders_are_found_by_name():
-    names = ("waist", "left_shoulder_pitch", "left_elbow", "right_shoulder_pitch")
-    assert shoulder_pitches(names) == (1, 3)
-    assert shoulder_pitches(("left_hip_pitch", "right_hip_pitch")) is None
 
 
 def test_feet_side_by_side_leave_the_posture(robot, terms, swing):
@@ -69,6 +63,6 @@ def test_the_controller_swings_the_arms_against_each_other(robot, references):
         controller = robot.controller(WbcParameters(arm_swing=gain))
         controller.observe(RobotState(stride(robot), np.zeros(robot.nv)))
         report = controller.update(standing(), FootSensing((490.0, 490.0)))
-        left, right = shoulder_pitches(tuple(robot.model.names)[2:])
+        left, right = robot.shoulders
         bent[gain] = report.acceleration[6 + left] - report.acceleration[6 + right]
     assert bent[0.6] > bent[0.0] + 1.0

@@ -29,7 +29,7 @@ def corner_forces_exist(wrench: np.ndarray) -> bool:
     """Whether four frictional point contacts at the corners can produce the wrench."""
     G = pyramids()
     P = 1e-6 * np.eye(12)
-    solution = qpsolvers.solve_qp(P, np.zeros(12), G, np.zeros(len(G)), wrench_map(), wrench, solver="quadprog")
+    solution = qpsolvers.solve_qp(P, np.zeros(12), G, np.zeros(len(G)), wrench_map(), wrench, solver="daqp")
     return solution is not None
 
 

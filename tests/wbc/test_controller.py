@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 
 from surefoot.wbc.cone import wrench_cone
-from surefoot.wbc.controller import WbcParameters
+from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.types import GRAVITY, FootSensing, RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from surefoot.wbc.qp import EQUALITY_ROWS
+from surefoot.wbc.qp import EQUALITY_ROWS, WRENCH_UNIT
 from surefoot.wbc.types import RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit
@@ -58,7 +58,7 @@ def test_without_solvers_the_equalities_hold_and_the_torque_is_clipped(robot, co
     assert (np.abs(report.torque) <= robot.limits.torque).all()
     assert np.abs(report.torque / robot.limits.torque).max() == 1.0
     qp, n = controller.qp, controller.layout.variables
-    x = np.concatenate([report.acceleration, report.wrench.reshape(12) / controller.layout.wrench_unit])
+    x = np.concatenate([report.acceleration, report.wrench.reshape(12) / WRENCH_UNIT])
     np.testing.assert_allclose(qp.A[:EQUALITY_ROWS] @ x, qp.bounds_lower[n : n + EQUALITY_ROWS], atol=1e-6)
 
 

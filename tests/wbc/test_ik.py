@@ -73,11 +73,11 @@ def test_out_of_reach_is_said_and_nearly_stretched(robot):
 def test_its_jacobian_is_the_derivative_of_its_error(robot):
     """At a solution the error of every task falls as the Jacobian says."""
     ik, h = robot.ik(), 1e-6
-    J, error = ik._tasks(robot.standing, STANCE)
+    J, error = ik.linearise(STANCE, robot.standing)
     np.testing.assert_allclose(error, 0.0, atol=1e-7)
     for i in range(robot.nv):
         step = np.zeros(robot.nv)
         step[i] = h
-        ahead = ik._tasks(pin.integrate(robot.model, robot.standing, step), STANCE)[1]
-        behind = ik._tasks(pin.integrate(robot.model, robot.standing, -step), STANCE)[1]
+        ahead = ik.linearise(STANCE, pin.integrate(robot.model, robot.standing, step))[1]
+        behind = ik.linearise(STANCE, pin.integrate(robot.model, robot.standing, -step))[1]
         np.testing.assert_allclose((behind - ahead) / (2 * h), J[:, i], atol=1e-6)

@@ -7,7 +7,7 @@ import pytest
 from surefoot.models.pinocchio import limb_shapes
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.wbc.controller import WbcParameters
+from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.separation import Separation, SeparationParameters
 from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
 

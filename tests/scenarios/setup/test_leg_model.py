@@ -6,7 +6,7 @@ import pytest
 
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.scenarios.loop.full import leg_inertia
+from surefoot.scenarios.setup.leg_model import leg_inertia
 from surefoot.scenarios.setup.stance import body_of
 from surefoot.wbc.ik import PostureTarget
 
@@ -55,7 +55,7 @@ def test_momentum_rate_of_a_fast_step_is_that_of_the_robot(body, time):
         )
         .q
     )
-    chain = leg_inertia(body, q).chain
+    chain = leg_inertia(body.model, body.frames, q, body.leg_joints).chain
     com, soles = zip(*(stride(t) for t in time + STEP * np.arange(-1, 2)), strict=True)
     rate = chain.momentum_rate(np.array(com), np.array(soles).transpose(1, 0, 2), np.zeros(3), STEP)[0]
     truth = (momentum(body, time + STEP) - momentum(body, time - STEP)) / (2.0 * STEP)

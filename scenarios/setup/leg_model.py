@@ -1,4 +1,4 @@
-"""The body reduced to what a pendulum planner needs of it: legs of three links under a trunk that does not turn."""
+"""The robot reduced to what the planner needs of it: legs of three links under a trunk that does not turn."""
 
 from dataclasses import dataclass
 
@@ -6,55 +6,15 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from surefoot.planner.model.leg_chain import LegChain, Link, Vector
+from surefoot.planner.parameters import LegInertia
 from surefoot.wbc.model import BodyFrames
-from surefoot.wbc.types import Array
 
-Vector = tuple[float, float, float]
-
-
-@dataclass(frozen=True, slots=True)
-class LinkMass:
-    """A straight link of a leg.
-
-    Attributes:
-        length: from its upper to its lower joint [m].
-        mass: over the total mass [-].
-        centre: where its CoM is, as a share of the length from the upper joint [-].
-        inertia: pitch inertia about its CoM over the total mass [m^2].
-    """
-
-    length: float
-    mass: float
-    centre: float
-    inertia: float
+Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class LegMass:
-    """The reduced body; both legs alike, vectors forward, left and up.
-
-    Attributes:
-        ratio: μ, over the total mass, of a point mass at each sole with the pitching momentum of a stepping leg [-].
-        hip_half_width: hip centre from the middle between the hips [m].
-        trunk: CoM of everything but the legs, from that middle [m].
-        thigh, shank: the links.
-        foot_mass: over the total mass [-].
-        foot_centre: CoM of the foot, from the ankle [m].
-        ankle: from the sole's centre [m].
-    """
-
-    ratio: float
-    hip_half_width: float
-    trunk: Vector
-    thigh: LinkMass
-    shank: LinkMass
-    foot_mass: float
-    foot_centre: Vector
-    ankle: Vector
-
-
-def leg_mass(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray[np.bool_]) -> LegMass:
-    """Reduce the body in a standing configuration.
+def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray[np.bool_]) -> LegInertia:
+    """The legs' inertia, from a standing configuration; both legs alike.
 
     The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
     the thigh, what is below the next joint to the foot. Lateral offsets within a leg are left out.
@@ -77,8 +37,7 @@ def leg_mass(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray
     below = sum(part.mass * part.lever for leg in (left, right) for part in (leg.thigh, leg.shank, leg.foot))
     trunk = (total * com - below) / (total - 2.0 * legs)
     middle = 0.5 * (left.hip + right.hip)
-    return LegMass(
-        ratio=float(np.mean([_point_mass(model, name, q, joints) for name in frames.soles])),
+    chain = LegChain(
         hip_half_width=0.5 * float(np.linalg.norm(left.hip - right.hip)),
         trunk=_mirrored((trunk - middle) @ R),
         thigh=_link(left.thigh, left.hip, left.knee, R[:, 1], total),
@@ -87,6 +46,7 @@ def leg_mass(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray
         foot_centre=_mirrored((left.foot.lever - left.ankle) @ R),
         ankle=_mirrored((left.ankle - left.sole) @ R),
     )
+    return LegInertia(float(np.mean([_point_mass(model, name, q, joints) for name in frames.soles])), chain)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,10 +79,10 @@ def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:
     return total
 
 
-def _link(part: pin.Inertia, upper: Array, lower: Array, pitch: Array, total: float) -> LinkMass:
+def _link(part: pin.Inertia, upper: Array, lower: Array, pitch: Array, total: float) -> Link:
     along, length = lower - upper, float(np.linalg.norm(lower - upper))
     centre = float((part.lever - upper) @ along) / length**2
-    return LinkMass(length, part.mass / total, centre, float(pitch @ part.inertia @ pitch) / total)
+    return Link(length, part.mass / total, centre, float(pitch @ part.inertia @ pitch) / total)
 
 
 def _mirrored(vector: Array) -> Vector:

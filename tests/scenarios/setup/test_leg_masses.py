@@ -1,0 +1,112 @@
+"""Links, masses and the point mass of the reduced legs against the whole body."""
+
+from dataclasses import astuple
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from surefoot.models.registry import describe
+from surefoot.models.types import RobotOptions
+from surefoot.scenarios.setup.leg_model import leg_inertia
+from surefoot.scenarios.setup.stance import body_of
+from surefoot.wbc.ik import PostureTarget
+
+pytestmark = pytest.mark.unit
+
+STANCE = PostureTarget(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), np.array([0.0, 0.0, 1.0]), 0.0)
+
+
+@pytest.fixture(scope="module")
+def body():
+    return body_of(describe("humanoid100", RobotOptions()))
+
+
+@pytest.fixture(scope="module")
+def standing(body):
+    posture, q = body.robot.nominal_joint_positions, pin.neutral(body.model)
+    q[2], q[7:] = body.robot.leg_length, posture
+    result = body.ik(posture).solve(STANCE, q)
+    assert result.reached
+    return result.q
+
+
+@pytest.fixture(scope="module")
+def reduced(body, standing):
+    return leg_inertia(body.model, body.frames, standing, body.leg_joints)
+
+
+def pitching(body, standing, foot, velocity):
+    """Pitching momentum over mass of one sole moving at `velocity`: of the full body, and what its CoM and soles do."""
+    model, data = body.model, body.model.createData()
+    pin.computeJointJacobians(model, data, standing)
+    pin.updateFramePlacements(model, data)
+    frames = [model.getFrameId(name) for name in body.frames.soles]
+    joints = 6 + np.flatnonzero(body.leg_joints)
+    J = pin.getFrameJacobian(model, data, frames[foot], pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)[:, joints]
+    v = np.zeros(model.nv)
+    v[joints] = np.linalg.lstsq(J, np.append(velocity, np.zeros(3)), rcond=None)[0]
+    momentum = pin.computeCentroidalMomentum(model, data, standing, v)
+    mass = pin.computeTotalMass(model)
+    soles = [data.oMf[frame].translation - data.com[0] for frame in frames]
+    return momentum.angular[1] / mass, momentum.linear / mass, soles
+
+
+def point_masses(leg, foot, velocity, com_velocity, soles):
+    """The same of point masses at both soles."""
+    total = 0.0
+    for k, r in enumerate(soles):
+        relative = (np.array(velocity) if k == foot else np.zeros(3)) - com_velocity
+        total += leg.mass_ratio * (r[2] * relative[0] - r[0] * relative[2])
+    return total
+
+
+@pytest.mark.parametrize("foot", [0, 1])
+def test_point_masses_have_the_pitching_momentum_of_a_leg_that_moves_forward(body, standing, reduced, foot):
+    full, com_velocity, soles = pitching(body, standing, foot, (1.0, 0.0, 0.0))
+    assert point_masses(reduced, foot, (1.0, 0.0, 0.0), com_velocity, soles) == pytest.approx(full, rel=0.01)
+
+
+def test_links_are_those_of_the_robot(body, standing, reduced):
+    data = body.model.createData()
+    pin.forwardKinematics(body.model, data, standing)
+    at = {
+        name: data.oMi[body.model.getJointId(f"left_{name}")].translation
+        for name in ("hip_pitch", "knee", "ankle_pitch")
+    }
+    assert reduced.chain.thigh.length == pytest.approx(np.linalg.norm(at["hip_pitch"] - at["knee"]))
+    assert reduced.chain.shank.length == pytest.approx(np.linalg.norm(at["knee"] - at["ankle_pitch"]))
+    names = [
+        name
+        for name in body.model.names
+        if name.startswith("left") and name.endswith(("knee", "ankle_roll", "hip_pitch"))
+    ]
+    inertias = {name: body.model.inertias[body.model.getJointId(name)] for name in names}
+    assert reduced.chain.shank.mass == pytest.approx(inertias["left_knee"].mass / pin.computeTotalMass(body.model))
+    assert 0.0 < reduced.chain.thigh.centre < 0.5
+
+
+def test_reduced_body_has_the_robots_com(body, standing, reduced):
+    data = body.model.createData()
+    com = pin.centerOfMass(body.model, data, standing)
+    pin.forwardKinematics(body.model, data, standing)
+    pin.updateFramePlacements(body.model, data)
+    joint = {name: data.oMi[body.model.getJointId(name)].translation for name in body.model.names}
+    r = reduced.chain
+    found = (1.0 - 2.0 * (r.thigh.mass + r.shank.mass + r.foot_mass)) * (
+        0.5 * (joint["left_hip_pitch"] + joint["right_hip_pitch"]) + np.array(r.trunk)
+    )
+    for side in ("left", "right"):
+        hip, knee, ankle = (joint[f"{side}_{name}"] for name in ("hip_pitch", "knee", "ankle_pitch"))
+        found += r.thigh.mass * (hip + r.thigh.centre * (knee - hip))
+        found += r.shank.mass * (knee + r.shank.centre * (ankle - knee))
+        found += r.foot_mass * (ankle + np.array(r.foot_centre))
+    np.testing.assert_allclose(found, com, atol=1e-6)
+
+
+def test_heading_does_not_matter(body, standing, reduced):
+    turned = standing.copy()
+    turned[3:7] = (0.0, 0.0, np.sin(0.5), np.cos(0.5))
+    there = leg_inertia(body.model, body.frames, turned, body.leg_joints)
+    flat = [np.hstack([leg.mass_ratio, *map(np.ravel, astuple(leg.chain))]) for leg in (reduced, there)]
+    np.testing.assert_allclose(flat[1].astype(float), flat[0].astype(float), atol=1e-9)

@@ -1,0 +1,35 @@
+"""The tasks that every controller has."""
+
+from surefoot.wbc.balance import BalanceGains, SupportRegion
+from surefoot.wbc.tasks.momentum import AngularMomentum, CentreOfMass
+from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
+from surefoot.wbc.tasks.swing import SwingFoot
+from surefoot.wbc.tasks.task import Task, TaskLayout, layout_of
+from surefoot.wbc.tasks.trunk import Pelvis, Torso
+
+
+def default_tasks(
+    weights: TaskWeights, gains: TaskGains, balance: BalanceGains, region: SupportRegion, toe: float
+) -> tuple[Task, ...]:
+    """The tasks in the order of their rows.
+
+    Args:
+        weights: of the tasks.
+        gains: of the tasks.
+        balance: gains of the CoM law.
+        region: where the ZMP may lie; its owner keeps it up to date.
+        toe: toe edge from the sole's centre [m].
+    """
+    return (
+        CentreOfMass(weights, balance, region),
+        AngularMomentum(weights, gains),
+        Pelvis(weights, gains),
+        Torso(weights, gains),
+        SwingFoot(weights, gains, toe),
+    )
+
+
+DEFAULT_LAYOUT: TaskLayout = layout_of(
+    default_tasks(TaskWeights(), TaskGains(), BalanceGains(), SupportRegion(1.0, 1.0, 1.0), 0.0)
+)
+"""Names and sizes of the default tasks, in the order of their rows."""

@@ -1,0 +1,101 @@
+"""Terms of the cost that weigh single variables: posture, regularisation and the distribution of forces.
+
+Each costs Σ weight_i (x_i - target_i)², which adds the weights to the diagonal of H and weight_i target_i to -g.
+"""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.wbc.arm_swing import ArmSwing
+from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.qp import WRENCH_UNIT
+from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
+from surefoot.wbc.types import GRAVITY, Array, WbcReference
+
+
+class DiagonalTerm(Protocol):
+    """A cost on single variables."""
+
+    def weigh(self, diagonal: Array) -> None:
+        """Add the weights of the variables, shape (nv + 12,)."""
+
+    def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
+        """Write weight times target of its variables into ``linear``, shape (nv + 12,), zero at first."""
+
+
+class Regularisation:
+    """No generalised acceleration without a reason: what keeps H positive definite."""
+
+    def __init__(self, weights: TaskWeights) -> None:
+        self._weight = weights.acceleration
+
+    def weigh(self, diagonal: Array) -> None:
+        """See ``DiagonalTerm.weigh``."""
+        diagonal[:-12] += self._weight
+
+    def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
+        """Nothing: the target is zero."""
+
+
+class Posture:
+    """Joint accelerations that return the joints to a posture, in which the arms may swing: K (q_0 - q) - D q'."""
+
+    def __init__(
+        self,
+        weights: TaskWeights,
+        gains: TaskGains,
+        posture: Array,
+        leg_joints: NDArray[np.bool_],
+        arms: ArmSwing | None = None,
+    ) -> None:
+        """Prepare what never changes.
+
+        Args:
+            weights: of the joints.
+            gains: stiffness and damping.
+            posture: joint positions to return to, shape (nj,) [rad].
+            leg_joints: which joints are leg joints, bool, shape (nj,).
+            arms: how the arms swing; None for arms that keep the posture.
+        """
+        self._weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
+        self._stiffness, self._damping = gains.posture[0] * self._weight, gains.posture[1] * self._weight
+        self._pull = self._stiffness * posture
+        self._arms = arms
+
+    def weigh(self, diagonal: Array) -> None:
+        """See ``DiagonalTerm.weigh``."""
+        diagonal[6:-12] += self._weight
+
+    def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
+        """See ``DiagonalTerm.write``."""
+        joints = linear[6:-12]
+        np.multiply(self._stiffness, terms.q[7:], out=joints)
+        np.subtract(self._pull, joints, out=joints)
+        joints -= self._damping * terms.v[6:]
+        if self._arms is not None:
+            self._swing_arms(self._arms, terms, joints)
+
+    def _swing_arms(self, arms: ArmSwing, terms: RobotTerms, joints: Array) -> None:
+        angle, rate = arms.offset(terms)
+        for joint, sign in zip(arms.joints, (1.0, -1.0), strict=True):
+            joints[joint] += sign * float(self._stiffness[joint] * angle + self._damping[joint] * rate)
+
+
+class ForceDistribution:
+    """Sole forces near their planned share of the weight, moments near zero."""
+
+    def __init__(self, weights: TaskWeights) -> None:
+        self._force, self._moment = weights.force, weights.moment
+
+    def weigh(self, diagonal: Array) -> None:
+        """See ``DiagonalTerm.weigh``."""
+        diagonal[-12:] += np.tile([self._force] * 3 + [self._moment] * 3, 2) * WRENCH_UNIT**2
+
+    def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
+        """See ``DiagonalTerm.write``."""
+        # The diagonal weighs forces in wrench units, their targets are shares of the weight.
+        weight = self._force * WRENCH_UNIT * terms.mass * GRAVITY
+        left, right = reference.load_share
+        linear[-10::6] = (weight * left, weight * right)

@@ -1,0 +1,58 @@
+"""The two momentum tasks: they act on the sole forces, which the floating-base rows tie to the accelerations."""
+
+import numpy as np
+
+from surefoot.wbc.balance import BalanceGains, SupportRegion, com_acceleration
+from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.qp import WRENCH_UNIT
+from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
+from surefoot.wbc.tasks.task import Vector
+from surefoot.wbc.types import GRAVITY, Array, WbcReference
+
+
+class CentreOfMass:
+    """CoM acceleration by the law of ``surefoot.wbc.balance``, from the sole forces: c'' = Σ R_k f_k / m - g."""
+
+    name, size = "CoM", 3
+
+    def __init__(self, weights: TaskWeights, balance: BalanceGains, region: SupportRegion) -> None:
+        """``region``: where the ZMP may lie; its owner keeps it up to date."""
+        self.weight = np.array([weights.com_horizontal, weights.com_horizontal, weights.com_vertical])
+        self._balance, self._region = balance, region
+
+    def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:
+        """See ``Task.write``."""
+        per_mass = scale * (WRENCH_UNIT / terms.mass)
+        np.multiply(terms.sole_wrench_map[:3], per_mass, out=rows[:, -12:])
+        x, y, z = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
+        return x, y, z + GRAVITY
+
+
+class AngularMomentum:
+    """Decay of the angular momentum L about the CoM, per mass: L'/m = Σ [(p_k - c) x R_k f_k + R_k τ_k] / m.
+
+    Newton and Euler for the whole body (e.g. Orin, Goswami and Lee, Autonomous Robots 2013). With F and M the force and
+    the moment about the world's origin it is (M - c x F) / m.
+    """
+
+    name, size = "angular momentum", 3
+
+    def __init__(self, weights: TaskWeights, gains: TaskGains) -> None:
+        self.weight = weights.angular_momentum
+        self._decay = gains.angular_momentum
+        self._about_com = np.zeros((3, 6))
+
+    def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:
+        """See ``Task.write``."""
+        per_mass = float(scale[0, 0]) * (WRENCH_UNIT / terms.mass)
+        x, y, z = terms.com.tolist()
+        x, y, z = per_mass * x, per_mass * y, per_mass * z
+        self._about_com[:] = (
+            (0.0, z, -y, per_mass, 0.0, 0.0),
+            (-z, 0.0, x, 0.0, per_mass, 0.0),
+            (y, -x, 0.0, 0.0, 0.0, per_mass),
+        )
+        np.matmul(self._about_com, terms.sole_wrench_map, out=rows[:, -12:])
+        decay = -self._decay / terms.mass
+        lx, ly, lz = terms.angular_momentum.tolist()
+        return decay * lx, decay * ly, decay * lz

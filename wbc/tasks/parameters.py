@@ -1,0 +1,56 @@
+"""Weights and gains of the tasks."""
+
+from dataclasses import dataclass
+
+from surefoot.wbc.tunable import check, number
+
+
+@dataclass(frozen=True, slots=True)
+class TaskWeights:
+    """Cost of a squared residual of each task.
+
+    The measured set of docs/whole-body.md: softer trunk, swing and height tasks than those that first walked, since
+    near-straight swing legs shook the CoM.
+
+    Raises:
+        ParameterError: a weight is negative or not finite, or one is zero that keeps H positive definite.
+    """
+
+    com_horizontal: float = number(10.0, "s^4/m^2", "horizontal CoM acceleration")
+    com_vertical: float = number(2.5, "s^4/m^2", "vertical CoM acceleration")
+    angular_momentum: float = number(2.0, "s^4/m^4", "rate of angular momentum over mass")
+    orientation: float = number(1.0, "s^4", "angular acceleration of pelvis and torso")
+    swing: float = number(10.0, "s^4/m^2, s^4", "linear and angular acceleration of the swing foot")
+    upper_posture: float = number(0.5, "s^4", "joint acceleration of waist, arms and head")
+    leg_posture: float = number(1e-5, "s^4", "joint acceleration of the legs")
+    acceleration: float = number(1e-5, "s^4/m^2, s^4", "any generalised acceleration", positive=True)
+    force: float = number(1e-6, "1/N^2", "sole force less its planned share of the weight", positive=True)
+    moment: float = number(1e-4, "1/(N·m)^2", "moment at a sole's centre", positive=True)
+
+    def __post_init__(self) -> None:
+        check(self, "wbc", "weights")
+
+
+@dataclass(frozen=True, slots=True)
+class TaskGains:
+    """Feedback of each task: stiffness [1/s^2] and damping [1/s].
+
+    Of pelvis and torso, 40 / s^2 let a trunk fold at the waist whose mass sits 0.2 m higher than the model says, more
+    than 250 / s^2 pays for 1 degree of start noise with a ZMP at the edge. Those of the swing foot are critically
+    damped.
+
+    Raises:
+        ParameterError: a gain is negative or not finite.
+    """
+
+    orientation: tuple[float, float] = number((250.0, 32.0), "1/s^2, 1/s", "stiffness and damping of pelvis and torso")
+    swing: tuple[float, float] = number(
+        (400.0, 40.0), "1/s^2, 1/s", "stiffness and damping of the swing foot, position and rotation"
+    )
+    posture: tuple[float, float] = number(
+        (20.0, 9.0), "1/s^2, 1/s", "stiffness and damping of the joints towards the posture"
+    )
+    angular_momentum: float = number(3.0, "1/s", "decay of the angular momentum")
+
+    def __post_init__(self) -> None:
+        check(self, "wbc", "gains")

@@ -1,0 +1,90 @@
+"""All tasks as one weighted least-squares cost of the whole-body QP."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.qp import QpData
+from surefoot.wbc.tasks.diagonal import DiagonalTerm
+from surefoot.wbc.tasks.task import Task, TaskLayout, layout_of
+from surefoot.wbc.types import Array, WbcReference
+
+
+class TaskStack:
+    """Rows and targets of all tasks, allocated from their sizes.
+
+    With the rows T = √W J and targets t = √W a of all tasks, a diagonal D and its linear term d:
+    H = TᵀT + D and g = -(Tᵀt + d).
+
+    Attributes:
+        layout: names and sizes of the tasks, in the order of their rows.
+        rows: T, shape (rows, n).
+        target: t, shape (rows,).
+        diagonal: D, shape (n,).
+        linear: d, shape (n,).
+    """
+
+    def __init__(self, qp: QpData, tasks: Sequence[Task], terms: Sequence[DiagonalTerm]) -> None:
+        """Stack tasks in their order.
+
+        Args:
+            qp: whose H and g this writes.
+            tasks: those with rows.
+            terms: costs of single variables.
+
+        Raises:
+            ValueError: two tasks have one name, or a task's size or weight is none.
+        """
+        self.layout: TaskLayout = layout_of(tasks)
+        variables, sizes = qp.g.shape[0], [size for _, size in self.layout]
+        scale = np.sqrt(np.concatenate([_weight(task) for task in tasks]))
+        if len(dict(self.layout)) < len(self.layout):
+            raise ValueError(f"tasks {', '.join(name for name, _ in self.layout)}: each needs a name of its own")
+        self.rows, self.target = np.zeros((sum(sizes), variables)), np.zeros(sum(sizes))
+        self.diagonal, self.linear = np.zeros(variables), np.zeros(variables)
+        for term in terms:
+            term.weigh(self.diagonal)
+        self._scale = scale
+        self._unscale = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0.0)
+        # A view costs as much to make as to use, so each task's part of the rows gets its name once.
+        ends = np.cumsum(sizes)
+        self._tasks = [
+            (task.write, scale[end - size : end, None], self.rows[end - size : end])
+            for task, size, end in zip(tasks, sizes, ends, strict=True)
+        ]
+        self._terms = [term.write for term in terms]
+        self._H, self._g, self._H_diagonal = qp.H, qp.g, qp.H.reshape(-1)[:: variables + 1]
+
+    def write(self, terms: RobotTerms, reference: WbcReference) -> None:
+        """Write H and g of the QP for this state and reference."""
+        wanted: list[float] = []
+        for write, scale, rows in self._tasks:
+            wanted.extend(write(terms, reference, scale, rows))
+        self.target[:] = wanted
+        self.target *= self._scale
+        for term in self._terms:
+            term(terms, reference, self.linear)
+        np.matmul(self.rows.T, self.rows, out=self._H)
+        self._H_diagonal += self.diagonal
+        np.matmul(self.target, self.rows, out=self._g)
+        self._g += self.linear
+        np.negative(self._g, out=self._g)
+
+    def residual(self, x: Array) -> Array:
+        """Residuals J x - a of all tasks at the solution x, shape (rows,); those of a task without weight are zero."""
+        residual: Array = self.rows @ x
+        residual -= self.target
+        residual *= self._unscale
+        return residual
+
+
+def _weight(task: Task) -> Array:
+    """Weight of each row of a task."""
+    weight = np.asarray(task.weight, dtype=np.float64)
+    if task.size < 1 or weight.shape not in ((), (task.size,)) or not (np.isfinite(weight) & (weight >= 0.0)).all():
+        raise ValueError(
+            f"task '{task.name}' has size {task.size} and weight {task.weight}; the size must be at least 1, the "
+            "weight one number or one for each row, finite and not negative"
+        )
+    return np.broadcast_to(weight, task.size)

@@ -5,7 +5,7 @@ import json
 import platform
 import subprocess
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -42,6 +42,7 @@ class RunConstants:
         terrain: kind of ground.
         plant: of fidelity pendulum.
         boxes: the solids on the ground plane, each as centre, half sizes [m] and rotation to the world, row by row.
+        roles: names of joints and bodies by role (knees, left_leg, right_leg, torso); a log may lack them.
     """
 
     scenario: str
@@ -61,10 +62,11 @@ class RunConstants:
     terrain: str
     plant: str = "pendulum"
     boxes: tuple[tuple[float, ...], ...] = ()
+    roles: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def to_metadata(self) -> dict[str, str]:
-        """Write as metadata: JSON by name."""
-        return {name: json.dumps(value) for name, value in asdict(self).items()}
+        """Write as metadata: JSON by name; without roles where there are none."""
+        return {name: json.dumps(value) for name, value in asdict(self).items() if value or name != "roles"}
 
     @classmethod
     def from_metadata(cls, records: Mapping[str, Mapping[str, str]], log_name: str) -> "RunConstants":

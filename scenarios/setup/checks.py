@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 
 from surefoot.scenarios.errors import Problem, nearest
-from surefoot.scenarios.file.criteria import ELEMENTS
 from surefoot.scenarios.file.schema import Gait, PushSettings, Scenario
+from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.gait import commanded, longest_step, step_count, uncommanded
 from surefoot.scenarios.setup.robot import RobotFacts, Robots
 from surefoot.scenarios.setup.terrain_checks import rough_problems, stair_problems
@@ -92,7 +92,8 @@ def _criteria(scenario: Scenario) -> Iterator[Problem]:
         low, high = bound.min, bound.max
         if isinstance(low, float) and isinstance(high, float) and low > high:
             yield Problem(("criteria", name), f"criteria.{name}: min {low} exceeds max {high}", "swap them")
-        size = ELEMENTS.get(name, 1)
+        metric = known(name)
+        size = metric.size if metric else 1
         for side, limit in (("min", low), ("max", high)):
             if isinstance(limit, tuple) and len(limit) != size:
                 what = f"criteria.{name}.{side} has {len(limit)} elements"

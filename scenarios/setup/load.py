@@ -12,7 +12,8 @@ from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, Set
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario, Sensing
 from surefoot.scenarios.file.source import MAX_BYTES, apply_override, parse
-from surefoot.scenarios.file.translate import problems_of, unknown_metrics, without
+from surefoot.scenarios.file.translate import problems_of, without
+from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.judge.verdict import SCENARIO_FILE
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import LOG_NAME

@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 
+from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.show.figures.shading import Background
 from surefoot.scenarios.show.figures.style import (
     FEET,
@@ -18,8 +19,6 @@ from surefoot.scenarios.show.figures.style import (
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 TITLE = "Feet: sole heights and contact normal forces"
-GRAVITY = 9.81
-"""Gravitational acceleration [m/s²]."""
 
 
 def draw(area: Area, view: LogView, background: Background) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import RunView
-from surefoot.scenarios.judge.metric import compute, digest
+from surefoot.scenarios.judge.metrics import compute, digest
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.show.export import columns, export, selected

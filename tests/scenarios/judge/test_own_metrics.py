@@ -68,22 +68,20 @@ def packaged(monkeypatch):
 
 
 @pytest.fixture
-def verdict(tmp_path, robot, motion):
-    def run(**criteria):
-        scenario = load(criteria)
-        return run_scenario(scenario, tmp_path, None, motion(), robot).verdict
+def load(robots):
+    """Load a scenario of two steps with these criteria beside that of no fall."""
 
-    return run
+    def make(**criteria):
+        lines = "".join(f"  {name}: {bound}\n" for name, bound in criteria.items())
+        text = f"name: two-steps\ngait: {{steps: 2}}\ncriteria:\n  fell: false\n{lines}"
+        return read_scenario(text, "two-steps.yaml", "two-steps", (), robots)
+
+    return make
 
 
-def load(criteria):
-    lines = "".join(f"  {name}: {bound}\n" for name, bound in criteria.items())
-    text = f"name: two-steps\ngait: {{steps: 2}}\ncriteria:\n  fell: false\n{lines}"
-    facts = SimpleNamespace(
-        bodies=("pelvis", "torso"), leg_length=0.92, hip_width=0.2, com_above_hip=0.114, foot_length=0.075, foot_width=0.075
-    )  # fmt: skip
-    robots = SimpleNamespace(names=lambda: ("humanoid100",), facts=lambda scenario: facts)
-    return read_scenario(text, "two-steps.yaml", "two-steps", (), robots)
+@pytest.fixture
+def verdict(tmp_path, robot, motion, load):
+    return lambda **criteria: run_scenario(load(**criteria), tmp_path, None, motion(), robot).verdict
 
 
 def test_it_is_computed_shown_and_bounded_after_ours(brought, verdict):
@@ -178,10 +176,10 @@ def test_a_criterion_on_a_metric_whose_package_is_gone_is_no_pass(tmp_path, brou
     assert found.reasons == (reason,)
 
 
-def test_a_package_that_cannot_be_loaded_is_said_before_and_after_a_run(packaged, verdict):
+def test_a_package_that_cannot_be_loaded_is_said_before_and_after_a_run(packaged, load, verdict):
     packaged(grip="no_such_thing")
     with pytest.raises(ScenarioError, match=r"two-steps.yaml:5:3: metric 'grip' of package .* cannot be loaded"):
-        load({"grip": "{max: 1}"})
+        load(grip="{max: 1}")
     found = verdict()
     assert found.passed
     assert "cannot be loaded, AttributeError" in found.notes[0]
@@ -194,19 +192,19 @@ def test_an_entry_of_another_name_is_said(packaged, verdict):
     )
 
 
-def test_unknown_names_are_refused_with_the_nearest(brought):
+def test_unknown_names_are_refused_with_the_nearest(brought, load):
     brought(grip)
     with pytest.raises(ScenarioError, match=r"unknown metric 'gripp'; did you mean 'grip'\?"):
-        load({"gripp": "{max: 1}"})
+        load(gripp="{max: 1}")
     with pytest.raises(ScenarioError, match=r"criteria.grip.max has 3 elements; give one number, or 2 of them"):
-        load({"grip": "{max: [1, 2, 3]}"})
+        load(grip="{max: [1, 2, 3]}")
     with pytest.raises(ScenarioError, match=r"unknown metric 'planner_time'"):
-        load({"planner_time": "{max: 1}"})
+        load(planner_time="{max: 1}")
 
 
 def test_ours_cannot_be_replaced(brought):
     ours = made(lambda run: 1.0)
-    with pytest.raises(PluginError, match="'fell' of surefoot.metrics is surefoot's own"):
+    with pytest.raises(PluginError, match=r"'fell' of surefoot\.metrics is surefoot's own"):
         METRICS.add("fell", ours)
     with pytest.raises(PluginError, match="metric 'grip' is there twice"):
         gathered(SimpleNamespace(a=ours, b=made(lambda run: 2.0)))

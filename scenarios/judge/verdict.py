@@ -10,6 +10,7 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
+from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Gait, Scenario, TerrainSettings
@@ -148,7 +149,7 @@ class Verdict:
 
     def _repr_html_(self) -> str:
         """The same for a notebook."""
-        color = "#009E73" if self.passed else "#D55E00"
+        color = palette.hexadecimal(palette.PASS if self.passed else palette.FAIL)
         reasons = "".join(f"<li>{escape(reason)}</li>" for reason in self.reasons)
         rows = "".join(f"<tr><td>{name}</td><td>{escape(text)} {unit}</td></tr>" for name, text, unit in self._first())
         head = f'<b style="color:{color}">verdict {self._word}</b>'

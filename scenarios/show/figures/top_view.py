@@ -10,21 +10,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from surefoot.scenarios.palette import COM, FEET, FOOTSTEP, GREY, SUPPORT, ZMP
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import (
-    BLACK,
-    COM,
-    FEET,
-    FOOT_NAMES,
-    GREY,
-    ZMP,
-    Area,
-    heading,
-    kept_of_path,
-    legend,
-    or_say,
-)
+from surefoot.scenarios.show.figures.style import FOOT_NAMES, Area, heading, kept_of_path, legend, or_say
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 Array = NDArray[np.float64]
@@ -84,9 +73,9 @@ def _supports(axes: Axes, view: LogView) -> list[Artist]:
     changed = np.concatenate(([True], np.any(flat[1:] != flat[:-1], axis=1)))
     polygons = vertices[changed & np.isfinite(flat).all(axis=1)]
     polygons = polygons[:: -(-len(polygons) // _MOST_POLYGONS) or 1]
-    style: dict[str, Any] = {"facecolor": "#F0E442", "edgecolor": GREY, "linewidth": 0.5}
-    axes.add_collection(PolyCollection(list(polygons), alpha=0.18, **style))
-    return [Patch(alpha=0.4, label="planned support", **style)]
+    style: dict[str, Any] = {"facecolor": SUPPORT, "edgecolor": GREY, "linewidth": 0.5}
+    axes.add_collection(PolyCollection(list(polygons), alpha=0.12, **style))
+    return [Patch(alpha=0.2, label="planned support", **style)]
 
 
 def _footprints(axes: Axes, view: LogView) -> list[Artist]:
@@ -103,8 +92,8 @@ def _footprints(axes: Axes, view: LogView) -> list[Artist]:
         axes.annotate(label, corners[2], (-2, -2), fontsize=6.5, zorder=5, **below)
     for _, pose, _ in [*_touchdowns(view, "planned"), *_ahead(view)]:
         corners = rectangle(pose, length, width)
-        axes.fill(*corners.T, facecolor="none", edgecolor=BLACK, linestyle="--", linewidth=0.7, zorder=3)
-        entries = [Patch(facecolor="none", edgecolor=BLACK, linestyle="--", label="footstep planned")]
+        axes.fill(*corners.T, facecolor="none", edgecolor=FOOTSTEP, linestyle="--", linewidth=0.9, zorder=3)
+        entries = [Patch(facecolor="none", edgecolor=FOOTSTEP, linestyle="--", label="footstep planned")]
     soles = [Patch(color=FEET[foot], alpha=0.55, label=f"{FOOT_NAMES[foot]} footprint") for foot in (0, 1)]
     return [*soles, *entries]
 

@@ -6,8 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from surefoot.scenarios.palette import BLACK, GREY
 from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import BLACK, CYCLE, GREY, Area, curve, legend, or_say, time_axes
+from surefoot.scenarios.show.figures.style import CYCLE, Area, curve, legend, or_say, time_axes
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 TITLE = "Joint torques in percent of their limits"

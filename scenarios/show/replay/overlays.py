@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.log import Log
-from surefoot.scenarios.show import palette
-from surefoot.scenarios.show.replay.content import Array, Color, Footprint, Track
+from surefoot.scenarios.show.replay.content import Array, Footprint, Track
 from surefoot.scenarios.show.replay.poses import Frames
 
 LIFT = 0.004
@@ -27,19 +27,19 @@ def balance_tracks(run: RunView, frames: Frames) -> tuple[Track, ...]:
     dcm = run.field("/estimate", "dcm")[rows]
     planned = {name: run.field("/reference", name)[rows] for name in ("com", "dcm", "zmp")}
     return (
-        _point("CoM", "measured", palette.ORANGE, 0.035, com, trail=True),
-        _point("CoM", "on the ground", palette.ORANGE, 0.014, below),
-        Track("CoM", "plumb line", "outline", palette.paler(palette.ORANGE), 0.002, np.stack([com, below], axis=1)),
-        _point("CoM", "planned", palette.paler(palette.ORANGE), 0.025, planned["com"]),
-        _point("DCM", "measured", palette.PURPLE, 0.014, _flat(dcm, ground), trail=True),
-        _point("DCM", "planned", palette.paler(palette.PURPLE), 0.01, _flat(planned["dcm"], ground)),
-        _point("ZMP", "measured", palette.VERMILION, 0.014, zmp + np.array([0.0, 0.0, LIFT]), trail=True),
-        _point("ZMP", "planned", palette.paler(palette.VERMILION), 0.01, _flat(planned["zmp"], ground)),
-        Track("Support polygon", "planned", "outline", palette.GREEN, 0.004, _support(run, frames)),
+        _point("CoM", "measured", palette.COM, 0.035, com, trail=True),
+        _point("CoM", "on the ground", palette.COM, 0.014, below),
+        Track("CoM", "plumb line", "outline", palette.paler(palette.COM), 0.002, np.stack([com, below], axis=1)),
+        _point("CoM", "planned", palette.COM_PLANNED, 0.025, planned["com"]),
+        _point("DCM", "measured", palette.DCM, 0.014, _flat(dcm, ground), trail=True),
+        _point("DCM", "planned", palette.DCM_PLANNED, 0.01, _flat(planned["dcm"], ground)),
+        _point("ZMP", "measured", palette.ZMP, 0.014, zmp + np.array([0.0, 0.0, LIFT]), trail=True),
+        _point("ZMP", "planned", palette.ZMP_PLANNED, 0.01, _flat(planned["zmp"], ground)),
+        Track("Support polygon", "planned", "outline", palette.SUPPORT, 0.004, _support(run, frames)),
     )
 
 
-def _point(layer: str, name: str, color: Color, size: float, position: Array, trail: bool = False) -> Track:
+def _point(layer: str, name: str, color: palette.Color, size: float, position: Array, trail: bool = False) -> Track:
     return Track(layer, name, "point", color, size, position[:, None, :], trail)
 
 
@@ -72,12 +72,12 @@ def planned_footprints(run: RunView, frames: Frames) -> Iterator[Track]:
     channel = run.log["/footsteps"]
     rows = np.maximum(np.searchsorted(channel.time, frames.time + 1e-9, side="right") - 1, 0)
     poses, feet = channel.field("next")[rows], channel.field("next_foot")[rows]
-    for foot, color in enumerate(palette.FEET):
+    for foot in (0, 1):
         for ahead in range(poses.shape[1]):
             corners = _corners(run, poses[:, ahead])
             corners[feet[:, ahead] != foot] = np.nan
             name = f"{('left', 'right')[foot]}, {ahead + 1} ahead"
-            yield Track("Planned footprints", name, "outline", palette.paler(color, 0.3), 0.003, corners)
+            yield Track("Planned footprints", name, "outline", palette.FOOTSTEP, 0.003, corners)
 
 
 def taken_footprints(run: RunView, frames: Frames) -> Iterator[Footprint]:
@@ -143,7 +143,7 @@ def push(log: Log, run: RunView, frames: Frames, body_names: tuple[str, ...], bo
     force = forces[frames.strongest(np.linalg.norm(forces, axis=1), run.time, PUSH_SHOWN)]
     head = body_com[:, body_names.index(body)] if (body := _pushed_body(log)) in body_names else body_com[:, 0]
     arrow = _arrow(head - PUSH_SCALE * force, force, PUSH_SCALE)
-    return Track("Pushes", "push", "arrow", palette.YELLOW, 0.02, arrow)
+    return Track("Pushes", "push", "arrow", palette.PUSH, 0.02, arrow)
 
 
 def _pushed_body(log: Log) -> str:

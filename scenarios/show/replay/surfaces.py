@@ -4,7 +4,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.show.replay.content import Array, Color, Surface
+from surefoot.scenarios.palette import Color
+from surefoot.scenarios.show.replay.content import Array, Surface
 
 Faces = NDArray[np.int64]
 Triangles = tuple[Array, Faces]

@@ -12,6 +12,8 @@ from typing import Any, Generic, TypeVar
 from surefoot.errors import ParameterError
 from surefoot.scenarios.judge.digest import Array, Reads, RunView
 
+__all__ = ["RESERVED", "Metric", "Reads", "Reduction", "RunView", "metric", "reduction"]
+
 T = TypeVar("T")
 RESERVED = (
     "verdict",

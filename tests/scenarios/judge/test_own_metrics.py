@@ -1,6 +1,8 @@
 """Metrics of one's own: computed, shown and bounded like ours; a bad or missing one never lets a run pass."""
 
+import re
 from importlib.metadata import EntryPoint
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -102,6 +104,20 @@ def test_an_entry_point_is_enough(packaged, verdict):
     assert found.passed
     assert found["grip"] == [0.001, 0.002]
     assert found["fell"] is False
+
+
+def test_the_example_of_the_documentation_works(brought, verdict):
+    page = (Path(__file__).parents[3] / "docs" / "extending.md").read_text(encoding="utf-8")
+    example = {"__name__": "my_package.metrics"}
+    exec(re.search(r"(?s)```python\n(.*?)```", page).group(1), example)
+    names = re.findall(r'(\w+) = "my_package\.metrics:\1"', page)
+    assert names == [name for name, thing in example.items() if isinstance(thing, Metric)]
+    for name in names:
+        brought(example[name])
+    found = verdict(com_sway="{max: 0.05}")
+    assert found.notes == ()
+    assert found["com_sway"] == 0.0
+    assert found["torque_norm_rms"] == pytest.approx(np.sqrt(30.0**2 + 40.0**2 + 5.0**2))
 
 
 def test_without_any_the_metrics_are_ours(verdict):

@@ -13,7 +13,6 @@ from typing import Any, get_args
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from surefoot.scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
 from surefoot.scenarios.file.schema import (
     Fault,
     FootstepSettings,
@@ -22,11 +21,10 @@ from surefoot.scenarios.file.schema import (
     Scenario,
     VelocitySettings,
 )
-from surefoot.scenarios.judge.metric import describe_metric
+from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log.spec import ChannelSpec
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
-from surefoot.scenarios.show.console import shown_unit
 
 FOLDER = Path(__file__).parent
 CHANNELS = (
@@ -66,8 +64,8 @@ def channels_table() -> str:
 def metrics_table() -> str:
     """Every metric with its meaning."""
     rows = [
-        f"| `{name}` | {shown_unit(name)} | {'' if name in BODY_METRICS else 'yes'} | {describe_metric(name)} |"
-        for name in METRIC_NAMES
+        f"| `{name}` | {metric.shown} | {'' if metric.body else 'yes'} | {metric.meaning} |"
+        for name, metric in OWN.items()
     ]
     return "\n".join(["| metric | shown in | pendulum | meaning |", "|---|---|---|---|", *rows])
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from surefoot.scenarios.log import read
+from surefoot.scenarios.palette import COM, FEET, FOOTSTEP
 from surefoot.scenarios.show.replay.content import Replay
 from surefoot.scenarios.show.replay.extract import Window, extract
 from surefoot.scenarios.show.replay.video import CAMERA, QUALITY, marks_of
@@ -29,6 +30,16 @@ COLORS = 128
 VIVID = 60
 """Difference between the largest and the smallest channel above which a colour must be in the palette."""
 
+GROUND = 0.6
+"""Lightness of the ground."""
+
+MARKS = [
+    tuple(share * part + (1.0 - share) * GROUND for part in color)
+    for color in (COM, *FEET, FOOTSTEP)
+    for share in (1.0, 0.7, 0.4)
+]
+"""Colours of thin marks, which the smoothing of edges mixes with the ground's grey."""
+
 
 def pictures(replay: Replay) -> list[Image.Image]:
     """The pictures of a replay."""
@@ -41,13 +52,13 @@ def pictures(replay: Replay) -> list[Image.Image]:
 
 
 def palette(images: list[Image.Image]) -> Image.Image:
-    """Colours for all pictures: half of them for the few vivid pixels, which are the marks and the joints."""
+    """Colours for all pictures: half of them for the few vivid pixels, and those of thin marks on grey ground."""
     pixels: NDArray[np.uint8] = np.concatenate([np.asarray(image).reshape(-1, 3) for image in images[::5]])
     vivid = np.ptp(pixels.astype(int), axis=1) > VIVID
     halves = [Image.fromarray(some[None]).quantize(COLORS // 2) for some in (pixels[~vivid], pixels[vivid])]
     colors = [half.getpalette()[: 3 * (COLORS // 2)] for half in halves]
     found = Image.new("P", (1, 1))
-    found.putpalette(colors[0] + colors[1])
+    found.putpalette(colors[0] + colors[1] + [round(255 * part) for mark in MARKS for part in mark])
     return found
 
 

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
-from surefoot.scenarios.file.criteria import BOUNDABLE, Bound
+from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario
 
 _EXPECTED = {
@@ -38,12 +38,6 @@ def problems_of(error: ValidationError, data: Any) -> list[Problem]:
         problem = _problem(detail, data)
         found.setdefault(problem.key, problem)
     return list(found.values())
-
-
-def unknown_metrics(criteria: Any) -> list[Problem]:
-    """Criteria on names that are no metrics."""
-    names = [name for name in criteria if name not in BOUNDABLE] if isinstance(criteria, dict) else []
-    return [Problem(("criteria", name), f"unknown metric '{name}'", nearest(name, BOUNDABLE), True) for name in names]
 
 
 def without(data: Any, problems: list[Problem]) -> Any:

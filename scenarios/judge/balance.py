@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.judge.digest import Array, Mask, RunView
+from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
+from surefoot.scenarios.judge.metric import metric, reduction
 
 Rows = NDArray[np.intp]
 
@@ -13,7 +14,11 @@ MARGIN = 0.9
 PREDICTION = 0.2
 """Age of the plan that the true state is compared with [s]."""
 
+_COP_READS: Reads = {"/contact": ("cop_left", "cop_right"), "/reference": ("phase", "stance")}
+_ZMP_READS: Reads = {"/contact": ("zmp",), "/reference": ("zmp_reference",)}
 
+
+@reduction("/truth", "/contact", "/reference")
 def zmp_depth(run: RunView) -> Array:
     """How deep the measured ZMP is inside the planned support polygon of feet shrunk to 90 %, shape (n,) [m].
 
@@ -36,11 +41,13 @@ def zmp_inside(run: RunView) -> Mask:
     return np.asarray(run.reduced(zmp_depth) >= -1e-9)
 
 
+@metric(shown=(1e2, "% of the time"), reduces=(zmp_depth,))
 def zmp_inside_fraction(run: RunView) -> float:
     """Share of ticks at which `zmp_inside` holds."""
     return float(np.mean(zmp_inside(run)))
 
 
+@metric(unit="m", shown=(1e3, "mm"), reduces=(zmp_depth,))
 def zmp_excursion_max(run: RunView) -> float | None:
     """Farthest that the ZMP came out of the planned support polygon of feet shrunk to 90 %, negative inside [m]."""
     depth = run.reduced(zmp_depth)
@@ -57,23 +64,27 @@ def cop_ratios(run: RunView) -> Array:
     return np.asarray(ratios[np.isfinite(ratios)])
 
 
+@metric(shown=(1e2, "% of half the foot"), reads=_COP_READS)
 def cop_ratio_p99(run: RunView) -> float | None:
     """Centre of pressure of the stance foot over its half size in single support: 99th percentile [-]."""
     ratios = cop_ratios(run)
     return float(np.percentile(ratios, 99)) if len(ratios) else None
 
 
+@metric(shown=(1e2, "% of half the foot"), reads=_COP_READS)
 def cop_ratio_max(run: RunView) -> float | None:
     """The same: largest [-]."""
     ratios = cop_ratios(run)
     return float(ratios.max()) if len(ratios) else None
 
 
+@metric(unit="m", shown=(1e3, "mm"), size=2, reads=_ZMP_READS)
 def zmp_error_rms(run: RunView) -> list[float] | None:
     """Measured ZMP minus the ZMP reference that the footsteps define, RMS, x and y [m]."""
     return rms(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
 
 
+@metric(unit="m", shown=(1e3, "mm"), size=2, reads=_ZMP_READS)
 def zmp_error_max(run: RunView) -> list[float] | None:
     """Measured ZMP minus the ZMP reference that the footsteps define, largest in size, x and y [m]."""
     error = np.abs(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
@@ -81,6 +92,7 @@ def zmp_error_max(run: RunView) -> list[float] | None:
     return [float(value) for value in error.max(axis=0)] if len(error) else None
 
 
+@reduction("/plan")
 def predicted(run: RunView) -> Array:
     """What each plan predicts for 0.2 s later, shape (plans, 6): CoM, its velocity x y, ω; NaN beyond its horizon."""
     plan, sample = run.log["/plan"], round(PREDICTION / run.constants.sample_time)
@@ -90,12 +102,20 @@ def predicted(run: RunView) -> Array:
     return np.column_stack((com[:, sample], velocity[:, sample, :2], omega[:, sample]))
 
 
+@metric(unit="m", shown=(1e3, "mm"), size=3, reads={"/truth": ("com",), "/plan": ("held",)}, reduces=(predicted,))
 def com_error_rms(run: RunView) -> list[float] | None:
     """True CoM minus what the plan of 0.2 s earlier predicted for this instant, RMS, x, y and z [m]."""
     rows, prediction = _predictions(run)
     return rms(run.log["/truth"].field("com")[rows] - prediction[:, :3])
 
 
+@metric(
+    unit="m",
+    shown=(1e3, "mm"),
+    size=2,
+    reads={"/truth": ("com", "com_velocity"), "/plan": ("held",)},
+    reduces=(predicted,),
+)
 def dcm_error_rms(run: RunView) -> list[float] | None:
     """True DCM minus what the plan of 0.2 s earlier predicted, both by the predicted frequency, RMS, x and y [m]."""
     rows, prediction = _predictions(run)
@@ -105,35 +125,10 @@ def dcm_error_rms(run: RunView) -> list[float] | None:
     return rms(position + velocity / prediction[:, 5:])
 
 
-def estimation_error_rms(run: RunView) -> float | None:
-    """Distance of the CoM that the planner was given from the true one, RMS [m]."""
-    rows, given = _given(run)
-    error = run.log["/planner_state"].field("com")[given] - run.log["/truth"].field("com")[rows]
-    value = rms(np.linalg.norm(error, axis=1)[:, None])
-    return value[0] if value else None
-
-
-def dcm_estimation_error_rms(run: RunView) -> list[float] | None:
-    """DCM that the planner was given minus the true one, both by the planned frequency, RMS, x and y [m]."""
-    rows, given = _given(run)
-    state, truth = run.log["/planner_state"], run.log["/truth"]
-    omega = run.log["/reference"].field("omega")[rows, None]
-    position = state.field("com")[given, :2] - truth.field("com")[rows, :2]
-    velocity = state.field("com_velocity")[given, :2] - truth.field("com_velocity")[rows, :2]
-    return rms(position + velocity / omega)
-
-
 def rms(error: Array) -> list[float] | None:
     """Root mean square of each column over the rows that are finite; None when there is none."""
     sound = error[np.isfinite(error).all(axis=1)]
     return [float(value) for value in np.sqrt(np.mean(sound**2, axis=0))] if len(sound) else None
-
-
-def _given(run: RunView) -> tuple[Rows, Rows]:
-    """Rows of /truth and of /planner_state at the planner's measurements, of ticks that are whole."""
-    rows, near = run.rows_at("/truth", run.log["/planner_state"].time_ns)
-    given = np.flatnonzero(near & (rows < run.ticks))
-    return rows[given], given
 
 
 def _predictions(run: RunView) -> tuple[Rows, Array]:

@@ -1,6 +1,6 @@
 """A log as metrics and health checks see it: gathered in one pass with bounded memory, on common control ticks."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
@@ -8,26 +8,23 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.scenarios.judge.roles import knees
+from surefoot.scenarios.judge.soles import headings
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.record.provenance import RunConstants
 
-KEPT: Mapping[str, tuple[str, ...]] = {
-    "/measurement": ("external_force",),
-    "/truth": (
-        *("com", "com_velocity", "left_sole", "right_sole", "torso_tilt", "nonfoot_contact", "self_contact"),
-        "external_force",  # of the pendulum
-    ),
-    "/estimate": ("com",),
-    "/planner_state": ("com", "com_velocity"),
-    "/contact": ("zmp", "normal_force", "planned", "felt", "cop_left", "cop_right"),
-    "/reference": ("com_acceleration", "zmp_reference", "omega", "phase", "phase_duration", "stance", "step"),
-    "/wbc": ("status", "solver", "fallback"),
-    "/torque": (),
-    "/timing": ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick"),
-    "/plan": ("held", "status"),
-    "/footstep": ("index", "foot", "planned", "actual"),
+Reads = Mapping[str, tuple[str, ...]]
+"""Names of fields by topic."""
+
+CONTROL_TOPICS = ("/measurement", "/truth", "/estimate", "/contact", "/reference", "/wbc", "/torque", "/timing")
+"""Topics with a message in every control tick."""
+
+HELD: Reads = {
+    **dict.fromkeys((*CONTROL_TOPICS, "/planner_state", "/plan", "/footstep"), ()),
+    "/truth": ("left_sole", "right_sole"),
+    "/reference": ("phase",),
 }
-"""Fields that are held for the whole run; wider ones are reduced tick by tick while the log is read."""
+"""Topics whose times every digest holds, and the fields that `RunView` itself reads."""
 
 
 class Channel(Protocol):
@@ -123,28 +120,32 @@ class Digest:
         reduced: what `reduce` gave, over the whole run.
     """
 
-    def __init__(self, log: Log, reduce: Reduce) -> None:
+    def __init__(self, log: Log, reads: Iterable[Reads], reduce: Reduce) -> None:
         """Go through the log once; its damage is then known.
 
         Args:
             log: a log.
+            reads: fields that are held for the whole run; wider ones are reduced tick by tick.
             reduce: is applied to every part.
         """
         self.path, self.size, self.metadata = log.path, log.size, log.metadata
-        topics = [topic for topic in KEPT if topic in log.numeric]
+        held = _united((HELD, *reads))
+        topics = [topic for topic in held if topic in log.numeric]
         times: dict[str, list[NDArray[np.int64]]] = {topic: [] for topic in topics}
         fields: dict[tuple[str, str], list[NDArray[Any]]] = {}
         reduced: dict[Any, list[NDArray[Any]]] = {}
         for channels in log.windows(topics):
             for topic, channel in channels.items():
                 times[topic].append(channel.time_ns)
-                for name in KEPT[topic]:
+                for name in held[topic]:
                     if any(field.name == name for field in channel.fields):
                         fields.setdefault((topic, name), []).append(channel.field(name))
             for key, values in reduce(Window(log, channels)).items():
                 reduced.setdefault(key, []).append(values)
-        self.reduced = {key: np.concatenate(parts) for key, parts in reduced.items()}
+        self.reduced = {key: np.concatenate(parts) for key, parts in reduced.items() if _alike(parts)}
         kept = {key: np.concatenate(parts) for key, parts in fields.items()}
+        for values in (*self.reduced.values(), *kept.values()):
+            values.flags.writeable = False
         self._channels = {
             topic: KeptChannel(log, topic, times[topic], {name: a for (of, name), a in kept.items() if of == topic})
             for topic in topics
@@ -155,6 +156,21 @@ class Digest:
 
     def __getitem__(self, topic: str) -> KeptChannel:
         return self._channels[topic]
+
+
+def _united(reads: Iterable[Reads]) -> dict[str, list[str]]:
+    """All fields by topic, each once."""
+    found: dict[str, list[str]] = {}
+    for topics in reads:
+        for topic, names in topics.items():
+            fields = found.setdefault(topic, [])
+            fields += [name for name in names if name not in fields]
+    return found
+
+
+def _alike(parts: Sequence[NDArray[Any]]) -> bool:
+    """Whether arrays can be joined; what cannot is computed from the whole log when it is asked for."""
+    return all(np.ndim(part) > 0 and np.shape(part)[1:] == np.shape(parts[0])[1:] for part in parts)
 
 
 SINGLE_SUPPORT = 2
@@ -194,8 +210,7 @@ class RunView:
     @cached_property
     def ticks(self) -> int:
         """Number of common control ticks."""
-        every = ("/measurement", "/truth", "/estimate", "/contact", "/reference", "/wbc", "/torque", "/timing")
-        return min((len(self.log[topic]) for topic in every if self.has(topic)), default=0)
+        return min((len(self.log[topic]) for topic in CONTROL_TOPICS if self.has(topic)), default=0)
 
     @cached_property
     def time(self) -> Array:
@@ -221,8 +236,12 @@ class RunView:
     @cached_property
     def sole_yaw(self) -> Array:
         """True headings of the soles, shape (n, 2) [rad]."""
-        x, y, z, w = np.moveaxis(self.soles[..., 3:], -1, 0)
-        return np.asarray(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
+        return headings(self.soles[..., 3:])
+
+    @cached_property
+    def knees(self) -> list[int]:
+        """Indices of the knees among the joints."""
+        return knees(self.constants.joint_names, self.constants.roles)
 
     def rows_at(self, topic: str, times_ns: NDArray[np.int64]) -> tuple[NDArray[np.intp], Mask]:
         """Rows of a channel nearest to given times, and whether they are within half a control tick of them."""

@@ -1,11 +1,12 @@
-"""Metrics of effort: torques, limits, energy, solver and computing time."""
+"""Metrics of effort: torques, limits, knees and energy."""
+
+import math
 
 import numpy as np
 
+from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge.digest import Array, RunView
-
-GRAVITY = 9.81
-"""Gravitational acceleration [m/s^2]."""
+from surefoot.scenarios.judge.metric import metric, reduction
 
 AT_LIMIT = 0.999
 """Share of its limit from which a torque counts as being at it; solvers end a hair below [-]."""
@@ -14,25 +15,28 @@ SHORTEST_WAY = 0.05
 """Way below which a cost of transport means nothing [m]."""
 
 
+@reduction("/torque")
 def torque_ratio(run: RunView) -> Array:
     """Largest commanded joint torque over its limit at each tick, shape (n,)."""
     return np.asarray(np.max(np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit), axis=1))
 
 
+@reduction("/torque")
 def strained_joint(run: RunView) -> Array:
     """Which joint is nearest to its torque limit at each tick, index, shape (n,)."""
     ratio = np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit)
     return np.asarray(np.argmax(ratio, axis=1).astype(np.uint8))
 
 
+@reduction("/torque")
 def knee_torque_squared(run: RunView) -> Array:
     """Mean square of the commanded knee torques at each tick, shape (n,) [N² m²]; NaN without knees."""
-    knees = [i for i, name in enumerate(run.constants.joint_names) if "knee" in name]
-    if not knees:
+    if not run.knees:
         return np.full(len(run.log["/torque"]), np.nan)
-    return np.asarray(np.mean(run.log["/torque"].field("command")[:, knees] ** 2, axis=1))
+    return np.asarray(np.mean(run.log["/torque"].field("command")[:, run.knees] ** 2, axis=1))
 
 
+@reduction("/measurement")
 def joint_limit_margin(run: RunView) -> Array:
     """Least distance of a joint from its limits at each tick, shape (n,) [rad]."""
     position = run.field("/measurement", "joint_position")
@@ -41,22 +45,26 @@ def joint_limit_margin(run: RunView) -> Array:
     return np.asarray(np.minimum(below, above).min(axis=1))
 
 
+@reduction("/measurement")
+def knee_flexion(run: RunView) -> Array:
+    """Mean flexion of the knees at each tick, shape (n,) [rad]."""
+    return np.asarray(np.abs(run.field("/measurement", "joint_position")[:, run.knees]).mean(axis=1))
+
+
+@reduction("/measurement")
 def joint_power(run: RunView) -> Array:
     """Sum of the joints' absolute powers at each tick, shape (n,) [W]."""
     power = run.field("/measurement", "joint_torque") * run.field("/measurement", "joint_velocity")
     return np.asarray(np.abs(power).sum(axis=1))
 
 
+@metric(shown=(1e2, "% of the limit"), reduces=(torque_ratio,), body=True)
 def torque_ratio_max(run: RunView) -> float:
     """Largest commanded joint torque over its limit [-]."""
     return float(run.reduced(torque_ratio).max())
 
 
-def torque_at_limit_fraction(run: RunView) -> float:
-    """Share of ticks at which some joint's commanded torque is at its limit [-]."""
-    return float(np.mean(run.reduced(torque_ratio) >= AT_LIMIT))
-
-
+@metric(unit="N m", reads={"/reference": ()}, reduces=(knee_torque_squared,), body=True)
 def knee_torque_rms(run: RunView) -> float | None:
     """Commanded knee torque, RMS over both knees from the first lift-off to the last touchdown, or the run [N m]."""
     squared = run.reduced(knee_torque_squared)[: run.ticks]
@@ -64,11 +72,27 @@ def knee_torque_rms(run: RunView) -> float | None:
     return value if np.isfinite(value) else None
 
 
+@metric(shown=(1e2, "% of the time"), reduces=(torque_ratio,), body=True)
+def torque_at_limit_fraction(run: RunView) -> float:
+    """Share of ticks at which some joint's commanded torque is at its limit [-]."""
+    return float(np.mean(run.reduced(torque_ratio) >= AT_LIMIT))
+
+
+@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reduces=(joint_limit_margin,), body=True)
 def joint_limit_margin_min(run: RunView) -> float:
     """Least distance of a joint from its limits, negative beyond them [rad]."""
     return float(run.reduced(joint_limit_margin).min())
 
 
+@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads={"/reference": ()}, reduces=(knee_flexion,), body=True)
+def knee_angle_mean(run: RunView) -> float | None:
+    """Mean flexion of both knees while walking, or over the whole run when no foot was lifted [rad]."""
+    if not run.knees:
+        return None
+    return float(np.mean(run.reduced(knee_flexion)[run.walking if run.walking.stop else slice(None)]))
+
+
+@metric(reads={"/truth": ("com",)}, reduces=(joint_power,), body=True)
 def cost_of_transport(run: RunView) -> float | None:
     """Joint work, absolute, over weight times the CoM's horizontal way from begin to end [-]."""
     com = run.field("/truth", "com")[:, :2]
@@ -77,47 +101,3 @@ def cost_of_transport(run: RunView) -> float | None:
         return None
     work = float(run.reduced(joint_power).sum()) / run.constants.control_rate
     return work / (run.constants.mass * GRAVITY * way)
-
-
-def qp_failures(run: RunView) -> int:
-    """Ticks at which the whole-body QP's default solver failed."""
-    return int(np.count_nonzero((run.field("/wbc", "status") != 0) | (run.field("/wbc", "solver") != 0)))
-
-
-def wbc_fallbacks(run: RunView) -> int:
-    """Ticks at which no solver succeeded and the fallback torque was used."""
-    return int(np.count_nonzero(run.field("/wbc", "fallback")))
-
-
-def planner_infeasible_fraction(run: RunView) -> float:
-    """Share of plans whose hard constraints had no solution and were softened [-]."""
-    return float(np.mean(run.log["/plan"].field("infeasible") != 0))
-
-
-def planner_time(run: RunView) -> dict[str, float] | None:
-    """Wall-clock time of a plan: median and 99th percentile [s]."""
-    spent = run.field("/timing", "planner")
-    return _spread(spent[spent > 0])
-
-
-def wbc_time(run: RunView) -> dict[str, float] | None:
-    """Wall-clock time to build and solve the whole-body QP: median and 99th percentile [s]."""
-    return _spread(run.field("/timing", "wbc_build") + run.field("/timing", "wbc_solve"))
-
-
-def real_time_factor(run: RunView) -> float | None:
-    """Simulated over wall-clock time of the loop [-]."""
-    wall = float(run.field("/timing", "tick").sum()) * 1e-6
-    return run.ticks / run.constants.control_rate / wall if wall > 0 else None
-
-
-def log_bytes(run: RunView) -> int:
-    """Size of the log [bytes]."""
-    return run.log.size
-
-
-def _spread(microseconds: Array) -> dict[str, float] | None:
-    if not len(microseconds):
-        return None
-    median, p99 = np.percentile(microseconds, (50, 99)) * 1e-6
-    return {"median": float(median), "p99": float(p99)}

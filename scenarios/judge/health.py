@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from surefoot.scenarios.judge import balance, effort, walking
-from surefoot.scenarios.judge.digest import Array, Digest, RunView
-from surefoot.scenarios.judge.effort import GRAVITY
+from surefoot.planner.types import GRAVITY
+from surefoot.scenarios.judge import balance, effort, feet, walking
+from surefoot.scenarios.judge.digest import Array, Digest, Reads, RunView
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ def forces_match_weight(run: RunView) -> Finding:
 def foot_slip(run: RunView) -> Finding:
     """How far a sole moves on the ground [m]."""
     end = _standing(run)
-    slips = [slip for slip in walking.stance_slips(run) if slip.start < end]
+    slips = [slip for slip in feet.stance_slips(run) if slip.start < end]
     if not slips:
         return judged("foot_slip", False, None, None, "")
     worst = max(slips, key=lambda slip: slip.distance)
@@ -244,6 +244,24 @@ _CHECKS: tuple[tuple[tuple[str, ...], Callable[[RunView], Finding]], ...] = (
     (("/timing",), overrun_ticks),
 )
 """Every check and the topics that it needs."""
+
+READS: Reads = {
+    "/measurement": ("external_force",),
+    "/truth": ("com", "com_velocity", "external_force"),  # the force is of the pendulum
+    "/estimate": ("com",),
+    "/contact": ("normal_force", "planned", "felt"),
+    "/reference": ("stance", "phase_duration"),
+    "/wbc": ("fallback",),
+    "/timing": (*_PARTS, "tick"),
+    "/plan": ("held",),
+}
+"""Fields that the checks read, beside those that tell a fall."""
+
+REDUCTIONS = (
+    *(effort.torque_ratio, effort.strained_joint, effort.joint_limit_margin, effort.joint_power),
+    balance.zmp_depth,
+)
+"""Reductions that the checks use."""
 
 
 def findings(digest: Digest) -> tuple[Finding, ...]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from surefoot.scenarios.judge.health import Finding, findings
-from surefoot.scenarios.judge.metric import digest
+from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.judge.verdict import Verdict, judge, scenario_of
 from surefoot.scenarios.log import ChannelData, Log
 

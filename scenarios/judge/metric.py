@@ -1,131 +1,205 @@
-"""Metrics: pure functions of a log."""
+"""What a metric is: a pure function of a run, with all that is known about it in one decorator.
 
+`surefoot.scenarios.judge.metrics` collects them, with those of other packages.
+"""
+
+import keyword
 import math
 from collections.abc import Callable
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
-import numpy as np
+from surefoot.errors import ParameterError
+from surefoot.scenarios.judge.digest import Array, Reads, RunView
 
-from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.file.criteria import BODY_METRICS, METRIC_NAMES
-from surefoot.scenarios.judge import balance, effort, walking
-from surefoot.scenarios.judge.digest import Digest, RunView, Source
-from surefoot.scenarios.log import Log
+__all__ = ["RESERVED", "Metric", "Reads", "Reduction", "RunView", "metric", "reduction"]
 
-_BODY = ("/truth",)
-_FEET = ("/truth", "/contact")
-_PLAN = ("/truth", "/plan")
-
-_METRICS: dict[str, tuple[tuple[str, ...], Callable[[RunView], Any]]] = {
-    "fell": (_BODY, walking.fell),
-    "fall_time": (_BODY, walking.fall_time),
-    "duration": (_BODY, walking.duration),
-    "steps_planned": ((), walking.steps_planned),
-    "steps_taken": (_BODY, walking.steps_taken),
-    "standing_time_final": (_FEET, walking.standing_time_final),
-    "standing_time_between": ((*_FEET, "/reference"), walking.standing_time_between),
-    "zmp_inside_fraction": ((*_FEET, "/reference"), balance.zmp_inside_fraction),
-    "zmp_excursion_max": ((*_FEET, "/reference"), balance.zmp_excursion_max),
-    "cop_ratio_p99": (("/contact", "/reference"), balance.cop_ratio_p99),
-    "cop_ratio_max": (("/contact", "/reference"), balance.cop_ratio_max),
-    "zmp_error_rms": (("/contact", "/reference"), balance.zmp_error_rms),
-    "zmp_error_max": (("/contact", "/reference"), balance.zmp_error_max),
-    "com_error_rms": (_PLAN, balance.com_error_rms),
-    "dcm_error_rms": (_PLAN, balance.dcm_error_rms),
-    "footstep_error_max": (("/footstep",), walking.footstep_error_max),
-    "stair_edge_margin_min": (("/footstep",), walking.stair_edge_margin_min),
-    "swing_clearance_min": (("/truth", "/reference"), walking.swing_clearance_min),
-    "foot_slip_max": (_FEET, walking.foot_slip_max),
-    "self_contact_time": (_BODY, walking.self_contact_time),
-    "torque_ratio_max": (("/torque",), effort.torque_ratio_max),
-    "torque_at_limit_fraction": (("/torque",), effort.torque_at_limit_fraction),
-    "knee_torque_rms": (("/torque", "/reference"), effort.knee_torque_rms),
-    "joint_limit_margin_min": (("/measurement",), effort.joint_limit_margin_min),
-    "knee_angle_mean": (("/measurement", "/reference"), walking.knee_angle_mean),
-    "cost_of_transport": (("/truth", "/measurement"), effort.cost_of_transport),
-    "speed_mean": (("/truth", "/reference"), walking.speed_mean),
-    "path_length": (_BODY, walking.path_length),
-    "displacement": (_BODY, walking.displacement),
-    "heading_change": (_BODY, walking.heading_change),
-    "com_height_range": (_BODY, walking.com_height_range),
-    "planner_infeasible_fraction": (("/plan",), effort.planner_infeasible_fraction),
-    "estimation_error_rms": (("/truth", "/planner_state"), balance.estimation_error_rms),
-    "dcm_estimation_error_rms": (("/truth", "/planner_state", "/reference"), balance.dcm_estimation_error_rms),
-    "planner_time": (("/timing",), effort.planner_time),
-    "wbc_time": (("/timing",), effort.wbc_time),
-    "real_time_factor": (("/timing",), effort.real_time_factor),
-    "qp_failures": (("/wbc",), effort.qp_failures),
-    "wbc_fallbacks": (("/wbc",), effort.wbc_fallbacks),
-    "log_bytes": ((), effort.log_bytes),
-}
-
-
-_REDUCTIONS: tuple[tuple[tuple[str, ...], Callable[[RunView], Any]], ...] = (
-    (("/torque",), effort.torque_ratio),
-    (("/torque",), effort.strained_joint),
-    (("/torque",), effort.knee_torque_squared),
-    (("/measurement",), effort.joint_limit_margin),
-    (("/measurement",), effort.joint_power),
-    (("/measurement",), walking.knee_flexion),
-    (("/truth", "/contact", "/reference"), balance.zmp_depth),
-    (("/plan",), balance.predicted),
+T = TypeVar("T")
+RESERVED = (
+    "verdict",
+    "reasons",
+    "notes",
+    "log",
+    "scenario",
+    "truncated",
+    "start",
+    "end",
+    "health",
+    "topics",
+    "versions",
 )
-"""What wide channels are reduced to while the log is read, and the topics it needs."""
+"""Names that stand beside the metrics in what `inspect --json` prints."""
 
 
-def digest(log: Log) -> Digest:
-    """Gather what the metrics need, in one pass with bounded memory.
+@dataclass(frozen=True, slots=True, eq=False)
+class Reduction:
+    """A function that makes wide channels narrow while a log is read, so that they need not be held for a whole run.
+
+    Attributes:
+        function: from a part of a run to one value or row for each tick or message, shape (n, ...).
+        needs: topics without which it cannot be computed.
+    """
+
+    function: Callable[[RunView], Array]
+    needs: tuple[str, ...]
+
+    def __call__(self, run: RunView) -> Array:
+        """The values of a part of a run, shape (n, ...)."""
+        return self.function(run)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Metric(Generic[T]):
+    """A number, or a few, that a run is described by.
+
+    Attributes:
+        name: in criteria and in the verdict.
+        function: from a run to the value: a number, a truth value, a list of ``size`` numbers or a dict of ``parts``;
+            None where it means nothing.
+        unit: of the value, SI; empty for a plain number.
+        scale: from the value to what a person is shown.
+        shown: unit of that.
+        size: number of elements; more than one makes a list.
+        parts: names of the parts, where the value has such.
+        needs: topics without which the value is None.
+        reads: fields that are held for the whole run, by topic; others are read from the log when they are asked for.
+        reductions: that the function uses by `RunView.reduced`.
+        body: whether it is of joints, sensors and real feet, which a pendulum has not got.
+        repeatable: whether two runs of the same scenario give the same value; times on the wall's clock do not.
+    """
+
+    name: str
+    function: Callable[[RunView], T]
+    unit: str
+    scale: float
+    shown: str
+    size: int
+    parts: tuple[str, ...]
+    needs: tuple[str, ...]
+    reads: Reads
+    reductions: tuple[Reduction, ...]
+    body: bool
+    repeatable: bool
+
+    def __call__(self, run: RunView) -> T:
+        """Its value for a run."""
+        return self.function(run)
+
+    @property
+    def meaning(self) -> str:
+        """What it is, in a sentence: the first line of its function's documentation."""
+        return (self.function.__doc__ or "").strip().split("\n", 1)[0]
+
+    @property
+    def bounded(self) -> tuple[str, ...]:
+        """Names by which a criterion may bound it: its own, or those of its parts."""
+        return tuple(f"{self.name}.{part}" for part in self.parts) or (self.name,)
+
+    def applies(self, fidelity: str) -> bool:
+        """Whether runs of a fidelity have it."""
+        return fidelity != "pendulum" or not self.body
+
+    def fits(self, value: Any) -> bool:
+        """Whether a value is of the kind that was promised, so that no part of it escapes a criterion."""
+        if value is None:
+            return True
+        if self.parts:
+            return isinstance(value, dict) and tuple(value) == self.parts and all(map(_is_number, value.values()))
+        if self.size > 1:
+            return isinstance(value, list) and len(value) == self.size and all(map(_is_number, value))
+        return _is_number(value)
+
+
+def _is_number(value: Any) -> bool:
+    return value is None or isinstance(value, bool | int | float)
+
+
+def reduction(*needs: str) -> Callable[[Callable[[RunView], Array]], Reduction]:
+    """Make a function of a run one that is applied while a log is read; ``needs`` are its topics.
 
     Raises:
-        LogError: the log does not describe a run.
+        ParameterError: that is no topic.
     """
-    constants = RunView(log).constants
-
-    def reduce(part: Source) -> dict[Any, Any]:
-        run = RunView(part, constants)
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            return {function: function(run) for topics, function in _REDUCTIONS if run.has(*topics)}
-
-    return Digest(log, reduce)
+    _check_topics("a reduction", "needs", needs)
+    return lambda function: Reduction(function, needs)
 
 
-def compute(log: Log | Digest) -> dict[str, Any]:
-    """Compute every metric of the public contract.
+def metric(
+    *,
+    unit: str = "",
+    shown: tuple[float, str] | None = None,
+    size: int = 1,
+    parts: tuple[str, ...] = (),
+    needs: tuple[str, ...] | None = None,
+    reads: Reads | None = None,
+    reduces: tuple[Reduction, ...] = (),
+    body: bool = False,
+    repeatable: bool = True,
+) -> Callable[[Callable[[RunView], T]], Metric[T]]:
+    """Make a function of a run a metric of its name; the first line of its documentation says what it is.
 
     Args:
-        log: a log of a run, whole or truncated, or its digest.
-
-    Returns:
-        values by metric name, None where a metric does not apply or its channels or fields are missing; plain JSON
-        values.
+        unit: of the value, SI; empty for a plain number.
+        shown: factor and unit in which a person is shown the value; by default as it is.
+        size: number of elements, when it is a list.
+        parts: names of the parts, when it is a dict.
+        needs: topics without which it is None; by default those of ``reads`` and ``reduces``.
+        reads: fields that it reads, by topic.
+        reduces: reductions that it uses.
+        body: whether a pendulum has not got it.
+        repeatable: whether two runs of the same scenario give the same value.
 
     Raises:
-        LogError: the log does not describe a run.
+        ParameterError: these do not make a metric.
     """
-    run = RunView(log if isinstance(log, Digest) else digest(log))
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        return {name: _metric(run, name) for name in METRIC_NAMES}
+    fields = dict(reads or {})
+    scale, shown_unit = shown or (1.0, unit)
+
+    def made(function: Callable[[RunView], T]) -> Metric[T]:
+        name = function.__name__
+        _check_reads(f"metric {name}", fields, reduces)
+        reduced = (topic for one in reduces for topic in one.needs)
+        topics = tuple(dict.fromkeys((*fields, *reduced))) if needs is None else needs
+        found = Metric(
+            name, function, unit, scale, shown_unit, size, parts, topics, fields, reduces, body, repeatable
+        )  # fmt: skip
+        _check(found)
+        return found
+
+    return made
 
 
-def _metric(run: RunView, name: str) -> Any:
-    if name not in _METRICS or (run.constants.fidelity == "pendulum" and name in BODY_METRICS):
-        return None
-    topics, function = _METRICS[name]
-    try:
-        return _plain(function(run)) if run.has(*topics) else None
-    except LogError:  # the log of another version lacks a field
-        return None
+def _check(made: Metric[Any]) -> None:
+    """Refuse what could not be computed, shown or bounded.
+
+    Raises:
+        ParameterError: it is such.
+    """
+    who = f"metric {made.name}"
+    if not made.name.isidentifier() or keyword.iskeyword(made.name) or made.name in RESERVED:
+        raise ParameterError(("name",), f"{who}: not a name for a metric", f"none of {', '.join(RESERVED)}, and a word")
+    if not made.meaning:
+        raise ParameterError(("meaning",), f"{who}: says not what it is", "document its function")
+    if isinstance(made.size, bool) or not isinstance(made.size, int) or made.size < 1:
+        raise ParameterError(("size",), f"{who}: size {made.size}", "give the number of elements, 1 or more")
+    if made.size > 1 and made.parts:
+        raise ParameterError(("parts",), f"{who}: both a size and parts", "give one of them")
+    if not all(part.isidentifier() for part in made.parts):
+        raise ParameterError(("parts",), f"{who}: parts {made.parts}", "give words")
+    if not math.isfinite(made.scale) or made.scale == 0.0:
+        raise ParameterError(("shown",), f"{who}: shown times {made.scale}", "give a factor that is not zero")
+    _check_topics(who, "needs", made.needs)
 
 
-def _plain(value: Any) -> Any:
-    """The value for JSON: what is not a finite number becomes None."""
-    if isinstance(value, list):
-        return [_plain(element) for element in value]
-    if isinstance(value, dict):
-        return {key: _plain(element) for key, element in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+def _check_reads(who: str, reads: Reads, reduces: tuple[Reduction, ...]) -> None:
+    _check_topics(who, "reads", tuple(reads))
+    if any(isinstance(names, str) for names in reads.values()):
+        raise ParameterError(("reads",), f"{who}: reads letters of a name", "give a tuple of names for each topic")
+    if not all(isinstance(one, Reduction) for one in reduces):
+        raise ParameterError(("reduces",), f"{who}: reduces by something else", "make it with @reduction")
 
 
-def describe_metric(name: str) -> str:
-    """What a metric is, in a sentence: the first line of its function's documentation."""
-    return (_METRICS[name][1].__doc__ or "").split("\n", 1)[0]
+def _check_topics(who: str, key: str, topics: tuple[str, ...]) -> None:
+    for topic in topics if isinstance(topics, tuple) else (topics,):
+        if isinstance(topics, str) or not str(topic).startswith("/"):
+            raise ParameterError((key,), f"{who}: {key} {topic!r}", "give a tuple of topics such as /truth")

@@ -3,37 +3,34 @@
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any
 
 import yaml
 from pydantic import ValidationError
 
-from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.file.criteria import BODY_METRICS, Bound
+from surefoot.scenarios import palette
+from surefoot.scenarios.errors import LogError, nearest
+from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Gait, Scenario, TerrainSettings
 from surefoot.scenarios.judge.digest import Digest
-from surefoot.scenarios.judge.metric import compute
+from surefoot.scenarios.judge.metrics import known, measure
+from surefoot.scenarios.judge.text import FIRST_METRICS, shown_unit, value_text
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, commanded
+from surefoot.scenarios.setup.terrain import KINDS
 
 _NO_CONTACT = (
     ("terrain", "friction"),
     ("terrain", "height_noise"),
     ("start", "angle_noise"),
     ("errors", "friction"),
+    ("errors", "ground"),
 )
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
-
-_SHAPED: Mapping[str, tuple[str, ...]] = {
-    "flat": (),
-    "stairs": ("riser", "tread", "count", "direction", "start", "landing", "height_noise"),
-    "slope": ("angle", "start", "height_noise"),
-    "blocks": ("riser", "angle", "tread", "height_noise"),
-}
-"""Keys that shape each kind of terrain; friction is of all."""
 
 _POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
 """Keys of the pendulum alone."""
@@ -55,7 +52,8 @@ def notes(scenario: Scenario, metrics: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _bodiless(criterion: str, fidelity: str) -> bool:
-    return fidelity == "pendulum" and criterion.partition(".")[0] in BODY_METRICS
+    metric = known(criterion)
+    return metric is not None and not metric.applies(fidelity)
 
 
 def _skipped(scenario: Scenario) -> Iterator[str]:
@@ -74,11 +72,13 @@ def _without_effect(scenario: Scenario) -> Iterator[str]:
         settings = getattr(scenario, group)
         if getattr(settings, name) != type(settings).model_fields[name].default:
             yield f"{group}.{name} has no effect on a {'pendulum' if point else 'whole body'}"
+    if point and scenario.wbc is not None:
+        yield "wbc has no effect on a pendulum"
 
 
 def _unshaped(terrain: TerrainSettings) -> Iterator[str]:
     for name, field in TerrainSettings.model_fields.items():
-        elsewhere = name not in ("kind", "friction", *_SHAPED[terrain.kind])
+        elsewhere = name not in ("kind", "friction", *KINDS[terrain.kind].keys)
         if elsewhere and getattr(terrain, name) != field.default:
             yield f"terrain.{name} has no effect on terrain.kind {terrain.kind}"
 
@@ -121,9 +121,44 @@ class Verdict:
     metrics: Mapping[str, Any]
     criteria: Mapping[str, Bound]
 
+    def __getitem__(self, name: str) -> Any:
+        """A metric, or the part of one after a dot, such as ``planner_time.p99``.
+
+        Raises:
+            KeyError: there is no such metric.
+        """
+        metric, _, part = name.partition(".")
+        try:
+            value = self.metrics[metric]
+            return value[part] if part and value is not None else value
+        except (KeyError, TypeError):
+            raise KeyError(f"no metric '{name}'; {nearest(metric, self.metrics)}") from None
+
+    def __repr__(self) -> str:
+        """Pass or fail, why, and the first metrics, a line each."""
+        shown = [f"  {name} {text} {unit}".rstrip() for name, text, unit in self._first()]
+        return "\n".join((f"verdict {self._word}", *(f"  - {reason}" for reason in self.reasons), *shown))
+
+    def _repr_html_(self) -> str:
+        """The same for a notebook."""
+        color = palette.hexadecimal(palette.PASS if self.passed else palette.FAIL)
+        reasons = "".join(f"<li>{escape(reason)}</li>" for reason in self.reasons)
+        rows = "".join(f"<tr><td>{name}</td><td>{escape(text)} {unit}</td></tr>" for name, text, unit in self._first())
+        head = f'<b style="color:{color}">verdict {self._word}</b>'
+        return f"{head}<ul>{reasons}</ul><table>{rows}</table>"
+
+    @property
+    def _word(self) -> str:
+        return "pass" if self.passed else "fail"
+
+    def _first(self) -> list[tuple[str, str, str]]:
+        """Name, value and unit of the metrics that are asked for first, as far as they have a value."""
+        found = {name: self.metrics.get(name) for name in FIRST_METRICS}
+        return [(name, value_text(name, value), shown_unit(name)) for name, value in found.items() if value is not None]
+
     def to_json(self) -> dict[str, Any]:
         """Write as one JSON object with the names of the public contract."""
-        judgement = {"verdict": "pass" if self.passed else "fail", "reasons": list(self.reasons)}
+        judgement = {"verdict": self._word, "reasons": list(self.reasons)}
         return {**judgement, "notes": list(self.notes), **self.metrics}
 
     def write(self, path: Path) -> None:
@@ -149,10 +184,11 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     Raises:
         LogError: the log does not describe a run.
     """
-    metrics, scenario = compute(gathered or log), scenario_of(log)
+    measured, scenario = measure(gathered or log), scenario_of(log)
     criteria = asked(scenario.criteria, scenario.fidelity)
-    reasons = (*_unfinished(log), *missed(metrics, criteria))
-    return Verdict(not reasons, reasons, notes(scenario, metrics), metrics, criteria)
+    reasons = (*_unfinished(log), *missed(measured.values, criteria))
+    said = (*notes(scenario, measured.values), *measured.notes)
+    return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 
 def scenario_of(log: Log) -> Scenario:
@@ -173,10 +209,13 @@ def missed(metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> list[st
 
 
 def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str]:
+    if name.partition(".")[0] not in metrics:
+        yield f"{name} is not known here, so its bound cannot be checked; install the package that has this metric"
+        return
     value = _lookup(metrics, name)
     if bound.equals is not None:
         expected = metrics.get(bound.equals, bound.equals) if isinstance(bound.equals, str) else bound.equals
-        if value != expected:
+        if value is None or value != expected:
             fall = f" at {metrics['fall_time']:.3f} s" if name == "fell" and value is True else ""
             yield f"{name} is {_text(value)}{fall}, must be {_text(expected)}"
     if bound.min is None and bound.max is None:

@@ -101,6 +101,15 @@ class ChannelData:
         self._require(name)
         return np.array(self._records[name])
 
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """Time [s] and every element of every field as ``name_i_j``, each of shape (n,)."""
+        table: dict[str, NDArray[Any]] = {"time": self.time}
+        for field in self.fields:
+            values = self.field(field.name)
+            for place in np.ndindex(field.shape):
+                table["_".join((field.name, *map(str, place)))] = values[(slice(None), *place)]
+        return table
+
     def only(self, name: str) -> "ChannelData":
         """The same messages with one field; errors as of `field`."""
         self._require(name)

@@ -4,6 +4,7 @@ import mmap
 import zlib
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from surefoot.scenarios.log.encoding import MAGIC, decompress
 from surefoot.scenarios.log.messages import MESSAGE_BYTES, ChannelData, block_of, content_at, gathered, sound_records
 from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
 from surefoot.scenarios.log.spec import FieldSpec, layout_of, record_dtype
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""
@@ -50,10 +54,30 @@ class Log:
     def __contains__(self, topic: str) -> bool:
         return topic in self._ids
 
+    def __repr__(self) -> str:
+        """Path, seconds, and how many messages of which topics."""
+        start, end = self.time_range()
+        state = ", truncated" if self.truncated else ""
+        topics = ", ".join(f"{topic} {self.count(topic)}" for topic in self.topics)
+        return f"Log({str(self.path)!r}, {start:.3f} to {end:.3f} s{state}: {topics or 'empty'})"
+
     def __getitem__(self, topic: str) -> ChannelData:
         """Messages of a topic; errors as of `load`."""
         self.load(topic)
         return self._loaded[topic]
+
+    def frame(self, topic: str) -> "DataFrame":
+        """Messages of a topic as a pandas data frame: the index is time [s], the elements of a field are columns.
+
+        Raises:
+            LogError: there is no such topic, its messages are not of a fixed layout, or pandas is missing.
+        """
+        try:
+            from pandas import DataFrame
+        except ImportError:
+            right = f"`pip install pandas`, or use log['{topic}'].field(name)"
+            raise LogError(f"a data frame needs the package pandas; {right}") from None
+        return DataFrame(self[topic].columns()).set_index("time")
 
     def load(self, *topics: str) -> None:
         """Load topics in one pass through the file.

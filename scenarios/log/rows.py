@@ -1,7 +1,7 @@
 """The hot end of the log: values are copied into preallocated message records, alone or as rows of several channels."""
 
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 from mcap.opcode import Opcode
@@ -193,13 +193,46 @@ Array = NDArray[np.float64]
 Columns = Sequence[tuple[ChannelWriter, Sequence[str]]]
 """Fields of channels, in order."""
 
-Derive = Callable[[Array, Array], Array]
+Place = tuple[str, str] | str
+"""Topic and name of a field, or the name of an input that is in no channel."""
+
+
+class Rows:
+    """Rows that are handed over, by the names of what they hold."""
+
+    __slots__ = ("_at", "_tables")
+
+    def __init__(self, tables: tuple[Array, ...], at: Sequence[Mapping[Place, slice]]) -> None:
+        """Tables of shape (n, width), and where in each its fields and inputs are."""
+        self._tables = tables
+        self._at = at
+
+    def __getitem__(self, place: Place) -> Array:
+        """Values of a field or an input, shape (n, size)."""
+        return self.span(place, place)
+
+    def span(self, first: Place, last: Place) -> Array:
+        """Values of neighbours from one to another, shape (n, sizes together).
+
+        Raises:
+            KeyError: these are not in the same table.
+        """
+        for table, at in zip(self._tables, self._at, strict=True):
+            if first in at:
+                return table[:, at[first].start : at[last].stop]
+        raise KeyError(first)
+
+
+Derive = Callable[[Rows], Mapping[tuple[str, str], Array]]
 
 
 class RowWriter:
     """Rows that wait for their chunk: vectors, numbers, and what is derived from both when the chunk is due."""
 
-    __slots__ = ("_capacity", "_clock", "_columns", "_derive", "_flush", "_numbers", "_times", "_vectors", "_writers")
+    __slots__ = (
+        *("_at", "_capacity", "_clock", "_derive", "_derived", "_flush", "_numbers", "_times", "_vectors"),
+        *("_views", "_writers"),
+    )
 
     def __init__(
         self,
@@ -210,7 +243,8 @@ class RowWriter:
         flush: Callable[[int], None],
         derived: Columns = (),
         derive: Derive | None = None,
-        inputs: int = 0,
+        more_vectors: Mapping[str, int] | None = None,
+        more_numbers: Sequence[str] = (),
     ) -> None:
         """Rows made of fields of channels, in this order.
 
@@ -221,21 +255,26 @@ class RowWriter:
             clock: says when a chunk is due.
             flush: completes it.
             derived: fields that come out of `derive`.
-            derive: from vectors, shape (n, width), and numbers, shape (n, count), to the derived fields' columns.
-            inputs: width of further vectors that only `derive` needs.
+            derive: from rows to the derived fields, by topic and name.
+            more_vectors: name and size of vectors that only `derive` needs; they come after the others.
+            more_numbers: names of numbers that only `derive` needs; they come after the others.
 
         Raises:
             ValueError: a field is missing or there twice.
         """
         groups = (vectors, numbers, derived)
-        self._columns = [_columns(group) for group in groups]
         writers = {writer.channel_id: writer for group in groups for writer, _ in group}
-        widths = [columns[-1][2] if columns else 0 for columns in self._columns]
-        if sum(widths) != sum(field.size for writer in writers.values() for field in writer.spec.fields):
+        sizes = [size for group in groups for _, size in _sizes(group)]
+        if sum(sizes) != sum(field.size for writer in writers.values() for field in writer.spec.fields):
             raise ValueError("a row must hold every field of its channels exactly once")
+        self._at = (
+            _places((*_sizes(vectors), *(more_vectors or {}).items())),
+            _places((*_sizes(numbers), *((name, 1) for name in more_numbers))),
+        )
+        self._views, self._derived = (_views(vectors), _views(numbers)), _views(derived)
         self._writers = list(writers.values())
         self._derive = derive
-        self._vectors = np.zeros((capacity, widths[0] + inputs))
+        self._vectors = np.zeros((capacity, _width(self._at[0])))
         self._numbers: list[tuple[float, ...]] = []
         self._times: list[int] = []
         self._capacity, self._clock, self._flush = capacity, clock, flush
@@ -249,7 +288,7 @@ class RowWriter:
             vectors: float64 vectors that make up the rest of the row.
 
         Raises:
-            ValueError: the vectors do not fill the row.
+            ValueError: the vectors do not fill the row, or the numbers of a row of this chunk did not.
             LogError: the chunk that this row completes cannot be written.
         """
         if vectors:
@@ -265,34 +304,52 @@ class RowWriter:
         self._numbers.clear()
 
     def spread(self) -> None:
-        """Hand the rows that wait over to the channels."""
+        """Hand the rows that wait over to the channels.
+
+        Raises:
+            ValueError: the numbers of a row are not as many as were announced.
+        """
         n = len(self._times)
         if not n:
             return
-        vectors, numbers = self._vectors[:n], np.array(self._numbers)
-        groups = [vectors, numbers] if self._derive is None else [vectors, numbers, self._derive(vectors, numbers)]
-        for rows, columns in zip(groups, self._columns, strict=False):
-            for view, start, end in columns:
-                view[:n] = rows[:, start:end].reshape(n, *view.shape[1:])
+        tables = (self._vectors[:n], np.array(self._numbers, np.float64))
+        if tables[1].shape[1] != _width(self._at[1]):
+            raise ValueError(f"a row of {tables[1].shape[1]} numbers, where there are places for {_width(self._at[1])}")
+        for table, views, at in zip(tables, self._views, self._at, strict=True):
+            for place, view in views:
+                view[:n] = table[:, at[place]].reshape(n, *view.shape[1:])
+        if self._derive is not None:
+            values = self._derive(Rows(tables, self._at))
+            for place, view in self._derived:
+                view[:n] = values[place].reshape(n, *view.shape[1:])
         for writer in self._writers:
             writer.fill(self._times)
         self._times.clear()
         self._numbers.clear()
 
 
-def places(group: Columns) -> dict[tuple[str, str], slice]:
-    """Columns that the fields of a group take, by topic and name."""
-    found, start = {}, 0
+def _sizes(group: Columns) -> list[tuple[tuple[str, str], int]]:
+    """The fields of a group, in order, with their sizes."""
+    found = []
     for writer, names in group:
         sizes = {field.name: field.size for field in writer.spec.fields}
-        for name in names:
-            found[writer.spec.topic, name] = slice(start, start + sizes[name])
-            start += sizes[name]
+        found += [((writer.spec.topic, name), sizes[name]) for name in names]
     return found
 
 
-def _columns(group: Columns) -> list[tuple[NDArray[np.generic], int, int]]:
-    """Where the fields of a group wait, and the columns that they take."""
-    at = places(group)
-    fields = [(writer, name, at[writer.spec.topic, name]) for writer, names in group for name in names]
-    return [(writer.view(name), place.start, place.stop) for writer, name, place in fields]
+def _places(sizes: Iterable[tuple[Place, int]]) -> dict[Place, slice]:
+    """Columns of what stands beside each other."""
+    found, start = {}, 0
+    for place, size in sizes:
+        found[place] = slice(start, start + size)
+        start += size
+    return found
+
+
+def _width(at: Mapping[Place, slice]) -> int:
+    return max((place.stop for place in at.values()), default=0)
+
+
+def _views(group: Columns) -> list[tuple[tuple[str, str], NDArray[np.generic]]]:
+    """Where the fields of a group wait."""
+    return [((writer.spec.topic, name), writer.view(name)) for writer, names in group for name in names]

@@ -172,10 +172,18 @@ class LogWriter:
         return writer
 
     def rows(
-        self, vectors: Columns, numbers: Columns, derived: Columns = (), derive: Derive | None = None, inputs: int = 0
+        self,
+        vectors: Columns,
+        numbers: Columns,
+        derived: Columns = (),
+        derive: Derive | None = None,
+        more_vectors: Mapping[str, int] | None = None,
+        more_numbers: Sequence[str] = (),
     ) -> RowWriter:
         """Fill channels of one rate together; arguments as of `RowWriter`."""
-        rows = RowWriter(vectors, numbers, _CAPACITY, self._clock, self._flush, derived, derive, inputs)
+        rows = RowWriter(
+            vectors, numbers, _CAPACITY, self._clock, self._flush, derived, derive, more_vectors, more_numbers
+        )
         self._rows.append(rows)
         return rows
 

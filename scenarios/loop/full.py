@@ -1,5 +1,6 @@
 """The closed loop in full physics: a simulated robot under its whole-body controller, planner and log around it."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from surefoot.models.pinocchio import limb_shapes, pinocchio_model
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState
-from surefoot.scenarios.judge.walking import FALLEN_HEIGHT, FALLEN_TILT
+from surefoot.scenarios.judge.fall import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.loop.estimator import ESTIMATORS, Estimator
 from surefoot.scenarios.loop.faults import FaultSchedule, RunFault
@@ -146,7 +147,7 @@ class SimulatedRobot:
         self._faults = FaultSchedule(walk.faults, walk.rates.control)
         self._rate = walk.rates.control
         self._steps = walk.rates.physics // walk.rates.control
-        self._fallen_height = FALLEN_HEIGHT * walk.true_com_height
+        self._nominal_height = walk.true_com_height
         self._zero_torque = np.zeros(controller.layout.joints)
         self._landed = (True, True)
         self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
@@ -201,11 +202,11 @@ class SimulatedRobot:
         )
 
     def fallen(self, sample: PlanSample) -> bool:
-        """Whether the CoM is low over the lower foot, the torso lies, or more than the feet touches the ground."""
+        """See `Walker`."""
         terms = self._truth
-        low = terms.com[2] - min(terms.sole_position[0, 2], terms.sole_position[1, 2]) < self._fallen_height
-        tilted = terms.torso_rotation[2, 2] < np.cos(FALLEN_TILT)
-        return bool(low or tilted or self.measurement.nonfoot_contact)
+        height = terms.com[2] - min(terms.sole_position[0, 2], terms.sole_position[1, 2])
+        tilt = math.acos(min(terms.torso_rotation[2, 2], 1.0))
+        return bool(lies(height, self._nominal_height, tilt, self.measurement.nonfoot_contact))
 
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
         """See `Walker`."""

@@ -14,7 +14,7 @@ from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.plants import CartTable, IdealFeet, Pendulum, PointPush
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep
 from surefoot.scenarios.file.schema import PendulumSettings
-from surefoot.scenarios.judge.walking import LOST_DISTANCE
+from surefoot.scenarios.judge.fall import lost
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.loop.faults import FaultSchedule, RunFault
 from surefoot.scenarios.loop.planning import Planning
@@ -201,7 +201,7 @@ class PointMass:
     def fallen(self, sample: PlanSample) -> bool:
         """Whether no foot could catch the mass any more."""
         dcm = self.state.com[:2] + self.state.com_velocity[:2] / sample.omega
-        return self._can_fall and bool(np.hypot(*(dcm - self._plant.zmp)) > LOST_DISTANCE)
+        return self._can_fall and bool(lost(dcm, self._plant.zmp))
 
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
         """See `Walker`."""

@@ -206,11 +206,19 @@ def run_constants(walk: Walk) -> RunConstants:
         position_upper=tuple(float(value) for value in robot.position_upper),
         terrain=walk.terrain_kind,
         plant=walk.pendulum.plant,
+        roles=_roles(robot),
         boxes=tuple(
             (*box.center.tolist(), *box.half_size.tolist(), *box.rotation.ravel().tolist())
             for box in walk.true_terrain.boxes
         ),
     )
+
+
+def _roles(robot: "RobotDescription") -> dict[str, tuple[str, ...]]:
+    """What the robot's joints and bodies are for, by the names of its description."""
+    roles = robot.roles
+    legs = {"left_leg": roles.left_leg, "right_leg": roles.right_leg}
+    return {"knees": roles.knees, **legs, "torso": (robot.torso_body,)}
 
 
 def _watched(simulate: Simulate, walk: Walk, writer: LogWriter, on_progress: OnProgress | None) -> End:

@@ -9,27 +9,29 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from surefoot.scenarios.paper import studies
-from surefoot.scenarios.paper.grid import SUPPORT, Column, Row, Views, grid
-from surefoot.scenarios.paper.results import Results
-from surefoot.scenarios.paper.studies import STAIRS, WALK, Study, World
-from surefoot.scenarios.paper.tables import WORLD_NAMES, error_norms
-from surefoot.scenarios.show.figures.balance import support_bounds
-from surefoot.scenarios.show.figures.style import (
+from surefoot.scenarios.palette import (
     BLACK,
     BLUE,
     COM,
+    COM_PLANNED,
     GREEN,
     GREY,
     ORANGE,
     PURPLE,
     SKY,
-    VERMILLION,
+    SUPPORT,
+    VERMILION,
     ZMP,
-    canvas,
-    in_style,
-    kept,
+    ZMP_PLANNED,
+    Color,
 )
+from surefoot.scenarios.paper import studies
+from surefoot.scenarios.paper.grid import Column, Row, Views, grid
+from surefoot.scenarios.paper.results import Results
+from surefoot.scenarios.paper.studies import STAIRS, WALK, Study, World
+from surefoot.scenarios.paper.tables import WORLD_NAMES, error_norms
+from surefoot.scenarios.show.figures.balance import support_bounds
+from surefoot.scenarios.show.figures.style import canvas, in_style, kept
 from surefoot.scenarios.show.logview import LogView
 
 Array = NDArray[np.float64]
@@ -40,14 +42,14 @@ POINTS = 250
 _PAPER_JERK = 1.5
 """Bound on the jerk in the paper [m/s³]."""
 
-SEVERAL = (BLUE, SKY, ORANGE, VERMILLION)
+SEVERAL = (BLUE, SKY, ORANGE, VERMILION)
 """Colours of runs in the same axes, from the least to the greatest value of what differs."""
 
 
 def position(axes: Axes, view: LogView, axis: int) -> None:
     """Reference ZMP, measured ZMP, CoM and the bounds of the support along an axis."""
     time, low, high = support_bounds(view, axis)
-    axes.fill_between(time, low, high, step="post", color=SUPPORT, alpha=0.35, linewidth=0, zorder=1)
+    axes.fill_between(time, low, high, step="post", color=SUPPORT, alpha=0.18, linewidth=0, zorder=1)
     for bound in (low, high):
         axes.plot(time, bound, drawstyle="steps-post", color=GREY, linewidth=0.5, zorder=1.5)
     line(axes, view.time("/contact"), view.field("/contact", "zmp", 3)[:, axis], ZMP, "ZMP measured", linewidth=1.3)
@@ -71,7 +73,7 @@ def height(axes: Axes, view: LogView) -> None:
     """Height of the CoM."""
     line(axes, view.time("/truth"), view.field("/truth", "com", 3)[:, 2], COM, "CoM height", linewidth=1.4)
     planned = view.field("/reference", "com", 3)[:, 2]
-    line(axes, view.time("/reference"), planned, BLACK, "its reference", linestyle=(0, (4, 2)), linewidth=0.6)
+    line(axes, view.time("/reference"), planned, COM_PLANNED, "its reference", linestyle=(0, (4, 2)), linewidth=0.6)
     axes.set_ylim(planned.min() - 0.05, planned.max() + 0.05)
 
 
@@ -79,7 +81,7 @@ def zmp_of_several(axes: Axes, views: Sequence[tuple[str, LogView]], axis: int) 
     """True ZMP of several runs in the same axes, with the support and the reference of the longest of them."""
     longest = max((view for _, view in views), key=lambda view: view.end)
     time, low, high = support_bounds(longest, axis)
-    axes.fill_between(time, low, high, step="post", color=SUPPORT, alpha=0.3, linewidth=0, zorder=1)
+    axes.fill_between(time, low, high, step="post", color=SUPPORT, alpha=0.15, linewidth=0, zorder=1)
     for (label, view), color in zip(views, SEVERAL, strict=False):
         zmp = view.field("/contact", "zmp", 3)[:, axis]
         line(axes, view.time("/contact"), zmp, color, f"ZMP, {label}", linewidth=0.8)
@@ -88,7 +90,7 @@ def zmp_of_several(axes: Axes, views: Sequence[tuple[str, LogView]], axis: int) 
     axes.set_ylim(reference.min() - margin, reference.max() + margin)
 
 
-def line(axes: Axes, time: Array, values: Array, color: str, label: str, **style: object) -> None:
+def line(axes: Axes, time: Array, values: Array, color: Color, label: str, **style: object) -> None:
     """A curve, thinned without losing an extreme; shapes (n,)."""
     rows = kept(values, POINTS)
     axes.plot(time[rows], values[rows], color=color, label=label, **style)  # type: ignore[arg-type]
@@ -97,12 +99,12 @@ def line(axes: Axes, time: Array, values: Array, color: str, label: str, **style
 def _reference(axes: Axes, view: LogView, axis: int) -> Array:
     reference = view.field("/reference", "zmp_reference", 2)[:, axis]
     style = {"linestyle": (0, (4, 2)), "linewidth": 0.7, "zorder": 3}
-    line(axes, view.time("/reference"), reference, BLACK, "ZMP reference", **style)
+    line(axes, view.time("/reference"), reference, ZMP_PLANNED, "ZMP reference", **style)
     return reference[np.isfinite(reference)]
 
 
 RISERS = (0.0, 0.10, 0.15, 0.18)
-_SHOWN = {"lti": VERMILLION, "preview": PURPLE, "repaired": GREEN, "default": BLUE}
+_SHOWN = {"lti": VERMILION, "preview": PURPLE, "repaired": GREEN, "default": BLUE}
 
 
 def preview_chart(results: Results) -> Figure:

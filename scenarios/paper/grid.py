@@ -14,15 +14,13 @@ from matplotlib.typing import RcKeyType
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
+from surefoot.scenarios.palette import GREY, PUSH, SUPPORT
 from surefoot.scenarios.paper.results import Sample
 from surefoot.scenarios.show.figures.shading import background
-from surefoot.scenarios.show.figures.style import GREY, PURPLE, canvas, in_style, note
+from surefoot.scenarios.show.figures.style import canvas, in_style, note
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 Views = Sequence[tuple[str, LogView]]
-
-SUPPORT = "#F0E442"
-"""Colour of the support."""
 
 WIDTH = 11.6
 """Of a figure [in]."""
@@ -106,7 +104,7 @@ def _draw_column(axes: Sequence[Axes], column: Column, rows: Sequence[Row]) -> d
     behind.shade(axes)
     for one in axes:
         for push in behind.pushes:  # 10 ms of 14 s are less than a pixel
-            one.axvline(push.start, color=PURPLE, linewidth=1.0, zorder=1.2)
+            one.axvline(push.start, color=PUSH, linewidth=1.0, zorder=1.2)
     entries: dict[str, object] = {"planned support, bounds": support_handle()}
     for one, row in zip(axes, rows, strict=True):
         try:
@@ -148,4 +146,4 @@ def _share_y(axes: Sequence[Axes]) -> None:
 
 def support_handle() -> Patch:
     """Entry of a legend for the support."""
-    return Patch(facecolor=SUPPORT, edgecolor=GREY, alpha=0.6, linewidth=0.5, label="planned support, bounds")
+    return Patch(facecolor=SUPPORT, edgecolor=GREY, alpha=0.3, linewidth=0.5, label="planned support, bounds")

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.log.rows import places
+from surefoot.scenarios.log.rows import Rows
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.sim.measurement import Measurement
@@ -43,8 +43,10 @@ def contact_points(wrench: Array, position: Array, rotation: Array) -> tuple[Arr
 
 
 _SECOND, _FALLBACK = SolveStatus.SECOND_SOLVER, SolveStatus.EQUALITIES_ONLY
-_ROTATIONS = 18
-"""Numbers of the sole orientations: they are not logged as they are, but the ZMP needs them."""
+_MORE_VECTORS = {"sole_rotation": 18}
+_MORE_NUMBERS = ("omega", "upright")
+"""What is not logged as it is, but needed for what is: the soles' orientations for the ZMP, the pendulum's natural
+frequency for the DCM, the vertical part of the torso's upward axis for its tilt."""
 
 
 class Recorder:
@@ -79,8 +81,7 @@ class Recorder:
             (torque, ("limit_ratio_max",)),
             (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
         )
-        self._row = writer.rows(vectors, numbers, derived, self._derived, _ROTATIONS)
-        self._at = places(vectors)
+        self._row = writer.rows(vectors, numbers, derived, self._derived, _MORE_VECTORS, _MORE_NUMBERS)
 
     def tick(
         self, time_ns: int, measurement: Measurement, truth: RobotTerms, terms: RobotTerms, state: RobotState,
@@ -113,18 +114,22 @@ class Recorder:
             truth.sole_rotation.ravel(),
         )  # fmt: skip
 
-    def _derived(self, vectors: Array, numbers: Array) -> Array:
+    def _derived(self, rows: Rows) -> dict[tuple[str, str], Array]:
         """What follows from the rest: solver, fallback, tilt, DCM, largest torque ratio, ZMP and contact points."""
-        n, at = len(vectors), self._at
-        left, right = at["/measurement", "wrench_left"], at["/measurement", "wrench_right"]
-        wrench = vectors[:, left.start : right.stop].reshape(n, 2, 6)
-        soles = vectors[:, at["/truth", "left_sole"].start : at["/truth", "right_sole"].stop].reshape(n, 2, 7)
-        zmp, cop = contact_points(wrench, soles[:, :, :3], vectors[:, -_ROTATIONS:].reshape(n, 2, 3, 3))
-        com, velocity = vectors[:, at["/estimate", "com"]], vectors[:, at["/estimate", "com_velocity"]]
-        status, omega, upright = numbers[:, 8], numbers[:, 12:13], numbers[:, 13]
-        return np.column_stack((
-            status == _SECOND, status >= _FALLBACK, np.arccos(np.minimum(upright, 1.0)),
-            com[:, :2] + velocity[:, :2] / omega,
-            np.abs(vectors[:, at["/torque", "command"]] * self._inverse_limit).max(axis=1),
-            zmp, wrench[:, :, 2], cop.reshape(n, 4),
-        ))  # fmt: skip
+        status, upright = rows["/wbc", "status"], rows["upright"]
+        n = len(status)
+        wrench = rows.span(("/measurement", "wrench_left"), ("/measurement", "wrench_right")).reshape(n, 2, 6)
+        soles = rows.span(("/truth", "left_sole"), ("/truth", "right_sole")).reshape(n, 2, 7)
+        zmp, cop = contact_points(wrench, soles[:, :, :3], rows["sole_rotation"].reshape(n, 2, 3, 3))
+        com, velocity = rows["/estimate", "com"], rows["/estimate", "com_velocity"]
+        return {
+            ("/wbc", "solver"): status == _SECOND,
+            ("/wbc", "fallback"): status >= _FALLBACK,
+            ("/truth", "torso_tilt"): np.arccos(np.minimum(upright, 1.0)),
+            ("/estimate", "dcm"): com[:, :2] + velocity[:, :2] / rows["omega"],
+            ("/torque", "limit_ratio_max"): np.abs(rows["/torque", "command"] * self._inverse_limit).max(axis=1),
+            ("/contact", "zmp"): zmp,
+            ("/contact", "normal_force"): wrench[:, :, 2],
+            ("/contact", "cop_left"): cop[:, 0],
+            ("/contact", "cop_right"): cop[:, 1],
+        }

@@ -5,7 +5,7 @@ import json
 import platform
 import subprocess
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -57,6 +57,7 @@ class RunConstants:
         terrain: kind of ground.
         plant: of fidelity pendulum.
         boxes: the solids on the ground plane, each as centre, half sizes [m] and rotation to the world, row by row.
+        roles: names of joints and bodies by role (knees, left_leg, right_leg, torso); a log may lack them.
     """
 
     scenario: str
@@ -76,6 +77,7 @@ class RunConstants:
     terrain: str
     plant: str = "pendulum"
     boxes: tuple[tuple[float, ...], ...] = ()
+    roles: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""
@@ -99,7 +101,7 @@ class RunConstants:
             raise LogError(f"{log_name}: does not describe a run; give a log that `surefoot run` has written") from None
 
 
-PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "quadprog", "numpy", "scipy", "mcap")
+PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "numpy", "scipy", "mcap")
 CODE = ("planner", "wbc", "sim", "models", "scenarios")
 READERS = ("scenarios/paper", "scenarios/show")
 """Folders of the code, and those in it that only read logs: no run depends on them."""
@@ -126,7 +128,8 @@ def source_digest(root: Path) -> str:
         root: folder that holds the code's folders.
     """
     digest = hashlib.sha256()
-    for path in sorted(path for folder in CODE for path in (root / folder).rglob("*.py")):
+    shared = [path for path in root.glob("*.py") if root.name == "surefoot"]
+    for path in sorted((*shared, *(path for folder in CODE for path in (root / folder).rglob("*.py")))):
         name = path.relative_to(root).as_posix()
         if not name.startswith(READERS):
             digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")

@@ -1,7 +1,9 @@
 """Writes what every walk has, whatever its fidelity, and what the pendulum has in place of a body."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,7 +69,9 @@ class WalkRecorder:
         self._footsteps = writer.channel(channels.footsteps(sizes))
         self._footstep = writer.channel(channels.footstep(sizes))
         timing = writer.channel(channels.timing(sizes))
-        self._timing = writer.rows((), ((timing, [field.name for field in timing.spec.fields]),))
+        parts = [field.name for field in timing.spec.fields]
+        self._timing = writer.rows((), ((timing, parts),))
+        self._parts: Callable[[TickTiming], tuple[float, ...]] = attrgetter(*parts)
         self._support = np.zeros((SUPPORT_VERTICES, 2))
 
     def planner_state(self, time_ns: int, state: PlannerState) -> None:
@@ -119,9 +123,7 @@ class WalkRecorder:
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick."""
-        t = timing
-        parts = (t.state, t.wbc_build, t.wbc_solve, t.planner, t.physics, t.log, t.tick)
-        self._timing.append(time_ns, tuple([1e6 * part for part in parts]))
+        self._timing.append(time_ns, tuple([1e6 * part for part in self._parts(timing)]))
 
 
 def _pose(footstep: Footstep) -> tuple[float, ...]:

@@ -7,8 +7,8 @@ from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Problem, nearest
 from surefoot.scenarios.file.controller import controller_parameters
-from surefoot.scenarios.file.criteria import ELEMENTS
 from surefoot.scenarios.file.schema import PushSettings
+from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import longest_step, uncommanded
 from surefoot.scenarios.setup.robot import RobotFacts, Robots
@@ -96,7 +96,8 @@ def _criteria(draft: Draft) -> Iterator[Problem]:
         low, high = bound.min, bound.max
         if isinstance(low, float) and isinstance(high, float) and low > high:
             yield Problem(("criteria", name), f"criteria.{name}: min {low} exceeds max {high}", "swap them")
-        size = ELEMENTS.get(name, 1)
+        metric = known(name)
+        size = metric.size if metric else 1
         for side, limit in (("min", low), ("max", high)):
             if isinstance(limit, tuple) and len(limit) != size:
                 what = f"criteria.{name}.{side} has {len(limit)} elements"

@@ -13,7 +13,8 @@ from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, Set
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario, Sensing
 from surefoot.scenarios.file.source import MAX_BYTES, Overrides, apply_overrides, parse
-from surefoot.scenarios.file.translate import problems_of, unknown_metrics, without
+from surefoot.scenarios.file.translate import problems_of, without
+from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
 from surefoot.scenarios.record.provenance import LOG_NAME, PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import ChannelData, Log
@@ -52,18 +51,8 @@ def export(channel: ChannelData, path: Path) -> None:
         raise LogError(f"{path}: cannot be written, {reason}; choose another directory") from None
 
 
-def columns(channel: ChannelData) -> dict[str, NDArray[Any]]:
-    """Time and every element of every field, each of shape (n,), by column name."""
-    table: dict[str, NDArray[Any]] = {"time": channel.time}
-    for field in channel.fields:
-        values = channel.field(field.name)
-        for place in np.ndindex(field.shape):
-            table["_".join((field.name, *map(str, place)))] = values[(slice(None), *place)]
-    return table
-
-
 def _csv(channel: ChannelData) -> bytes:
-    table, text = columns(channel), io.StringIO()
+    table, text = channel.columns(), io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table)
     for first in range(0, len(channel), _ROWS_AT_ONCE):
@@ -87,5 +76,5 @@ def _parquet(channel: ChannelData) -> bytes:
     except ImportError:
         raise LogError("parquet needs the package pyarrow; `pip install pyarrow`, or export to .csv or .npz") from None
     data = io.BytesIO()
-    pyarrow.parquet.write_table(pyarrow.table(columns(channel)), data)
+    pyarrow.parquet.write_table(pyarrow.table(channel.columns()), data)
     return data.getvalue()

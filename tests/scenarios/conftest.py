@@ -147,6 +147,8 @@ def robot() -> SimpleNamespace:
         sole_width=FOOT,
         shank_spacing=0.11,
         joint_names=JOINTS,
+        roles=SimpleNamespace(knees=JOINTS[1::2], left_leg=JOINTS[:2], right_leg=JOINTS[2:]),
+        torso_body="torso",
         torque_limit=np.full(4, 100.0),
         position_lower=np.full(4, -0.6),
         position_upper=np.full(4, 2.0),

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import Footstep
+from surefoot.scenarios import palette
 from surefoot.scenarios.log import PublishedSchema
 from surefoot.scenarios.log.template import NANOS, SECONDS, Template, slot
 
@@ -102,25 +103,25 @@ def scene(*entities: SceneEntity) -> SceneUpdate:
 
 
 BALLS: tuple[tuple[str, float, Rgba], ...] = (
-    ("CoM", 0.06, (0.90, 0.62, 0.00, 1.0)),
-    ("CoM planned", 0.03, (0.34, 0.34, 0.34, 1.0)),
-    ("ZMP", 0.03, (0.84, 0.37, 0.00, 1.0)),
-    ("ZMP planned", 0.02, (0.0, 0.0, 0.0, 1.0)),
-    ("DCM", 0.03, (0.00, 0.45, 0.70, 1.0)),
-    ("DCM planned", 0.02, (0.34, 0.71, 0.91, 1.0)),
+    ("CoM", 0.06, (*palette.COM, 1.0)),
+    ("CoM planned", 0.03, (*palette.COM_PLANNED, 1.0)),
+    ("ZMP", 0.03, (*palette.ZMP, 1.0)),
+    ("ZMP planned", 0.02, (*palette.ZMP_PLANNED, 1.0)),
+    ("DCM", 0.03, (*palette.DCM, 1.0)),
+    ("DCM planned", 0.02, (*palette.DCM_PLANNED, 1.0)),
 )
-"""Points that are drawn: entity, diameter [m], colour (Okabe and Ito's palette, distinct to colour-blind eyes)."""
+"""Points that are drawn: entity, diameter [m], colour."""
 
 ARROWS: tuple[tuple[str, Rgba], ...] = (
-    ("left contact", (0.00, 0.62, 0.45, 1.0)),
-    ("right contact", (0.80, 0.47, 0.65, 1.0)),
-    ("push", (0.84, 0.10, 0.10, 1.0)),
+    ("left contact", (*palette.FEET[0], 1.0)),
+    ("right contact", (*palette.FEET[1], 1.0)),
+    ("push", (*palette.PUSH, 1.0)),
 )
 """Forces that are drawn: entity, colour."""
 
 LOOPS: tuple[tuple[str, int, Rgba], ...] = (
-    ("support", 8, (0.00, 0.62, 0.45, 1.0)),
-    *((f"footstep {k}", 4, (0.00, 0.45, 0.70, 1.0 - 0.25 * k)) for k in range(3)),
+    ("support", 8, (*palette.SUPPORT, 1.0)),
+    *((f"footstep {k}", 4, (*palette.FOOTSTEP, 1.0 - 0.25 * k)) for k in range(3)),
 )
 """Outlines that are drawn: entity, vertices, colour."""
 

@@ -8,11 +8,11 @@ from typing import Any
 from rich.table import Table
 
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
 from surefoot.scenarios.show.compare.divergence import ChannelDifference, Point, compare_channels, unreadable
 from surefoot.scenarios.show.compare.settings import (
-    WALL_CLOCK_METRICS,
     Difference,
     file_differences,
     metric_pairs,
@@ -167,7 +167,8 @@ def describe(channel: ChannelDifference) -> str:
 
 def timed(name: str) -> bool:
     """Whether a metric's element differs between any two runs."""
-    return name.partition(".")[0] in WALL_CLOCK_METRICS
+    metric = known(name)
+    return metric is not None and not metric.repeatable
 
 
 def _own(log: Log) -> tuple[str, ...]:

@@ -6,12 +6,9 @@ from typing import Any
 
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.source import parse
-from surefoot.scenarios.judge.metric import compute
+from surefoot.scenarios.judge.metrics import measure
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE
-
-WALL_CLOCK_METRICS = ("planner_time", "wbc_time", "real_time_factor", "log_bytes")
-"""Metrics that differ between any two runs: times, and the size of the log that holds them compressed."""
 
 _AXES = ("x", "y", "z")
 
@@ -55,13 +52,17 @@ def file_differences(a: Log, b: Log) -> tuple[str, ...]:
 
 def metric_pairs(a: Log, b: Log) -> tuple[tuple[Difference, ...], tuple[str, ...]]:
     """Every metric of both logs, element by element, and a note for each log that has none."""
-    values, notes = [], []
+    values: list[dict[str, Any]] = []
+    notes: list[str] = []
     for name, log in (("A", a), ("B", b)):
         try:
-            values.append(_flat(compute(log), names=_AXES))
+            measured = measure(log)
         except LogError as error:
             values.append({})
             notes.append(f"{name} has no metrics: {error}")
+        else:
+            values.append(_flat(measured.values, names=_AXES))
+            notes += [f"{name}: {note}" for note in measured.notes]
     first, second = values
     return tuple(Difference(name, first.get(name), second.get(name)) for name in {**first, **second}), tuple(notes)
 

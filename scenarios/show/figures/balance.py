@@ -5,27 +5,15 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from surefoot.scenarios.palette import COM, COM_PLANNED, DCM, DCM_PLANNED, GREY, SUPPORT, ZMP, ZMP_PLANNED
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import (
-    COM,
-    DCM,
-    GREY,
-    ZMP,
-    Area,
-    curve,
-    legend,
-    or_say,
-    reference_curve,
-    steps,
-    time_axes,
-)
+from surefoot.scenarios.show.figures.style import Area, curve, legend, or_say, reference_curve, steps, time_axes
 from surefoot.scenarios.show.logview import LogView
 
 Array = NDArray[np.float64]
 
 TITLE = "Balance: ZMP, CoM and DCM with their references"
-_SUPPORT = "#F0E442"
 
 
 def draw(area: Area, view: LogView, background: Background) -> None:
@@ -41,7 +29,7 @@ def draw(area: Area, view: LogView, background: Background) -> None:
             _positions(position, view, axis)
         with or_say(error):
             _errors(error, view, axis)
-    support = Patch(facecolor=_SUPPORT, edgecolor=GREY, alpha=0.6, label="planned support, bounds")
+    support = Patch(facecolor=SUPPORT, edgecolor=GREY, alpha=0.3, label="planned support, bounds")
     legend(axes[0], 7, [support])
     legend(axes[1], 3)
 
@@ -62,7 +50,7 @@ def true_dcm(view: LogView) -> Array:
 
 def _support(axes: Axes, view: LogView, axis: int) -> None:
     time, low, high = support_bounds(view, axis)
-    axes.fill_between(time, low, high, step="post", color=_SUPPORT, alpha=0.35, linewidth=0, zorder=1)
+    axes.fill_between(time, low, high, step="post", color=SUPPORT, alpha=0.18, linewidth=0, zorder=1)
     for bound in (low, high):
         axes.plot(time, bound, drawstyle="steps-post", color=GREY, linewidth=0.6, zorder=1.5)
 
@@ -72,8 +60,9 @@ def _positions(axes: Axes, view: LogView, axis: int) -> None:
     curve(axes, view.time("/contact"), view.field("/contact", "zmp", 3)[:, axis], "ZMP measured", ZMP)
     curve(axes, view.time("/truth"), view.field("/truth", "com", 3)[:, axis], "CoM true", COM, linewidth=1.5)
     curve(axes, view.time("/truth"), true_dcm(view)[:, axis], "DCM true", DCM, linewidth=1.5)
-    reference_curve(axes, clock, view.field("/reference", "zmp_reference", 2)[:, axis], "ZMP reference (footsteps)")
-    for name, size, color in (("com", 3, "#003A5C"), ("dcm", 2, "#004D38")):
+    zmp = view.field("/reference", "zmp_reference", 2)[:, axis]
+    reference_curve(axes, clock, zmp, "ZMP reference (footsteps)", ZMP_PLANNED)
+    for name, size, color in (("com", 3, COM_PLANNED), ("dcm", 2, DCM_PLANNED)):
         values = view.field("/reference", name, size)[:, axis]
         reference_curve(axes, clock, values, f"{name.upper().replace('COM', 'CoM')} reference", color)
 

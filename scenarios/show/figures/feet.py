@@ -3,23 +3,13 @@
 import numpy as np
 from matplotlib.axes import Axes
 
+from surefoot.planner.types import GRAVITY
+from surefoot.scenarios.palette import BLACK, FEET, GREY
 from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import (
-    FEET,
-    FOOT_NAMES,
-    GREY,
-    Area,
-    curve,
-    legend,
-    or_say,
-    reference_curve,
-    time_axes,
-)
+from surefoot.scenarios.show.figures.style import FOOT_NAMES, Area, curve, legend, or_say, reference_curve, time_axes
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 TITLE = "Feet: sole heights and contact normal forces"
-GRAVITY = 9.81
-"""Gravitational acceleration [m/s²]."""
 
 
 def draw(area: Area, view: LogView, background: Background) -> None:
@@ -46,7 +36,7 @@ def _swing_reference(axes: Axes, view: LogView) -> None:
     """The height that the swing foot should have, where one swings."""
     values = view.field("/reference", "swing_position", 3)[:, 2]
     swings = view.field("/reference", "stance") >= 0
-    reference_curve(axes, view.time("/reference"), np.where(swings, values, np.nan), "swing reference")
+    reference_curve(axes, view.time("/reference"), np.where(swings, values, np.nan), "swing reference", BLACK)
 
 
 def _weight(axes: Axes, view: LogView) -> None:

@@ -2,18 +2,9 @@
 
 import numpy as np
 
+from surefoot.scenarios.palette import BLACK, COM, COM_PLANNED, PURPLE
 from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import (
-    BLACK,
-    COM,
-    PURPLE,
-    Area,
-    curve,
-    legend,
-    or_say,
-    reference_curve,
-    time_axes,
-)
+from surefoot.scenarios.show.figures.style import Area, curve, legend, or_say, reference_curve, time_axes
 from surefoot.scenarios.show.logview import LogView
 
 TITLE = "CoM height and planned jerk"
@@ -27,7 +18,8 @@ def draw(area: Area, view: LogView, background: Background) -> None:
     jerk.set_ylabel("CoM jerk [m/s³]")
     with or_say(height):
         curve(height, view.time("/truth"), view.field("/truth", "com", 3)[:, 2], "true", COM, linewidth=1.5)
-        reference_curve(height, view.time("/reference"), view.field("/reference", "com", 3)[:, 2], "reference")
+        planned = view.field("/reference", "com", 3)[:, 2]
+        reference_curve(height, view.time("/reference"), planned, "reference", COM_PLANNED)
     with or_say(jerk):
         first = view.field("/plan", "jerk", -1, 2)[:, 0]
         for axis, (name, color) in enumerate((("x", PURPLE), ("y", BLACK))):

@@ -5,17 +5,8 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from surefoot.scenarios.show.figures.style import (
-    BLACK,
-    BLUE,
-    VERMILLION,
-    canvas,
-    curve,
-    in_style,
-    legend,
-    or_say,
-    time_axes,
-)
+from surefoot.scenarios.palette import BLACK, BLUE, VERMILION, Color
+from surefoot.scenarios.show.figures.style import canvas, curve, in_style, legend, or_say, time_axes
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 _CURVES = (
@@ -54,9 +45,9 @@ def overlay(a: LogView, b: LogView, header: str, divergence: float | None) -> Fi
 
 def _both(axes: Axes, views: tuple[LogView, LogView], topic: str, name: str, axis: int) -> None:
     """Draw a channel of both runs; one that has not got it is left out, and named when neither has."""
-    styles: tuple[tuple[str, str, dict[str, Any]], ...] = (
+    styles: tuple[tuple[str, Color, dict[str, Any]], ...] = (
         ("A", BLUE, {"linewidth": 1.8}),
-        ("B", VERMILLION, {"linewidth": 1.0, "linestyle": (0, (4, 2))}),
+        ("B", VERMILION, {"linewidth": 1.0, "linestyle": (0, (4, 2))}),
     )
     missing = []
     for view, (label, color, style) in zip(views, styles, strict=True):

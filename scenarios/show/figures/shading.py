@@ -11,7 +11,8 @@ from matplotlib.patches import Patch
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import SINGLE_SUPPORT, RunView
 from surefoot.scenarios.judge.walking import fall_time
-from surefoot.scenarios.show.figures.style import BLACK, FOOT_NAMES, PURPLE
+from surefoot.scenarios.palette import BLACK, PUSH
+from surefoot.scenarios.show.figures.style import FOOT_NAMES
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 _DOUBLE_SUPPORT = 1
@@ -55,7 +56,7 @@ class Background:
             for stretch in self.phases:
                 self._shade_phase(one, stretch, named=number == 0)
             for push in self.pushes:
-                one.axvspan(push.start, push.end, color=PURPLE, alpha=0.35, linewidth=0)
+                one.axvspan(push.start, push.end, color=PUSH, alpha=0.35, linewidth=0)
             if self.fall is not None:
                 one.axvline(self.fall, color=BLACK, linewidth=1.2, linestyle=":")
 
@@ -68,7 +69,7 @@ class Background:
         if _DOUBLE_SUPPORT in kinds:
             entries.append(Patch(facecolor=_DOUBLE_GREY, edgecolor="#C8C8C8", linewidth=0.4, label="double support"))
         if self.pushes:
-            entries.append(Patch(color=PURPLE, alpha=0.35, label="push"))
+            entries.append(Patch(color=PUSH, alpha=0.35, label="push"))
         if self.fall is not None:
             entries.append(Line2D([], [], color=BLACK, linewidth=1.2, linestyle=":", label="fall"))
         return entries

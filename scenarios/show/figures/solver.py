@@ -4,19 +4,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from surefoot.scenarios.palette import BLACK, BLUE, GREY, VERMILION
 from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import (
-    BLACK,
-    BLUE,
-    CYCLE,
-    GREY,
-    VERMILLION,
-    Area,
-    curve,
-    legend,
-    or_say,
-    time_axes,
-)
+from surefoot.scenarios.show.figures.style import CYCLE, Area, curve, legend, or_say, time_axes
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 Array = NDArray[np.float64]
@@ -66,7 +56,7 @@ def _events(axes: Axes, view: LogView) -> None:
         try:
             times = view.time(topic)[view.field(topic, field) != 0]
             names.append(f"{label}: {len(times)}")
-            axes.plot(times, np.full(len(times), row), "|", color=VERMILLION, markersize=7)
+            axes.plot(times, np.full(len(times), row), "|", color=VERMILION, markersize=7)
         except MissingError:
             names.append(f"{label}: not logged")
     axes.set_yticks(range(len(_EVENTS)), names, fontsize=6.5)

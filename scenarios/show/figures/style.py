@@ -15,18 +15,13 @@ from matplotlib.typing import RcKeyType
 from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Color
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 Area = Figure | SubFigure
 
-BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-BLUE, VERMILLION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#7F7F7F"
-"""Palette of Okabe and Ito, "Color universal design", 2008, with a grey."""
-
-CYCLE = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, BLACK, SKY, GREY)
-ZMP, COM, DCM = VERMILLION, BLUE, GREEN
-FEET = (SKY, ORANGE)
-"""Left, right."""
+CYCLE = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, BLACK, SKY, GREY)
+"""Colours of curves that are of the same quantity."""
 
 FOOT_NAMES = ("left", "right")
 
@@ -100,7 +95,7 @@ def heading(area: Area, title: str) -> None:
 
 
 def curve(
-    axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], label: str | None, color: str, **style: Any
+    axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], label: str | None, color: Color, **style: Any
 ) -> None:
     """Draw a curve over time, thinned without losing an extreme; shapes (n,)."""
     rows = kept(values)
@@ -108,7 +103,7 @@ def curve(
 
 
 def reference_curve(
-    axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], label: str | None, color: str = BLACK
+    axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], label: str | None, color: Color
 ) -> None:
     """Draw what a curve should be: thin, dashed, on top."""
     curve(axes, time, values, label, color, linestyle=(0, (4, 2)), linewidth=0.7, zorder=3)

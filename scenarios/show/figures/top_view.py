@@ -10,21 +10,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from surefoot.scenarios.judge.soles import headings, level_corners
+from surefoot.scenarios.palette import COM, FEET, FOOTSTEP, GREY, SUPPORT, ZMP
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import (
-    BLACK,
-    COM,
-    FEET,
-    FOOT_NAMES,
-    GREY,
-    ZMP,
-    Area,
-    heading,
-    kept_of_path,
-    legend,
-    or_say,
-)
+from surefoot.scenarios.show.figures.style import FOOT_NAMES, Area, heading, kept_of_path, legend, or_say
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 Array = NDArray[np.float64]
@@ -33,7 +23,6 @@ TITLE = "Top view"
 WIDE = 2.2
 """Length over width of a walk beyond which the page gives it a row of its own."""
 
-_CORNERS = 0.5 * np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
 _MOST_POLYGONS = 200
 
 
@@ -63,18 +52,6 @@ def is_wide(view: LogView) -> bool:
     return bool(extent[0] > WIDE * (extent[1] + 0.3))
 
 
-def rectangle(pose: Array, length: float, width: float) -> Array:
-    """Corners of a sole on the ground, shape (4, 2) [m].
-
-    Args:
-        pose: x, y [m], anything, and yaw [rad] last.
-        length: of the sole [m].
-        width: of the sole [m].
-    """
-    cos, sin = np.cos(pose[-1]), np.sin(pose[-1])
-    return np.asarray(pose[:2] + _CORNERS * (length, width) @ np.array([[cos, sin], [-sin, cos]]))
-
-
 def _supports(axes: Axes, view: LogView) -> list[Artist]:
     try:
         vertices = view.field("/reference", "support", SUPPORT_VERTICES, 2)
@@ -84,9 +61,9 @@ def _supports(axes: Axes, view: LogView) -> list[Artist]:
     changed = np.concatenate(([True], np.any(flat[1:] != flat[:-1], axis=1)))
     polygons = vertices[changed & np.isfinite(flat).all(axis=1)]
     polygons = polygons[:: -(-len(polygons) // _MOST_POLYGONS) or 1]
-    style: dict[str, Any] = {"facecolor": "#F0E442", "edgecolor": GREY, "linewidth": 0.5}
-    axes.add_collection(PolyCollection(list(polygons), alpha=0.18, **style))
-    return [Patch(alpha=0.4, label="planned support", **style)]
+    style: dict[str, Any] = {"facecolor": SUPPORT, "edgecolor": GREY, "linewidth": 0.5}
+    axes.add_collection(PolyCollection(list(polygons), alpha=0.12, **style))
+    return [Patch(alpha=0.2, label="planned support", **style)]
 
 
 def _footprints(axes: Axes, view: LogView) -> list[Artist]:
@@ -97,14 +74,14 @@ def _footprints(axes: Axes, view: LogView) -> list[Artist]:
         return []
     entries: list[Artist] = []
     for foot, pose, label in [*_first_feet(view), *_touchdowns(view, "actual")]:
-        corners = rectangle(pose, length, width)
+        (corners,) = level_corners(pose[None], length, width)
         axes.fill(*corners.T, facecolor=FEET[foot], edgecolor=FEET[foot], alpha=0.55, linewidth=0.8, zorder=2)
         below: dict[str, Any] = {"textcoords": "offset points", "ha": "right", "va": "top"}
         axes.annotate(label, corners[2], (-2, -2), fontsize=6.5, zorder=5, **below)
     for _, pose, _ in [*_touchdowns(view, "planned"), *_ahead(view)]:
-        corners = rectangle(pose, length, width)
-        axes.fill(*corners.T, facecolor="none", edgecolor=BLACK, linestyle="--", linewidth=0.7, zorder=3)
-        entries = [Patch(facecolor="none", edgecolor=BLACK, linestyle="--", label="footstep planned")]
+        (corners,) = level_corners(pose[None], length, width)
+        axes.fill(*corners.T, facecolor="none", edgecolor=FOOTSTEP, linestyle="--", linewidth=0.9, zorder=3)
+        entries = [Patch(facecolor="none", edgecolor=FOOTSTEP, linestyle="--", label="footstep planned")]
     soles = [Patch(color=FEET[foot], alpha=0.55, label=f"{FOOT_NAMES[foot]} footprint") for foot in (0, 1)]
     return [*soles, *entries]
 
@@ -119,9 +96,7 @@ def _first_feet(view: LogView) -> list[tuple[int, Array, str]]:
             pose = view.field("/truth", f"{name}_sole", 7)[0]
         except MissingError:
             continue
-        x, y, z, w = pose[3:]
-        yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-        feet.append((foot, np.array([*pose[:2], yaw]), ""))
+        feet.append((foot, np.array([*pose[:2], headings(pose[3:])]), ""))
     return feet
 
 

@@ -6,12 +6,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from surefoot.scenarios.judge.roles import Roles, leg, side_of
+from surefoot.scenarios.palette import BLACK, GREY
 from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import BLACK, CYCLE, GREY, Area, curve, legend, or_say, time_axes
+from surefoot.scenarios.show.figures.style import CYCLE, Area, curve, legend, or_say, time_axes
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 TITLE = "Joint torques in percent of their limits"
-_LEG = re.compile(r"hip|knee|ankle|leg")
 _MOST = 6
 """Joints of a group drawn one by one; a larger group is drawn by its largest ratio."""
 
@@ -27,7 +28,7 @@ def draw(area: Area, view: LogView, background: Background) -> None:
         one.set_ylabel(f"{name} [%]")
         with or_say(one):
             names, percent = _percent(view)
-            _group(one, view.time("/torque"), percent, groups(names)[name])
+            _group(one, view.time("/torque"), percent, groups(names, _roles(view))[name])
             one.set_ylim(*_limits(percent))
             for limit in (-100.0, 100.0):
                 one.axhline(limit, color=BLACK, linewidth=0.9, linestyle="--")
@@ -36,18 +37,25 @@ def draw(area: Area, view: LogView, background: Background) -> None:
         legend(one, 6 if same else 4)
 
 
-def groups(names: tuple[str, ...]) -> dict[str, dict[str, list[int]]]:
+def groups(names: tuple[str, ...], roles: Roles) -> dict[str, dict[str, list[int]]]:
     """Joints by figure and label: both legs joint by joint, waist joints likewise, arms and head together."""
-    legs: dict[str, dict[str, list[int]]] = {"left leg": {}, "right leg": {}, "upper body": {}}
+    legs = {side: leg(names, roles, side) for side in ("left", "right")}
+    drawn = {f"{side} leg": {_short(names[i], side): [i] for i in joints} for side, joints in legs.items()}
+    upper: dict[str, list[int]] = {}
     for index, name in enumerate(names):
-        side = next((side for side in ("left", "right") if side in name), "")
-        if side and _LEG.search(name):
-            legs[f"{side} leg"][_short(name, side)] = [index]
-        else:
-            label = _short(name, "") if not side and len(legs["upper body"]) < _MOST - 1 else "arms and head, largest"
-            label = "arms and head, largest" if re.search("neck|head", name) else label
-            legs["upper body"].setdefault(label, []).append(index)
-    return legs
+        if not any(index in joints for joints in legs.values()):
+            alone = not side_of(name) and len(upper) < _MOST - 1 and not re.search("neck|head", name)
+            upper.setdefault(_short(name, "") if alone else "arms and head, largest", []).append(index)
+    return {**drawn, "upper body": upper}
+
+
+def _roles(view: LogView) -> Roles:
+    """The roles that the log tells, if any."""
+    try:
+        roles = view.constant("roles")
+    except MissingError:
+        return {}
+    return roles if isinstance(roles, dict) else {}
 
 
 def _percent(view: LogView) -> tuple[tuple[str, ...], NDArray[np.float64]]:

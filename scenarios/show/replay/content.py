@@ -13,10 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.palette import Color
 
 Array = NDArray[np.float64]
-Color = tuple[float, float, float]
-"""Red, green and blue from 0 to 1."""
 
 Kind = Literal["point", "arrow", "outline"]
 

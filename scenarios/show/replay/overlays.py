@@ -3,14 +3,15 @@
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
+from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import RunView
+from surefoot.scenarios.judge.roles import torso
+from surefoot.scenarios.judge.soles import level_corners, rotations
 from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.log import Log
-from surefoot.scenarios.show import palette
-from surefoot.scenarios.show.replay.content import Array, Color, Footprint, Track
+from surefoot.scenarios.show.replay.content import Array, Footprint, Track
 from surefoot.scenarios.show.replay.poses import Frames
 
 LIFT = 0.004
@@ -27,19 +28,19 @@ def balance_tracks(run: RunView, frames: Frames) -> tuple[Track, ...]:
     dcm = run.field("/estimate", "dcm")[rows]
     planned = {name: run.field("/reference", name)[rows] for name in ("com", "dcm", "zmp")}
     return (
-        _point("CoM", "measured", palette.ORANGE, 0.035, com, trail=True),
-        _point("CoM", "on the ground", palette.ORANGE, 0.014, below),
-        Track("CoM", "plumb line", "outline", palette.paler(palette.ORANGE), 0.002, np.stack([com, below], axis=1)),
-        _point("CoM", "planned", palette.paler(palette.ORANGE), 0.025, planned["com"]),
-        _point("DCM", "measured", palette.PURPLE, 0.014, _flat(dcm, ground), trail=True),
-        _point("DCM", "planned", palette.paler(palette.PURPLE), 0.01, _flat(planned["dcm"], ground)),
-        _point("ZMP", "measured", palette.VERMILION, 0.014, zmp + np.array([0.0, 0.0, LIFT]), trail=True),
-        _point("ZMP", "planned", palette.paler(palette.VERMILION), 0.01, _flat(planned["zmp"], ground)),
-        Track("Support polygon", "planned", "outline", palette.GREEN, 0.004, _support(run, frames)),
+        _point("CoM", "measured", palette.COM, 0.035, com, trail=True),
+        _point("CoM", "on the ground", palette.COM, 0.014, below),
+        Track("CoM", "plumb line", "outline", palette.paler(palette.COM), 0.002, np.stack([com, below], axis=1)),
+        _point("CoM", "planned", palette.COM_PLANNED, 0.025, planned["com"]),
+        _point("DCM", "measured", palette.DCM, 0.014, _flat(dcm, ground), trail=True),
+        _point("DCM", "planned", palette.DCM_PLANNED, 0.01, _flat(planned["dcm"], ground)),
+        _point("ZMP", "measured", palette.ZMP, 0.014, zmp + np.array([0.0, 0.0, LIFT]), trail=True),
+        _point("ZMP", "planned", palette.ZMP_PLANNED, 0.01, _flat(planned["zmp"], ground)),
+        Track("Support polygon", "planned", "outline", palette.SUPPORT, 0.004, _support(run, frames)),
     )
 
 
-def _point(layer: str, name: str, color: Color, size: float, position: Array, trail: bool = False) -> Track:
+def _point(layer: str, name: str, color: palette.Color, size: float, position: Array, trail: bool = False) -> Track:
     return Track(layer, name, "point", color, size, position[:, None, :], trail)
 
 
@@ -72,12 +73,12 @@ def planned_footprints(run: RunView, frames: Frames) -> Iterator[Track]:
     channel = run.log["/footsteps"]
     rows = np.maximum(np.searchsorted(channel.time, frames.time + 1e-9, side="right") - 1, 0)
     poses, feet = channel.field("next")[rows], channel.field("next_foot")[rows]
-    for foot, color in enumerate(palette.FEET):
+    for foot in (0, 1):
         for ahead in range(poses.shape[1]):
             corners = _corners(run, poses[:, ahead])
             corners[feet[:, ahead] != foot] = np.nan
             name = f"{('left', 'right')[foot]}, {ahead + 1} ahead"
-            yield Track("Planned footprints", name, "outline", palette.paler(color, 0.3), 0.003, corners)
+            yield Track("Planned footprints", name, "outline", palette.FOOTSTEP, 0.003, corners)
 
 
 def taken_footprints(run: RunView, frames: Frames) -> Iterator[Footprint]:
@@ -97,12 +98,9 @@ def taken_footprints(run: RunView, frames: Frames) -> Iterator[Footprint]:
 
 def _corners(run: RunView, poses: Array) -> Array:
     """Corners of soles at x y z yaw of shape (n, 4), shape (n, 4, 3) [m]."""
-    half = np.array([run.constants.foot_length, run.constants.foot_width]) / 2
-    local = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * half
-    cosine, sine = np.cos(poses[:, 3, None]), np.sin(poses[:, 3, None])
-    x = poses[:, 0, None] + cosine * local[:, 0] - sine * local[:, 1]
-    y = poses[:, 1, None] + sine * local[:, 0] + cosine * local[:, 1]
-    return np.stack([x, y, np.broadcast_to(poses[:, 2, None] + LIFT / 2, x.shape)], axis=2)
+    ground = level_corners(poses, run.constants.foot_length, run.constants.foot_width)
+    height = np.broadcast_to(poses[:, 2, None] + LIFT / 2, ground.shape[:2])
+    return np.concatenate([ground, height[..., None]], axis=2)
 
 
 CONTACT_SCALE = 0.0005
@@ -122,10 +120,10 @@ def contact_forces(run: RunView, frames: Frames) -> Iterator[Track]:
     """Contact force on each sole, from its centre of pressure."""
     for foot, name in enumerate(("left", "right")):
         pose = run.soles[frames.rows, foot]
-        rotation = Rotation.from_quat(pose[:, 3:])
+        to_world = rotations(pose[:, 3:])
         cop = run.field("/contact", f"cop_{name}")[frames.rows]
-        tail = pose[:, :3] + rotation.apply(np.column_stack([cop, np.zeros(len(cop))]))
-        force = rotation.apply(run.field("/measurement", f"wrench_{name}")[frames.rows, :3])
+        tail = pose[:, :3] + np.einsum("nij,nj->ni", to_world[:, :, :2], cop)
+        force = np.einsum("nij,nj->ni", to_world, run.field("/measurement", f"wrench_{name}")[frames.rows, :3])
         yield Track("Contact forces", name, "arrow", palette.FEET[foot], 0.012, _arrow(tail, force, CONTACT_SCALE))
 
 
@@ -141,18 +139,19 @@ def push(log: Log, run: RunView, frames: Frames, body_names: tuple[str, ...], bo
     """
     forces = run.field("/measurement", "external_force")
     force = forces[frames.strongest(np.linalg.norm(forces, axis=1), run.time, PUSH_SHOWN)]
-    head = body_com[:, body_names.index(body)] if (body := _pushed_body(log)) in body_names else body_com[:, 0]
+    head = body_com[:, body_names.index(body)] if (body := _pushed_body(log, run)) in body_names else body_com[:, 0]
     arrow = _arrow(head - PUSH_SCALE * force, force, PUSH_SCALE)
-    return Track("Pushes", "push", "arrow", palette.YELLOW, 0.02, arrow)
+    return Track("Pushes", "push", "arrow", palette.PUSH, 0.02, arrow)
 
 
-def _pushed_body(log: Log) -> str:
+def _pushed_body(log: Log, run: RunView) -> str:
     """Body that the pushes of the scenario act on; the torso when they name several or none."""
     try:
         bodies = {settings.body for settings in scenario_of(log).pushes}
     except LogError:
         bodies = set()
-    return next(iter(bodies)) or "torso" if len(bodies) == 1 else "torso"
+    named = next(iter(bodies)) if len(bodies) == 1 else None
+    return named or torso(run.constants.roles)
 
 
 def _arrow(tail: Array, force: Array, scale: float) -> Array:

@@ -3,7 +3,8 @@
 import html
 from pathlib import Path
 
-from surefoot.scenarios.show.replay.content import Color, Replay, write_whole
+from surefoot.scenarios.palette import Color
+from surefoot.scenarios.show.replay.content import Replay, write_whole
 from surefoot.scenarios.show.replay.scene import ViserScene, rgb, serving
 
 _STYLE = """

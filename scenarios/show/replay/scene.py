@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from surefoot.scenarios.show.replay.content import Array, Color, Footprint, Replay, Track, require
+from surefoot.scenarios.palette import Color
+from surefoot.scenarios.show.replay.content import Array, Footprint, Replay, Track, require
 
 if TYPE_CHECKING:
     import viser

@@ -4,7 +4,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.show.replay.content import Array, Color, Surface
+from surefoot.scenarios.palette import Color
+from surefoot.scenarios.show.replay.content import Array, Surface
 from surefoot.sim.shapes import Shape, drawn_shapes
 
 Faces = NDArray[np.int64]

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from surefoot.scenarios.show.replay.content import Array, Color, MissingExtraError, Replay, Track, require, write_whole
+from surefoot.scenarios.palette import Color
+from surefoot.scenarios.show.replay.content import Array, MissingExtraError, Replay, Track, require, write_whole
 from surefoot.sim.gl import RenderingUnavailableError
 from surefoot.sim.marks import Mark
 from surefoot.sim.render import Camera, Image, Quality, render_frames

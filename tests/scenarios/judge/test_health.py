@@ -5,7 +5,7 @@ import pytest
 
 from surefoot.scenarios.judge.health import findings
 from surefoot.scenarios.judge.inspection import inspect
-from surefoot.scenarios.judge.metric import digest
+from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.rows import ChannelWriter
 from surefoot.scenarios.loop.run import run_scenario

@@ -46,13 +46,15 @@ def test_rows_give_the_same_log_as_single_appends(tmp_path):
     with LogWriter(tmp_path / "rows.mcap", {}) as rows, LogWriter(tmp_path / "single.mcap", {}) as single:
         a, b = rows.channel(A), rows.channel(B)
         row = rows.rows(
-            ((b, ("y",)), (a, ("x",))), ((a, ("n",)), (b, ("z",))), ((a, ("twice",)),), lambda v, n: 2 * v[:, -2:], 2
-        )
+            ((b, ("y",)), (a, ("x",))), ((a, ("n",)), (b, ("z",))), ((a, ("twice",)),),
+            lambda rows: {("/a", "twice"): 2 * rows["extra"] + rows["shift"] + 0 * rows["/b", "z"]},
+            {"extra": 2}, ("shift",),
+        )  # fmt: skip
         one, two = single.channel(A), single.channel(B)
         for tick in range(200):
             x, y, extra = rng.normal(size=3), rng.normal(size=(2, 2)), rng.normal(size=2)
-            row.append(tick * 2_000_000, (tick, 0.5 * tick), y.ravel(), x, extra)
-            one.append(tick * 2_000_000, x, tick, 2 * extra)
+            row.append(tick * 2_000_000, (tick, 0.5 * tick, tick), y.ravel(), x, extra)
+            one.append(tick * 2_000_000, x, tick, 2 * extra + tick)
             two.append(tick * 2_000_000, y, 0.5 * tick)
     first, second = read(tmp_path / "rows.mcap"), read(tmp_path / "single.mcap")
     assert len(first["/a"]) == 200
@@ -64,6 +66,16 @@ def test_a_row_must_be_complete(tmp_path):
         a = writer.channel(A)
         with pytest.raises(ValueError, match="every field"):
             writer.rows(((a, ("x",)),), ((a, ("n",)),))
+
+
+@pytest.mark.parametrize("numbers", [(1,), (1, 2.0, 3.0)])
+def test_a_number_too_few_or_too_many_shifts_nothing_in_silence(tmp_path, numbers):
+    writer = LogWriter(tmp_path / "log.mcap", {})
+    b = writer.channel(B)
+    row = writer.rows(((b, ("y",)),), ((b, ("z",)),), more_numbers=("more",))
+    row.append(0, numbers, np.zeros(4))
+    with pytest.raises(ValueError, match="where there are places for 2"):
+        writer.close()
 
 
 def test_points_of_many_ticks_are_those_of_each():

@@ -8,10 +8,10 @@ import pytest
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import RunView
-from surefoot.scenarios.judge.metric import compute, digest
+from surefoot.scenarios.judge.metrics import compute, digest
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.show.export import columns, export, selected
+from surefoot.scenarios.show.export import export, selected
 
 pytestmark = pytest.mark.unit
 
@@ -67,7 +67,7 @@ def test_csv_npz_and_columns_agree(log, tmp_path):
     with (tmp_path / "x.csv").open(newline="") as file:
         rows = list(csv.reader(file))
     assert rows[0] == ["time", "a", *(f"b_{i}_{j}" for i in range(2) for j in range(3)), "n"]
-    assert np.array_equal(np.array(rows[1:], float), np.column_stack(list(columns(part).values())))
+    assert np.array_equal(np.array(rows[1:], float), np.column_stack(list(part.columns().values())))
     export(part, tmp_path / "x.npz")
     with np.load(tmp_path / "x.npz") as data:
         assert np.array_equal(data["b"], part.field("b"))

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from surefoot.scenarios.judge.walking import swing_clearance_min
+from surefoot.scenarios.judge.feet import swing_clearance_min
 
 pytestmark = pytest.mark.unit
 

@@ -2,8 +2,9 @@
 
 import pytest
 
-from surefoot.scenarios.file.criteria import METRIC_NAMES, Bound
-from surefoot.scenarios.show.console import bound_text, shown_unit, value_text
+from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.judge.metrics import OWN
+from surefoot.scenarios.judge.text import bound_text, shown_unit, value_text
 
 pytestmark = pytest.mark.unit
 
@@ -36,6 +37,4 @@ def test_bounds_are_shown_in_the_unit_of_the_value():
 
 
 def test_lengths_are_in_millimetres():
-    assert all(
-        shown_unit(name) == "mm" for name in METRIC_NAMES if name.endswith("error_rms") or name.startswith("foot")
-    )
+    assert all(shown_unit(name) == "mm" for name in OWN if name.endswith("error_rms") or name.startswith("foot"))

@@ -17,7 +17,7 @@ from surefoot.scenarios.show.figures.balance import support_bounds, true_dcm
 from surefoot.scenarios.show.figures.page import FIGURES, page, plot, single
 from surefoot.scenarios.show.figures.shading import background, stretches
 from surefoot.scenarios.show.figures.solver import stretch_extremes
-from surefoot.scenarios.show.figures.top_view import is_wide, rectangle
+from surefoot.scenarios.show.figures.top_view import is_wide
 from surefoot.scenarios.show.figures.torques import groups
 from surefoot.scenarios.show.logview import LogView, MissingError
 
@@ -116,15 +116,15 @@ def test_stretches_cover_the_time_without_overlap():
     assert [(one.start, one.end, one.value) for one in found] == [(0, 2, (0,)), (2, 5, (1,)), (5, 5, (2,))]
 
 
-def test_a_sole_is_a_rotated_rectangle():
-    corners = rectangle(np.array([1.0, 2.0, 0.5, np.pi / 2]), 0.2, 0.1)
-    assert corners.mean(axis=0) == pytest.approx([1.0, 2.0])
-    assert np.ptp(corners, axis=0) == pytest.approx([0.1, 0.2])
+def test_joints_are_grouped_by_the_roles_that_a_log_tells():
+    found = groups(("a", "b", "c", "d"), {"left_leg": ("b",), "right_leg": ("d", "a")})
+    assert (found["left leg"], found["right leg"]) == ({"b": [1]}, {"a": [0], "d": [3]})
+    assert found["upper body"] == {"c": [2]}
 
 
 def test_joints_are_grouped_by_leg():
     names = ("left_hip_yaw", "right_knee", "waist_roll", "left_elbow", "neck_pitch", "leg_left_6_joint")
-    found = groups(names)
+    found = groups(names, {})
     assert found["left leg"] == {"hip yaw": [0], "6": [5]}
     assert found["right leg"] == {"knee": [1]}
     assert found["upper body"] == {"waist roll": [2], "arms and head, largest": [3, 4]}

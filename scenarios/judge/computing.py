@@ -1,0 +1,102 @@
+"""Metrics of what thinks: the state that was given, the solvers, the time they took, the log."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.scenarios.judge.balance import rms
+from surefoot.scenarios.judge.digest import Array, RunView
+from surefoot.scenarios.judge.metric import metric
+
+Rows = NDArray[np.intp]
+
+_SPREAD = ("median", "p99")
+
+
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",), "/planner_state": ("com",)})
+def estimation_error_rms(run: RunView) -> float | None:
+    """Distance of the CoM that the planner was given from the true one, RMS [m]."""
+    rows, given = _given(run)
+    error = run.log["/planner_state"].field("com")[given] - run.log["/truth"].field("com")[rows]
+    value = rms(np.linalg.norm(error, axis=1)[:, None])
+    return value[0] if value else None
+
+
+@metric(shown=(1e2, "% of the plans"), reads={"/plan": ("infeasible",)})
+def planner_infeasible_fraction(run: RunView) -> float:
+    """Share of plans whose hard constraints had no solution and were softened [-]."""
+    return float(np.mean(run.log["/plan"].field("infeasible") != 0))
+
+
+@metric(
+    unit="m",
+    shown=(1e3, "mm"),
+    size=2,
+    reads={"/truth": ("com", "com_velocity"), "/planner_state": ("com", "com_velocity"), "/reference": ("omega",)},
+)
+def dcm_estimation_error_rms(run: RunView) -> list[float] | None:
+    """DCM that the planner was given minus the true one, both by the planned frequency, RMS, x and y [m]."""
+    rows, given = _given(run)
+    state, truth = run.log["/planner_state"], run.log["/truth"]
+    omega = run.log["/reference"].field("omega")[rows, None]
+    position = state.field("com")[given, :2] - truth.field("com")[rows, :2]
+    velocity = state.field("com_velocity")[given, :2] - truth.field("com_velocity")[rows, :2]
+    return rms(position + velocity / omega)
+
+
+@metric(unit="s", shown=(1e3, "ms"), parts=_SPREAD, reads={"/timing": ("planner",)}, repeatable=False)
+def planner_time(run: RunView) -> dict[str, float] | None:
+    """Wall-clock time of a plan: median and 99th percentile [s]."""
+    spent = run.field("/timing", "planner")
+    return _spread(spent[spent > 0])
+
+
+@metric(
+    unit="s",
+    shown=(1e3, "ms"),
+    parts=_SPREAD,
+    reads={"/timing": ("wbc_build", "wbc_solve")},
+    body=True,
+    repeatable=False,
+)
+def wbc_time(run: RunView) -> dict[str, float] | None:
+    """Wall-clock time to build and solve the whole-body QP: median and 99th percentile [s]."""
+    return _spread(run.field("/timing", "wbc_build") + run.field("/timing", "wbc_solve"))
+
+
+@metric(shown=(1.0, "times real time"), reads={"/timing": ("tick",)}, repeatable=False)
+def real_time_factor(run: RunView) -> float | None:
+    """Simulated over wall-clock time of the loop [-]."""
+    wall = float(run.field("/timing", "tick").sum()) * 1e-6
+    return run.ticks / run.constants.control_rate / wall if wall > 0 else None
+
+
+@metric(reads={"/wbc": ("status", "solver")}, body=True)
+def qp_failures(run: RunView) -> int:
+    """Ticks at which the whole-body QP's default solver failed."""
+    return int(np.count_nonzero((run.field("/wbc", "status") != 0) | (run.field("/wbc", "solver") != 0)))
+
+
+@metric(reads={"/wbc": ("fallback",)}, body=True)
+def wbc_fallbacks(run: RunView) -> int:
+    """Ticks at which no solver succeeded and the fallback torque was used."""
+    return int(np.count_nonzero(run.field("/wbc", "fallback")))
+
+
+@metric(unit="B", shown=(1e-6, "MB"), repeatable=False)
+def log_bytes(run: RunView) -> int:
+    """Size of the log [bytes]."""
+    return run.log.size
+
+
+def _spread(microseconds: Array) -> dict[str, float] | None:
+    if not len(microseconds):
+        return None
+    median, p99 = np.percentile(microseconds, (50, 99)) * 1e-6
+    return dict(zip(_SPREAD, (float(median), float(p99)), strict=True))
+
+
+def _given(run: RunView) -> tuple[Rows, Rows]:
+    """Rows of /truth and of /planner_state at the planner's measurements, of ticks that are whole."""
+    rows, near = run.rows_at("/truth", run.log["/planner_state"].time_ns)
+    given = np.flatnonzero(near & (rows < run.ticks))
+    return rows[given], given

@@ -1,0 +1,200 @@
+"""The metrics there are, ours and those of other packages, and their values for a log."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from surefoot.plugins import PluginError, Registry
+from surefoot.scenarios.errors import LogError, Problem, nearest
+from surefoot.scenarios.judge import balance, computing, effort, feet, health, walking, way
+from surefoot.scenarios.judge.digest import Digest, Reads, RunView, Source
+from surefoot.scenarios.judge.metric import Metric, Reduction
+from surefoot.scenarios.log import Log
+
+GROUP = "surefoot.metrics"
+"""Entry points by which other packages bring metrics: the metric's name, and where the `Metric` is."""
+
+
+def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
+    """The metrics of modules by name, in the order in which they are written there.
+
+    Raises:
+        PluginError: two have the same name.
+    """
+    found: dict[str, Metric[Any]] = {}
+    for module in modules:
+        for thing in vars(module).values():
+            if isinstance(thing, Metric) and found.setdefault(thing.name, thing) is not thing:
+                raise PluginError(f"metric '{thing.name}' is there twice; choose another name")
+    return found
+
+
+OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, way, computing)
+"""Ours, in the order in which they are shown."""
+
+METRICS = Registry(GROUP, Metric, OWN)
+"""All by name: ours, then those of other packages."""
+
+
+def register(made: Metric[Any]) -> Metric[Any]:
+    """Have a metric computed, shown and bounded in this process, as if a package had brought it.
+
+    Raises:
+        PluginError: its name is one of ours.
+    """
+    METRICS.add(made.name, made)
+    return made
+
+
+def known(name: str) -> Metric[Any] | None:
+    """The metric of a name, or of the name before a dot; None where there is none that can be used."""
+    try:
+        return _usable(name.partition(".")[0])
+    except (KeyError, PluginError):
+        return None
+
+
+def unknown_metrics(criteria: Any) -> list[Problem]:
+    """Criteria on names that are no metrics, or metrics of packages that cannot be used."""
+    return [problem for name in criteria for problem in _unknown(name)] if isinstance(criteria, dict) else []
+
+
+def _unknown(name: Any) -> Iterator[Problem]:
+    try:
+        if name not in _usable(str(name).partition(".")[0]).bounded:
+            raise KeyError(name)
+    except KeyError:
+        names = [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
+        yield Problem(("criteria", name), f"unknown metric '{name}'", nearest(str(name), names), True)
+    except PluginError as error:
+        what, _, right = str(error).rpartition("; ")
+        yield Problem(("criteria", name), f"metric {what}", right, True)
+
+
+def _usable(name: str) -> Metric[Any]:
+    """The metric of a name.
+
+    Raises:
+        KeyError: there is none.
+        PluginError: its package cannot be loaded, or has it under another name.
+    """
+    found: Metric[Any] = METRICS[name]
+    if found.name != name:
+        raise PluginError(f"'{name}' in {GROUP} is named '{found.name}' where it is made; give both one name")
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """The metrics of a log.
+
+    Attributes:
+        values: by name, None where a metric does not apply or its channels or fields are missing; plain JSON values.
+        notes: what another package's metric has not given and why, one sentence each.
+    """
+
+    values: dict[str, Any]
+    notes: tuple[str, ...]
+
+
+def compute(log: Log | Digest) -> dict[str, Any]:
+    """The values of `measure`, which has the arguments and errors."""
+    return measure(log).values
+
+
+def measure(log: Log | Digest) -> Measured:
+    """Compute every metric; one of another package that fails is None and a note.
+
+    Args:
+        log: a log of a run, whole or truncated, or its digest.
+
+    Raises:
+        LogError: the log does not describe a run.
+    """
+    run = RunView(log if isinstance(log, Digest) else digest(log))
+    notes: list[str] = []
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        values = {name: _own_value(run, metric) for name, metric in OWN.items()}
+        for name in METRICS:
+            if name not in OWN:
+                values[name] = _foreign_value(run, name, notes)
+    return Measured(values, tuple(notes))
+
+
+def _own_value(run: RunView, metric: Metric[Any]) -> Any:
+    try:
+        return _value(run, metric)
+    except LogError:  # the log of another version lacks a field
+        return None
+
+
+def _foreign_value(run: RunView, name: str, notes: list[str]) -> Any:
+    """The value of another package's metric, whatever it does."""
+    try:
+        metric = _usable(name)
+    except PluginError as error:
+        notes.append(f"metric {error}")
+        return None
+    place = f"metric {name} of {metric.function.__module__}"
+    try:
+        value = _value(run, metric)
+    except Exception as error:
+        notes.append(f"{place} failed, {type(error).__name__}: {error}")
+        return None
+    if not metric.fits(value):
+        notes.append(f"{place} gave {value!r}, which is not what it says it gives")
+        return None
+    return value
+
+
+def _value(run: RunView, metric: Metric[Any]) -> Any:
+    if not metric.applies(run.constants.fidelity) or not run.has(*metric.needs):
+        return None
+    return _plain(metric(run))
+
+
+def _plain(value: Any) -> Any:
+    """The value for JSON: what is not a finite number becomes None."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(element) for element in value]
+    if isinstance(value, dict):
+        return {key: _plain(element) for key, element in value.items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def digest(log: Log) -> Digest:
+    """Gather what the metrics and the health checks need, in one pass with bounded memory.
+
+    Raises:
+        LogError: the log does not describe a run.
+    """
+    constants = RunView(log).constants
+    own = {*health.REDUCTIONS, *(one for metric in OWN.values() for one in metric.reductions)}
+    metrics = [metric for metric in map(known, METRICS) if metric is not None]
+    wanted = dict.fromkeys((*health.REDUCTIONS, *(one for metric in metrics for one in metric.reductions)))
+    failed: set[Reduction] = set()
+
+    def reduce(part: Source) -> dict[Any, Any]:
+        run, found = RunView(part, constants), {}
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            for reduction in wanted:
+                if reduction not in failed and run.has(*reduction.needs):
+                    try:
+                        found[reduction] = reduction(run)
+                    except Exception:
+                        if reduction in own:
+                            raise
+                        failed.add(reduction)  # its metric will say so, computing it anew
+        return found
+
+    reads: list[Reads] = [health.READS, *(metric.reads for metric in metrics)]
+    gathered = Digest(log, reads, reduce)
+    for reduction in failed:
+        gathered.reduced.pop(reduction, None)
+    return gathered

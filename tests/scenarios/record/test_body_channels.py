@@ -1,0 +1,73 @@
+"""What the recorder derives from a tick, against the definitions, whatever the order of the columns."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from surefoot.scenarios.log import LogWriter, read
+from surefoot.scenarios.record.body import Recorder
+from surefoot.scenarios.record.channels import Sizes
+from surefoot.wbc.types import SolveStatus
+from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
+
+pytestmark = pytest.mark.unit
+
+NJ = 4
+LIMIT = np.array([100.0, 80.0, 50.0, 200.0])
+STATUSES = (SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER, SolveStatus.EQUALITIES_ONLY)
+
+
+def tick(rng, status):
+    """All that the recorder is given in a tick, invented."""
+    rotation = np.linalg.qr(rng.normal(size=(3, 3, 3)))[0]
+    wrench = rng.normal(size=(2, 6)) * 20
+    wrench[:, 2] = rng.uniform(100, 500, 2)
+    measurement = SimpleNamespace(
+        nonfoot_contact=0, self_contact=1, joint_position=rng.normal(size=NJ), joint_velocity=rng.normal(size=NJ),
+        joint_torque=rng.normal(size=NJ), gyro=rng.normal(size=3), accelerometer=rng.normal(size=3), wrench=wrench,
+        external_force=rng.normal(size=3), q=rng.normal(size=NJ + 7), v=rng.normal(size=NJ + 6),
+    )  # fmt: skip
+    position = rng.normal(size=(2, 3))
+    truth = SimpleNamespace(
+        com=rng.normal(size=3), com_velocity=rng.normal(size=3), angular_momentum=rng.normal(size=3),
+        sole_pose=np.column_stack((position, np.zeros((2, 3)), np.ones(2))), sole_position=position,
+        sole_rotation=rotation[:2], torso_rotation=rotation[2],
+    )  # fmt: skip
+    report = SimpleNamespace(
+        active=(True, False), felt=(False, True), status=status, iterations=7, primal_residual=1e-9,
+        dual_residual=2e-9, acceleration=rng.normal(size=NJ + 6), wrench=rng.normal(size=(2, 6)),
+        task_error=rng.normal(size=18),
+    )  # fmt: skip
+    terms = SimpleNamespace(com=rng.normal(size=3), com_velocity=rng.normal(size=3))
+    state = SimpleNamespace(q=rng.normal(size=NJ + 7), v=rng.normal(size=NJ + 6))
+    reference = SimpleNamespace(planned_contact=(True, True), omega=rng.uniform(2, 4))
+    return measurement, truth, terms, state, reference, report, rng.normal(size=NJ) * 30
+
+
+def test_derived_fields_follow_their_definitions(tmp_path):
+    rng = np.random.default_rng(5)
+    ticks = [tick(rng, status) for status in STATUSES]
+    with LogWriter(tmp_path / "log.mcap", {}) as writer:
+        recorder = Recorder(writer, Sizes(nj=NJ, nq=NJ + 7, nv=NJ + 6, horizon=50), LIMIT)
+        for number, given in enumerate(ticks):
+            recorder.tick(number * 2_000_000, *given)
+    log = read(tmp_path / "log.mcap")
+
+    assert log["/wbc"].field("status").tolist() == [int(status) for status in STATUSES]
+    assert log["/wbc"].field("solver").tolist() == [0, 1, 0]
+    assert log["/wbc"].field("fallback").tolist() == [0, 0, 1]
+    assert log["/contact"].field("felt").tolist() == [[0, 1]] * 3
+    for n, (measurement, truth, terms, _, reference, _, torque) in enumerate(ticks):
+        zmp = measured_zmp(measurement.wrench, truth.sole_position, truth.sole_rotation)
+        row = {name: log[topic].field(name)[n] for topic, name in (
+            ("/estimate", "dcm"), ("/truth", "torso_tilt"), ("/torque", "limit_ratio_max"), ("/contact", "zmp"),
+            ("/contact", "normal_force"), ("/contact", "cop_left"), ("/contact", "cop_right"),
+        )}  # fmt: skip
+        assert row["dcm"] == pytest.approx(terms.com[:2] + terms.com_velocity[:2] / reference.omega)
+        assert np.cos(row["torso_tilt"]) == pytest.approx(truth.torso_rotation[2, 2])
+        assert row["limit_ratio_max"] == pytest.approx(np.max(np.abs(torque) / LIMIT))
+        assert row["zmp"] == pytest.approx(zmp)
+        assert row["normal_force"] == pytest.approx(measurement.wrench[:, 2])
+        for foot, side in enumerate(("left", "right")):
+            assert row[f"cop_{side}"] == pytest.approx(centre_of_pressure(measurement.wrench[foot]))

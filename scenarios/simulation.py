@@ -7,7 +7,7 @@ from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,7 @@ from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
 from surefoot.scenarios.loop.faults import RunFault
-from surefoot.scenarios.loop.full import Parts
+from surefoot.scenarios.loop.full import Parts, SimulatedRobot
 from surefoot.scenarios.loop.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.loop.skeleton import ClosedLoop, End, refusing
 from surefoot.scenarios.record.provenance import PUSH_RECORD
@@ -162,6 +162,23 @@ class Simulation:
     def end(self) -> End:
         """How the run ended, or will if nothing happens."""
         return self._loop.end
+
+    @property
+    def planner(self) -> Any:
+        """The walking planner."""
+        return self._loop.planning.planner
+
+    @property
+    def controller(self) -> "WholeBodyController":
+        """The whole-body controller.
+
+        Raises:
+            AttributeError: a pendulum has none.
+        """
+        walker = self._loop.walker
+        if not isinstance(walker, SimulatedRobot):
+            raise AttributeError("a pendulum has no whole-body controller; simulate with fidelity full")
+        return walker.controller
 
     def step(self) -> Tick:
         """Go through one control tick.

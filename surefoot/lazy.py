@@ -1,0 +1,31 @@
+"""Faces whose names are imported when they are first asked for, so that a package costs nothing until it is used."""
+
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
+from typing import Any
+
+
+def face(package: str, homes: Mapping[str, Iterable[str]]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """What a package has as its ``__getattr__`` and ``__dir__``.
+
+    Args:
+        package: its name.
+        homes: public names by the module, below the package, that has them; "old as new" gives one another name.
+
+    Returns:
+        both functions.
+    """
+    places = {
+        entry.split(" as ")[-1]: (home, entry.split(" as ")[0]) for home, names in homes.items() for entry in names
+    }
+
+    def get(name: str) -> Any:
+        if name not in places:
+            raise AttributeError(f"module '{package}' has no attribute '{name}'")
+        home, inner = places[name]
+        return getattr(import_module(f"{package}.{home}"), inner)
+
+    def names() -> list[str]:
+        return sorted(places)
+
+    return get, names

@@ -1,4 +1,4 @@
-"""The whole-body controller alone, on a reference of one's own: torques of a robot that stands and shifts its weight."""
+"""The whole-body controller alone, on a reference of one's own: the robot stands and begins to shift its weight."""
 
 from dataclasses import replace
 

@@ -18,9 +18,7 @@ class LookAside:
     def __init__(self, model: pin.Model, frames: BodyFrames) -> None:
         self.head = model.getFrameId("head")
 
-    def write(
-        self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array
-    ) -> tuple[float, float, float]:
+    def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> list[float]:
         """Write J of the angular acceleration in the head's frame; return what it shall be."""
         model, data, local = terms.model, terms.data, pin.ReferenceFrame.LOCAL
         placement = pin.updateFramePlacement(model, data, self.head)
@@ -28,8 +26,8 @@ class LookAside:
         wanted = pin.utils.rotate("z", reference.heading + 0.5)
         spin = pin.getFrameVelocity(model, data, self.head, local).angular
         drift = pin.getFrameAcceleration(model, data, self.head, local).angular  # with zero joint accelerations
-        ax, ay, az = angular_acceleration((100.0, 20.0), placement.rotation, spin, wanted, (0.0, 0.0, 0.0)) - drift
-        return ax, ay, az
+        target = angular_acceleration((100.0, 20.0), placement.rotation, spin, wanted, (0.0, 0.0, 0.0))
+        return [float(a) for a in target - drift]
 
 
 def make(model: pin.Model, frames: BodyFrames) -> Task:  # by entry point: surefoot.tasks

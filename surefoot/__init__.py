@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from surefoot.scenarios.setup.load import load
     from surefoot.scenarios.setup.walk import Walk
     from surefoot.scenarios.simulation import Simulation, Tick
-    from surefoot.version import VERSION as __version__
+    from surefoot.version import __version__
 
 __all__ = [
     "Log",
@@ -70,6 +70,6 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "scenarios.setup.load": ("load",),
             "scenarios.setup.walk": ("Walk",),
             "scenarios.simulation": ("Simulation", "Tick"),
-            "version": ("VERSION as __version__",),
+            "version": ("__version__",),
         },
     )

@@ -10,20 +10,17 @@ def face(package: str, homes: Mapping[str, Iterable[str]]) -> tuple[Callable[[st
 
     Args:
         package: its name.
-        homes: public names by the module, below the package, that has them; "old as new" gives one another name.
+        homes: public names by the module, below the package, that has them.
 
     Returns:
         both functions.
     """
-    places = {
-        entry.split(" as ")[-1]: (home, entry.split(" as ")[0]) for home, names in homes.items() for entry in names
-    }
+    places = {name: home for home, names in homes.items() for name in names}
 
     def get(name: str) -> Any:
         if name not in places:
             raise AttributeError(f"module '{package}' has no attribute '{name}'")
-        home, inner = places[name]
-        return getattr(import_module(f"{package}.{home}"), inner)
+        return getattr(import_module(f"{package}.{places[name]}"), name)
 
     def names() -> list[str]:
         return sorted(places)

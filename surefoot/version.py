@@ -3,6 +3,6 @@
 from importlib.metadata import PackageNotFoundError, version
 
 try:
-    VERSION = version("surefoot")
+    __version__ = version("surefoot")
 except PackageNotFoundError:  # a source tree on the path that was never installed
-    VERSION = "0+unknown"
+    __version__ = "0+unknown"

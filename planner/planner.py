@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import sole_pose, wrap_angle
 from surefoot.planner.ground.terrain import Terrain, flat
-from surefoot.planner.laws.constraints import StepContext, check_reach
+from surefoot.planner.laws.constraints import StepContext
 from surefoot.planner.laws.law import Motion, MotionProblem
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.model.jerk import Trajectory, block_moves, predict, trajectory
@@ -32,6 +33,7 @@ from surefoot.planner.types import (
 from surefoot.planner.walk.clock import Stepper, schedule
 from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.reach import check_reach
 
 
 def world_plan(
@@ -122,7 +124,7 @@ class WalkingPlanner:
         motion: the law's answer of the last tick, with the QPs that it solved; None before the first.
 
     Raises:
-        ValueError: a duration is no multiple of the sample time, a footstep is out of reach, the CoM would fall
+        ParameterError: a duration is no multiple of the sample time, a footstep is out of reach, the CoM would fall
             almost freely, or no swing clears the edges before a footstep.
     """
 
@@ -143,11 +145,12 @@ class WalkingPlanner:
         terrain = terrain or flat()
         for name, size in (("foot_length", foot_length), ("foot_width", foot_width)):
             if not (size > 0.0 and math.isfinite(size)):
-                raise ValueError(f"{name} is {size}, but it must be a finite number greater than 0.")
+                raise ParameterError((name,), f"{name} is {size:g}", "it must be a finite number greater than 0")
         self._half_size = 0.5 * np.array([foot_length, foot_width])
         self.schedule = schedule(gait, p.sample_time, p.horizon + p.preview)
         footsteps = plan_footsteps(gait, feet, terrain)
-        check_reach(footsteps, p)
+        for row in range(2, footsteps.steps + 2):
+            check_reach(row - 1, footsteps.landing(row), p)
         shape = (height_profile or profile.height or SmoothHeight()).shape(gait, self.schedule)
         check_height(shape, self.schedule, footsteps.support_points()[:, 2])
         self._courses = swing_courses(footsteps, self.schedule, terrain, self._half_size, gait.swing_height, p)

@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 
-from surefoot.planner.laws.constraints import reach_box, step_bounds
+from surefoot.planner.laws.constraints import step_bounds
 from surefoot.planner.laws.law import MotionProblem
 from surefoot.planner.model.dcm import dcm, decays, nominal_dcm, viability_weights
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import Array
+from surefoot.planner.walk.reach import reach_box
 
 
 def paper_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:

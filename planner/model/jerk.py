@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.errors import ParameterError
 from surefoot.planner.types import Array
 
 BLOCK_STARTS = (0, 1, 2, 4, 7, 11, 16, 22, 29, 37)
@@ -22,10 +23,11 @@ def block_moves(starts: tuple[int, ...], horizon: int) -> Array:
         Matrix M, shape (N, len(starts)), with jerk = M moves.
 
     Raises:
-        ValueError: the starts do not increase from 0 inside the horizon.
+        ParameterError: the starts do not increase from 0 inside the horizon.
     """
     if not starts or starts[0] != 0 or list(starts) != sorted(set(starts)) or starts[-1] >= horizon:
-        raise ValueError(f"The move blocks start at {starts}, but they must increase from 0 and stay below {horizon}.")
+        what = f"the blocks of moves start at samples {starts}"
+        raise ParameterError(("parameters", "moves"), what, f"they must increase from 0 and stay below {horizon}")
     block = np.searchsorted(np.array(starts), np.arange(horizon), side="right") - 1
     return np.eye(len(starts))[block]
 

@@ -5,6 +5,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import quintic, sole_pose, sole_rotation
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
@@ -49,7 +50,7 @@ def swing_courses(
         parameters: give the apex of a swing over level ground.
 
     Raises:
-        ValueError: no course clears the edges of a step.
+        ParameterError: no course clears the edges of a step.
     """
     plain = SwingCourse(parameters.apex_share, 0.0, 1.0, clearance)
     if not terrain.boxes:
@@ -65,10 +66,8 @@ def swing_courses(
         if np.ptp(ground) > _LEVEL:
             course = _gentlest(start, end, ground, clearance, phase.samples, parameters)
         if course is None:
-            raise ValueError(
-                f"Footstep {phase.step} cannot be swung {EDGE_CLEARANCE:g} m clear of the edges before it; give"
-                " terrain.tread more depth, or gait.swing_height more height."
-            )
+            what = f"footstep {phase.step} cannot be swung {EDGE_CLEARANCE:g} m clear of the edges before it"
+            raise ParameterError(("terrain", "depth"), what, "give the treads more depth, or the swing more height")
         courses.append(course)
     return tuple(courses)
 

@@ -90,7 +90,7 @@ def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule
         preview: samples that a window may reach beyond the current one.
 
     Raises:
-        ValueError: a duration is no multiple of the sample time.
+        ParameterError: a duration is no multiple of the sample time.
     """
     phases = _phases(gait, sample_time)
     last = phases[-1].start
@@ -121,11 +121,11 @@ def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule
 
 def _phases(gait: GaitParameters, sample_time: float) -> tuple[Phase, ...]:
     names = ("initial_stand", "single_support", "double_support")
-    _, single, double = (samples(f"gait.{name}", getattr(gait, name), sample_time) for name in names)
+    _, single, double = (samples(("gait", name), getattr(gait, name), sample_time) for name in names)
     phases: list[Phase] = []
     start = step = support = 0
     for bout in gait.walk:
-        stand = samples("The standing before a bout", bout.stand, sample_time)
+        stand = samples(("bout", "stand"), bout.stand, sample_time)
         if stand:
             phases.append(Phase(PhaseKind.STAND, start, stand, step, None, support))
         phases.append(Phase(PhaseKind.DOUBLE, start + stand, 2 * double, step, None, support, rest=double))

@@ -9,6 +9,7 @@ from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array, FeetState, Foot, Footstep
 from surefoot.planner.walk.gait import GaitParameters, support_rows
+from surefoot.planner.walk.reach import Landing
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +43,12 @@ class FootstepPlan:
     def footstep(self, row: int) -> Footstep:
         """The foothold of a row."""
         return Footstep(self.feet[row], self.position[row], float(self.yaw[row]), self.normal[row])
+
+    def landing(self, row: int) -> Landing:
+        """Where the foot of a row lands nominally, seen from its stance foot, that of the row before."""
+        ahead, left = self.increment[row] @ frame_rotation(float(self.yaw[row - 1]))
+        beside = left if self.feet[row] is Foot.LEFT else -left
+        return Landing(float(ahead), float(beside), float(self.yaw[row] - self.yaw[row - 1]))
 
     def moved(self, row: int, position: Array, terrain: Terrain) -> "FootstepPlan":
         """The plan with one foothold somewhere else and its successors at their nominal increments from it.

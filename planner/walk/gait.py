@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.planner.types import Foot
 
 
@@ -22,7 +23,7 @@ class Stride:
         width: lateral distance of the two feet from each other about the path [m].
 
     Raises:
-        ValueError: a value is not finite, or the width is not positive.
+        ParameterError: a value is not finite, or the width is not positive.
     """
 
     length: float
@@ -35,7 +36,8 @@ class Stride:
             value = getattr(self, field.name)
             if not math.isfinite(value) or (field.name == "width" and value <= 0.0):
                 least = " greater than 0" if field.name == "width" else ""
-                raise ValueError(f"The {field.name} of a stride is {value}, but it must be a finite number{least}.")
+                what, right = f"the {field.name} of a stride is {value}", f"it must be a finite number{least}"
+                raise ParameterError(("stride", field.name), what, right)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +49,7 @@ class Bout:
         strides: in order, at least one.
 
     Raises:
-        ValueError: the rest is negative or not finite, or there is no stride.
+        ParameterError: the rest is negative or not finite, or there is no stride.
     """
 
     stand: float
@@ -55,9 +57,10 @@ class Bout:
 
     def __post_init__(self) -> None:
         if not (self.stand >= 0.0 and math.isfinite(self.stand)):
-            raise ValueError(f"The standing before a bout is {self.stand:g} s, but it must be at least 0 and finite.")
+            what = f"the standing before a bout is {self.stand:g} s"
+            raise ParameterError(("bout", "stand"), what, "it must be at least 0 and finite")
         if not self.strides:
-            raise ValueError("A bout has no strides, but it must have at least one.")
+            raise ParameterError(("bout", "strides"), "a bout has no strides", "it must have at least one")
 
 
 _POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
@@ -91,7 +94,7 @@ class GaitParameters:
         bouts: the walk stride by stride; empty for equal strides. Feet alternate throughout, across stops too.
 
     Raises:
-        ValueError: a value is not finite or has the wrong sign, or the bouts have another number of strides.
+        ParameterError: a value is not finite or has the wrong sign, or the bouts have another number of strides.
     """
 
     steps: int = 5
@@ -115,17 +118,19 @@ class GaitParameters:
             value = getattr(self, field.name)
             if field.name == "bouts":
                 continue
+            key, what = ("gait", field.name), f"{field.name} is {value:g}"
             if not math.isfinite(value):
-                raise ValueError(f"gait.{field.name} is {value}, but it must be a finite number.")
+                raise ParameterError(key, what, "it must be a finite number")
             if field.name in _POSITIVE and value <= 0.0:
-                raise ValueError(f"gait.{field.name} is {value:g}, but it must be greater than 0.")
+                raise ParameterError(key, what, "it must be greater than 0")
             if field.name in _NOT_NEGATIVE and value < 0.0:
-                raise ValueError(f"gait.{field.name} is {value:g}, but it must not be negative.")
+                raise ParameterError(key, what, "it must not be negative")
+        key, what = ("gait", "steps"), f"steps is {self.steps}"
         if self.steps < 0 or self.steps != int(self.steps):
-            raise ValueError(f"gait.steps is {self.steps}, but it must be a whole number of at least 0.")
+            raise ParameterError(key, what, "it must be a whole number of at least 0")
         strides = sum(len(bout.strides) for bout in self.bouts)
         if self.bouts and strides != self.steps:
-            raise ValueError(f"gait.steps is {self.steps}, but its bouts have {strides} strides; both must be equal.")
+            raise ParameterError(key, f"{what}, but the bouts have {strides} strides", "both must be equal")
 
     @property
     def walk(self) -> tuple[Bout, ...]:
@@ -160,22 +165,20 @@ def support_rows(walk: tuple[Bout, ...]) -> NDArray[np.intp]:
     return np.array([*rows, (step, step + 1)], dtype=np.intp)
 
 
-def samples(name: str, duration: float, sample_time: float) -> int:
+def samples(key: tuple[str, str], duration: float, sample_time: float) -> int:
     """Number of planner samples in a duration.
 
     Args:
-        name: what the duration is called, for the message.
+        key: of the duration, for the error.
         duration: duration [s].
         sample_time: planner sample time [s].
 
     Raises:
-        ValueError: the duration is no multiple of the sample time; the message names the nearest that is.
+        ParameterError: the duration is no multiple of the sample time; the message names the nearest that is.
     """
     count = round(duration / sample_time)
     if abs(count * sample_time - duration) > 1e-9 * max(1.0, duration):
         nearest = max(count, 1) * sample_time
-        raise ValueError(
-            f"{name} is {duration:g} s, but it must be a multiple of the planner's sample time of {sample_time:g} s;"
-            f" the nearest is {nearest:g} s."
-        )
+        what = f"{key[-1]} is {duration:g} s, no multiple of the planner's sample time of {sample_time:g} s"
+        raise ParameterError(key, what, f"the nearest is {nearest:g} s")
     return count

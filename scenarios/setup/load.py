@@ -1,12 +1,12 @@
 """From a scenario's name, file or log to a checked scenario: every fault of a file is reported at once."""
 
-import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
+from surefoot.errors import ParameterError
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, dotted, nearest
 from surefoot.scenarios.file.criteria import Bound
@@ -17,6 +17,7 @@ from surefoot.scenarios.judge.verdict import SCENARIO_FILE
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import LOG_NAME
 from surefoot.scenarios.setup.checks import check
+from surefoot.scenarios.setup.keys import scenario_key
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
 
 _SENSED = ("zmp_noise", "com_noise")
@@ -123,7 +124,7 @@ def load_scenario(reference: str, overrides: Sequence[str] = (), robots: Robots 
 
 
 def locate(reference: str, overrides: Sequence[str], refusal: SetupError) -> ScenarioError:
-    """Say where the cause of a refusal stands: at the first key that its sentence names, else at the scenario's begin.
+    """Say where the cause of a refusal stands: at the key that it names, else at the scenario's begin.
 
     Args:
         reference: as given to `load_scenario`, as are the overrides.
@@ -134,18 +135,13 @@ def locate(reference: str, overrides: Sequence[str], refusal: SetupError) -> Sce
     source = parse(text, name)
     for override in overrides:
         apply_override(source, override)
-    what, _, right = str(refusal).rstrip(".").partition("; ")
-    problem = Problem(_named_key(what), what, right or "change the scenario so that it fits")
+    fault = refusal.__cause__
+    if isinstance(fault, ParameterError):
+        problem = Problem(scenario_key(fault.key), fault.what, fault.right)
+    else:
+        what, _, right = str(refusal).rstrip(".").partition("; ")
+        problem = Problem((), what, right or "change the scenario so that it fits")
     return ScenarioError([source.describe(problem)])
-
-
-def _named_key(sentence: str) -> Key:
-    """The first scenario key that a sentence names, such as gait.com_height; () when it names none."""
-    for group, name in re.findall(r"\b([a-z_]+)\.([a-z_]+)\b", sentence):
-        fields = getattr(Scenario.model_fields.get(group), "annotation", None)
-        if name in getattr(fields, "model_fields", {}):
-            return (group, name)
-    return ()
 
 
 def read_scenario(text: str, name: str, stem: str, overrides: Sequence[str], robots: Robots) -> Scenario:

@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.planner.types import FeetState
@@ -63,7 +64,7 @@ def start_posture(scenario: Scenario, body: Body) -> Array:
     """Configuration, shape (nq,), that stands with the CoM at its height over the middle of the feet.
 
     Raises:
-        ValueError: if the legs cannot reach that stance.
+        ParameterError: if the legs cannot reach that stance.
     """
     feet, start, height = square_stance(scenario), scenario.start, standing_height(scenario)
     ground = start_height(scenario)
@@ -75,10 +76,11 @@ def start_posture(scenario: Scenario, body: Body) -> Array:
     q[7:] = robot.nominal_joint_positions
     result = body.ik(robot.nominal_joint_positions).solve(target, q)
     if not result.reached:
-        raise ValueError(
+        raise ParameterError(
+            ("gait", "com_height"),
             f"robot '{robot.name}' cannot stand with gait.com_height {height:g} m and gait.step_width "
-            f"{scenario.gait.step_width:g} m, {result.error:.3f} m are missing; "
-            f"use for example {robot.com_height:g} m and {robot.hip_width:g} m"
+            f"{scenario.gait.step_width:g} m, {result.error:.3f} m are missing",
+            f"use for example {robot.com_height:g} m and {robot.hip_width:g} m",
         )
     return result.q
 
@@ -89,7 +91,7 @@ def disturbed(q: Array, scenario: Scenario, body: Body) -> Array:
     The legs then give way until both soles, wherever the noise has put and turned them, lie flat on the ground.
 
     Raises:
-        ValueError: if they cannot.
+        ParameterError: if they cannot.
     """
     start = scenario.start
     if start.position_noise == 0.0 and start.angle_noise == 0.0:
@@ -105,9 +107,11 @@ def disturbed(q: Array, scenario: Scenario, body: Body) -> Array:
     soles[:, 2] = start_height(scenario)
     result = body.ik(q[7:]).solve(PostureTarget(soles, feet.yaw), q)
     if not result.reached:
-        raise ValueError(
+        raise ParameterError(
+            ("start", "angle_noise"),
             f"robot '{body.robot.name}' cannot stand with start.angle_noise {start.angle_noise:g} rad and "
-            f"start.position_noise {start.position_noise:g} m: {result.error:.3f} m or rad are missing; reduce them"
+            f"start.position_noise {start.position_noise:g} m: {result.error:.3f} m or rad are missing",
+            "reduce them",
         )
     return result.q
 

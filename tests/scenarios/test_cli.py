@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from surefoot.errors import ParameterError
 from surefoot.scenarios import cli
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.log import read
@@ -94,15 +95,18 @@ def test_a_defect_is_no_verdict(surefoot, scenario, tmp_path, motion):
 @pytest.mark.parametrize(
     ("refusal", "message"),
     [
+        (ParameterError(("gait", "steps"), "no such walk", "use 3"), "two-steps.yaml:1:15: no such walk; use 3"),
+        (ParameterError(("gait", "apex_ss"), "too high", "use 0"), "two-steps.yaml:1:7: too high; use 0"),
         (
-            "no stance with gait.steps 2 and x.y; use 3.",
-            "two-steps.yaml:1:15: no stance with gait.steps 2 and x.y; use 3",
+            ValueError("The legs are too short."),
+            "two-steps.yaml:1:1: The legs are too short; change the scenario so that it fits",
         ),
-        ("The legs are too short.", "two-steps.yaml:1:1: The legs are too short; change the scenario so that it fits"),
     ],
 )
 def test_what_a_part_refuses_is_bad_input_at_the_key_it_names(surefoot, scenario, tmp_path, motion, refusal, message):
-    code, out, err = surefoot("run", scenario, "--out", tmp_path, loop=motion(raises=SetupError(refusal)))
+    refused = SetupError(str(refusal))
+    refused.__cause__ = refusal
+    code, out, err = surefoot("run", scenario, "--out", tmp_path, loop=motion(raises=refused))
     assert code == 2
     assert out == ""
     assert err.strip().endswith(message)

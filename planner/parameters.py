@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, fields
 from enum import Enum
 
 from surefoot.errors import ParameterError
+from surefoot.planner.laws.qp import SOLVERS
 from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.model.leg_chain import LegChain
 
@@ -120,7 +121,7 @@ class PlannerParameters:
             the leg is stretched furthest, shortly before touchdown [-].
         touchdown_lead: the swing ends this long before single support does, so that the foot is felt in time [s].
         search: speed of the swing foot at the planned touchdown, and how it goes on while it feels no ground.
-        solvers: QP solvers of qpsolvers, in the order in which they are tried.
+        solvers: QP solvers of qpsolvers, in the order in which they are tried (see `planner.laws.qp` for the choice).
 
     Raises:
         ParameterError: a number is not positive, or not finite where it must be.
@@ -150,7 +151,7 @@ class PlannerParameters:
     apex_share: float = 0.5
     touchdown_lead: float = 0.03
     search: GroundSearch = field(default_factory=GroundSearch)
-    solvers: tuple[str, str] = ("daqp", "quadprog")
+    solvers: tuple[str, str] = SOLVERS
 
     def __post_init__(self) -> None:
         for entry in fields(self):

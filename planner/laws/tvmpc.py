@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.laws.law import Motion, MotionProblem, Qp, solve
+from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem
+from surefoot.planner.laws.qp import Qp, QpSolution, solve
 from surefoot.planner.laws.step_laws import corrected_shift, paper_shift
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.model.jerk import block_moves
@@ -131,33 +132,45 @@ class HardTvmpc:
 
     def plan(self, problem: MotionProblem) -> Motion:
         """See `MotionPlanner`."""
-        p, reference, moves = self._parameters, problem.reference, len(self._parameters.moves)
+        built = self.build(problem)
+        return self.interpret(problem, built, self.solve(built))
+
+    def build(self, problem: MotionProblem) -> BuiltQps:
+        """See `QpLaw`; the step law has decided the next footstep, and ΔU counts from the last jerk."""
+        p, reference = self._parameters, problem.reference
         shifts = np.zeros((2, 2))
         shifts[0] = self._step_law(problem, p)
         point = reference.point + reference.gain @ shifts
-        hard = build_hard_problem(p, self._response, problem, point, self._terminal)
-        jerk, slack = problem.fallback.copy(), np.zeros(2)
-        worst, infeasible = SolverStatus.SOLVED, False
-        qps = []
-        for axis, qp in enumerate(hard):
-            used, z, attempt = self._solve(qp)
-            qps.append(used)
-            worst, infeasible = max(worst, SolverStatus(attempt)), infeasible or used is not qp
-            slack[axis] = np.nan if z is None else z[moves] if used is not qp else 0.0
-            if z is not None:
-                jerk[:, axis] = np.clip(problem.last_jerk[axis], -p.jerk_limit, p.jerk_limit) + self._basis @ z[:moves]
-        terminal_slack = slack if self._terminal else np.zeros(2)
-        return Motion(jerk, shifts, slack, terminal_slack, worst, infeasible, tuple(qps))
+        axes = build_hard_problem(p, self._response, problem, point, self._terminal)
+        last = np.clip(problem.last_jerk, -p.jerk_limit, p.jerk_limit)
+        return BuiltQps(axes, np.broadcast_to(last, problem.fallback.shape), shifts)
 
-    def _solve(self, qp: Qp) -> tuple[Qp, Array | None, int]:
-        """The problem that was solved in the end, its solution and the solver's number."""
+    def solve(self, built: BuiltQps) -> tuple[QpSolution, QpSolution]:
+        """See `QpLaw`; of a QP that has no solution it is that of the softened one."""
+        x, y = built.axes
+        return self._solve(x), self._solve(y)
+
+    def _solve(self, qp: Qp) -> QpSolution:
         p = self._parameters
         solution = solve(qp, p.solvers)
         if solution.z is not None:
-            return qp, solution.z, solution.attempt
-        soft = softened(qp, self._jerk_rows, p.zmp_slack)
-        solution = solve(soft, p.solvers)
-        return soft, solution.z, solution.attempt
+            return solution
+        return solve(softened(qp, self._jerk_rows, p.zmp_slack), p.solvers)
+
+    def interpret(self, problem: MotionProblem, built: BuiltQps, solutions: tuple[QpSolution, QpSolution]) -> Motion:
+        """See `QpLaw`; an axis that no solver solved takes the fallback jerk."""
+        moves = self._basis.shape[1]
+        jerk, slack = problem.fallback.copy(), np.zeros(2)
+        worst, infeasible = SolverStatus.SOLVED, False
+        for axis, (hard, solution) in enumerate(zip(built.axes, solutions, strict=True)):
+            soft, z = solution.qp is not hard, solution.z
+            worst, infeasible = max(worst, SolverStatus(solution.attempt)), infeasible or soft
+            slack[axis] = np.nan if z is None else z[moves] if soft else 0.0
+            if z is not None:
+                jerk[:, axis] = built.jerk[:, axis] + self._basis @ z[:moves]
+        terminal_slack = slack if self._terminal else np.zeros(2)
+        used = (solutions[0].qp, solutions[1].qp)
+        return Motion(jerk, built.shifts, slack, terminal_slack, worst, infeasible, used)
 
 
 def paper_law(parameters: PlannerParameters, com_height: float) -> HardTvmpc:

@@ -10,7 +10,7 @@ from surefoot.models.pinocchio import limb_shapes, pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.parameters import LegInertia
-from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plan import Planner
 from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo
 from surefoot.scenarios.file.schema import BeliefErrors, Scenario
 from surefoot.scenarios.judge.walking import FALLEN_HEIGHT, FALLEN_TILT
@@ -58,7 +58,7 @@ class Rig:
     world: World
     truth: RobotTerms
     controller: WholeBodyController
-    planner: WalkingPlanner
+    planner: Planner
 
 
 def assemble(scenario: Scenario, robot: RobotDescription) -> Rig:

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.geometry import sole_rates, sole_rotation
-from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
-from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
 from surefoot.scenarios.file.schema import Rates
 from surefoot.scenarios.loop.sensing import PlannerSensing
@@ -26,7 +25,7 @@ class Planning:
 
     def __init__(
         self,
-        planner: WalkingPlanner,
+        planner: Planner,
         sensing: PlannerSensing,
         recorder: WalkRecorder,
         faults: FaultSchedule,

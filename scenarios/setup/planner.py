@@ -9,6 +9,7 @@ import numpy as np
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.parameters import LegInertia, PlannerParameters, StepAdaptation
+from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.types import FeetState
 from surefoot.planner.walk.gait import GaitParameters
@@ -39,7 +40,8 @@ def gait_parameters(scenario: Scenario) -> GaitParameters:
 
 def planner_profile(scenario: Scenario) -> Profile:
     """The formulation that the scenario asks for."""
-    return PROFILES[scenario.planner.profile]
+    profile: Profile = PROFILES[scenario.planner.profile]
+    return profile
 
 
 def step_reach(gait: Gait) -> float:
@@ -70,7 +72,7 @@ def planner_parameters(scenario: Scenario, leg: LegInertia) -> PlannerParameters
 
 def walking_planner(
     scenario: Scenario, robot: "RobotDescription", terrain: Terrain, feet: FeetState, parameters: PlannerParameters
-) -> WalkingPlanner:
+) -> Planner:
     """The planner of a scenario for start feet; its adaptation leaves at least half the planned gap between soles.
 
     Raises:
@@ -81,4 +83,6 @@ def walking_planner(
     gait = gait_of(scenario.gait, region)
     near, far = parameters.reach_width
     adapting = replace(parameters, reach_width=(max(near, robot.sole_width + 0.5 * region.gap), far))
-    return WalkingPlanner(gait, feet, *sole, terrain, adapting, height_profile(scenario), planner_profile(scenario))
+    profile = planner_profile(scenario)
+    make = profile.planner or WalkingPlanner
+    return make(gait, feet, *sole, terrain, adapting, height_profile(scenario), profile)

@@ -75,6 +75,11 @@ class HeightShape:
     levels: Callable[[Array], Array]
     impulsive: bool = False
 
+    @property
+    def standing_height(self) -> float:
+        """Height above the base with which the walk begins, at rest [m]."""
+        return float(self.bump[0, 0])
+
     def height(self, window: slice, support_height: Array) -> Array:
         """z, z', z'' in the world frame over a window, shape (3, n) [m, m/s, m/s^2].
 

@@ -152,6 +152,7 @@ class Stepper:
     Attributes:
         schedule: phases of the walk.
         footsteps: all footholds, landed ones as measured.
+        revision: how often they have changed.
         row: row of the foot that landed last; it is the stance foot in single support.
         tick: sample of the gait's clock, -1 before the first tick.
         waited: ticks for which the clock has waited for the present touchdown.
@@ -164,6 +165,7 @@ class Stepper:
     ) -> None:
         self.schedule = schedule
         self.footsteps = footsteps
+        self.revision = 0
         self.row = 1
         self.tick = -1
         self.waited = 0
@@ -262,6 +264,7 @@ class Stepper:
             position: where it lands, shape (3,) [m].
         """
         self.footsteps = self.footsteps.moved(self.row + 1, np.array(position), self._terrain)
+        self.revision += 1
         self.fixed = True
 
     def _land(self, position: Array) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from surefoot.planner.geometry import nearest_point, signed_distance
 from surefoot.planner.model.dcm import dcm
-from surefoot.planner.model.filter import jerk_model
+from surefoot.planner.model.jerk import jerk_model
 from surefoot.planner.plan import PlanSampler, WalkPlan
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.types import Array, CentroidalState, FeetState

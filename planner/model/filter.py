@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.planner.model.jerk import jerk_model
 from surefoot.planner.types import Array
 
 DESIGN_SAMPLE = 0.02
@@ -50,15 +51,6 @@ class Innovation:
     def normalised(self) -> Array:
         """νᵀ S⁻¹ ν of each axis, shape (2,); of a consistent filter its mean is the number of sensors m [-]."""
         return np.asarray(np.sum(self.value * np.linalg.solve(self.covariance, self.value), axis=0))
-
-
-def jerk_model(sample_time: float) -> tuple[Array, Array]:
-    """A, shape (3, 3), and B, shape (3,), of the CoM under a jerk that is constant over a sample (eq. lipm_disc2)."""
-    t = sample_time
-    return (
-        np.array([[1.0, t, 0.5 * t * t], [0.0, 1.0, t], [0.0, 0.0, 1.0]]),
-        np.array([t**3 / 6.0, 0.5 * t * t, t]),
-    )
 
 
 def sensor_model(stiffness: float) -> Array:

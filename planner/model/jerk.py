@@ -11,6 +11,20 @@ BLOCK_STARTS = (0, 1, 2, 4, 7, 11, 16, 22, 29, 37)
 """Ten blocks over fifty samples, short at first: the repaired parametrisation (the paper's own is (0, 1), N_c = 2)."""
 
 
+def jerk_model(sample_time: float) -> tuple[Array, Array]:
+    """A, shape (3, 3), and B, shape (3,), of the CoM under a jerk that is constant over a sample (eq. lipm_disc2)."""
+    t = sample_time
+    return (
+        np.array([[1.0, t, 0.5 * t * t], [0.0, 1.0, t], [0.0, 0.0, 1.0]]),
+        np.array([t**3 / 6.0, 0.5 * t * t, t]),
+    )
+
+
+def advanced(x: float, v: float, a: float, jerk: float, t: float) -> tuple[float, float, float]:
+    """The same of one axis in plain numbers, which are fast: position, velocity and acceleration a time t later."""
+    return x + t * v + 0.5 * t * t * a + jerk * t**3 / 6.0, v + t * a + jerk * t**2 / 2.0, a + jerk * t
+
+
 def block_moves(starts: tuple[int, ...], horizon: int) -> Array:
     """Basis of piecewise constant jerk.
 

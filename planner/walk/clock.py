@@ -10,7 +10,7 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.types import Array, FeetState, Foot, PhaseInfo, PhaseKind, PlannedFootstep
 from surefoot.planner.walk.footsteps import FootstepPlan
-from surefoot.planner.walk.gait import GaitParameters, samples, support_rows
+from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, samples, support_rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +80,9 @@ class Schedule:
 def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule:
     """Lay the gait's phases on the clock.
 
-    Each bout: stand, a first double support of twice the usual length that rests for its first half (so that the DCM is
-    consistent when the weight shift begins), then single and double supports in turn. The last double support brings
-    the ZMP back between the feet, where the robot stands until the next bout, in the end for ever.
+    Each bout: stand, a first double support of `WEIGHT_SHIFT` times the usual length that rests for all but the last of
+    them, then single and double supports in turn. The last double support brings the ZMP back between the feet, where
+    the robot stands until the next bout, in the end for ever.
 
     Args:
         gait: the gait.
@@ -128,7 +128,8 @@ def _phases(gait: GaitParameters, sample_time: float) -> tuple[Phase, ...]:
         stand = samples(("bout", "stand"), bout.stand, sample_time)
         if stand:
             phases.append(Phase(PhaseKind.STAND, start, stand, step, None, support))
-        phases.append(Phase(PhaseKind.DOUBLE, start + stand, 2 * double, step, None, support, rest=double))
+        shift, rest = WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double
+        phases.append(Phase(PhaseKind.DOUBLE, start + stand, shift, step, None, support, rest))
         for _ in bout.strides:
             step, support = step + 1, support + 1
             stance = gait.step_foot(step).other

@@ -10,7 +10,7 @@ import numpy as np
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.types import Array, Foot, Footstep
-from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
+from surefoot.planner.walk.gait import WEIGHT_SHIFT, Bout, GaitParameters, Stride
 from surefoot.planner.walk.reach import StepRegion
 
 MOST_STEPS = 100_000
@@ -117,8 +117,8 @@ def velocity_bouts(timeline: VelocityTimeline, gait: GaitParameters) -> tuple[Bo
 
     The command in force when a foot lifts off gives the stride of that step. If it is zero then, the step closes the
     stance and the robot stands until the command is to move; its weight shift begins then (not before
-    `gait.initial_stand`), and the first foot lifts off two double supports later. A command that has gone by then moves
-    nothing.
+    `gait.initial_stand`), and the first foot lifts off `WEIGHT_SHIFT` double supports later. A command that has gone
+    by then moves nothing.
 
     Args:
         timeline: the command.
@@ -127,14 +127,14 @@ def velocity_bouts(timeline: VelocityTimeline, gait: GaitParameters) -> tuple[Bo
     Raises:
         ParameterError: the walk has too many steps.
     """
-    period = gait.single_support + gait.double_support
+    period = gait.period
     if timeline.end / period > MOST_STEPS:
         what = f"the velocity command lasts {timeline.end:g} s"
         raise ParameterError(("velocity",), what, f"{MOST_STEPS * period:g} s is the most")
     bouts: list[Bout] = []
     standing_since, ready = 0.0, gait.initial_stand
     while (start := timeline.next_motion(ready)) is not None:
-        lift_off = start + 2.0 * gait.double_support
+        lift_off = start + WEIGHT_SHIFT * gait.double_support
         strides: list[Stride] = []
         while not (twist := timeline.at(lift_off)).is_zero:
             strides.append(twist.stride(period, gait.step_width))

@@ -63,6 +63,12 @@ class Bout:
             raise ParameterError(("bout", "strides"), "a bout has no strides", "it must have at least one")
 
 
+WEIGHT_SHIFT = 2
+"""Length of the first double support of a bout, which shifts the weight from rest, in usual double supports.
+
+The ZMP rests for the first of them, so that the DCM is consistent when the weight shift begins.
+"""
+
 _POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
 _NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off")
 
@@ -145,6 +151,39 @@ class GaitParameters:
     def strides(self) -> tuple[Stride, ...]:
         """The strides of all bouts."""
         return tuple(stride for bout in self.walk for stride in bout.strides)
+
+    @property
+    def period(self) -> float:
+        """Time from one lift-off to the next [s]."""
+        return self.single_support + self.double_support
+
+    @property
+    def duration(self) -> float:
+        """Time from the start to the end of the last double support; of a gait that stands the rest before it [s]."""
+        return self.lift_off(self.steps + 1) if self.walk else self.initial_stand
+
+    def lift_off(self, step: int) -> float:
+        """Time at which a foot lifts off; of a step after the last one when it would if the walk went on [s].
+
+        Args:
+            step: its number, from 1.
+
+        Raises:
+            ParameterError: the gait only stands.
+        """
+        begin, before, walk = 0.0, 0, self.walk
+        for number, bout in enumerate(walk, start=1):
+            first = begin + bout.stand + WEIGHT_SHIFT * self.double_support
+            if step <= before + len(bout.strides) or number == len(walk):
+                return first + (step - before - 1) * self.period
+            begin, before = first + len(bout.strides) * self.period, before + len(bout.strides)
+        raise ParameterError(("gait", "steps"), f"there is no step {step} of a gait that stands", "it must have steps")
+
+    def support_before(self, step: int) -> float:
+        """Duration of the double support before a step [s]."""
+        counts = [len(bout.strides) for bout in self.walk]
+        begins_bout = step in [1 + sum(counts[:i]) for i in range(len(counts))]
+        return self.double_support * (WEIGHT_SHIFT if begins_bout else 1)
 
     def step_foot(self, step: int) -> Foot:
         """The foot that step number `step` moves; steps count from 1, number 0 and -1 are the start feet."""

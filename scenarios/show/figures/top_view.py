@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry import CORNERS
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.figures.shading import Background
 from surefoot.scenarios.show.figures.style import (
@@ -33,7 +34,7 @@ TITLE = "Top view"
 WIDE = 2.2
 """Length over width of a walk beyond which the page gives it a row of its own."""
 
-_CORNERS = 0.5 * np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+_CORNERS = 0.5 * CORNERS
 _MOST_POLYGONS = 200
 
 

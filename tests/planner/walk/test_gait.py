@@ -1,10 +1,12 @@
 import math
+from itertools import pairwise
 
 import pytest
 
 from surefoot.errors import ParameterError
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.types import Foot
+from surefoot.planner.types import Foot, PhaseKind
+from surefoot.planner.walk.clock import schedule
 from surefoot.planner.walk.gait import Bout, GaitParameters, Stride, samples
 
 pytestmark = pytest.mark.unit
@@ -54,3 +56,21 @@ def test_bad_stride_and_bout_are_refused():
 def test_standing_has_no_strides():
     assert GaitParameters(steps=0).walk == ()
     assert GaitParameters(steps=0).strides == ()
+
+
+def test_times_of_a_gait_are_those_of_its_phases():
+    """Two bouts: lift-offs and durations in seconds against the phases that the clock lays out in samples."""
+    stride = Stride(0.2, 0.0, 0.0, 0.2)
+    bouts = (Bout(1.0, (stride, stride, stride)), Bout(0.7, (stride, stride)))
+    gait = GaitParameters(steps=5, bouts=bouts, single_support=0.6, double_support=0.2)
+    phases = schedule(gait, 0.02, 10).phases
+    swings = [(before, phase) for before, phase in pairwise(phases) if phase.kind is PhaseKind.SINGLE]
+    assert len(swings) == 5
+    for step, (before, phase) in enumerate(swings, start=1):
+        assert gait.lift_off(step) == pytest.approx(0.02 * phase.start)
+        assert gait.support_before(step) == pytest.approx(0.02 * before.samples)
+    assert gait.duration == pytest.approx(0.02 * phases[-1].start)
+    assert [gait.support_before(step) for step in range(1, 6)] == [0.4, 0.2, 0.2, 0.4, 0.2]
+    assert GaitParameters(steps=0).duration == 1.0
+    with pytest.raises(ParameterError, match="no step 1 of a gait that stands"):
+        GaitParameters(steps=0).lift_off(1)

@@ -38,7 +38,7 @@ def pushing_force(pushes: tuple[PointPush, ...], time: float) -> Array:
 
 
 class Pendulum:
-    """Point mass over a ZMP: x'' = λ (x - p) + F / m, horizontally; its height follows a given profile.
+    """Point mass over a ZMP: x'' = λ (x - p) + F / m horizontally, eq. (1) with a push; its height is given.
 
     Attributes:
         position: horizontal position, shape (2,) [m].

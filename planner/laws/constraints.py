@@ -60,7 +60,7 @@ def generate_constraints(
 ) -> Constraints:
     """Constraints of one tick.
 
-    The paper's box (eq. param_constraint) is printed as an equality that is not centred on the foot; here it is
+    The paper's box (eq. (9)) is printed as an equality that is not centred on the foot; here it is
     ± foot_margin / 2 of the foot around the moving reference, at samples 1..N (sample 0 has no feed-through).
 
     Args:

@@ -36,7 +36,7 @@ def build_problem(
     Variables per axis: m moves of the jerk [m/s^3], shifts of the next two footsteps [m], ZMP slack [m], terminal slack
     [m].
 
-    Cost (eq. costfunction with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks.
+    Cost (eq. (7) with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks.
     The terminal cost is what the best linear feedback would still spend on the squared ZMP error after the horizon;
     without it the optimum prefers a constant ZMP error of millimetres to paying once for its correction.
     All constraints on the motion are soft (the paper's hard ones are infeasible under noise), so that the problem

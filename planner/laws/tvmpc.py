@@ -29,17 +29,17 @@ def build_hard_problem(
     point: Array,
     terminal: bool,
 ) -> tuple[Qp, Qp]:
-    """The QPs of both axes in ΔU [m/s^3], from eq. costfunction, constraints and param_constraint.
+    """The QPs of both axes in ΔU [m/s^3], from eq. (7), eq. (8) and eq. (9).
 
     Rows of G: ZMP box above and below, jerk above and below, and if wanted the terminal DCM above and below; bounds are
     those of the jerk's rate. A block of several samples may change the jerk by the rate times the samples since the
     last block began; the first one, the only one that is applied, begins one sample after the last jerk.
 
-    - Erratum: eq. param_constraint prints G = [0.9 L_f/2, -0.9 L_f/2] for F = [1, -1]; here both are +0.9 L_f/2 and
+    - Erratum: eq. (9) prints G = [0.9 L_f/2, -0.9 L_f/2] for F = [1, -1]; here both are +0.9 L_f/2 and
       count from the moving reference, because as printed the ZMP would have to equal +34 mm and the box would not
       follow the feet.
-    - Erratum: eq. constraints runs over j = 0..N_p; here 1..N_p, because C has no feed-through and y(k) is past.
-    - Erratum: z_k of eq. costfunction holds N_p increments; here N_c, as announced.
+    - Erratum: eq. (8) runs over j = 0..N_p; here 1..N_p, because C has no feed-through and y(k) is past.
+    - Erratum: z_k of eq. (7) holds N_p increments; here N_c, as announced.
     - Erratum: the rate of change of the jerk is limited to "0.1" without a unit; here per sample, because no motion at
       all walks this gait with 0.1 m/s^4.
 
@@ -76,7 +76,7 @@ def build_hard_problem(
 def softened(qp: Qp, hard: slice, cost: tuple[float, float]) -> Qp:
     """The same problem with one slack s >= 0 on all rows but the hard ones, as the last variable.
 
-    Erratum: ε = [0, 0] of eq. param_constraint, "the solution must always satisfy it"; here a slack steps in when it
+    Erratum: ε = [0, 0] of eq. (9), "the solution must always satisfy it"; here a slack steps in when it
     cannot, because with the paper's own parameters the hard problem has no solution at a third of all ticks.
 
     Args:

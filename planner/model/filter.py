@@ -54,7 +54,7 @@ class Innovation:
 
 
 def sensor_model(stiffness: float) -> Array:
-    """C of ZMP, CoM and CoM velocity, shape (3, 3).
+    """C of ZMP, CoM and CoM velocity, shape (3, 3); its first row is that of eq. (4).
 
     The ZMP is y = x - x''/λ; the paper prints -ω² for -1/ω².
 

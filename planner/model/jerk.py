@@ -12,7 +12,13 @@ BLOCK_STARTS = (0, 1, 2, 4, 7, 11, 16, 22, 29, 37)
 
 
 def jerk_model(sample_time: float) -> tuple[Array, Array]:
-    """A, shape (3, 3), and B, shape (3,), of the CoM under a jerk that is constant over a sample (eq. lipm_disc2)."""
+    """A, shape (3, 3), and B, shape (3,), of the CoM under a jerk that is constant over a sample.
+
+    They are those of eq. (4): x(k+1) = A x(k) + B u(k), eq. (3), integrates the chain of eq. (2) exactly.
+
+    Args:
+        sample_time: T [s].
+    """
     t = sample_time
     return (
         np.array([[1.0, t, 0.5 * t * t], [0.0, 1.0, t], [0.0, 0.0, 1.0]]),
@@ -50,8 +56,8 @@ def block_moves(starts: tuple[int, ...], horizon: int) -> Array:
 class Prediction:
     """Position, velocity and acceleration over a horizon as linear functions of state and moves.
 
-    The triple integrator of eq. lipm_disc2 has constant A and B; only C(k) = [1, 0, -1/λ(k)] varies with time (the
-    paper prints -ω² for -1/ω²). The predicted ZMP of eq. pridection_tv is therefore a row scaling,
+    The triple integrator of eq. (4) has constant A and B; only C(k) = [1, 0, -1/λ(k)] varies with time (the
+    paper prints -ω² for -1/ω²). The predicted ZMP of eq. (10) is therefore a row scaling,
     Y = P_x - diag(1/λ) P_a, for the response to the state (S_x) as for the response to the input (S_u).
 
     Attributes:

@@ -1,4 +1,4 @@
-"""Vertical CoM motion: the paper's profile (eq. z_traj), a smooth one, and one that legs can follow on stairs.
+"""Vertical CoM motion: the paper's profile (eq. (15)), a smooth one, and one that legs can follow on stairs.
 
 A profile has two parts: the base level, which changes from support to support, and the bumps above it. On stairs the
 paper changes the level in double support, where the rear foot stands a riser below the front one and the CoM is
@@ -154,7 +154,7 @@ class BentKneeHeight:
 
 @dataclass(frozen=True, slots=True)
 class PaperHeight:
-    """The paper's height as printed (eq. z_traj): A sin in each support phase, a linear rise in double support.
+    """The paper's height as printed (eq. (15)): A sin in each support phase, a linear rise in double support.
 
     Two things are mended, without which the equation means nothing over more than one step: z_c0 goes up by Δz_c with
     every step, and t begins anew with every step and phase. Its velocity jumps at each phase change stay: z' and z''

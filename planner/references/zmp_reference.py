@@ -74,7 +74,7 @@ def support_table(plan: FootstepPlan, stance_row: int, free: tuple[bool, bool], 
 def zmp_reference(schedule: Schedule, table: SupportTable, start: int, count: int) -> ZmpReference:
     """ZMP reference of a window: the stance foot in single support, linear to the next one in double support.
 
-    Eq. zmpEquation in vector form: the paper's scalar S_L is f_{i+1} - f_i, and its t starts anew at each step.
+    It is eq. (12) in vector form: the paper's scalar S_L is f_{i+1} - f_i, and its t starts anew at each step.
 
     Args:
         schedule: phases of the walk.

@@ -56,7 +56,7 @@ def swing_courses(
         ParameterError: no course clears the edges of a step.
     """
     plain = SwingCourse(parameters.apex_share, 0.0, 1.0, clearance)
-    if not terrain.boxes:
+    if not terrain.has_edges:
         return (plain,) * footsteps.steps
     courses = []
     for phase in schedule.phases:

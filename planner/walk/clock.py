@@ -1,14 +1,14 @@
 """The phases of a gait on the integer clock of planner samples, and the walk's way through them."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
-from surefoot.planner.types import Array, FeetState, Foot, PhaseInfo, PhaseKind, PlannedFootstep
+from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, samples, support_rows
 
@@ -173,7 +173,7 @@ class Stepper:
         self.early = False
         self.fixed = False
         self._terrain = terrain
-        self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and not terrain.boxes
+        self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and terrain.free_footholds
         self._patience = round(parameters.late_touchdown / parameters.sample_time)
         self._touchdown = [phase.end for phase in schedule.phases if phase.kind is PhaseKind.SINGLE]
 
@@ -248,13 +248,15 @@ class Stepper:
         steps, planned = self.footsteps, []
         shift = np.zeros(2)
         for ahead, row in enumerate(range(self.row + 1, min(self.row + 4, steps.steps + 2))):
-            position = steps.position[row].copy()
+            position, normal = steps.position[row].copy(), steps.normal[row]
             if ahead < 2 and self.free[ahead]:
                 shift = shift + shifts[ahead]
             position[:2] += shift
             if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND:
-                position[2] = self._terrain.height(float(position[0]), float(position[1]))
-            footstep = replace(steps.footstep(row), position=position)
+                x, y = float(position[0]), float(position[1])
+                position[2] = self._terrain.height(x, y)
+                normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
+            footstep = Footstep(steps.feet[row], position, float(steps.yaw[row]), normal)
             planned.append(PlannedFootstep(row - 1, footstep, time + self.time_to_touchdown(row - 1)))
         return tuple(planned)
 

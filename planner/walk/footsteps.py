@@ -53,7 +53,7 @@ class FootstepPlan:
     def moved(self, row: int, position: Array, terrain: Terrain) -> "FootstepPlan":
         """The plan with one foothold somewhere else and its successors at their nominal increments from it.
 
-        Where the ground has edges the successors stay on the treads that were chosen for them.
+        Where footholds are not free the successors stay on the treads that were chosen for them.
 
         Args:
             row: the row that moves.
@@ -62,12 +62,16 @@ class FootstepPlan:
         """
         moved = self.position.copy()
         moved[row] = position
-        if terrain.boxes:
+        if not terrain.free_footholds:
             return replace(self, position=moved)
         following = position[:2] + np.cumsum(self.increment[row + 1 :], axis=0)
         moved[row + 1 :, :2] = following
         moved[row + 1 :, 2] = terrain.heights(following)
-        return replace(self, position=moved)
+        if not terrain.has_edges:
+            return replace(self, position=moved)
+        normal = self.normal.copy()
+        normal[row:] = terrain.normals(moved[row:, :2])
+        return replace(self, position=moved, normal=normal)
 
     def support_points(self) -> Array:
         """Support points of the ZMP reference (see `Schedule`), shape (m, 3) [m]."""

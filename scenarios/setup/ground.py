@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.ground.rough import Blocks, Slope, block_field, slope
-from surefoot.planner.ground.stairs import Direction, Stairs, staircase
-from surefoot.planner.ground.terrain import Box, Terrain, flat
+from surefoot.planner.ground.blocks import Blocks
+from surefoot.planner.ground.slope import Slope
+from surefoot.planner.ground.stairs import Direction, Stairs
+from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
 from surefoot.planner.references.com_height import (
     BENT_KNEES,
@@ -45,12 +46,13 @@ def terrain_of(scenario: Scenario) -> Terrain:
     """The ground as the planner believes it to be."""
     settings, start = scenario.terrain, scenario.start
     origin = np.array([start.x, start.y])
+    site = Site(origin, start.yaw, settings.friction, lambda: _footsteps(scenario), _random(scenario))
     if settings.kind == "stairs":
-        return staircase(stairs_of(scenario), origin, start.yaw, settings.friction)
+        return stairs_of(scenario).build(site)
     if settings.kind == "slope":
-        return slope(slope_of(scenario), origin, start.yaw, settings.friction)
+        return slope_of(scenario).build(site)
     if settings.kind == "blocks":
-        return block_field(blocks_of(scenario), _footsteps(scenario), _random(scenario), settings.friction)
+        return blocks_of(scenario).build(site)
     return flat(settings.friction)
 
 

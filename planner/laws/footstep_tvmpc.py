@@ -206,7 +206,7 @@ class FootstepTvmpc:
         return nominal_motion(problem.state[:, 0], zmp, problem.stiffness, t)
 
 
-class ConstantHeightTvmpc:
+class ConstantHeightTvmpc(FootstepTvmpc):
     """The same without previewing the dynamics: λ = g / z_c and ω = sqrt(λ) over the whole window (LIPM).
 
     Args:
@@ -215,24 +215,11 @@ class ConstantHeightTvmpc:
     """
 
     def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
-        self._law = FootstepTvmpc(parameters, com_height)
+        super().__init__(parameters, com_height)
         self._stiffness = softening(parameters.leg) * GRAVITY / com_height
-
-    def plan(self, problem: MotionProblem) -> Motion:
-        """See `MotionPlanner`."""
-        built = self.build(problem)
-        return self.interpret(problem, built, self.solve(built))
 
     def build(self, problem: MotionProblem) -> BuiltQps:
         """See `QpLaw`."""
         stiffness = np.full_like(problem.stiffness, self._stiffness)
         omega = np.full_like(problem.omega, math.sqrt(self._stiffness))
-        return self._law.build(replace(problem, stiffness=stiffness, omega=omega))
-
-    def solve(self, built: BuiltQps) -> tuple[QpSolution, QpSolution]:
-        """See `QpLaw`."""
-        return self._law.solve(built)
-
-    def interpret(self, problem: MotionProblem, built: BuiltQps, solutions: tuple[QpSolution, QpSolution]) -> Motion:
-        """See `QpLaw`."""
-        return self._law.interpret(problem, built, solutions)
+        return super().build(replace(problem, stiffness=stiffness, omega=omega))

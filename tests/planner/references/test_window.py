@@ -33,14 +33,16 @@ def test_a_table_does_not_hold_for_another_support(change):
 
 @pytest.mark.parametrize("copied", [False, True])
 def test_plans_depend_on_values_and_not_on_objects(stand, copied):
-    """Footholds replaced by equal ones change no plan; moved ones do."""
+    """Footholds replaced by equal ones change no plan; moved ones do, even of a step that was fixed before."""
     gait = GaitParameters(steps=2, initial_stand=0.0)
     plans = []
     for change in (False, True):
         planner = WalkingPlanner(gait, stand(), 0.2, 0.1, parameters=PlannerParameters(leg=LEG))
         for tick in range(4):
+            stepper = planner._stepper
+            if tick == 1:
+                stepper.fix(stepper.footsteps.position[2])
             if change and tick == 2:
-                stepper = planner._stepper
                 if copied:
                     stepper.footsteps = replace(stepper.footsteps)
                 else:

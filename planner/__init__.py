@@ -1,1 +1,95 @@
-"""Walking planner: points, pendulums, footsteps and terrain heights; it knows no robot and no simulator."""
+"""The planner layer: gait, footsteps, references and the laws of motion that plan CoM, ZMP and footsteps at every tick.
+
+`WalkingPlanner` makes a `WalkPlan` of a `CentroidalState` and a `FeetState`, and `PlanSampler` evaluates it in between:
+
+    planner = WalkingPlanner(GaitParameters(steps=4), feet, foot_length=0.22, foot_width=0.11)
+    plan = planner.update(CentroidalState(0.0, com, com_velocity), feet)
+    sample = PlanSampler(plan).sample(0.01)
+
+What varies is an object: a `MotionPlanner` is a law of motion, a `Profile` of `PROFILES` makes one, and anything that
+is a `Planner` can stand in a closed loop. The names below are imported when they are first asked for, since a part of
+the layer is wanted more often than its solvers.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from surefoot.planner.ground.terrain import Box, Terrain, flat
+    from surefoot.planner.laws.law import BuiltQps, Motion, MotionPlanner, MotionProblem, QpLaw
+    from surefoot.planner.laws.profiles import PROFILES, Profile
+    from surefoot.planner.laws.qp import Qp, QpSolution, solve
+    from surefoot.planner.parameters import LegInertia, PlannerParameters, StepAdaptation
+    from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
+    from surefoot.planner.planner import WalkingPlanner
+    from surefoot.planner.plants import IdealFeet, Pendulum, PointPush, walk_pendulum
+    from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
+    from surefoot.planner.walk.commands import Twist, VelocityCommand, VelocityTimeline, velocity_bouts, walk_of
+    from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
+
+_NAMES = {
+    "ground.terrain": ("Box", "Terrain", "flat"),
+    "laws.law": ("BuiltQps", "Motion", "MotionPlanner", "MotionProblem", "QpLaw"),
+    "laws.profiles": ("PROFILES", "Profile"),
+    "laws.qp": ("Qp", "QpSolution", "solve"),
+    "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),
+    "plan": ("PlanSample", "PlanSampler", "Planner", "WalkPlan"),
+    "planner": ("WalkingPlanner",),
+    "plants": ("IdealFeet", "Pendulum", "PointPush", "walk_pendulum"),
+    "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "PhaseKind"),
+    "walk.commands": ("Twist", "VelocityCommand", "VelocityTimeline", "velocity_bouts", "walk_of"),
+    "walk.gait": ("Bout", "GaitParameters", "Stride"),
+}
+
+__all__ = [
+    "PROFILES",
+    "Bout",
+    "Box",
+    "BuiltQps",
+    "CentroidalState",
+    "FeetState",
+    "Foot",
+    "Footstep",
+    "GaitParameters",
+    "IdealFeet",
+    "LegInertia",
+    "Motion",
+    "MotionPlanner",
+    "MotionProblem",
+    "Pendulum",
+    "PhaseKind",
+    "PlanSample",
+    "PlanSampler",
+    "Planner",
+    "PlannerParameters",
+    "PointPush",
+    "Profile",
+    "Qp",
+    "QpLaw",
+    "QpSolution",
+    "StepAdaptation",
+    "Stride",
+    "Terrain",
+    "Twist",
+    "VelocityCommand",
+    "VelocityTimeline",
+    "WalkPlan",
+    "WalkingPlanner",
+    "flat",
+    "solve",
+    "velocity_bouts",
+    "walk_of",
+    "walk_pendulum",
+]
+
+
+def __getattr__(name: str) -> Any:
+    module = next((module for module, names in _NAMES.items() if name in names), None)
+    if module is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    thing = globals()[name] = getattr(import_module(f"{__name__}.{module}"), name)
+    return thing
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -75,6 +75,11 @@ def sole_rates(angles: Array, rates: Array, accelerations: Array) -> tuple[Array
     )
 
 
+CORNERS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+"""Corners of a rectangle in half sizes, anticlockwise from the one ahead on the left, shape (4, 2) [-]."""
+CORNERS.flags.writeable = False
+
+
 def sole_corners(footstep: Footstep, half_size: Array) -> Array:
     """Corners of a sole seen from above, anticlockwise, shape (4, 2) [m].
 
@@ -82,9 +87,8 @@ def sole_corners(footstep: Footstep, half_size: Array) -> Array:
         footstep: where the sole stands.
         half_size: half of its length and width, shape (2,) [m].
     """
-    signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
     rotation = sole_rotation(footstep.yaw, *sole_angles(footstep.normal, footstep.yaw))
-    return np.asarray(footstep.position[:2] + (signs * half_size) @ rotation[:2, :2].T)
+    return np.asarray(footstep.position[:2] + (CORNERS * half_size) @ rotation[:2, :2].T)
 
 
 def convex_hull(points: Array) -> Array:

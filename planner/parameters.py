@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass, field, fields
 from enum import Enum
 
+from surefoot.errors import ParameterError
+from surefoot.planner.laws.qp import SOLVERS
 from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.model.leg_chain import LegChain
 
@@ -21,7 +23,7 @@ class GroundSearch:
         hurry_acceleration: at which that is gained [m/s^2].
 
     Raises:
-        ValueError: a number is negative, an acceleration is zero, or one that must be finite is not.
+        ParameterError: a number is negative, an acceleration is zero, or one that must be finite is not.
     """
 
     touchdown_speed: float = 0.005
@@ -34,11 +36,12 @@ class GroundSearch:
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
+            key, what = ("parameters", "search", entry.name), f"{entry.name} of the ground search is {value:g}"
             least = "greater than 0" if entry.name.endswith("acceleration") else "at least 0"
             if not value >= 0.0 or (value == 0.0 and least == "greater than 0"):
-                raise ValueError(f"planner.search.{entry.name} is {value:g}, but it must be {least}.")
+                raise ParameterError(key, what, f"it must be {least}")
             if not math.isfinite(value) and entry.name != "hurry_after":
-                raise ValueError(f"planner.search.{entry.name} is {value:g}, but it must be finite.")
+                raise ParameterError(key, what, "it must be finite")
 
     def motion(self, since: float) -> tuple[float, float, float]:
         """Way down [m], downward speed [m/s] and acceleration [m/s^2], `since` the touchdown [s]."""
@@ -75,7 +78,7 @@ class LegInertia:
         chain: the legs with their links, for the ZMP offset of their motion; None leaves it out.
 
     Raises:
-        ValueError: the mass is negative or no number, or both legs would outweigh the body.
+        ParameterError: the mass is negative or no number, or both legs would outweigh the body.
     """
 
     mass_ratio: float = 0.0
@@ -83,7 +86,8 @@ class LegInertia:
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.mass_ratio < 0.5:
-            raise ValueError(f"planner.leg has mass ratio {self.mass_ratio:g}, but it must be within 0 to 0.5.")
+            what = f"the mass ratio of a leg is {self.mass_ratio:g}"
+            raise ParameterError(("parameters", "leg", "mass_ratio"), what, "it must be within 0 to 0.5")
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,10 +121,10 @@ class PlannerParameters:
             the leg is stretched furthest, shortly before touchdown [-].
         touchdown_lead: the swing ends this long before single support does, so that the foot is felt in time [s].
         search: speed of the swing foot at the planned touchdown, and how it goes on while it feels no ground.
-        solvers: QP solvers of qpsolvers, in the order in which they are tried.
+        solvers: QP solvers of qpsolvers, in the order in which they are tried (see `planner.laws.qp` for the choice).
 
     Raises:
-        ValueError: a number is not positive, or not finite where it must be.
+        ParameterError: a number is not positive, or not finite where it must be.
     """
 
     sample_time: float = 0.02
@@ -147,7 +151,7 @@ class PlannerParameters:
     apex_share: float = 0.5
     touchdown_lead: float = 0.03
     search: GroundSearch = field(default_factory=GroundSearch)
-    solvers: tuple[str, str] = ("daqp", "quadprog")
+    solvers: tuple[str, str] = SOLVERS
 
     def __post_init__(self) -> None:
         for entry in fields(self):
@@ -162,7 +166,8 @@ class PlannerParameters:
                 "jerk_weight",
                 "compliance_margin",
             )
+            key, what = ("parameters", entry.name), f"{entry.name} is {value:g}"
             if not (value > 0 or (may_be_zero and value == 0)):
-                raise ValueError(f"planner.{entry.name} is {value:g}, but it must be greater than 0.")
+                raise ParameterError(key, what, "it must be greater than 0")
             if not math.isfinite(value) and entry.name != "jerk_rate_limit":
-                raise ValueError(f"planner.{entry.name} is {value:g}, but it must be finite.")
+                raise ParameterError(key, what, "it must be finite")

@@ -1,15 +1,26 @@
 """What the planner hands over at every tick, and the references that follow from it at any instant."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy import bool_
 from numpy.typing import NDArray
 
 from surefoot.planner.geometry import quintic
+from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.trajectory import SwingTrajectory
-from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PlannedFootstep, PlanStatus
+from surefoot.planner.types import (
+    Array,
+    CentroidalState,
+    FeetState,
+    Foot,
+    Footstep,
+    PhaseInfo,
+    PlannedFootstep,
+    PlanStatus,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +73,26 @@ class WalkPlan:
     swing: SwingTrajectory | None
     roll: FootRoll | None
     status: PlanStatus
+
+
+class Planner(Protocol):
+    """What a closed loop asks of a planner; anything with this can take the place of `planner.planner.WalkingPlanner`.
+
+    It is asked once per `parameters.sample_time`, from time 0 on, and each plan has `parameters.horizon` samples;
+    nothing else is read of its parameters.
+    """
+
+    @property
+    def parameters(self) -> PlannerParameters:
+        """Gives sample time and horizon of the plans."""
+
+    def update(self, state: CentroidalState, feet: FeetState) -> WalkPlan:
+        """Plan from a measurement.
+
+        Args:
+            state: measured CoM.
+            feet: measured feet.
+        """
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,14 @@
 """The walking planner: the four modules of the paper, put together once per tick."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import sole_pose, wrap_angle
 from surefoot.planner.ground.terrain import Terrain, flat
-from surefoot.planner.laws.constraints import StepContext, check_reach
+from surefoot.planner.laws.constraints import StepContext
 from surefoot.planner.laws.law import Motion, MotionProblem
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.model.jerk import Trajectory, block_moves, predict, trajectory
@@ -32,20 +34,31 @@ from surefoot.planner.types import (
 from surefoot.planner.walk.clock import Stepper, schedule
 from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.reach import check_reach
 
 
-def world_plan(
-    time: float,
-    stepper: Stepper,
-    support: Support,
-    window: Window,
-    motion: Trajectory,
-    shifts: Array,
-    footsteps: tuple[PlannedFootstep, ...],
-    swing: SwingTrajectory | None,
-    roll: FootRoll | None,
-    status: PlanStatus,
-) -> WalkPlan:
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """What a tick has decided.
+
+    Attributes:
+        motion: predicted motion in the plan frame.
+        shifts: shifts of the next two footsteps in the plan frame, shape (2, 2) [m].
+        footsteps: the next footsteps.
+        swing: trajectory of the swing foot.
+        roll: of the foot that leaves the ground.
+        status: how it came about.
+    """
+
+    motion: Trajectory
+    shifts: Array
+    footsteps: tuple[PlannedFootstep, ...]
+    swing: SwingTrajectory | None
+    roll: FootRoll | None
+    status: PlanStatus
+
+
+def world_plan(time: float, stepper: Stepper, support: Support, window: Window, decided: Decided) -> WalkPlan:
     """The plan of a tick.
 
     Args:
@@ -53,20 +66,15 @@ def world_plan(
         stepper: clock and footholds.
         support: the present support and the plan frame on it.
         window: references.
-        motion: predicted motion in the plan frame.
-        shifts: shifts of the next two footsteps in the plan frame, shape (2, 2) [m].
-        footsteps: the next footsteps.
-        swing: trajectory of the swing foot.
-        roll: of the foot that leaves the ground.
-        status: how the plan was made.
+        decided: motion and footsteps.
     """
-    reference, schedule = window.reference, stepper.schedule
+    motion, reference, schedule = decided.motion, window.reference, stepper.schedule
     count, to_world = len(motion.zmp), support.rotation.T
     com = np.empty((3, count, 3))
     com[:, :, :2] = motion.com @ to_world
     com[0, :, :2] += support.origin
     com[:, :, 2] = window.height.height[:, :count]
-    point = reference.point[:count] + reference.gain[:count] @ shifts
+    point = reference.point[:count] + reference.gain[:count] @ decided.shifts
     samples = slice(window.start, window.start + count)
     return WalkPlan(
         time=time,
@@ -86,10 +94,10 @@ def world_plan(
         support_polygon=support.outer,
         inner_polygon=support.inner,
         footholds=support.footholds,
-        footsteps=footsteps,
-        swing=swing,
-        roll=roll,
-        status=status,
+        footsteps=decided.footsteps,
+        swing=decided.swing,
+        roll=decided.roll,
+        status=decided.status,
     )
 
 
@@ -103,7 +111,7 @@ class WalkingPlanner:
     It plans in a frame with origin and planned heading at the stance foot (the foot landed last in double support), so
     that its numbers do not depend on where in the world it walks, and ZMP boxes and reach boxes are aligned with it.
     CoM position and velocity come from the measurement, the acceleration from the plan before. How the CoM moves is
-    the profile's law of motion (see `planner.profiles`); all else is common to the profiles.
+    the profile's law of motion (see `planner.laws.profiles`); all else is common to the profiles.
 
     Args:
         gait: the walk.
@@ -122,7 +130,7 @@ class WalkingPlanner:
         motion: the law's answer of the last tick, with the QPs that it solved; None before the first.
 
     Raises:
-        ValueError: a duration is no multiple of the sample time, a footstep is out of reach, the CoM would fall
+        ParameterError: a duration is no multiple of the sample time, a footstep is out of reach, the CoM would fall
             almost freely, or no swing clears the edges before a footstep.
     """
 
@@ -143,11 +151,12 @@ class WalkingPlanner:
         terrain = terrain or flat()
         for name, size in (("foot_length", foot_length), ("foot_width", foot_width)):
             if not (size > 0.0 and math.isfinite(size)):
-                raise ValueError(f"{name} is {size}, but it must be a finite number greater than 0.")
+                raise ParameterError((name,), f"{name} is {size:g}", "it must be a finite number greater than 0")
         self._half_size = 0.5 * np.array([foot_length, foot_width])
         self.schedule = schedule(gait, p.sample_time, p.horizon + p.preview)
         footsteps = plan_footsteps(gait, feet, terrain)
-        check_reach(footsteps, p)
+        for row in range(2, footsteps.steps + 2):
+            check_reach(row - 1, footsteps.landing(row), p)
         shape = (height_profile or profile.height or SmoothHeight()).shape(gait, self.schedule)
         check_height(shape, self.schedule, footsteps.support_points()[:, 2])
         self._courses = swing_courses(footsteps, self.schedule, terrain, self._half_size, gait.swing_height, p)
@@ -156,7 +165,7 @@ class WalkingPlanner:
         self._stepper = Stepper(self.schedule, footsteps, terrain, p)
         self._outlook = Outlook(self.schedule, shape, swings, p.leg, p.horizon + p.preview + 1)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
-        self._law = profile.law(p, float(shape.bump[0, 0]))
+        self._law = profile.law(p, shape.standing_height)
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
         self._swing: SwingTrajectory | None = None
@@ -183,23 +192,34 @@ class WalkingPlanner:
         p, stepper = self.parameters, self._stepper
         stepper.advance(feet)
         self._fix_imminent_footstep(state.time)
-        support = present_support(self._support, stepper, self._half_size, p.foot_margin)
-        self._support = support
+        # ZMP planner: what carries the robot now, and the ZMP that the footsteps define.
+        support = self._support = present_support(self._support, stepper, self._half_size, p.foot_margin)
+        reference = self._outlook.zmp(stepper.sample, support)
+        # Vertical motion planner of the CoM, with it the varying dynamics.
+        height = self._outlook.com_height(stepper.sample, support, reference)
         local = self._local_state(state, support)
-        window = self._outlook.window(stepper.sample, support, stepper.footsteps, local[:, 0], self._offsets)
-        self._offsets = window.table
-        problem = self._problem(local, feet, support, window)
-        motion = self._law.plan(problem)
-        self.motion = motion
-        footsteps = stepper.upcoming(state.time, motion.shifts @ support.rotation.T)
-        self._update_swing(state.time, feet, footsteps, motion.solver)
-        moving = trajectory(self._prediction, problem.state, window.stiffness[: p.horizon + 1], motion.jerk)
-        status = self._status(motion)
-        roll = self._roll(state.time)
-        self._plan = world_plan(
-            state.time, stepper, support, window, moving, motion.shifts, footsteps, self._swing, roll, status
+        window = self._outlook.window(
+            stepper.sample, support, reference, height, stepper.footsteps, local[:, 0], self._offsets
         )
+        self._offsets = window.table
+        # Online constraints generator: the box comes with the reference, the reach of the feet here.
+        problem = self._problem(local, feet, support, window)
+        # TVMPC, or the law that stands in its place.
+        motion = self.motion = self._law.plan(problem)
+        decided = self._decide(state.time, feet, support, window, problem, motion)
+        self._plan = world_plan(state.time, stepper, support, window, decided)
         return self._plan
+
+    def _decide(
+        self, time: float, feet: FeetState, support: Support, window: Window, problem: MotionProblem, motion: Motion
+    ) -> Decided:
+        """Footsteps, swing and CoM that follow from the law's motion."""
+        footsteps = self._stepper.upcoming(time, motion.shifts @ support.rotation.T)
+        self._update_swing(time, feet, footsteps, motion.solver)
+        stiffness = window.stiffness[: self.parameters.horizon + 1]
+        moving = trajectory(self._prediction, problem.state, stiffness, motion.jerk)
+        status = self._status(motion)
+        return Decided(moving, motion.shifts, footsteps, self._swing, self._roll(time), status)
 
     def _problem(self, local: Array, feet: FeetState, support: Support, window: Window) -> MotionProblem:
         jerk = np.zeros((self.parameters.horizon + 1, 2))

@@ -7,7 +7,7 @@ import numpy as np
 
 from surefoot.planner.geometry import nearest_point, signed_distance
 from surefoot.planner.model.dcm import dcm
-from surefoot.planner.model.filter import jerk_model
+from surefoot.planner.model.jerk import jerk_model
 from surefoot.planner.plan import PlanSampler, WalkPlan
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.types import Array, CentroidalState, FeetState
@@ -38,7 +38,7 @@ def pushing_force(pushes: tuple[PointPush, ...], time: float) -> Array:
 
 
 class Pendulum:
-    """Point mass over a ZMP: x'' = λ (x - p) + F / m, horizontally; its height follows a given profile.
+    """Point mass over a ZMP: x'' = λ (x - p) + F / m horizontally, eq. (1) with a push; its height is given.
 
     Attributes:
         position: horizontal position, shape (2,) [m].

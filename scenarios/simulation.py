@@ -7,14 +7,14 @@ from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.planner.laws.profiles import Profile
-from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.plan import Planner, PlanSample, WalkPlan
 from surefoot.planner.types import PhaseKind
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import Scenario
@@ -164,7 +164,7 @@ class Simulation:
         return self._loop.end
 
     @property
-    def planner(self) -> Any:
+    def planner(self) -> Planner:
         """The walking planner."""
         return self._loop.planning.planner
 

@@ -7,10 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.ground.terrain import Box, Terrain
-
-HALF_WIDTH = 1.0
-"""Half of the lateral extent of a staircase [m]."""
+from surefoot.planner.ground.terrain import HALF_WIDTH, Box, Site, Terrain
 
 
 class Direction(Enum):
@@ -55,22 +52,14 @@ class Stairs:
             first, heights, depths = self.start, [*up, *down], [*treads, self.landing, *treads]
         return np.cumsum([first, *depths], dtype=np.float64), self.riser * np.array(heights, dtype=np.float64)
 
-
-def staircase(stairs: Stairs, origin: NDArray[np.float64], yaw: float, friction: float) -> Terrain:
-    """A staircase on the ground plane; one that goes down starts on its highest platform.
-
-    Args:
-        stairs: the staircase.
-        origin: start of the walk in the world frame, x, y, shape (2,) [m].
-        yaw: heading of the stairs [rad].
-        friction: Coulomb coefficient of every surface [-].
-    """
-    rotation = np.eye(3)
-    rotation[:2, :2] = frame_rotation(yaw)
-    edges, heights = stairs.levels()
-    boxes = []
-    for begin, end, height in zip(edges[:-1], edges[1:], heights, strict=True):
-        center = rotation @ (0.5 * (begin + end), 0.0, 0.5 * height)
-        center[:2] += origin
-        boxes.append(Box(center, np.array([0.5 * (end - begin), HALF_WIDTH, 0.5 * height]), rotation))
-    return Terrain(tuple(boxes), friction, (float(origin[0]), float(origin[1]), yaw))
+    def build(self, site: Site) -> Terrain:
+        """See `GroundShape`; one that goes down starts on its highest platform."""
+        rotation = np.eye(3)
+        rotation[:2, :2] = frame_rotation(site.yaw)
+        edges, heights = self.levels()
+        boxes = []
+        for begin, end, height in zip(edges[:-1], edges[1:], heights, strict=True):
+            center = rotation @ (0.5 * (begin + end), 0.0, 0.5 * height)
+            center[:2] += site.origin
+            boxes.append(Box(center, np.array([0.5 * (end - begin), HALF_WIDTH, 0.5 * height]), rotation))
+        return Terrain(tuple(boxes), site.friction, (float(site.origin[0]), float(site.origin[1]), site.yaw))

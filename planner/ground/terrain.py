@@ -1,9 +1,22 @@
 """Terrain as data: what the planner knows of the ground and what the simulator turns into geoms."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from surefoot.errors import ParameterError
+
+if TYPE_CHECKING:
+    from surefoot.planner.walk.footsteps import FootstepPlan
+
+HALF_WIDTH = 1.0
+"""Half of the lateral extent of stairs and slopes [m]."""
+
+DEEPER = 0.05
+"""How far tilted solids reach below the ground plane at least, and the lowest blocks rise above it [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +59,23 @@ class Terrain:
         friction: Coulomb coefficient of every surface [-].
         path_start: x, y [m] and heading [rad] from which footsteps are laid, wherever exactly the feet stand; None
             where any other place is as good.
+        wide: whether its faces are so wide that a footstep may be moved anywhere in reach, and its successors with it.
     """
 
     boxes: tuple[Box, ...] = ()
     friction: float = 0.8
     path_start: tuple[float, float, float] | None = None
+    wide: bool = False
+
+    @property
+    def has_edges(self) -> bool:
+        """Whether there is anything that a swing foot may have to clear."""
+        return bool(self.boxes)
+
+    @property
+    def free_footholds(self) -> bool:
+        """Whether footsteps may land elsewhere than planned; if not, each was chosen for the face that it lands on."""
+        return self.wide or not self.boxes
 
     def height(self, x: float, y: float) -> float:
         """Ground height [m] at the world point (x, y)."""
@@ -107,3 +132,33 @@ class Terrain:
 def flat(friction: float = 0.8) -> Terrain:
     """The bare ground plane."""
     return Terrain(boxes=(), friction=friction)
+
+
+def _unknown() -> "FootstepPlan":
+    raise ParameterError(("terrain", "footsteps"), "this ground is laid under footsteps", "give its site the footsteps")
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """Where ground is built, and for which walk.
+
+    Attributes:
+        origin: start of the walk in the world frame, x, y, shape (2,) [m].
+        yaw: heading of the walk [rad].
+        friction: Coulomb coefficient of every surface [-].
+        footsteps: gives the footsteps, heights do not matter; asked by ground that is laid under them.
+        rng: draws what is random.
+    """
+
+    origin: NDArray[np.float64]
+    yaw: float
+    friction: float
+    footsteps: Callable[[], "FootstepPlan"] = _unknown
+    rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))
+
+
+class GroundShape(Protocol):
+    """The settings of one kind of ground, frozen, which build it; each kind is a file beside this one."""
+
+    def build(self, site: Site) -> Terrain:
+        """The ground at a site."""

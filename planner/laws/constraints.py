@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.zmp_reference import ZmpReference
-from surefoot.planner.types import Array, Foot
-from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.types import Array
+from surefoot.planner.walk.reach import reach_box
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +60,7 @@ def generate_constraints(
 ) -> Constraints:
     """Constraints of one tick.
 
-    The paper's box (eq. param_constraint) is printed as an equality that is not centred on the foot; here it is
+    The paper's box (eq. (9)) is printed as an equality that is not centred on the foot; here it is
     ± foot_margin / 2 of the foot around the moving reference, at samples 1..N (sample 0 has no feed-through).
 
     Args:
@@ -85,18 +84,6 @@ def generate_constraints(
     )
 
 
-def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]:
-    """Where a footstep may land from its stance foot: lower and upper corner in the plan frame, shape (2,) [m].
-
-    Args:
-        parameters: planner parameters.
-        side: +1 for a left step, -1 for a right one.
-    """
-    x = parameters.reach_length
-    near, far = sorted(side * width for width in parameters.reach_width)
-    return np.array([-x, near]), np.array([x, far])
-
-
 def step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Array, Array]:
     """Lower and upper bounds of the footstep shifts, each of shape (step, axis) = (2, 2) [m].
 
@@ -118,19 +105,3 @@ def step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Arra
         upper[0] = np.minimum(upper[0], np.maximum(np.maximum(here + travel, 0.0), lower[0]))
         lower[0] = low
     return lower, upper
-
-
-def check_reach(footsteps: FootstepPlan, parameters: PlannerParameters) -> None:
-    """Refuse nominal footsteps outside the reach box.
-
-    Raises:
-        ValueError: names the first such footstep and where it would have to land.
-    """
-    for row in range(2, footsteps.steps + 2):
-        step = footsteps.increment[row] @ frame_rotation(float(footsteps.yaw[row - 1]))
-        low, high = reach_box(parameters, 1.0 if footsteps.feet[row] is Foot.LEFT else -1.0)
-        if np.any(step < low - 1e-9) or np.any(step > high + 1e-9):
-            raise ValueError(
-                f"Footstep {row - 1} would land {step[0]:.3f} m ahead and {step[1]:.3f} m to the left of its stance"
-                f" foot, but it must be {low[0]:g} to {high[0]:g} m ahead and {low[1]:g} to {high[1]:g} m to the left."
-            )

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surefoot.planner.laws.constraints import Constraints, generate_constraints
-from surefoot.planner.laws.law import Motion, MotionProblem, Qp, solve
+from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem
+from surefoot.planner.laws.qp import Qp, QpSolution, solve
 from surefoot.planner.model.dcm import NominalMotion, jerk_range, no_motion, nominal_motion
 from surefoot.planner.model.jerk import Prediction, block_moves, predict, zmp_response
 from surefoot.planner.parameters import PlannerParameters
@@ -16,6 +17,8 @@ from surefoot.planner.types import GRAVITY, Array, SolverStatus
 
 _EXTRA = 4
 """Variables after the moves: two footstep shifts, ZMP slack, terminal slack."""
+
+_UNSHIFTED = np.zeros((2, 2))
 
 
 def build_problem(
@@ -33,7 +36,7 @@ def build_problem(
     Variables per axis: m moves of the jerk [m/s^3], shifts of the next two footsteps [m], ZMP slack [m], terminal slack
     [m].
 
-    Cost (eq. costfunction with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks.
+    Cost (eq. (7) with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks.
     The terminal cost is what the best linear feedback would still spend on the squared ZMP error after the horizon;
     without it the optimum prefers a constant ZMP error of millimetres to paying once for its correction.
     All constraints on the motion are soft (the paper's hard ones are infeasible under noise), so that the problem
@@ -140,27 +143,6 @@ def _with_rate_limit(G: Array, h: Array, m: int, limit: float, last_jerk: Array)
     return np.concatenate((G, rows)), np.concatenate((h, bound), axis=1)
 
 
-def solve_problem(qps: tuple[Qp, Qp], prediction: Prediction, solvers: tuple[str, str], fallback: Array) -> Motion:
-    """Solve both axes; an axis that no solver solves takes the fallback jerk and does not shift its footsteps.
-
-    Args:
-        qps: the QPs of `planner.laws.footstep_tvmpc`.
-        prediction: holds the basis of the moves.
-        solvers: qpsolvers names, in the order to try.
-        fallback: previous jerk sequence shifted by one sample, shape (N, 2) [m/s^3].
-    """
-    m = prediction.basis.shape[1]
-    jerk, shifts, slack = fallback.copy(), np.zeros((2, 2)), np.full((2, 2), np.nan)
-    worst = SolverStatus.SOLVED
-    for axis, qp in enumerate(qps):
-        solution = solve(qp, solvers)
-        worst = max(worst, SolverStatus(solution.attempt))
-        if solution.z is not None:
-            jerk[:, axis] = prediction.basis @ solution.z[:m]
-            shifts[:, axis], slack[:, axis] = solution.z[m : m + 2], solution.z[m + 2 :]
-    return Motion(jerk, shifts, slack[0], slack[1], worst, qps=qps)
-
-
 class FootstepTvmpc:
     """Blocked jerk and two footstep shifts per axis; ZMP box and terminal DCM bound are soft, so it has no bad tick.
 
@@ -178,11 +160,16 @@ class FootstepTvmpc:
 
     def plan(self, problem: MotionProblem) -> Motion:
         """See `MotionPlanner`."""
+        built = self.build(problem)
+        return self.interpret(problem, built, self.solve(built))
+
+    def build(self, problem: MotionProblem) -> BuiltQps:
+        """See `QpLaw`; the QPs count from the nominal motion."""
         p = self._parameters
         nominal = self._nominal(problem)
         rest = replace(problem.reference, point=problem.reference.point - nominal.zmp)
         constraints = generate_constraints(p, rest, problem.stiffness, problem.omega, problem.steps)
-        qps = build_problem(
+        axes = build_problem(
             p,
             self._prediction,
             problem.state - nominal.com[:, 0].T,
@@ -192,9 +179,25 @@ class FootstepTvmpc:
             problem.last_jerk,
             jerk_range(nominal.jerk[: p.horizon], p.moves, p.jerk_limit),
         )
-        applied = nominal.jerk[: p.horizon]
-        motion = solve_problem(qps, self._prediction, p.solvers, problem.fallback - applied)
-        return replace(motion, jerk=motion.jerk + applied)
+        return BuiltQps(axes, nominal.jerk[: p.horizon], _UNSHIFTED)
+
+    def solve(self, built: BuiltQps) -> tuple[QpSolution, QpSolution]:
+        """See `QpLaw`."""
+        x, y = built.axes
+        return solve(x, self._parameters.solvers), solve(y, self._parameters.solvers)
+
+    def interpret(self, problem: MotionProblem, built: BuiltQps, solutions: tuple[QpSolution, QpSolution]) -> Motion:
+        """See `QpLaw`; an axis that no solver solved takes the fallback jerk and does not shift its footsteps."""
+        basis = self._prediction.basis
+        m = basis.shape[1]
+        jerk, shifts, slack = problem.fallback - built.jerk, built.shifts.copy(), np.full((2, 2), np.nan)
+        worst = SolverStatus.SOLVED
+        for axis, solution in enumerate(solutions):
+            worst = max(worst, SolverStatus(solution.attempt))
+            if solution.z is not None:
+                jerk[:, axis] = basis @ solution.z[:m]
+                shifts[:, axis], slack[:, axis] = solution.z[m : m + 2], solution.z[m + 2 :]
+        return Motion(jerk + built.jerk, shifts, slack[0], slack[1], worst, qps=built.axes)
 
     def _nominal(self, problem: MotionProblem) -> NominalMotion:
         t, zmp = self._parameters.sample_time, problem.reference.point
@@ -203,7 +206,7 @@ class FootstepTvmpc:
         return nominal_motion(problem.state[:, 0], zmp, problem.stiffness, t)
 
 
-class ConstantHeightTvmpc:
+class ConstantHeightTvmpc(FootstepTvmpc):
     """The same without previewing the dynamics: λ = g / z_c and ω = sqrt(λ) over the whole window (LIPM).
 
     Args:
@@ -212,11 +215,11 @@ class ConstantHeightTvmpc:
     """
 
     def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
-        self._law = FootstepTvmpc(parameters, com_height)
+        super().__init__(parameters, com_height)
         self._stiffness = softening(parameters.leg) * GRAVITY / com_height
 
-    def plan(self, problem: MotionProblem) -> Motion:
-        """See `MotionPlanner`."""
+    def build(self, problem: MotionProblem) -> BuiltQps:
+        """See `QpLaw`."""
         stiffness = np.full_like(problem.stiffness, self._stiffness)
         omega = np.full_like(problem.omega, math.sqrt(self._stiffness))
-        return self._law.plan(replace(problem, stiffness=stiffness, omega=omega))
+        return super().build(replace(problem, stiffness=stiffness, omega=omega))

@@ -1,90 +1,17 @@
-"""What the laws of motion share: one problem in, one motion out, and the QP per axis that most of them solve."""
+"""What a law of motion is: one problem in, one motion out, with a QP per axis between them or without.
+
+A law of another package needs nothing but this module: a class with `plan`, and a `planner.laws.profiles.Profile` that
+makes it. Laws that solve QPs do so in three public steps, `build`, `solve` and `interpret`, so that each can be looked
+at and tested without the others.
+"""
 
 from dataclasses import dataclass
-from typing import Any, Protocol
-
-import daqp
-import numpy as np
-import qpsolvers
+from typing import Protocol
 
 from surefoot.planner.laws.constraints import StepContext
+from surefoot.planner.laws.qp import Qp, QpSolution
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import Array, SolverStatus
-
-DAQP_OPTIONS: dict[str, Any] = {"primal_tol": 1e-9, "dual_tol": 1e-12}
-"""Tolerances that make DAQP exact to the last digits that matter."""
-
-_UNBOUNDED = 1e30
-
-
-@dataclass(frozen=True, slots=True)
-class Qp:
-    """min ½ zᵀ P z + qᵀ z subject to G z <= h and lower <= z <= upper.
-
-    Attributes:
-        P: cost matrix, symmetric positive definite, shape (n, n).
-        q: cost vector, shape (n,).
-        G: inequality matrix, shape (m, n).
-        h: inequality vector, shape (m,).
-        lower: lower bounds, shape (n,).
-        upper: upper bounds, shape (n,).
-    """
-
-    P: Array
-    q: Array
-    G: Array
-    h: Array
-    lower: Array
-    upper: Array
-
-    def problem(self) -> qpsolvers.Problem:
-        """The same problem as qpsolvers takes it."""
-        return qpsolvers.Problem(self.P, self.q, self.G, self.h, None, None, self.lower, self.upper)
-
-
-@dataclass(frozen=True, slots=True)
-class QpSolution:
-    """Result of the first solver that succeeded.
-
-    Attributes:
-        z: optimum, shape (n,), or None when every solver failed.
-        attempt: index of the solver that succeeded, or the number of solvers.
-    """
-
-    z: Array | None
-    attempt: int
-
-
-def solve(qp: Qp, solvers: tuple[str, ...]) -> QpSolution:
-    """Solve with the first of the solvers that succeeds; a solver's exception counts as its failure.
-
-    Args:
-        qp: the problem.
-        solvers: names known to qpsolvers, in the order to try. DAQP is called without the wrapper, which would take as
-            long as the solver.
-    """
-    for attempt, name in enumerate(solvers):
-        try:
-            z = _daqp(qp) if name == "daqp" else _wrapped(qp, name)
-        except (ValueError, ArithmeticError, qpsolvers.QPError):
-            continue
-        if z is not None and np.isfinite(z).all():
-            return QpSolution(z, attempt)
-    return QpSolution(None, len(solvers))
-
-
-def _wrapped(qp: Qp, name: str) -> Array | None:
-    solution = qpsolvers.solve_problem(qp.problem(), name)
-    return solution.x if solution.found else None
-
-
-def _daqp(qp: Qp) -> Array | None:
-    """DAQP takes bounds as its first rows, and rows from below too."""
-    n, rows = len(qp.q), len(qp.h)
-    upper, lower = np.concatenate((qp.upper, qp.h)), np.full(n + rows, -_UNBOUNDED)
-    lower[:n] = qp.lower
-    z, _, flag, _ = daqp.solve(qp.P, qp.q, qp.G, upper, lower, np.zeros(n + rows, dtype=np.intc), **DAQP_OPTIONS)
-    return np.asarray(z) if flag > 0 else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,3 +71,31 @@ class MotionPlanner(Protocol):
 
     def plan(self, problem: MotionProblem) -> Motion:
         """The jerk over the horizon, and where the next footsteps go."""
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltQps:
+    """The QPs of one tick, and what their solutions are to be added to.
+
+    Attributes:
+        axes: those of the plan frame's x and y axis.
+        jerk: to which the moves are added, shape (N, 2) [m/s^3].
+        shifts: of the next two footsteps as far as they are decided already, shape (step, axis) = (2, 2) [m].
+    """
+
+    axes: tuple[Qp, Qp]
+    jerk: Array
+    shifts: Array
+
+
+class QpLaw(MotionPlanner, Protocol):
+    """A law that solves a QP per axis; `plan` is its three steps in turn."""
+
+    def build(self, problem: MotionProblem) -> BuiltQps:
+        """The QPs of a tick."""
+
+    def solve(self, built: BuiltQps) -> tuple[QpSolution, QpSolution]:
+        """Their solutions."""
+
+    def interpret(self, problem: MotionProblem, built: BuiltQps, solutions: tuple[QpSolution, QpSolution]) -> Motion:
+        """The motion that the solutions mean."""

@@ -1,8 +1,7 @@
 """The profiles by name: parameters, CoM height and law of motion of each."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 
 from surefoot.planner.laws.dcm_feedback import DcmFeedback
 from surefoot.planner.laws.footstep_tvmpc import ConstantHeightTvmpc, FootstepTvmpc
@@ -11,7 +10,9 @@ from surefoot.planner.laws.tvmpc import paper_law, repaired_law
 from surefoot.planner.laws.zmp_preview import ZmpPreview
 from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.plan import Planner
 from surefoot.planner.references.com_height import HeightProfile, PaperHeight
+from surefoot.plugins import Registry
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,17 +21,22 @@ class Profile:
 
     Attributes:
         name: its name.
+        doc: what it is, in one line without a full stop.
         parameters: its parameters; a user may change some of them.
         law: makes its law of motion, from the parameters and the CoM height over the ground at rest [m].
         moves: whether it optimises moves of the jerk, whose number may be chosen.
         height: vertical CoM motion that belongs to it; None for what the user chooses.
+        planner: makes a planner that takes the place of `planner.planner.WalkingPlanner`, from the same arguments; None
+            for that one.
     """
 
     name: str
+    doc: str
     parameters: PlannerParameters
     law: Callable[[PlannerParameters, float], MotionPlanner]
     moves: bool
     height: HeightProfile | None = None
+    planner: Callable[..., Planner] | None = None
 
 
 _PAPER = PlannerParameters(
@@ -45,17 +51,14 @@ _PAPER = PlannerParameters(
 )
 _REPAIRED = replace(_PAPER, moves=BLOCK_STARTS)
 
-PROFILES: Mapping[str, Profile] = MappingProxyType(
-    {
-        profile.name: profile
-        for profile in (
-            Profile("default", PlannerParameters(), FootstepTvmpc, moves=True),
-            Profile("paper", _PAPER, paper_law, moves=True, height=PaperHeight()),
-            Profile("repaired", _REPAIRED, repaired_law, moves=True),
-            Profile("lti", PlannerParameters(), ConstantHeightTvmpc, moves=True),
-            Profile("preview", PlannerParameters(), ZmpPreview, moves=False),
-            Profile("dcm", PlannerParameters(), DcmFeedback, moves=False),
-        )
-    }
+_OWN = (
+    Profile("default", "soft TVMPC with the footsteps in the QP", PlannerParameters(), FootstepTvmpc, moves=True),
+    Profile("paper", "the paper's TVMPC as printed", _PAPER, paper_law, moves=True, height=PaperHeight()),
+    Profile("repaired", "the paper's TVMPC with more moves and a terminal bound", _REPAIRED, repaired_law, moves=True),
+    Profile("lti", "default without preview of the dynamics", PlannerParameters(), ConstantHeightTvmpc, moves=True),
+    Profile("preview", "ZMP preview control of a cart-table", PlannerParameters(), ZmpPreview, moves=False),
+    Profile("dcm", "instantaneous DCM feedback, without a QP", PlannerParameters(), DcmFeedback, moves=False),
 )
-"""Every profile by its name."""
+
+PROFILES = Registry("surefoot.profiles", Profile, {profile.name: profile for profile in _OWN})
+"""Every profile by its name: these, and those of other packages (see `surefoot.plugins`)."""

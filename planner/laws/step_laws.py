@@ -1,18 +1,19 @@
-"""Adaptive ZMP planner: where the next footstep goes, from the DCM alone (eq. dcm_at_end, and what it should be)."""
+"""Adaptive ZMP planner: where the next footstep goes, from the DCM alone (eq. (14), and what it should be)."""
 
 import math
 
 import numpy as np
 
-from surefoot.planner.laws.constraints import reach_box, step_bounds
+from surefoot.planner.laws.constraints import step_bounds
 from surefoot.planner.laws.law import MotionProblem
 from surefoot.planner.model.dcm import dcm, decays, nominal_dcm, viability_weights
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import Array
+from surefoot.planner.walk.reach import reach_box
 
 
 def paper_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:
-    """Eq. dcm_at_end as printed: S_L(t) = (ζ_t - f_i) e^{ω (T_ss + T_ds - t)}, in both axes.
+    """As printed in eq. (14): S_L(t) = (ζ_t - f_i) e^{ω (T_ss + T_ds - t)}, in both axes.
 
     Changes within the compliance margin are not made; the footstep is saturated in the reach box. The law is kept with
     what is wrong in it, for comparison: the foot lands T_ds earlier than it counts with, it steps *onto* the DCM, where
@@ -40,7 +41,7 @@ def paper_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:
 def corrected_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:
     """The law that a walk needs: f = ξ_T - b, with the DCM ξ_T at touchdown that the CoP can no longer prevent.
 
-    Erratum: eq. dcm_at_end counts until T_ss + T_ds and steps onto the DCM; here the horizon ends at touchdown, b is
+    Erratum: eq. (14) counts until T_ss + T_ds and steps onto the DCM; here the horizon ends at touchdown, b is
     the offset of the DCM from the foot in the nominal gait, and only what the CoP cannot correct until then is left to
     the foot, because a gain of e^{ω (T_ss + T_ds)} turns 0.1 mm of DCM error into a step of 5 cm.
 

@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.laws.law import Motion, MotionProblem, Qp, solve
+from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem
+from surefoot.planner.laws.qp import Qp, QpSolution, solve
 from surefoot.planner.laws.step_laws import corrected_shift, paper_shift
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.model.jerk import block_moves
@@ -28,17 +29,17 @@ def build_hard_problem(
     point: Array,
     terminal: bool,
 ) -> tuple[Qp, Qp]:
-    """The QPs of both axes in ΔU [m/s^3], from eq. costfunction, constraints and param_constraint.
+    """The QPs of both axes in ΔU [m/s^3], from eq. (7), eq. (8) and eq. (9).
 
     Rows of G: ZMP box above and below, jerk above and below, and if wanted the terminal DCM above and below; bounds are
     those of the jerk's rate. A block of several samples may change the jerk by the rate times the samples since the
     last block began; the first one, the only one that is applied, begins one sample after the last jerk.
 
-    - Erratum: eq. param_constraint prints G = [0.9 L_f/2, -0.9 L_f/2] for F = [1, -1]; here both are +0.9 L_f/2 and
+    - Erratum: eq. (9) prints G = [0.9 L_f/2, -0.9 L_f/2] for F = [1, -1]; here both are +0.9 L_f/2 and
       count from the moving reference, because as printed the ZMP would have to equal +34 mm and the box would not
       follow the feet.
-    - Erratum: eq. constraints runs over j = 0..N_p; here 1..N_p, because C has no feed-through and y(k) is past.
-    - Erratum: z_k of eq. costfunction holds N_p increments; here N_c, as announced.
+    - Erratum: eq. (8) runs over j = 0..N_p; here 1..N_p, because C has no feed-through and y(k) is past.
+    - Erratum: z_k of eq. (7) holds N_p increments; here N_c, as announced.
     - Erratum: the rate of change of the jerk is limited to "0.1" without a unit; here per sample, because no motion at
       all walks this gait with 0.1 m/s^4.
 
@@ -75,7 +76,7 @@ def build_hard_problem(
 def softened(qp: Qp, hard: slice, cost: tuple[float, float]) -> Qp:
     """The same problem with one slack s >= 0 on all rows but the hard ones, as the last variable.
 
-    Erratum: ε = [0, 0] of eq. param_constraint, "the solution must always satisfy it"; here a slack steps in when it
+    Erratum: ε = [0, 0] of eq. (9), "the solution must always satisfy it"; here a slack steps in when it
     cannot, because with the paper's own parameters the hard problem has no solution at a third of all ticks.
 
     Args:
@@ -131,33 +132,45 @@ class HardTvmpc:
 
     def plan(self, problem: MotionProblem) -> Motion:
         """See `MotionPlanner`."""
-        p, reference, moves = self._parameters, problem.reference, len(self._parameters.moves)
+        built = self.build(problem)
+        return self.interpret(problem, built, self.solve(built))
+
+    def build(self, problem: MotionProblem) -> BuiltQps:
+        """See `QpLaw`; the step law has decided the next footstep, and ΔU counts from the last jerk."""
+        p, reference = self._parameters, problem.reference
         shifts = np.zeros((2, 2))
         shifts[0] = self._step_law(problem, p)
         point = reference.point + reference.gain @ shifts
-        hard = build_hard_problem(p, self._response, problem, point, self._terminal)
-        jerk, slack = problem.fallback.copy(), np.zeros(2)
-        worst, infeasible = SolverStatus.SOLVED, False
-        qps = []
-        for axis, qp in enumerate(hard):
-            used, z, attempt = self._solve(qp)
-            qps.append(used)
-            worst, infeasible = max(worst, SolverStatus(attempt)), infeasible or used is not qp
-            slack[axis] = np.nan if z is None else z[moves] if used is not qp else 0.0
-            if z is not None:
-                jerk[:, axis] = np.clip(problem.last_jerk[axis], -p.jerk_limit, p.jerk_limit) + self._basis @ z[:moves]
-        terminal_slack = slack if self._terminal else np.zeros(2)
-        return Motion(jerk, shifts, slack, terminal_slack, worst, infeasible, tuple(qps))
+        axes = build_hard_problem(p, self._response, problem, point, self._terminal)
+        last = np.clip(problem.last_jerk, -p.jerk_limit, p.jerk_limit)
+        return BuiltQps(axes, np.broadcast_to(last, problem.fallback.shape), shifts)
 
-    def _solve(self, qp: Qp) -> tuple[Qp, Array | None, int]:
-        """The problem that was solved in the end, its solution and the solver's number."""
+    def solve(self, built: BuiltQps) -> tuple[QpSolution, QpSolution]:
+        """See `QpLaw`; of a QP that has no solution it is that of the softened one."""
+        x, y = built.axes
+        return self._solve(x), self._solve(y)
+
+    def _solve(self, qp: Qp) -> QpSolution:
         p = self._parameters
         solution = solve(qp, p.solvers)
         if solution.z is not None:
-            return qp, solution.z, solution.attempt
-        soft = softened(qp, self._jerk_rows, p.zmp_slack)
-        solution = solve(soft, p.solvers)
-        return soft, solution.z, solution.attempt
+            return solution
+        return solve(softened(qp, self._jerk_rows, p.zmp_slack), p.solvers)
+
+    def interpret(self, problem: MotionProblem, built: BuiltQps, solutions: tuple[QpSolution, QpSolution]) -> Motion:
+        """See `QpLaw`; an axis that no solver solved takes the fallback jerk."""
+        moves = self._basis.shape[1]
+        jerk, slack = problem.fallback.copy(), np.zeros(2)
+        worst, infeasible = SolverStatus.SOLVED, False
+        for axis, (hard, solution) in enumerate(zip(built.axes, solutions, strict=True)):
+            soft, z = solution.qp is not hard, solution.z
+            worst, infeasible = max(worst, SolverStatus(solution.attempt)), infeasible or soft
+            slack[axis] = np.nan if z is None else z[moves] if soft else 0.0
+            if z is not None:
+                jerk[:, axis] = built.jerk[:, axis] + self._basis @ z[:moves]
+        terminal_slack = slack if self._terminal else np.zeros(2)
+        used = (solutions[0].qp, solutions[1].qp)
+        return Motion(jerk, built.shifts, slack, terminal_slack, worst, infeasible, used)
 
 
 def paper_law(parameters: PlannerParameters, com_height: float) -> HardTvmpc:

@@ -7,6 +7,7 @@ from scipy.linalg import solve_discrete_are
 
 from surefoot.planner.laws.dcm_feedback import limited
 from surefoot.planner.laws.law import Motion, MotionProblem
+from surefoot.planner.model.jerk import advanced, jerk_model
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.leg_offset import softening
 from surefoot.planner.types import GRAVITY, Array
@@ -44,9 +45,8 @@ def preview_gains(sample_time: float, stiffness: float, samples: int = _PREVIEW)
         stiffness: λ = g / z_c, constant [1/s^2].
         samples: N_l.
     """
-    t = sample_time
-    A = np.array([[1.0, t, 0.5 * t * t], [0.0, 1.0, t], [0.0, 0.0, 1.0]])
-    B = np.array([[t**3 / 6.0], [0.5 * t * t], [t]])
+    A, b = jerk_model(sample_time)
+    B = b[:, None]
     C = np.array([[1.0, 0.0, -1.0 / stiffness]])
     A1 = np.block([[np.eye(1), C @ A], [np.zeros((3, 1)), A]])
     B1 = np.vstack((C @ B, B))
@@ -102,5 +102,5 @@ class ZmpPreview:
             summed += x - i * a - r
             last = limited(-gain * summed - gx * x - gv * v - ga * a - f, last, p)
             jerk.append(last)
-            x, v, a = x + t * v + 0.5 * t * t * a + last * t**3 / 6.0, v + t * a + last * t**2 / 2.0, a + last * t
+            x, v, a = advanced(x, v, a, last, t)
         return jerk

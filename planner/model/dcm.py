@@ -43,7 +43,7 @@ def natural_frequency(stiffness: Array, sample_time: float) -> Array:
 
 
 def dcm(position: Array, velocity: Array, omega: Array | float) -> Array:
-    """DCM ξ = x + x'/ω (eq. dcm), with the ω of the Riccati equation when the height varies."""
+    """DCM ξ = x + x'/ω (eq. (13)), with the ω of the Riccati equation when the height varies."""
     return np.asarray(position + velocity / omega)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.planner.model.jerk import jerk_model
 from surefoot.planner.types import Array
 
 DESIGN_SAMPLE = 0.02
@@ -52,17 +53,8 @@ class Innovation:
         return np.asarray(np.sum(self.value * np.linalg.solve(self.covariance, self.value), axis=0))
 
 
-def jerk_model(sample_time: float) -> tuple[Array, Array]:
-    """A, shape (3, 3), and B, shape (3,), of the CoM under a jerk that is constant over a sample (eq. lipm_disc2)."""
-    t = sample_time
-    return (
-        np.array([[1.0, t, 0.5 * t * t], [0.0, 1.0, t], [0.0, 0.0, 1.0]]),
-        np.array([t**3 / 6.0, 0.5 * t * t, t]),
-    )
-
-
 def sensor_model(stiffness: float) -> Array:
-    """C of ZMP, CoM and CoM velocity, shape (3, 3).
+    """C of ZMP, CoM and CoM velocity, shape (3, 3); its first row is that of eq. (4).
 
     The ZMP is y = x - x''/λ; the paper prints -ω² for -1/ω².
 

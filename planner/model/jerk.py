@@ -4,10 +4,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.errors import ParameterError
 from surefoot.planner.types import Array
 
 BLOCK_STARTS = (0, 1, 2, 4, 7, 11, 16, 22, 29, 37)
 """Ten blocks over fifty samples, short at first: the repaired parametrisation (the paper's own is (0, 1), N_c = 2)."""
+
+
+def jerk_model(sample_time: float) -> tuple[Array, Array]:
+    """A, shape (3, 3), and B, shape (3,), of the CoM under a jerk that is constant over a sample.
+
+    They are those of eq. (4): x(k+1) = A x(k) + B u(k), eq. (3), integrates the chain of eq. (2) exactly.
+
+    Args:
+        sample_time: T [s].
+    """
+    t = sample_time
+    return (
+        np.array([[1.0, t, 0.5 * t * t], [0.0, 1.0, t], [0.0, 0.0, 1.0]]),
+        np.array([t**3 / 6.0, 0.5 * t * t, t]),
+    )
+
+
+def advanced(x: float, v: float, a: float, jerk: float, t: float) -> tuple[float, float, float]:
+    """The same of one axis in plain numbers, which are fast: position, velocity and acceleration a time t later."""
+    return x + t * v + 0.5 * t * t * a + jerk * t**3 / 6.0, v + t * a + jerk * t**2 / 2.0, a + jerk * t
 
 
 def block_moves(starts: tuple[int, ...], horizon: int) -> Array:
@@ -22,10 +43,11 @@ def block_moves(starts: tuple[int, ...], horizon: int) -> Array:
         Matrix M, shape (N, len(starts)), with jerk = M moves.
 
     Raises:
-        ValueError: the starts do not increase from 0 inside the horizon.
+        ParameterError: the starts do not increase from 0 inside the horizon.
     """
     if not starts or starts[0] != 0 or list(starts) != sorted(set(starts)) or starts[-1] >= horizon:
-        raise ValueError(f"The move blocks start at {starts}, but they must increase from 0 and stay below {horizon}.")
+        what = f"the blocks of moves start at samples {starts}"
+        raise ParameterError(("parameters", "moves"), what, f"they must increase from 0 and stay below {horizon}")
     block = np.searchsorted(np.array(starts), np.arange(horizon), side="right") - 1
     return np.eye(len(starts))[block]
 
@@ -34,8 +56,8 @@ def block_moves(starts: tuple[int, ...], horizon: int) -> Array:
 class Prediction:
     """Position, velocity and acceleration over a horizon as linear functions of state and moves.
 
-    The triple integrator of eq. lipm_disc2 has constant A and B; only C(k) = [1, 0, -1/λ(k)] varies with time (the
-    paper prints -ω² for -1/ω²). The predicted ZMP of eq. pridection_tv is therefore a row scaling,
+    The triple integrator of eq. (4) has constant A and B; only C(k) = [1, 0, -1/λ(k)] varies with time (the
+    paper prints -ω² for -1/ω²). The predicted ZMP of eq. (10) is therefore a row scaling,
     Y = P_x - diag(1/λ) P_a, for the response to the state (S_x) as for the response to the input (S_u).
 
     Attributes:

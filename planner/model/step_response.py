@@ -1,7 +1,7 @@
-"""Prediction in the Δu form: Y = S_x x(0) + S_u1 u(-1) + S_u ΔU (paper, eq. pridection_tv and param_pridection_tv).
+"""Prediction in the Δu form: Y = S_x x(0) + S_u1 u(-1) + S_u ΔU (eq. (10) and eq. (11) of the paper).
 
 Three ways to the same matrices: the printed double sums, a recursion for any A(k), B(k), C(k), and the cached form for
-the jerk-driven CoM, whose A and B do not vary. Errata of eq. param_pridection_tv, corrected in all three:
+the jerk-driven CoM, whose A and B do not vary. Errata of eq. (11), corrected in all three:
 
 - Erratum: the first row of S_u is printed as zeros and the second as "S_u1 C(2)B(1)"; here row i, column j <= i is
   C(i) Σ_k [Π A] B(k) with k from j, because a line break was lost: y(1) depends on Δu(0) as it does on u(-1).
@@ -21,7 +21,7 @@ from surefoot.planner.types import Array
 
 @dataclass(frozen=True, slots=True)
 class StepResponse:
-    """Matrices of eq. param_pridection_tv; row i - 1 is the output at sample i = 1..N.
+    """Matrices of eq. (11); row i - 1 is the output at sample i = 1..N.
 
     Attributes:
         S_x: response to the state x(0), shape (N, n).
@@ -34,12 +34,12 @@ class StepResponse:
     S_u: Array
 
     def outputs(self, state: Array, last_input: float, changes: Array) -> Array:
-        """Y of eq. pridection_tv, shape (N,)."""
+        """Y of eq. (10), shape (N,)."""
         return np.asarray(self.S_x @ state + self.S_u1 * last_input + self.S_u @ changes)
 
 
 def literal_response(A: Array, B: Array, C: Array) -> StepResponse:
-    """The sums and products of eq. param_pridection_tv, term by term.
+    """The sums and products of eq. (11), term by term.
 
     Args:
         A: A(0)..A(N-1), shape (N, n, n).
@@ -72,7 +72,7 @@ def recursive_response(A: Array, B: Array, C: Array) -> StepResponse:
 class CachedResponse:
     """The ZMP of the jerk-driven CoM: only C(k) = [1, 0, -1/λ(k)] varies, so S = P_x - diag(1/λ) P_a, row by row.
 
-    Erratum: C is printed [1 0 -ω²] in eq. lipm_disc2; here [1 0 -1/ω²], because x'' = ω² (x - p).
+    Erratum: C is printed [1 0 -ω²] in eq. (4); here [1 0 -1/ω²], because x'' = ω² (x - p).
 
     Attributes:
         position: P_x, response of the position to x(0), u(-1) and ΔU side by side, shape (N, 4 + m).
@@ -106,9 +106,9 @@ def cached_response(sample_time: float, starts: tuple[int, ...], horizon: int) -
 
 
 def lti_response(A: Array, B: Array, C: Array, horizon: int) -> tuple[Array, Array]:
-    """F and Φ of eq. ComplexForm_matrix, for the inputs u themselves.
+    """F and Φ of eq. (6), the prediction eq. (5) for the inputs u themselves.
 
-    Erratum: the equation writes Y = F x + Φ ΔU; here the columns belong to u(0)..u(N-1), because the printed Φ is the
+    Erratum: eq. (5) writes Y = F x + Φ ΔU; here the columns belong to u(0)..u(N-1), because the printed Φ is the
     impulse response. Summing its columns from j on gives column j of S_u.
 
     Args:

@@ -1,10 +1,11 @@
-"""Vertical CoM motion: the paper's profile (eq. z_traj), a smooth one, and one that legs can follow on stairs.
+"""Vertical CoM motion: the paper's profile (eq. (15)), a smooth one, and one that legs can follow on stairs.
 
 A profile has two parts: the base level, which changes from support to support, and the bumps above it. On stairs the
 paper changes the level in double support, where the rear foot stands a riser below the front one and the CoM is
 already over the front foot: the rear leg is then too short. So there are two places for the rise, see `Rise`.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
@@ -13,12 +14,16 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.planner.types import GRAVITY, Array, PhaseKind
 from surefoot.planner.walk.clock import Phase, Schedule
 from surefoot.planner.walk.gait import GaitParameters
 
 _FALL_LIMIT = 0.8
 """Downward CoM acceleration that a plan may ask for, as a share of gravity: beyond it the feet hardly press [-]."""
+
+STEEPEST_FALL = _FALL_LIMIT * GRAVITY
+"""The same in numbers [m/s^2]."""
 
 _IMPULSE_LIMIT = 0.95
 """The same where one-sample impulses of a height with velocity jumps are cut off [-]."""
@@ -69,6 +74,11 @@ class HeightShape:
     bump: Array
     levels: Callable[[Array], Array]
     impulsive: bool = False
+
+    @property
+    def standing_height(self) -> float:
+        """Height above the base with which the walk begins, at rest [m]."""
+        return float(self.bump[0, 0])
 
     def height(self, window: slice, support_height: Array) -> Array:
         """z, z', z'' in the world frame over a window, shape (3, n) [m, m/s, m/s^2].
@@ -144,7 +154,7 @@ class BentKneeHeight:
 
 @dataclass(frozen=True, slots=True)
 class PaperHeight:
-    """The paper's height as printed (eq. z_traj): A sin in each support phase, a linear rise in double support.
+    """The paper's height as printed (eq. (15)): A sin in each support phase, a linear rise in double support.
 
     Two things are mended, without which the equation means nothing over more than one step: z_c0 goes up by Δz_c with
     every step, and t begins anew with every step and phase. Its velocity jumps at each phase change stay: z' and z''
@@ -217,6 +227,17 @@ def quintic_rise(fraction: Array, rate: Array) -> Array:
     return np.stack((value, slope * rate, curvature * rate**2))
 
 
+def highest_apex(duration: float) -> float:
+    """Highest rise of A sin³ in a support phase that falls with at most `STEEPEST_FALL` [m].
+
+    It falls fastest at its apex, with 3 A (π / T)².
+
+    Args:
+        duration: T of the phase [s].
+    """
+    return STEEPEST_FALL / 3.0 * (duration / math.pi) ** 2
+
+
 def _sine_cubed(phase: Phase, amplitude: float, sample_time: float) -> Array:
     w = np.pi / (phase.samples * sample_time)
     angle = np.pi * np.arange(phase.samples) / phase.samples
@@ -267,19 +288,20 @@ def check_height(shape: HeightShape, schedule: Schedule, support_height: Array) 
         support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
 
     Raises:
-        ValueError: names the acceleration or the height that is out of bounds. The impulses of an impulsive shape last
-            a sample and depend on its length; they are not refused.
+        ParameterError: names the acceleration or the height that is out of bounds. The impulses of an impulsive shape
+            last a sample and depend on its length; they are not refused.
     """
     step = np.append(np.diff(support_height), 0.0)[schedule.index]
     ground = support_height[schedule.index] + schedule.fraction * step
     height = shape.height(slice(0, len(ground)), support_height)
     lowest = float(np.min(height[0] - ground))
     if lowest <= 0.0:
-        raise ValueError(f"The CoM comes within {lowest:.2f} m of the ground under it, but it must stay above it.")
+        what = f"the CoM comes within {lowest:.2f} m of the ground under it"
+        raise ParameterError(("gait", "com_height"), what, "it must stay above it")
     fall = float(np.min(height[2]))
-    if fall < -_FALL_LIMIT * GRAVITY and not shape.impulsive:
-        remedy = "double_support, or planner.rise single" if shape.levels is own_levels else "single_support"
-        raise ValueError(
-            f"The CoM height falls off with {fall:.1f} m/s^2, but {-_FALL_LIMIT * GRAVITY:.1f} m/s^2 is the limit:"
-            f" the height step between two footsteps needs a longer gait.{remedy}."
-        )
+    if fall < -STEEPEST_FALL and not shape.impulsive:
+        in_double = shape.levels is own_levels
+        support = "double_support" if in_double else "single_support"
+        remedy = f"give {support.replace('_', ' ')} more time" + in_double * ", or let the CoM rise in single support"
+        what = f"the CoM falls off with {-fall:.1f} m/s^2 where two footsteps differ in height"
+        raise ParameterError(("gait", support), what, f"{STEEPEST_FALL:.1f} m/s^2 is the most; {remedy}")

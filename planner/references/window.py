@@ -9,7 +9,7 @@ from surefoot.planner.model.leg_chain import LegChain
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview, HeightShape, preview_height
 from surefoot.planner.references.leg_offset import SwingShape, nominal_feet, softening, zmp_offset
-from surefoot.planner.references.zmp_reference import Support, ZmpReference, zmp_reference
+from surefoot.planner.references.zmp_reference import Support, SupportKey, ZmpReference, zmp_reference
 from surefoot.planner.types import Array
 from surefoot.planner.walk.clock import Schedule
 from surefoot.planner.walk.footsteps import FootstepPlan
@@ -20,19 +20,33 @@ _TICKS = 5
 
 @dataclass(frozen=True, slots=True)
 class OffsetTable:
-    """What the swing leg adds to the ZMP over a window and some samples more, and what it was made from.
+    """What the swing leg adds to the ZMP over a window and some samples more: planner state that outlives a tick.
+
+    It was made for the CoM of its first tick; the offset hardly depends on it (see `planner.references.leg_offset`). So
+    a plan depends on the ticks before it not only by the jerk and the swing that go on, but by at most `_TICKS` - 1 of
+    them in this as well.
 
     Attributes:
         start: first sample.
-        support: the support then; its plan frame is that of the values.
-        footsteps: the footholds then.
+        key: of the support then, whose plan frame is that of the values.
         values: shape (m, 2) [m].
     """
 
     start: int
-    support: Support
-    footsteps: FootstepPlan
+    key: SupportKey
     values: Array
+
+    def holds(self, sample: int, key: SupportKey, last: int) -> bool:
+        """Whether it still serves: the same support and footholds, a later sample, and few of them later.
+
+        In the final standing, where the walk's clock rests, it does not: its values go on with time.
+
+        Args:
+            sample: now.
+            key: of the support now.
+            last: first sample of the final standing.
+        """
+        return self.key == key and self.start < sample < min(self.start + _TICKS, last)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +92,26 @@ class Outlook:
     leg: LegInertia
     count: int
 
+    def zmp(self, sample: int, support: Support, count: int | None = None) -> ZmpReference:
+        """The ZMP that the footsteps define, from a sample on: the paper's ZMP planner.
+
+        Args:
+            sample: the first.
+            support: what carries the robot now, with the plan frame.
+            count: samples, those of a window by default.
+        """
+        return zmp_reference(self.schedule, support.table, sample, count or self.count)
+
+    def com_height(self, sample: int, support: Support, reference: ZmpReference) -> HeightPreview:
+        """CoM height and stiffness over the samples of a reference: the paper's vertical motion planner."""
+        return preview_height(self.height, sample, len(reference.point), support.heights, reference.height)
+
     def window(
         self,
         sample: int,
         support: Support,
+        reference: ZmpReference,
+        height: HeightPreview,
         footsteps: FootstepPlan,
         position: Array,
         table: OffsetTable | None = None,
@@ -91,35 +121,30 @@ class Outlook:
         Args:
             sample: the first.
             support: what carries the robot now, with the plan frame.
+            reference: ZMP from there on.
+            height: CoM height from there on.
             footsteps: footholds in the world frame.
             position: CoM now in the plan frame, shape (2,) [m].
-            table: offsets of the tick before, used again where they still hold.
+            table: offsets of the tick before, used again while they hold.
         """
-        reference = zmp_reference(self.schedule, support.table, sample, self.count)
-        height = preview_height(self.height, sample, self.count, support.heights, reference.height)
         stiffness = softening(self.leg) * height.stiffness
         omega = natural_frequency(stiffness, self.schedule.sample_time)
         if self.leg.chain is None:
             table, offset = None, np.zeros_like(reference.point)
         else:
-            if table is None or not self._holds(table, sample, support, footsteps):
+            if table is None or not table.holds(sample, support.key, self.schedule.last):
                 table = self._offsets(self.leg.chain, sample, support, footsteps, position)
             offset = table.values[sample - table.start :][: self.count]
         driving = replace(reference, point=reference.point - offset)
         return Window(sample, reference, driving, offset, height, stiffness, omega, table)
-
-    def _holds(self, table: OffsetTable, sample: int, support: Support, footsteps: FootstepPlan) -> bool:
-        """Whether a table still serves; not where the walk's clock rests, since a table goes on with time."""
-        same = table.support is support and table.footsteps is footsteps
-        return same and table.start < sample < min(table.start + _TICKS, self.schedule.last)
 
     def _offsets(
         self, chain: LegChain, sample: int, support: Support, footsteps: FootstepPlan, position: Array
     ) -> OffsetTable:
         """Offsets for a CoM on the nominal motion, which itself depends on them: two passes leave a millimetre."""
         count = min(self.count + _TICKS - 1, len(self.schedule.index) - sample)
-        reference = zmp_reference(self.schedule, support.table, sample, count)
-        height = preview_height(self.height, sample, count, support.heights, reference.height)
+        reference = self.zmp(sample, support, count)
+        height = self.com_height(sample, support, reference)
         stiffness = softening(self.leg) * height.stiffness
         samples = np.maximum(np.arange(sample - 1, sample + count), 0)
         feet = nominal_feet(self.swing, footsteps, (support.rotation, support.origin), samples)
@@ -127,4 +152,4 @@ class Outlook:
         for _ in range(2):
             motion = nominal_motion(position, reference.point - offset, stiffness, self.schedule.sample_time)
             offset = zmp_offset(chain, feet, motion, height, stiffness)
-        return OffsetTable(sample, support, footsteps, offset)
+        return OffsetTable(sample, support.key, offset)

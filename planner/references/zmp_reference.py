@@ -1,6 +1,7 @@
 """ZMP planner: the present support, and the ZMP reference over a window, linear in the next two footsteps."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -73,7 +74,7 @@ def support_table(plan: FootstepPlan, stance_row: int, free: tuple[bool, bool], 
 def zmp_reference(schedule: Schedule, table: SupportTable, start: int, count: int) -> ZmpReference:
     """ZMP reference of a window: the stance foot in single support, linear to the next one in double support.
 
-    Eq. zmpEquation in vector form: the paper's scalar S_L is f_{i+1} - f_i, and its t starts anew at each step.
+    It is eq. (12) in vector form: the paper's scalar S_L is f_{i+1} - f_i, and its t starts anew at each step.
 
     Args:
         schedule: phases of the walk.
@@ -94,13 +95,28 @@ def _inscribed_boxes(yaw: Array, half_size: Array) -> Array:
     return np.asarray(scale[:, None] * half_size)
 
 
+class SupportKey(NamedTuple):
+    """What a support follows from in a walk: of two ticks with the same key it is the same, to the last digit.
+
+    Attributes:
+        revision: of the footholds (see `planner.walk.clock.Stepper`).
+        row: of the foot that landed last.
+        phase_start: first sample of the phase.
+        free: whether the next two footsteps may be shifted.
+    """
+
+    revision: int
+    row: int
+    phase_start: int
+    free: tuple[bool, bool]
+
+
 @dataclass(frozen=True, slots=True)
 class Support:
     """The present support and the plan frame on it.
 
     Attributes:
-        footsteps: the footsteps that it was made from.
-        key: the rest of what it was made from: row, phase and freedom of the next footsteps.
+        key: what it follows from.
         rotation: plan frame to world, shape (2, 2).
         origin: origin of the plan frame, shape (2,) [m].
         table: support points of the walk in the plan frame.
@@ -110,8 +126,7 @@ class Support:
         footholds: where the left and the right foot stand, or stood last.
     """
 
-    footsteps: FootstepPlan
-    key: tuple[object, ...]
+    key: SupportKey
     rotation: Array
     origin: Array
     table: SupportTable
@@ -122,7 +137,7 @@ class Support:
 
 
 def present_support(last: Support | None, stepper: Stepper, half_size: Array, margin: float) -> Support:
-    """The support of this tick, the last one when nothing has changed.
+    """The support of this tick, the last one while its key stays.
 
     Args:
         last: support of the tick before.
@@ -131,8 +146,8 @@ def present_support(last: Support | None, stepper: Stepper, half_size: Array, ma
         margin: share of the sole in which the ZMP must stay [-].
     """
     steps, row, phase = stepper.footsteps, stepper.row, stepper.phase
-    key = (row, phase.start, stepper.free)
-    if last is not None and last.footsteps is steps and last.key == key:
+    key = SupportKey(stepper.revision, row, phase.start, stepper.free)
+    if last is not None and last.key == key:
         return last
     latest, before = steps.footstep(row), steps.footstep(row - 1)
     standing = [latest] if phase.kind is PhaseKind.SINGLE else [latest, before]
@@ -141,7 +156,6 @@ def present_support(last: Support | None, stepper: Stepper, half_size: Array, ma
         for scale in (1.0, margin)
     )
     return Support(
-        footsteps=steps,
         key=key,
         rotation=frame_rotation(latest.yaw),
         origin=latest.position[:2],

@@ -1,15 +1,18 @@
 """How a swing foot gets over edges: when it glides forward and when it is highest, so that the whole sole is clear."""
 
+from dataclasses import replace
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import quintic, sole_pose, sole_rotation
+from surefoot.errors import ParameterError
+from surefoot.planner.geometry import sole_pose, sole_rotation
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.trajectory import SwingCourse, SwingTimes, swing_times
-from surefoot.planner.types import Array, PhaseKind
+from surefoot.planner.swing.trajectory import SwingCourse, start_swing, swing_times
+from surefoot.planner.types import Array, Foot, PhaseKind
 from surefoot.planner.walk.clock import Schedule
 from surefoot.planner.walk.footsteps import FootstepPlan
 
@@ -21,6 +24,7 @@ EDGE_DISTANCE = 0.003
 
 _STARTS = (0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35)
 _ENDS = (1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.65)
+_GLIDES = tuple(product(_STARTS, _ENDS))
 _APEXES = (0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7)
 _WAY = np.linspace(0.0, 1.0, 81)
 _INSTANTS = 200
@@ -49,10 +53,10 @@ def swing_courses(
         parameters: give the apex of a swing over level ground.
 
     Raises:
-        ValueError: no course clears the edges of a step.
+        ParameterError: no course clears the edges of a step.
     """
     plain = SwingCourse(parameters.apex_share, 0.0, 1.0, clearance)
-    if not terrain.boxes:
+    if not terrain.has_edges:
         return (plain,) * footsteps.steps
     courses = []
     for phase in schedule.phases:
@@ -65,10 +69,8 @@ def swing_courses(
         if np.ptp(ground) > _LEVEL:
             course = _gentlest(start, end, ground, clearance, phase.samples, parameters)
         if course is None:
-            raise ValueError(
-                f"Footstep {phase.step} cannot be swung {EDGE_CLEARANCE:g} m clear of the edges before it; give"
-                " terrain.tread more depth, or gait.swing_height more height."
-            )
+            what = f"footstep {phase.step} cannot be swung {EDGE_CLEARANCE:g} m clear of the edges before it"
+            raise ParameterError(("terrain", "depth"), what, "give the treads more depth, or the swing more height")
         courses.append(course)
     return tuple(courses)
 
@@ -100,36 +102,39 @@ def _on_face(points: Array, heights: Array, pose: Array) -> NDArray[np.bool_]:
 def _gentlest(
     start: Array, end: Array, ground: Array, clearance: float, samples: int, parameters: PlannerParameters
 ) -> SwingCourse | None:
-    """The gentlest course above the ground, None if there is none."""
+    """The gentlest course above the ground, None if there is none.
+
+    Courses are looked at as trajectories that are flown. Their height follows from the apex alone, and their way over
+    the ground from the glide alone, so that one trajectory for each apex and each glide tells of all pairs.
+    """
     higher = max(float(start[2]), float(end[2]))
     top = max(higher + clearance, float(ground.max()))
-    up, down, way = top - float(start[2]), top - float(end[2]), float(np.hypot(*(end - start)[:2]))
-    glides = list(product(_STARTS, _ENDS))
-    courses = [[SwingCourse(a, s, e, top - higher) for s, e in glides] for a in _APEXES]
-    times = [[swing_times(0.0, samples, course, parameters) for course in row] for row in courses]
-    instants = np.linspace(0.0, times[0][0].touchdown, _INSTANTS)
-    height = np.array([_height(up, down, row[0], instants) for row in times]) + end[2]
-    needed = np.array([np.interp(_progress(t, instants), _WAY, ground) for t in times[0]]) - _LEVEL
+    rises = [SwingCourse(apex, *_GLIDES[0], top - higher) for apex in _APEXES]
+    height = np.array([_flown(start, end, course, samples, parameters)[:, 2] for course in rises])
+    needed = np.interp(_shares(samples, parameters), _WAY, ground) - _LEVEL
     clear = np.all(height[:, None] >= needed[None], axis=2)
-    apex, glide = np.array(_APEXES), np.array(glides)
+    up, down, way = top - float(start[2]), top - float(end[2]), float(np.hypot(*(end - start)[:2]))
+    apex, glide = np.array(_APEXES), np.array(_GLIDES)
     effort = (up / apex**2 + down / (1.0 - apex) ** 2)[:, None] + way / (glide[:, 1] - glide[:, 0]) ** 2
     effort[~clear] = np.inf
     a, g = np.unravel_index(np.argmin(effort), effort.shape)
-    return courses[a][g] if clear[a, g] else None
+    return SwingCourse(_APEXES[a], *_GLIDES[g], top - higher) if clear[a, g] else None
 
 
-def _progress(times: SwingTimes, instants: Array) -> Array:
-    """Share of the way done at instants."""
-    s = np.clip((instants - times.glide_start) / (times.glide_end - times.glide_start), 0.0, 1.0)
-    return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s**2))
+@lru_cache(maxsize=4)
+def _shares(samples: int, parameters: PlannerParameters) -> Array:
+    """Share of the way over the ground that each glide has done, of any step, shape (64, 200)."""
+    ahead = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    courses = [SwingCourse(_APEXES[0], *glide, 0.0) for glide in _GLIDES]
+    return np.array([_flown(np.zeros(6), ahead, course, samples, parameters)[:, 0] for course in courses])
 
 
-def _height(up: float, down: float, times: SwingTimes, instants: Array) -> Array:
-    """Height above touchdown at instants, as `planner.swing.trajectory` shapes it [m]."""
-    rising, falling = times.apex - times.lift, times.touchdown - times.apex
-    top = np.array([[down], [0.0], [-4.0 * min(up / rising**2, down / falling**2)]])
-    rise = quintic(np.array([[down - up], [0.0], [0.0]]), top, rising)
-    fall = quintic(top, np.zeros((3, 1)), falling)
-    powers = np.arange(6)
-    late = np.maximum(instants - times.apex, 0.0)[:, None] ** powers @ fall
-    return np.where(instants < times.apex, (instants[:, None] ** powers @ rise)[:, 0], late[:, 0])
+def _flown(start: Array, end: Array, course: SwingCourse, samples: int, parameters: PlannerParameters) -> Array:
+    """Positions of a swing on a course from its lift-off to its touchdown, shape (200, 6).
+
+    It comes to rest there, as if the touchdown had no speed: with it the sole is higher by part of a millimetre.
+    """
+    times = swing_times(0.0, samples, course, parameters)
+    at_rest = replace(parameters, search=replace(parameters.search, touchdown_speed=0.0))
+    swing = start_swing(Foot.LEFT, start, end, times, course.height, at_rest)
+    return swing.positions(np.linspace(0.0, times.touchdown, _INSTANTS))

@@ -81,6 +81,19 @@ class SwingTrajectory:
         """Position, velocity and acceleration at an instant after the start, shape (3, 6)."""
         return np.asarray(self.coefficients(time)[:3] * _FACTORIAL)
 
+    def positions(self, times: Array) -> Array:
+        """Position at instants from the start up to the touchdown, shape (n, 6).
+
+        Args:
+            times: shape (n,) [s].
+        """
+        gliding = np.clip(times - self.start_time, 0.0, self.glide_end - self.start_time)
+        result = np.empty((len(times), 6))
+        result[:, _GLIDING] = gliding[:, None] ** _EXPONENTS @ self.level
+        rising, falling = ((times - start)[:, None] ** _EXPONENTS for start in (self.rise_start, self.fall_start))
+        result[:, 2] = np.where(times < self.apex_time - _NOW, (rising @ self.rise)[:, 0], (falling @ self.fall)[:, 0])
+        return result
+
     def retargeted(self, time: float, target: Array) -> "SwingTrajectory":
         """The trajectory that goes on from its own state at `time` to another target.
 
@@ -103,6 +116,7 @@ class SwingTrajectory:
 
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
+_EXPONENTS = np.arange(6)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,16 +1,16 @@
 """The phases of a gait on the integer clock of planner samples, and the walk's way through them."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
-from surefoot.planner.types import Array, FeetState, Foot, PhaseInfo, PhaseKind, PlannedFootstep
+from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
 from surefoot.planner.walk.footsteps import FootstepPlan
-from surefoot.planner.walk.gait import GaitParameters, samples, support_rows
+from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, samples, support_rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +80,9 @@ class Schedule:
 def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule:
     """Lay the gait's phases on the clock.
 
-    Each bout: stand, a first double support of twice the usual length that rests for its first half (so that the DCM is
-    consistent when the weight shift begins), then single and double supports in turn. The last double support brings
-    the ZMP back between the feet, where the robot stands until the next bout, in the end for ever.
+    Each bout: stand, a first double support of `WEIGHT_SHIFT` times the usual length that rests for all but the last of
+    them, then single and double supports in turn. The last double support brings the ZMP back between the feet, where
+    the robot stands until the next bout, in the end for ever.
 
     Args:
         gait: the gait.
@@ -90,7 +90,7 @@ def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule
         preview: samples that a window may reach beyond the current one.
 
     Raises:
-        ValueError: a duration is no multiple of the sample time.
+        ParameterError: a duration is no multiple of the sample time.
     """
     phases = _phases(gait, sample_time)
     last = phases[-1].start
@@ -121,14 +121,15 @@ def schedule(gait: GaitParameters, sample_time: float, preview: int) -> Schedule
 
 def _phases(gait: GaitParameters, sample_time: float) -> tuple[Phase, ...]:
     names = ("initial_stand", "single_support", "double_support")
-    _, single, double = (samples(f"gait.{name}", getattr(gait, name), sample_time) for name in names)
+    _, single, double = (samples(("gait", name), getattr(gait, name), sample_time) for name in names)
     phases: list[Phase] = []
     start = step = support = 0
     for bout in gait.walk:
-        stand = samples("The standing before a bout", bout.stand, sample_time)
+        stand = samples(("bout", "stand"), bout.stand, sample_time)
         if stand:
             phases.append(Phase(PhaseKind.STAND, start, stand, step, None, support))
-        phases.append(Phase(PhaseKind.DOUBLE, start + stand, 2 * double, step, None, support, rest=double))
+        shift, rest = WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double
+        phases.append(Phase(PhaseKind.DOUBLE, start + stand, shift, step, None, support, rest))
         for _ in bout.strides:
             step, support = step + 1, support + 1
             stance = gait.step_foot(step).other
@@ -152,6 +153,7 @@ class Stepper:
     Attributes:
         schedule: phases of the walk.
         footsteps: all footholds, landed ones as measured.
+        revision: how often they have changed.
         row: row of the foot that landed last; it is the stance foot in single support.
         tick: sample of the gait's clock, -1 before the first tick.
         waited: ticks for which the clock has waited for the present touchdown.
@@ -164,13 +166,14 @@ class Stepper:
     ) -> None:
         self.schedule = schedule
         self.footsteps = footsteps
+        self.revision = 0
         self.row = 1
         self.tick = -1
         self.waited = 0
         self.early = False
         self.fixed = False
         self._terrain = terrain
-        self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and not terrain.boxes
+        self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and terrain.free_footholds
         self._patience = round(parameters.late_touchdown / parameters.sample_time)
         self._touchdown = [phase.end for phase in schedule.phases if phase.kind is PhaseKind.SINGLE]
 
@@ -245,13 +248,15 @@ class Stepper:
         steps, planned = self.footsteps, []
         shift = np.zeros(2)
         for ahead, row in enumerate(range(self.row + 1, min(self.row + 4, steps.steps + 2))):
-            position = steps.position[row].copy()
+            position, normal = steps.position[row].copy(), steps.normal[row]
             if ahead < 2 and self.free[ahead]:
                 shift = shift + shifts[ahead]
             position[:2] += shift
             if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND:
-                position[2] = self._terrain.height(float(position[0]), float(position[1]))
-            footstep = replace(steps.footstep(row), position=position)
+                x, y = float(position[0]), float(position[1])
+                position[2] = self._terrain.height(x, y)
+                normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
+            footstep = Footstep(steps.feet[row], position, float(steps.yaw[row]), normal)
             planned.append(PlannedFootstep(row - 1, footstep, time + self.time_to_touchdown(row - 1)))
         return tuple(planned)
 
@@ -262,6 +267,7 @@ class Stepper:
             position: where it lands, shape (3,) [m].
         """
         self.footsteps = self.footsteps.moved(self.row + 1, np.array(position), self._terrain)
+        self.revision += 1
         self.fixed = True
 
     def _land(self, position: Array) -> None:

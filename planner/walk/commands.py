@@ -7,9 +7,10 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.types import Array, Foot, Footstep
-from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
+from surefoot.planner.walk.gait import WEIGHT_SHIFT, Bout, GaitParameters, Stride
 from surefoot.planner.walk.reach import StepRegion
 
 MOST_STEPS = 100_000
@@ -58,36 +59,40 @@ class VelocityCommand:
         twist: the velocity.
 
     Raises:
-        ValueError: a value is not finite, or the time is negative.
+        ParameterError: a value is not finite, or the time is negative.
     """
 
     time: float
     twist: Twist
 
     def __post_init__(self) -> None:
-        twist = [getattr(self.twist, field.name) for field in fields(self.twist)]
-        if not (self.time >= 0.0 and all(map(math.isfinite, (self.time, *twist)))):
-            raise ValueError(
-                f"A velocity command at {self.time:g} s is {twist}, but all must be finite, time not negative."
-            )
+        values = {"time": self.time} | {field.name: getattr(self.twist, field.name) for field in fields(self.twist)}
+        for name, value in values.items():
+            key, what = ("velocity", name), f"{name} of a velocity command is {value:g}"
+            if not math.isfinite(value):
+                raise ParameterError(key, what, "it must be finite")
+            if name == "time" and value < 0.0:
+                raise ParameterError(key, what, "it must not be negative")
 
 
 class VelocityTimeline:
     """Velocity commands over time; before the first one the robot stands.
 
     Raises:
-        ValueError: there is no command, the times do not increase, or the last command does not stop.
+        ParameterError: there is no command, the times do not increase, or the last command does not stop.
     """
 
     def __init__(self, commands: Sequence[VelocityCommand]) -> None:
         self._times = [command.time for command in commands]
         self._twists = [command.twist for command in commands]
-        if any(after <= before for before, after in zip(self._times, self._times[1:], strict=False)):
-            raise ValueError(f"The velocity commands are at {self._times} s, but their times must increase.")
+        for index, (before, after) in enumerate(zip(self._times, self._times[1:], strict=False), start=1):
+            if after <= before:
+                what = f"the velocity command at {after:g} s comes after the one at {before:g} s"
+                raise ParameterError(("velocity", index, "time"), what, "their times must increase")
         if not commands or not self._twists[-1].is_zero:
-            raise ValueError(
-                "The velocity commands end in motion, but the last one must be zero, which stops the walk."
-            )
+            what = "the velocity commands end in motion" if commands else "there are no velocity commands"
+            key = ("velocity", len(commands) - 1) if commands else ("velocity",)
+            raise ParameterError(key, what, "the last one must be zero, which stops the walk")
 
     @property
     def end(self) -> float:
@@ -112,23 +117,24 @@ def velocity_bouts(timeline: VelocityTimeline, gait: GaitParameters) -> tuple[Bo
 
     The command in force when a foot lifts off gives the stride of that step. If it is zero then, the step closes the
     stance and the robot stands until the command is to move; its weight shift begins then (not before
-    `gait.initial_stand`), and the first foot lifts off two double supports later. A command that has gone by then moves
-    nothing.
+    `gait.initial_stand`), and the first foot lifts off `WEIGHT_SHIFT` double supports later. A command that has gone
+    by then moves nothing.
 
     Args:
         timeline: the command.
         gait: gives durations and step width.
 
     Raises:
-        ValueError: the walk has too many steps.
+        ParameterError: the walk has too many steps.
     """
-    period = gait.single_support + gait.double_support
+    period = gait.period
     if timeline.end / period > MOST_STEPS:
-        raise ValueError(f"The velocity command lasts {timeline.end:g} s, but {MOST_STEPS * period:g} s is the most.")
+        what = f"the velocity command lasts {timeline.end:g} s"
+        raise ParameterError(("velocity",), what, f"{MOST_STEPS * period:g} s is the most")
     bouts: list[Bout] = []
     standing_since, ready = 0.0, gait.initial_stand
     while (start := timeline.next_motion(ready)) is not None:
-        lift_off = start + 2.0 * gait.double_support
+        lift_off = start + WEIGHT_SHIFT * gait.double_support
         strides: list[Stride] = []
         while not (twist := timeline.at(lift_off)).is_zero:
             strides.append(twist.stride(period, gait.step_width))
@@ -149,10 +155,10 @@ def footstep_bouts(footsteps: Sequence[Footstep], gait: GaitParameters) -> tuple
         gait: gives the rest before and the width of the stance.
 
     Raises:
-        ValueError: there is no footstep, or the feet do not alternate.
+        ParameterError: there is no footstep, or the feet do not alternate.
     """
     if not footsteps:
-        raise ValueError("There are no footsteps, but a walk has at least one.")
+        raise ParameterError(("footsteps",), "there are no footsteps", "a walk has at least one")
     strides: list[Stride] = []
     other = footsteps[0].foot.other
     place, yaw = -_half_width(gait, footsteps[0].foot), 0.0
@@ -161,7 +167,8 @@ def footstep_bouts(footsteps: Sequence[Footstep], gait: GaitParameters) -> tuple
             strides.append(_stride_to(footstep, place, yaw, gait))
             place, yaw, other = footstep.position[:2], footstep.yaw, footstep.foot
             continue
-        raise ValueError(f"Footstep {number} moves the {other.name.lower()} foot again, but the feet must alternate.")
+        what = f"footstep {number} moves the {other.name.lower()} foot again"
+        raise ParameterError(("footsteps", number - 1), what, "the feet must alternate")
     return (Bout(gait.initial_stand, tuple(strides)),)
 
 

@@ -9,6 +9,7 @@ from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array, FeetState, Foot, Footstep
 from surefoot.planner.walk.gait import GaitParameters, support_rows
+from surefoot.planner.walk.reach import Landing
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,10 +44,16 @@ class FootstepPlan:
         """The foothold of a row."""
         return Footstep(self.feet[row], self.position[row], float(self.yaw[row]), self.normal[row])
 
+    def landing(self, row: int) -> Landing:
+        """Where the foot of a row lands nominally, seen from its stance foot, that of the row before."""
+        ahead, left = self.increment[row] @ frame_rotation(float(self.yaw[row - 1]))
+        beside = left if self.feet[row] is Foot.LEFT else -left
+        return Landing(float(ahead), float(beside), float(self.yaw[row] - self.yaw[row - 1]))
+
     def moved(self, row: int, position: Array, terrain: Terrain) -> "FootstepPlan":
         """The plan with one foothold somewhere else and its successors at their nominal increments from it.
 
-        Where the ground has edges the successors stay on the treads that were chosen for them.
+        Where footholds are not free the successors stay on the treads that were chosen for them.
 
         Args:
             row: the row that moves.
@@ -55,12 +62,16 @@ class FootstepPlan:
         """
         moved = self.position.copy()
         moved[row] = position
-        if terrain.boxes:
+        if not terrain.free_footholds:
             return replace(self, position=moved)
         following = position[:2] + np.cumsum(self.increment[row + 1 :], axis=0)
         moved[row + 1 :, :2] = following
         moved[row + 1 :, 2] = terrain.heights(following)
-        return replace(self, position=moved)
+        if not terrain.has_edges:
+            return replace(self, position=moved)
+        normal = self.normal.copy()
+        normal[row:] = terrain.normals(moved[row:, :2])
+        return replace(self, position=moved, normal=normal)
 
     def support_points(self) -> Array:
         """Support points of the ZMP reference (see `Schedule`), shape (m, 3) [m]."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.planner.types import Foot
 
 
@@ -22,7 +23,7 @@ class Stride:
         width: lateral distance of the two feet from each other about the path [m].
 
     Raises:
-        ValueError: a value is not finite, or the width is not positive.
+        ParameterError: a value is not finite, or the width is not positive.
     """
 
     length: float
@@ -35,7 +36,8 @@ class Stride:
             value = getattr(self, field.name)
             if not math.isfinite(value) or (field.name == "width" and value <= 0.0):
                 least = " greater than 0" if field.name == "width" else ""
-                raise ValueError(f"The {field.name} of a stride is {value}, but it must be a finite number{least}.")
+                what, right = f"the {field.name} of a stride is {value}", f"it must be a finite number{least}"
+                raise ParameterError(("stride", field.name), what, right)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +49,7 @@ class Bout:
         strides: in order, at least one.
 
     Raises:
-        ValueError: the rest is negative or not finite, or there is no stride.
+        ParameterError: the rest is negative or not finite, or there is no stride.
     """
 
     stand: float
@@ -55,10 +57,17 @@ class Bout:
 
     def __post_init__(self) -> None:
         if not (self.stand >= 0.0 and math.isfinite(self.stand)):
-            raise ValueError(f"The standing before a bout is {self.stand:g} s, but it must be at least 0 and finite.")
+            what = f"the standing before a bout is {self.stand:g} s"
+            raise ParameterError(("bout", "stand"), what, "it must be at least 0 and finite")
         if not self.strides:
-            raise ValueError("A bout has no strides, but it must have at least one.")
+            raise ParameterError(("bout", "strides"), "a bout has no strides", "it must have at least one")
 
+
+WEIGHT_SHIFT = 2
+"""Length of the first double support of a bout, which shifts the weight from rest, in usual double supports.
+
+The ZMP rests for the first of them, so that the DCM is consistent when the weight shift begins.
+"""
 
 _POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
 _NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off")
@@ -91,7 +100,7 @@ class GaitParameters:
         bouts: the walk stride by stride; empty for equal strides. Feet alternate throughout, across stops too.
 
     Raises:
-        ValueError: a value is not finite or has the wrong sign, or the bouts have another number of strides.
+        ParameterError: a value is not finite or has the wrong sign, or the bouts have another number of strides.
     """
 
     steps: int = 5
@@ -115,17 +124,19 @@ class GaitParameters:
             value = getattr(self, field.name)
             if field.name == "bouts":
                 continue
+            key, what = ("gait", field.name), f"{field.name} is {value:g}"
             if not math.isfinite(value):
-                raise ValueError(f"gait.{field.name} is {value}, but it must be a finite number.")
+                raise ParameterError(key, what, "it must be a finite number")
             if field.name in _POSITIVE and value <= 0.0:
-                raise ValueError(f"gait.{field.name} is {value:g}, but it must be greater than 0.")
+                raise ParameterError(key, what, "it must be greater than 0")
             if field.name in _NOT_NEGATIVE and value < 0.0:
-                raise ValueError(f"gait.{field.name} is {value:g}, but it must not be negative.")
+                raise ParameterError(key, what, "it must not be negative")
+        key, what = ("gait", "steps"), f"steps is {self.steps}"
         if self.steps < 0 or self.steps != int(self.steps):
-            raise ValueError(f"gait.steps is {self.steps}, but it must be a whole number of at least 0.")
+            raise ParameterError(key, what, "it must be a whole number of at least 0")
         strides = sum(len(bout.strides) for bout in self.bouts)
         if self.bouts and strides != self.steps:
-            raise ValueError(f"gait.steps is {self.steps}, but its bouts have {strides} strides; both must be equal.")
+            raise ParameterError(key, f"{what}, but the bouts have {strides} strides", "both must be equal")
 
     @property
     def walk(self) -> tuple[Bout, ...]:
@@ -140,6 +151,39 @@ class GaitParameters:
     def strides(self) -> tuple[Stride, ...]:
         """The strides of all bouts."""
         return tuple(stride for bout in self.walk for stride in bout.strides)
+
+    @property
+    def period(self) -> float:
+        """Time from one lift-off to the next [s]."""
+        return self.single_support + self.double_support
+
+    @property
+    def duration(self) -> float:
+        """Time from the start to the end of the last double support; of a gait that stands the rest before it [s]."""
+        return self.lift_off(self.steps + 1) if self.walk else self.initial_stand
+
+    def lift_off(self, step: int) -> float:
+        """Time at which a foot lifts off; of a step after the last one when it would if the walk went on [s].
+
+        Args:
+            step: its number, from 1.
+
+        Raises:
+            ParameterError: the gait only stands.
+        """
+        begin, before, walk = 0.0, 0, self.walk
+        for number, bout in enumerate(walk, start=1):
+            first = begin + bout.stand + WEIGHT_SHIFT * self.double_support
+            if step <= before + len(bout.strides) or number == len(walk):
+                return first + (step - before - 1) * self.period
+            begin, before = first + len(bout.strides) * self.period, before + len(bout.strides)
+        raise ParameterError(("gait", "steps"), f"there is no step {step} of a gait that stands", "it must have steps")
+
+    def support_before(self, step: int) -> float:
+        """Duration of the double support before a step [s]."""
+        counts = [len(bout.strides) for bout in self.walk]
+        begins_bout = step in [1 + sum(counts[:i]) for i in range(len(counts))]
+        return self.double_support * (WEIGHT_SHIFT if begins_bout else 1)
 
     def step_foot(self, step: int) -> Foot:
         """The foot that step number `step` moves; steps count from 1, number 0 and -1 are the start feet."""
@@ -160,22 +204,20 @@ def support_rows(walk: tuple[Bout, ...]) -> NDArray[np.intp]:
     return np.array([*rows, (step, step + 1)], dtype=np.intp)
 
 
-def samples(name: str, duration: float, sample_time: float) -> int:
+def samples(key: tuple[str, str], duration: float, sample_time: float) -> int:
     """Number of planner samples in a duration.
 
     Args:
-        name: what the duration is called, for the message.
+        key: of the duration, for the error.
         duration: duration [s].
         sample_time: planner sample time [s].
 
     Raises:
-        ValueError: the duration is no multiple of the sample time; the message names the nearest that is.
+        ParameterError: the duration is no multiple of the sample time; the message names the nearest that is.
     """
     count = round(duration / sample_time)
     if abs(count * sample_time - duration) > 1e-9 * max(1.0, duration):
         nearest = max(count, 1) * sample_time
-        raise ValueError(
-            f"{name} is {duration:g} s, but it must be a multiple of the planner's sample time of {sample_time:g} s;"
-            f" the nearest is {nearest:g} s."
-        )
+        what = f"{key[-1]} is {duration:g} s, no multiple of the planner's sample time of {sample_time:g} s"
+        raise ParameterError(key, what, f"the nearest is {nearest:g} s")
     return count

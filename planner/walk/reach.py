@@ -2,8 +2,13 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
-from surefoot.planner.types import Foot
+import numpy as np
+
+from surefoot.errors import ParameterError
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.types import Array, Foot
 from surefoot.planner.walk.gait import Stride
 
 _ROUNDING = 1e-9
@@ -39,6 +44,29 @@ def _advance(stride: Stride) -> tuple[float, float]:
     return c * stride.length - s * stride.lateral, s * stride.length + c * stride.lateral
 
 
+def soles_apart(sole: tuple[float, float], turn: float) -> float:
+    """Distance beside at which a sole just clears the other one, wherever ahead it lands [m].
+
+    Args:
+        sole: length and width of both [m].
+        turn: heading of one against the other [rad].
+    """
+    length, width = sole
+    return 0.5 * (width + (length * abs(math.sin(turn)) + width * abs(math.cos(turn))))
+
+
+class Fault(NamedTuple):
+    """What is wrong with a landing.
+
+    Attributes:
+        what: the fault, in a clause that follows "the foot".
+        right: what would be right.
+    """
+
+    what: str
+    right: str
+
+
 @dataclass(frozen=True, slots=True)
 class StepRegion:
     """Bounds of a landing.
@@ -66,29 +94,28 @@ class StepRegion:
 
     def nearest(self, turn: float) -> float:
         """Least distance beside for a foot that lands turned [m]."""
-        length, width = self.sole
-        swept = length * abs(math.sin(turn)) + width * abs(math.cos(turn))
-        return max(self.width[0], 0.5 * (width + swept) + self.gap)
+        return max(self.width[0], soles_apart(self.sole, turn) + self.gap)
 
     def contains(self, place: Landing) -> bool:
         """Whether a foot may land there."""
         return self.why_not(place) is None
 
-    def why_not(self, place: Landing) -> str | None:
-        """What is wrong with a landing, in a clause that follows "the foot"; None when nothing is."""
+    def why_not(self, place: Landing) -> Fault | None:
+        """What is wrong with a landing; None when nothing is."""
         near, far = self.nearest(place.turn), self.width[1]
         if abs(place.turn) > self.turn + _ROUNDING:
-            return f"turns by {place.turn:.3g} rad against its stance foot, and {self.turn:g} rad is the most"
+            return Fault(f"turns by {place.turn:.3g} rad against its stance foot", f"{self.turn:g} rad is the most")
         if place.beside < near - _ROUNDING:
             what = "crosses" if place.beside < 0.0 else "would touch"
-            return f"{what} its stance foot, {place.beside:.3f} m beside it, and {near:.3f} m is the least"
+            return Fault(f"{what} its stance foot, {place.beside:.3f} m beside it", f"{near:.3f} m is the least")
         if place.beside > far + _ROUNDING:
-            return f"lands {place.beside:.3f} m beside its stance foot, and {far:g} m is the most"
+            return Fault(f"lands {place.beside:.3f} m beside its stance foot", f"{far:g} m is the most")
         if abs(place.ahead) > self.length + _ROUNDING:
-            return f"lands {place.ahead:.3f} m ahead of its stance foot, and {self.length:g} m is the most"
+            return Fault(f"lands {place.ahead:.3f} m ahead of its stance foot", f"{self.length:g} m is the most")
         stretch = math.hypot(place.ahead, place.beside - self.hip_width)
         if stretch > self.leg_span + _ROUNDING:
-            return f"lands {stretch:.3f} m from where the legs stand upright, and {self.leg_span:.3f} m is the most"
+            what = f"lands {stretch:.3f} m from where the legs stand upright"
+            return Fault(what, f"{self.leg_span:.3f} m is the most")
         return None
 
     def fitted(self, stride: Stride) -> Stride:
@@ -108,3 +135,38 @@ class StepRegion:
     def admits(self, stride: Stride) -> bool:
         """Whether both feet may make a stride."""
         return all(self.contains(landing(stride, foot)) for foot in Foot)
+
+
+def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]:
+    """Where a footstep may land from its stance foot: lower and upper corner in the plan frame, shape (2,) [m].
+
+    It is the paper's reachable area, in which its step law saturates a step.
+
+    Args:
+        parameters: planner parameters.
+        side: +1 for a left step, -1 for a right one.
+    """
+    x = parameters.reach_length
+    near, far = sorted(side * width for width in parameters.reach_width)
+    return np.array([-x, near]), np.array([x, far])
+
+
+def check_reach(number: int, place: Landing, parameters: PlannerParameters) -> None:
+    """Refuse a nominal footstep outside the reach box.
+
+    Args:
+        number: of the footstep, from 1.
+        place: where it lands.
+        parameters: give the box.
+
+    Raises:
+        ParameterError: it is out of reach; its key is ("footsteps", number - 1, "ahead" or "beside").
+    """
+    low, high = reach_box(parameters, 1.0)
+    for axis, name in enumerate(("ahead", "beside")):
+        way = getattr(place, name)
+        if not low[axis] - _ROUNDING <= way <= high[axis] + _ROUNDING:
+            ahead = "ahead of" if name == "ahead" else name
+            what = f"footstep {number} would land {way:.3f} m {ahead} its stance foot"
+            key = ("footsteps", number - 1, name)
+            raise ParameterError(key, what, f"it must be {low[axis]:g} to {high[axis]:g} m")

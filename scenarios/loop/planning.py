@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.geometry import sole_rates, sole_rotation
-from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
-from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState, PhaseKind
 from surefoot.scenarios.file.schema import Rates
 from surefoot.scenarios.loop.faults import FaultSchedule
@@ -27,7 +26,7 @@ class Planning:
 
     def __init__(
         self,
-        planner: WalkingPlanner,
+        planner: Planner,
         sensing: PlannerSensing,
         recorder: WalkRecorder,
         faults: FaultSchedule,

@@ -101,7 +101,7 @@ class RunConstants:
             raise LogError(f"{log_name}: does not describe a run; give a log that `surefoot run` has written") from None
 
 
-PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "numpy", "scipy", "mcap")
+PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "piqp", "numpy", "scipy", "mcap")
 CODE = ("planner", "wbc", "sim", "models", "scenarios")
 READERS = ("scenarios/paper", "scenarios/show")
 """Folders of the code, and those in it that only read logs: no run depends on them."""

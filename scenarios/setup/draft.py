@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from surefoot.planner.ground.terrain import Box, Terrain, flat
+from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.parameters import GroundSearch, PlannerParameters, StepAdaptation
 from surefoot.planner.references.com_height import (
@@ -27,12 +27,14 @@ from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
     commanded,
     fitted_to,
-    gait_duration,
     gait_of,
     longest_landing,
     step_region,
 )
 from surefoot.scenarios.setup.terrain import KINDS, TerrainKind
+
+_STREAM = 2
+"""Random numbers of the ground, apart from those of other things with the same seed."""
 
 SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
 """Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait [m]."""
@@ -64,7 +66,7 @@ class Draft:
     @cached_property
     def gait_duration(self) -> float:
         """Time from the start to the end of the last double support [s]."""
-        return gait_duration(self.gait)
+        return self.gait.duration
 
     @cached_property
     def duration(self) -> float:
@@ -85,6 +87,13 @@ class Draft:
     def terrain(self) -> Terrain:
         """The ground as the planner believes it to be."""
         return self.kind.build(self)
+
+    @property
+    def site(self) -> Site:
+        """Where ground is built, and for which walk."""
+        rng = np.random.default_rng(np.random.SeedSequence(self.keys.seed, spawn_key=(_STREAM,)))
+        start = self.keys.start
+        return Site(self.origin, start.yaw, self.keys.terrain.friction, lambda: self.level_footsteps, rng)
 
     @cached_property
     def true_terrain(self) -> Terrain:
@@ -124,7 +133,8 @@ class Draft:
         support hurries after one that lies lower, since waiting for it costs balance.
         """
         lead = PlannerParameters().touchdown_lead
-        return GroundSearch(hurry_after=lead) if self.kind.stepped else GroundSearch()
+        stepped = self.terrain.has_edges and not self.terrain.free_footholds
+        return GroundSearch(hurry_after=lead) if stepped else GroundSearch()
 
     @cached_property
     def stance(self) -> FeetState:

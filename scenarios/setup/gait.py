@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from surefoot.errors import ParameterError
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import Foot, Footstep
 from surefoot.planner.walk.commands import (
@@ -132,51 +133,23 @@ def longest_step(leg_length: float, hip_height: float, hip_width: float, step_wi
 
 
 def push_time(gait: GaitParameters, push: PushSettings) -> float:
-    """Begin [s] of a push, given directly or by step, phase and fraction."""
+    """Begin [s] of a push, given directly or by step, phase and fraction of that phase.
+
+    Raises:
+        ParameterError: it has neither a time nor a step and a phase.
+    """
     if push.time is not None:
         return push.time
     if push.step is None or push.phase is None:
-        raise ValueError("a push needs a time, or a step and a phase")
-    return phase_start(gait, push.step, push.phase) + (push.fraction or 0.0) * phase_duration(
-        gait, push.step, push.phase
-    )
+        raise ParameterError(("pushes",), "a push without a begin", "give time, or step, phase and fraction")
+    start, duration = phase_of(gait, push.step, push.phase)
+    return start + (push.fraction or 0.0) * duration
 
 
-def phase_start(gait: GaitParameters, step: int, phase: str) -> float:
-    """Begin [s] of a support phase of a footstep; step 1 is the first, its double support comes first.
-
-    The double support before the first step of a bout shifts the weight from rest and lasts twice as long as the
-    others.
-    """
-    single = _lift_off(gait, step)
-    return single if phase == "single" else single - phase_duration(gait, step, phase)
-
-
-def phase_duration(gait: GaitParameters, step: int, phase: str) -> float:
-    """Duration [s] of a support phase of a footstep."""
+def phase_of(gait: GaitParameters, step: int, phase: str) -> tuple[float, float]:
+    """Begin and duration [s] of a support phase of a footstep; step 1 is the first, its double support comes first."""
+    lift_off = gait.lift_off(step)
     if phase == "single":
-        return gait.single_support
-    return gait.double_support * (2 if step in _first_steps(gait) else 1)
-
-
-def gait_duration(gait: GaitParameters) -> float:
-    """Time from the start to the end of the last double support [s]."""
-    return gait.initial_stand if gait.steps == 0 else _lift_off(gait, gait.steps + 1)
-
-
-def _lift_off(gait: GaitParameters, step: int) -> float:
-    """Time at which a foot lifts off; of a step after the last one when it would if the walk went on [s]."""
-    begin, before, walk = 0.0, 0, gait.walk
-    for number, bout in enumerate(walk, start=1):
-        first = begin + bout.stand + 2 * gait.double_support
-        if step <= before + len(bout.strides) or number == len(walk):
-            return first + (step - before - 1) * (gait.single_support + gait.double_support)
-        begin = first + len(bout.strides) * (gait.single_support + gait.double_support)
-        before += len(bout.strides)
-    raise ValueError(f"step {step} is none of a gait that stands")
-
-
-def _first_steps(gait: GaitParameters) -> list[int]:
-    """Numbers of the steps that begin a bout."""
-    counts = [len(bout.strides) for bout in gait.walk]
-    return [1 + sum(counts[:i]) for i in range(len(counts))]
+        return lift_off, gait.single_support
+    before = gait.support_before(step)
+    return lift_off - before, before

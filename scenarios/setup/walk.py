@@ -1,13 +1,14 @@
 """A scenario resolved: what it means, computed once, in the terms of the layers below; nobody there sees a scenario."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.parameters import LegInertia, PlannerParameters
+from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.types import FeetState
@@ -107,7 +108,7 @@ class Walk:
         """Length and width of the soles [m]."""
         return self.robot.sole_length, self.robot.sole_width
 
-    def planner(self, feet: FeetState, leg: LegInertia) -> Any:
+    def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
         """The planner of this walk: the profile's own, or the walking planner with the profile's law.
 
         Args:
@@ -117,7 +118,7 @@ class Walk:
         Raises:
             ParameterError: it cannot plan this gait.
         """
-        make: Any = getattr(self.profile, "planner", None) or WalkingPlanner
+        make = self.profile.planner or WalkingPlanner
         parameters = replace(self.parameters, leg=leg)
         return make(self.gait, feet, *self.sole, self.terrain, parameters, self.heights, self.profile)
 

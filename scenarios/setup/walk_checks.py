@@ -4,19 +4,19 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.errors import ParameterError
 from surefoot.planner.ground.terrain import flat
-from surefoot.planner.laws.constraints import reach_box
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.types import GRAVITY, Foot
+from surefoot.planner.references.com_height import highest_apex
 from surefoot.planner.walk.commands import Twist, fastest
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import Stride
-from surefoot.planner.walk.reach import StepRegion, landing
+from surefoot.planner.walk.reach import Landing, StepRegion, check_reach, landing, soles_apart
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.setup.draft import LONGEST_REACH, Draft
 from surefoot.scenarios.setup.gait import longest_step, step_region, twist_of
+from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot import RobotFacts
 
 MOST_SAMPLES = 1_000_000
@@ -24,9 +24,6 @@ MOST_SAMPLES = 1_000_000
 
 FEWEST_SWING_SAMPLES = 4
 """Planner samples of a single support: lift-off, apex, descent and touchdown."""
-
-STEEPEST_FALL = 0.8 * GRAVITY
-"""Downward CoM acceleration that a gait may ask for [m/s^2]."""
 
 _PERIOD = 4
 """Footsteps after which a gait on flat ground only repeats itself: the first, one of each foot, the last."""
@@ -78,46 +75,38 @@ def footstep_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
         what = f"gait.step_width {gait.step_width} m lets feet {facts.foot_width:g} m wide touch"
         yield Problem(("gait", "step_width"), what, f"use more than {facts.foot_width:g} m")
         return
-    found = (_footstep_problem(draft, facts, *step) for step in _displacements(draft))
+    found = (_footstep_problem(draft, facts, *step) for step in _landings(draft))
     yield from [problem for problem in found if problem is not None][:1]
 
 
-def _displacements(draft: Draft) -> Iterator[tuple[int, Foot, float, float, float]]:
-    """Number and foot of footsteps, and their place and turn from the stance foot in its frame [m, m, rad]."""
+def _landings(draft: Draft) -> Iterator[tuple[int, Landing]]:
+    """Number of each footstep, and where it lands."""
     gait = replace(draft.gait, steps=min(draft.keys.gait.steps, _PERIOD))
     footsteps = plan_footsteps(gait, draft.stance, flat())
     for row in range(2, footsteps.steps + 2):
-        x, y = footsteps.increment[row] @ frame_rotation(float(footsteps.yaw[row - 1]))
-        yield row - 1, footsteps.feet[row], float(x), float(y), float(footsteps.yaw[row] - footsteps.yaw[row - 1])
+        yield row - 1, footsteps.landing(row)
 
 
-def _footstep_problem(
-    draft: Draft, facts: RobotFacts, number: int, foot: Foot, ahead: float, left: float, turn: float
-) -> Problem | None:
+def _footstep_problem(draft: Draft, facts: RobotFacts, number: int, place: Landing) -> Problem | None:
     gait = draft.keys.gait
-    low, high = reach_box(PlannerParameters(reach_length=draft.reach), 1.0)
-    beside = left if foot is Foot.LEFT else -left
-    if not low[0] - 1e-9 <= ahead <= high[0] + 1e-9:
-        what = f"footstep {number} would land {ahead:.3f} m ahead of its stance foot"
-        return Problem(
-            ("gait", "step_length"), what, f"it must be {low[0]:g} to {high[0]:g} m; change gait.step_length"
-        )
     sideways = "lateral_step" if gait.lateral_step else "turn" if gait.turn else "step_width"
-    what = f"footstep {number} would land {beside:.3f} m beside its stance foot"
-    if not low[1] - 1e-9 <= beside <= high[1] + 1e-9:
-        return Problem(("gait", sideways), what, f"it must be {low[1]:g} to {high[1]:g} m; change gait.{sideways}")
-    swept = abs(facts.foot_length * math.sin(turn)) + abs(facts.foot_width * math.cos(turn))
-    apart = 0.5 * (facts.foot_width + swept)
-    if beside < apart:
-        return Problem(("gait", sideways), f"{what} and touch it", f"keep the feet {apart:.3f} m apart")
+    try:
+        check_reach(number, place, PlannerParameters(reach_length=draft.reach))
+    except ParameterError as fault:
+        name = "step_length" if fault.key[-1] == "ahead" else sideways
+        return Problem(("gait", name), fault.what, f"{fault.right}; change gait.{name}")
+    apart = soles_apart((facts.foot_length, facts.foot_width), place.turn)
+    if place.beside < apart:
+        what = f"footstep {number} would land {place.beside:.3f} m beside its stance foot and touch it"
+        return Problem(("gait", sideways), what, f"keep the feet {apart:.3f} m apart")
     return None
 
 
 def _apexes(gait: Gait) -> Iterator[Problem]:
-    """A rise of A sin³ in a support phase of duration T falls with at most 3 A (π / T)² at its apex."""
+    """List rises of the CoM in a support phase from which it would fall too fast."""
     for support in ("single", "double"):
         duration, apex = getattr(gait, f"{support}_support"), getattr(gait, f"apex_{support}")
-        highest = STEEPEST_FALL / 3.0 * (duration / math.pi) ** 2
+        highest = highest_apex(duration)
         if apex > highest:
             what = f"gait.apex_{support} {apex} m within {duration} s asks the CoM to fall faster than the feet allow"
             right = f"use at most {highest:.2g} m, or a longer gait.{support}_support"
@@ -138,9 +127,8 @@ def command_problems(draft: Draft) -> list[Problem]:
         return problems
     try:
         _ = draft.gait
-    except ValueError as error:
-        what, _, right = str(error).rstrip(".").partition(", but ")
-        return [Problem(_VELOCITY if gait.velocity else _FOOTSTEPS, what, right or "give others")]
+    except ParameterError as fault:
+        return [scenario_problem(fault)]
     return []
 
 
@@ -161,7 +149,7 @@ def commanded_step_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem
         for index, stride in enumerate(walk.strides):
             why = region.why_not(landing(stride, walk.step_foot(index + 1)))
             if why is not None:
-                yield Problem((*_FOOTSTEPS, index), *_clauses(f"footstep {index + 1} {why}"))
+                yield Problem((*_FOOTSTEPS, index), f"footstep {index + 1} {why.what}", why.right)
                 return
 
 
@@ -209,12 +197,6 @@ def _step_text(stride: Stride) -> str:
 def _toward_zero(value: float) -> float:
     """Three decimals, never faster."""
     return math.trunc(1000.0 * value) / 1000.0
-
-
-def _clauses(why: str) -> tuple[str, str]:
-    """A fault and what would be right, from "..., and ... is the least"."""
-    what, _, right = why.rpartition(", ")
-    return what, right.removeprefix("and ")
 
 
 def _leg_span(gait: Gait, facts: RobotFacts) -> float:

@@ -1,6 +1,7 @@
 """docs/paper.md names code and tests that exist."""
 
 import importlib
+import inspect
 import re
 from pathlib import Path
 
@@ -14,29 +15,29 @@ ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
 
 
-def exists(name):
-    """Whether a dotted name is a module, or leads to something in one."""
-    module, parts = "planner", name.split(".")[1:]
+def found(name):
+    """What a dotted name leads to: a module, or something in one; None when there is no such thing."""
+    module, parts = "surefoot.planner", name.split(".")[1:]
     while parts:
         try:
             importlib.import_module(f"{module}.{parts[0]}")
         except ModuleNotFoundError:
             break
         module = f"{module}.{parts.pop(0)}"
-    found = importlib.import_module(module)
+    thing = importlib.import_module(module)
     for part in parts:
-        found = getattr(found, part, None)
-    return found is not None
+        thing = getattr(thing, part, None)
+    return thing
 
 
 @pytest.mark.parametrize("name", sorted(set(re.findall(r"`(planner\.[a-zA-Z_.]+)`", TEXT)) - {"planner.profile"}))
 def test_code_is_there(name):
-    assert exists(name)
+    assert found(name) is not None
 
 
 def test_a_name_that_is_not_there_is_found_out():
-    assert not exists("planner.model.dcm.no_such_function")
-    assert not exists("planner.no_such_module")
+    assert found("planner.model.dcm.no_such_function") is None
+    assert found("planner.no_such_module") is None
 
 
 @pytest.mark.parametrize("reference", sorted(set(re.findall(r"`(tests/[^`]+::[^`]+)`", TEXT))))
@@ -49,6 +50,35 @@ def test_every_erratum_has_evidence():
     rows = re.findall(r"^\| (\d+) \|.*\| (.*) \|$", TEXT, re.MULTILINE)
     assert [int(number) for number, _ in rows] == list(range(1, 21))
     assert all("tests/" in evidence or "page, " in evidence for _, evidence in rows)
+
+
+EQUATIONS = range(1, 16)
+LABELS = (
+    r"lipm|statespace_lipm|statespace_lipm_disc|lipm_disc2|ComplexForm_Predictive|ComplexForm_matrix|costfunction"
+    r"|param_constraint|pridection_tv|param_pridection_tv|zmpEquation|dcm_at_end|z_traj"
+)
+
+
+def rows_of(number):
+    """The code that the page names for an equation."""
+    rows = re.findall(r"^\| (\(\d+\)(?:, \(\d+\))*) \|[^|]*\|([^|]*)\|", TEXT, re.MULTILINE)
+    return [re.findall(r"`(planner\.[a-zA-Z_.]+)`", code) for numbers, code in rows if f"({number})" in numbers]
+
+
+@pytest.mark.parametrize("number", EQUATIONS)
+def test_every_equation_is_on_the_page_and_at_its_code(number):
+    """Of the code that a row names, something says in its docstring which equation it is."""
+    rows = rows_of(number)
+    assert rows
+    for names in rows:
+        assert any(f"eq. ({number})" in (inspect.getdoc(found(name)) or "") for name in names), names
+
+
+def test_no_label_of_the_manuscript_is_left():
+    texts = [*(ROOT / "planner").rglob("*.py"), *(ROOT / "docs").glob("*.md"), *(ROOT / "scenarios").rglob("*.py")]
+    for file in texts:
+        text = file.read_text(encoding="utf-8")
+        assert not re.findall(rf"\b(?:{LABELS})\b|\b[Ee]qs?\. [a-zA-Z]", text), file
 
 
 def test_scenarios_are_in_the_catalogue():

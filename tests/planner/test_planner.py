@@ -185,8 +185,9 @@ def test_plan_arrays_have_the_shapes_they_say(diagonal):
 
 
 def test_out_of_reach_and_nonsense_are_refused(stand):
-    with pytest.raises(ValueError, match=r"Footstep 1 would land 0\.500 m ahead.*\.$"):
+    with pytest.raises(ValueError, match=r"footstep 1 would land 0\.500 m ahead") as refused:
         WalkingPlanner(GaitParameters(step_length=0.5), stand(), 0.075, 0.075)
+    assert refused.value.key == ("footsteps", 0, "ahead")
     with pytest.raises(ValueError, match="foot_length is -1"):
         WalkingPlanner(GaitParameters(), stand(), -1.0, 0.075)
     with pytest.raises(ValueError, match="not finite at 0 s"):

@@ -168,7 +168,7 @@ class Lazy:
 
 
 def test_a_law_of_ones_own_plans_and_its_log_cannot_be_run_again(scenario, tmp_path):
-    lazy = Profile("lazy", PROFILES["dcm"].parameters, Lazy, moves=False)
+    lazy = Profile("lazy", "never moves the CoM", PROFILES["dcm"].parameters, Lazy, moves=False)
     path = tmp_path / "lazy.mcap"
     with surefoot.Simulation(scenario, log=path, planner=lazy) as sim:
         jerk = [np.abs(sim.step().plan.jerk).max() for _ in range(20)]

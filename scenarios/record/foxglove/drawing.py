@@ -25,6 +25,7 @@ from google.protobuf.message import Message
 from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry import CORNERS
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import Footstep
 from surefoot.scenarios import palette
@@ -226,7 +227,7 @@ class Outlines:
 
     def __init__(self, half_length: float, half_width: float) -> None:
         """For soles of this half size [m]."""
-        self._corners = [(a * half_length, b * half_width) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+        self._corners = [(a * half_length, b * half_width) for a, b in CORNERS.tolist()]
         self.values: list[float] = []
         self.ground = 0.0
 

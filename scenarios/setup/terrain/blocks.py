@@ -3,9 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from surefoot.planner.ground.rough import Blocks, block_field
+from surefoot.planner.ground.blocks import Blocks
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.setup.robot import RobotFacts
@@ -21,21 +19,16 @@ BLOCK_GAP = 0.02
 MOST_BLOCKS = 200
 """Blocks of a field, since every look at the ground goes through all of them [-]."""
 
-_STREAM = 2
-"""Random numbers of the blocks, apart from those of other things with the same seed."""
-
 
 class BlocksKind(TerrainKind):
     """A field of blocks; left and right ones stand side by side with a gap between them."""
 
     name = "blocks"
     keys = ("riser", "angle", "tread", "height_noise")
-    stepped = True
 
     def build(self, draft: "Draft") -> Terrain:
         """See `TerrainKind`."""
-        rng = np.random.default_rng(np.random.SeedSequence(draft.keys.seed, spawn_key=(_STREAM,)))
-        return block_field(blocks_of(draft), draft.level_footsteps, rng, draft.keys.terrain.friction)
+        return blocks_of(draft).build(draft.site)
 
     def start_height(self, draft: "Draft") -> float:
         """See `TerrainKind`."""

@@ -34,12 +34,10 @@ class TerrainKind:
     Attributes:
         name: value of ``terrain.kind``.
         keys: keys of ``terrain`` that shape it; friction is of all.
-        stepped: whether its heights change at edges, so that they are believed less than those of level ground.
     """
 
     name: str
     keys: tuple[str, ...] = ()
-    stepped: bool = False
 
     def build(self, draft: "Draft") -> Terrain:
         """The ground as the planner believes it to be."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from surefoot.planner.ground.rough import Slope, slope
+from surefoot.planner.ground.slope import Slope
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array
 from surefoot.planner.walk.footsteps import FootstepPlan
@@ -34,8 +34,7 @@ class SlopeKind(TerrainKind):
         """See `TerrainKind`."""
         keys = draft.keys.terrain
         start = 0.5 * draft.keys.gait.step_length if keys.start is None else keys.start
-        settings = Slope(keys.angle, start, way(draft) + PLATFORM, PLATFORM)
-        return slope(settings, draft.origin, draft.keys.start.yaw, keys.friction)
+        return Slope(keys.angle, start, way(draft) + PLATFORM, PLATFORM).build(draft.site)
 
     def problems(self, draft: "Draft", facts: RobotFacts) -> list[Problem]:
         """List what makes a slope impossible for a robot and its gait."""

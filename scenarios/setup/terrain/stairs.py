@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from surefoot.planner.ground.stairs import Direction, Stairs, staircase
+from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.setup.robot import RobotFacts
@@ -29,11 +29,10 @@ class StairsKind(TerrainKind):
 
     name = "stairs"
     keys = ("riser", "tread", "count", "direction", "start", "landing", "height_noise")
-    stepped = True
 
     def build(self, draft: "Draft") -> Terrain:
         """See `TerrainKind`."""
-        return staircase(stairs_of(draft), draft.origin, draft.keys.start.yaw, draft.keys.terrain.friction)
+        return stairs_of(draft).build(draft.site)
 
     def problems(self, draft: "Draft", facts: RobotFacts) -> list[Problem]:
         """List what makes a staircase impossible for a robot and its gait."""

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation, sole_corners, sole_pose, sole_rotation
-from surefoot.planner.ground.rough import LEVEL_STEPS, Blocks, Slope, block_field, slope
-from surefoot.planner.ground.terrain import flat
+from surefoot.planner.ground.blocks import LEVEL_STEPS, Blocks
+from surefoot.planner.ground.slope import Slope
+from surefoot.planner.ground.terrain import Site, flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.course import swing_courses
 from surefoot.planner.swing.trajectory import start_swing, swing_times
@@ -24,7 +26,8 @@ GAIT = GaitParameters(steps=12, step_length=0.3, turn=0.03)
 
 def field(stand, seed=0):
     feet = stand(origin=tuple(ORIGIN), yaw=YAW)
-    terrain = block_field(BLOCKS, plan_footsteps(GAIT, feet, flat()), np.random.default_rng(seed), 0.7)
+    laid = plan_footsteps(GAIT, feet, flat())
+    terrain = BLOCKS.build(Site(ORIGIN, YAW, 0.7, lambda: laid, np.random.default_rng(seed)))
     feet.position[:, 2] = terrain.heights(feet.position[:, :2])
     return plan_footsteps(GAIT, feet, terrain), terrain
 
@@ -35,7 +38,7 @@ def ahead(distance, left=0.0):
 
 @pytest.mark.parametrize("angle", [0.17, -0.17])
 def test_a_slope_has_its_inclination_from_its_edge_on(angle):
-    terrain = slope(Slope(angle, 0.5, 4.0, 1.0), ORIGIN, YAW, 0.7)
+    terrain = Slope(angle, 0.5, 4.0, 1.0).build(Site(ORIGIN, YAW, 0.7))
     height = [terrain.height(*ahead(x, y)) for x, y in ((0.0, 0.3), (0.499, 0.0), (0.501, 0.0), (1.5, -0.4), (2.5, 0))]
     base = height[0]
     assert base == pytest.approx(max(0.0, 4.0 * np.sin(-angle)))
@@ -108,3 +111,26 @@ def test_the_turning_sole_clears_all_blocks_and_lands_flat(stand, seed):
             far = min(np.linalg.norm(pose[:2] - place[:2]) for place in (start, end)) > 0.06
             assert gap > (0.018 if far else -2e-3)
         np.testing.assert_allclose(sole_rotation(*swing.evaluate(times.touchdown)[0, 3:])[:, 2], plan.normal[row])
+
+
+def test_ground_that_lies_under_footsteps_asks_for_them():
+    with pytest.raises(ParameterError, match="laid under footsteps") as refused:
+        BLOCKS.build(Site(ORIGIN, YAW, 0.7))
+    assert refused.value.key == ("terrain", "footsteps")
+
+
+def test_footholds_are_free_on_wide_faces_and_where_there_are_none(stand):
+    """A foot that lands elsewhere takes its successors with it, to the height and the normal of the ground there."""
+    ground = Slope(0.17, 0.15, 6.0, 1.0).build(Site(ORIGIN, YAW, 0.7))
+    assert (flat().free_footholds, ground.free_footholds, field(stand)[1].free_footholds) == (True, True, False)
+    assert (flat().has_edges, ground.has_edges) == (False, True)
+    plan = plan_footsteps(GAIT, stand(origin=tuple(ORIGIN), yaw=YAW), ground)
+    place = plan.position[4] + np.array([0.1, 0.05, 0.0])
+    place[2] = ground.height(*place[:2])
+    moved = plan.moved(4, place, ground)
+    np.testing.assert_allclose(moved.position[5:, :2] - plan.position[5:, :2], np.tile([0.1, 0.05], (9, 1)), atol=1e-12)
+    np.testing.assert_allclose(moved.position[5:, 2], ground.heights(moved.position[5:, :2]))
+    np.testing.assert_array_equal(moved.normal[4:], ground.normals(moved.position[4:, :2]))
+    back = plan.moved(2, np.append(ahead(0.05), 0.0), ground)
+    np.testing.assert_array_equal(back.normal[2], [0.0, 0.0, 1.0])
+    assert plan.normal[2, 2] < 1.0

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from surefoot.planner.geometry import sole_corners
-from surefoot.planner.ground.stairs import Direction, Stairs, staircase
+from surefoot.planner.ground.stairs import Direction, Stairs
+from surefoot.planner.ground.terrain import Site
 from surefoot.planner.types import FeetState
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
@@ -19,7 +20,7 @@ def stairs(direction, **changes):
 
 def heights_of_walk(direction, steps, origin=(0.0, 0.0), yaw=0.0):
     """Heights of the footsteps of a straight walk over stairs, one per tread, and their edge margins."""
-    terrain = staircase(stairs(direction), np.array(origin), yaw, 0.8)
+    terrain = stairs(direction).build(Site(np.array(origin), yaw, 0.8))
     side = 0.1 * np.array([-np.sin(yaw), np.cos(yaw)])
     ground = terrain.height(*origin)
     position = np.array([[*(origin + side), ground], [*(origin - side), ground]])
@@ -46,7 +47,7 @@ def test_footsteps_land_in_the_middle_of_one_tread_after_the_other(direction, ex
 
 
 def test_feet_that_start_elsewhere_step_on_the_same_treads():
-    terrain = staircase(stairs(Direction.UP), np.array([1.0, 2.0]), 0.3, 0.8)
+    terrain = stairs(Direction.UP).build(Site(np.array([1.0, 2.0]), 0.3, 0.8))
     gait = GaitParameters(steps=4, step_length=0.3)
     plans = []
     for shift, turn in ((0.0, 0.0), (0.03, 0.05)):
@@ -58,7 +59,7 @@ def test_feet_that_start_elsewhere_step_on_the_same_treads():
 
 
 def test_margin_is_negative_for_a_sole_over_an_edge_and_infinite_on_bare_ground():
-    terrain = staircase(stairs(Direction.UP), np.zeros(2), 0.0, 0.8)
+    terrain = stairs(Direction.UP).build(Site(np.zeros(2), 0.0, 0.8))
     centers = np.array([[0.5, 0.0], [0.4, 0.0], [0.0, 0.0], [0.1, 0.0], [0.3, 0.98]])
     corners = centers[:, None] + np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * HALF_SIZE
     np.testing.assert_allclose(terrain.edge_margins(centers, corners), [-0.06, -0.06, 0.04, -0.06, -0.035], atol=1e-12)
@@ -66,7 +67,7 @@ def test_margin_is_negative_for_a_sole_over_an_edge_and_infinite_on_bare_ground(
 
 
 def test_treads_do_not_overlap_and_leave_no_gap():
-    boxes = staircase(stairs(Direction.UP_DOWN), np.zeros(2), 0.0, 0.8).boxes
+    boxes = stairs(Direction.UP_DOWN).build(Site(np.zeros(2), 0.0, 0.8)).boxes
     begins = [box.center[0] - box.half_size[0] for box in boxes]
     ends = [box.center[0] + box.half_size[0] for box in boxes]
     np.testing.assert_allclose(begins[1:], ends[:-1], atol=1e-12)

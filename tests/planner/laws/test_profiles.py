@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import qpsolvers
 
-from surefoot.planner.laws.law import DAQP_OPTIONS
 from surefoot.planner.laws.profiles import PROFILES
+from surefoot.planner.laws.qp import OPTIONS, SOLVERS
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.types import SolverStatus
@@ -95,13 +95,16 @@ def test_a_push_beyond_the_papers_limits_softens_and_recovers(walks):
 
 @pytest.mark.parametrize("name", ["default", "lti", "paper", "repaired", "repaired, pushed"])
 def test_solutions_pass_kkt_and_two_solvers_agree(walks, name):
-    """Residuals of stationarity and complementarity are relative to the largest cost gradient, primal ones in units."""
+    """Residuals of stationarity and complementarity are relative to the largest cost gradient, primal ones in units.
+
+    Where the cost is flat the solvers agree in cost far better than in jerk.
+    """
     qps = walks(name)[1]
     softened = {len(qp.q) for qp in qps} if name not in ("default", "lti") else {0}
     assert len(softened) == (2 if name in ("paper", "repaired, pushed") else 1)
     for qp in qps[:: max(1, len(qps) // 60)]:
-        first = qpsolvers.solve_problem(qp.problem(), "daqp", **DAQP_OPTIONS)
-        second = qpsolvers.solve_problem(qp.problem(), "quadprog")
+        first = qpsolvers.solve_problem(qp.problem(), SOLVERS[0], **OPTIONS[SOLVERS[0]])
+        second = qpsolvers.solve_problem(qp.problem(), SOLVERS[1], **OPTIONS[SOLVERS[1]])
         z, scale = first.x, 1.0 + np.abs(qp.q).max()
         gradient = qp.P @ z + qp.q + qp.G.T @ first.z + first.z_box
         gap = np.minimum(np.abs(z - qp.lower), np.abs(z - qp.upper))
@@ -112,7 +115,9 @@ def test_solutions_pass_kkt_and_two_solvers_agree(walks, name):
         assert np.abs(np.where(first.z_box != 0.0, first.z_box * gap, 0.0)).max() < 1e-8 * scale
         cost = [0.5 * x @ qp.P @ x + qp.q @ x for x in (z, second.x)]
         assert abs(cost[0] - cost[1]) < 1e-8 * scale
-        np.testing.assert_allclose(z, second.x, atol=1e-5)
+        apart = z - second.x
+        assert apart @ qp.P @ apart < 1e-10 * scale
+        assert np.abs(apart).max() < 1e-3
 
 
 def test_every_profile_solves_what_it_solves(walks):

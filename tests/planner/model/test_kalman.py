@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm, solve_discrete_are
 
-from surefoot.planner.model.filter import ZMP_ONLY, CentroidalFilter, FilterNoise, jerk_model, sensor_model
+from surefoot.planner.model.filter import ZMP_ONLY, CentroidalFilter, FilterNoise, sensor_model
+from surefoot.planner.model.jerk import jerk_model
 
 pytestmark = pytest.mark.unit
 

@@ -12,7 +12,7 @@ B = np.array([T**3 / 6, T * T / 2, T])
 
 
 def jerk_driven(stiffness):
-    """A(k), B(k), C(k) of eq. lipm_disc2 for λ at samples 1..N."""
+    """A(k), B(k), C(k) of eq. (4) for λ at samples 1..N."""
     n = len(stiffness)
     C = np.stack([np.ones(n), np.zeros(n), -1.0 / stiffness], axis=1)
     return np.tile(A, (n, 1, 1)), np.tile(B, (n, 1)), C

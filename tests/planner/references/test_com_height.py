@@ -120,16 +120,15 @@ def test_stiffness_counts_the_height_above_the_zmp():
     np.testing.assert_allclose(shown.stiffness * (shown.height[0] - ground), GRAVITY + shown.height[2], rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("rise", "name"), [(Rise.DOUBLE, "double_support, or planner.rise single"), (Rise.SINGLE, "single_support")]
-)
+@pytest.mark.parametrize(("rise", "name"), [(Rise.DOUBLE, "double_support"), (Rise.SINGLE, "single_support")])
 def test_a_step_too_high_for_its_support_is_refused(rise, name):
     gait = GaitParameters(steps=2, single_support=0.36, double_support=0.3)
     plan = schedule(gait, 0.02, 150)
     shape = SmoothHeight(rise).shape(gait, plan)
     check_height(shape, plan, np.array([0.0, 0.0, 0.05, 0.05]))
-    with pytest.raises(ValueError, match=rf"falls off with -1\d\.\d m/s\^2.*{name}\.$"):
+    with pytest.raises(ValueError, match=r"falls off with 1\d\.\d m/s\^2.*; 7\.8 m/s\^2 is the most") as refused:
         check_height(shape, plan, np.array([0.0, 0.0, 0.2, 0.2]))
+    assert refused.value.key == ("gait", name)
 
 
 @pytest.mark.parametrize("place", list(Rise))

@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import sole_corners, sole_pose
-from surefoot.planner.ground.stairs import Direction, Stairs, staircase
-from surefoot.planner.ground.terrain import flat
+from surefoot.planner.ground.stairs import Direction, Stairs
+from surefoot.planner.ground.terrain import Site, flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.course import EDGE_CLEARANCE, swing_courses
 from surefoot.planner.swing.trajectory import start_swing, swing_times
@@ -19,7 +20,7 @@ PARAMETERS = PlannerParameters()
 
 def walk_plan(direction, riser, tread, steps=6):
     stairs = Stairs(riser, tread, 3, direction, 0.5 * tread, 3 * tread, 3.0)
-    terrain = staircase(stairs, np.zeros(2), 0.0, 0.8)
+    terrain = stairs.build(Site(np.zeros(2), 0.0, 0.8))
     ground = terrain.height(0.0, 0.0)
     feet = FeetState(np.array([[0.0, 0.1, ground], [0.0, -0.1, ground]]), np.zeros(2), (True, True))
     return plan_footsteps(GaitParameters(steps=steps, step_length=tread), feet, terrain), terrain
@@ -84,7 +85,6 @@ def stand_here():
 
 def test_edges_that_nothing_clears_are_refused():
     plan, terrain = walk_plan(Direction.UP, 0.2, 0.2)
-    with pytest.raises(
-        ValueError, match=r"Footstep 1 cannot be swung 0\.02 m clear of .* terrain\.tread more depth.*\.$"
-    ):
+    with pytest.raises(ParameterError, match=r"footstep 1 cannot be swung 0\.02 m clear of .*; give the tr") as refused:
         courses_of(plan, terrain, [0.16, 0.05])
+    assert refused.value.key == ("terrain", "depth")

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.trajectory import SwingTimes, start_swing
+from surefoot.planner.swing.trajectory import SwingCourse, SwingTimes, start_swing, swing_times
 from surefoot.planner.types import Foot
 
 pytestmark = pytest.mark.unit
@@ -79,3 +79,15 @@ def test_without_ground_the_sole_searches_downwards_without_a_jump_in_speed():
     assert motion[0, 1, 2] == pytest.approx(-parameters.search.touchdown_speed, abs=1e-6)
     assert motion[-1, 1, 2] == pytest.approx(-parameters.search.speed)
     assert np.abs(np.diff(motion[:, 1, 2])).max() <= parameters.search.acceleration * step + 1e-9
+
+
+def test_positions_at_many_instants_are_those_of_evaluate():
+    """With a glide that begins late and ends early, also after the target has moved."""
+    pose, target = np.array([0.0, 0.1, 0.2, 0.1, 0.0, 0.05]), np.array([0.4, 0.2, 0.35, -0.1, 0.1, 0.0])
+    times = swing_times(1.0, 40, SwingCourse(0.6, 0.15, 0.8, 0.05), PlannerParameters())
+    swing = start_swing(Foot.LEFT, pose, target, times, 0.05, PlannerParameters())
+    moved = swing.retargeted(1.4, target + np.array([0.05, -0.03, 0.01, 0.1, 0.0, 0.0]))
+    for trajectory, start in ((swing, 1.0), (moved, 1.4)):
+        instants = np.linspace(start, times.touchdown, 97)
+        each = [trajectory.evaluate(float(time))[0] for time in instants]
+        np.testing.assert_allclose(trajectory.positions(instants), each, atol=1e-12)

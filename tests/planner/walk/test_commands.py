@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from surefoot.errors import ParameterError
 from surefoot.planner.ground.terrain import flat
-from surefoot.planner.laws.constraints import check_reach
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import FeetState, Foot, Footstep, PhaseKind
 from surefoot.planner.walk.clock import schedule
@@ -23,7 +23,7 @@ from surefoot.planner.walk.commands import (
 )
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import Landing, StepRegion
+from surefoot.planner.walk.reach import Landing, StepRegion, check_reach
 
 pytestmark = pytest.mark.unit
 
@@ -105,25 +105,26 @@ def test_the_leading_foot_is_on_the_side_of_the_motion():
 
 
 @pytest.mark.parametrize(
-    ("rows", "message"),
+    ("rows", "message", "key"),
     [
-        (((0.0, 0.3), (2.0, 0.1)), "the last one must be zero"),
-        ((), "the last one must be zero"),
-        (((2.0, 0.3), (1.0,)), "times must increase"),
-        (((1.0, 0.3), (1.0,)), "times must increase"),
+        (((0.0, 0.3), (2.0, 0.1)), "the last one must be zero", ("velocity", 1)),
+        ((), "the last one must be zero", ("velocity",)),
+        (((2.0, 0.3), (1.0,)), "times must increase", ("velocity", 1, "time")),
+        (((1.0, 0.3), (1.0,)), "times must increase", ("velocity", 1, "time")),
     ],
 )
-def test_a_bad_timeline_is_refused(rows, message):
-    with pytest.raises(ValueError, match=message):
+def test_a_bad_timeline_is_refused(rows, message, key):
+    with pytest.raises(ParameterError, match=message) as refused:
         timeline(*rows)
+    assert refused.value.key == key
 
 
 def test_bad_commands_are_refused():
-    with pytest.raises(ValueError, match="must be finite"):
+    with pytest.raises(ParameterError, match="must be finite"):
         VelocityCommand(0.0, Twist(math.nan))
-    with pytest.raises(ValueError, match="not negative"):
+    with pytest.raises(ParameterError, match="must not be negative"):
         VelocityCommand(-1.0, Twist())
-    with pytest.raises(ValueError, match="66000 s is the most"):
+    with pytest.raises(ParameterError, match="lasts 80000 s; 66000 s is the most"):
         velocity_bouts(timeline((0.0, 0.1), (80_000.0,)), GAIT)
 
 
@@ -161,9 +162,10 @@ def test_footsteps_are_taken_where_they_are_given():
 
 def test_footsteps_must_alternate():
     step = Footstep(Foot.LEFT, np.array([0.2, 0.1, 0.0]), 0.0)
-    with pytest.raises(ValueError, match="Footstep 2 moves the left foot again"):
+    with pytest.raises(ParameterError, match="footstep 2 moves the left foot again") as refused:
         footstep_bouts([step, step], GAIT)
-    with pytest.raises(ValueError, match="at least one"):
+    assert refused.value.key == ("footsteps", 1)
+    with pytest.raises(ParameterError, match="at least one"):
         footstep_bouts([], GAIT)
 
 
@@ -181,8 +183,8 @@ def test_any_velocity_command_within_limits_gives_a_sound_walk(data):
     bouts = velocity_bouts(VelocityTimeline(commands), GAIT)
     gait = fitted(walk_of(GAIT, bouts, leading_foot(bouts)), REGION)
     steps = plan_footsteps(gait, FEET, flat())
-    check_reach(steps, PlannerParameters())
     for row in range(2, gait.steps + 2):
+        check_reach(row - 1, steps.landing(row), PlannerParameters())
         c, s = np.cos(steps.yaw[row - 1]), np.sin(steps.yaw[row - 1])
         x, y = steps.increment[row] @ np.array([[c, -s], [s, c]])
         beside = float(y if steps.feet[row] is Foot.LEFT else -y)

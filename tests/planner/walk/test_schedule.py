@@ -55,7 +55,7 @@ def test_first_double_support_rests_for_half_of_it():
 
 
 def test_duration_off_the_grid_is_refused():
-    with pytest.raises(ValueError, match=r"gait\.single_support is 0\.75 s"):
+    with pytest.raises(ValueError, match=r"single_support is 0\.75 s, no multiple"):
         schedule(GaitParameters(single_support=0.75), 0.02, 150)
 
 

@@ -12,8 +12,7 @@ from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
     longest_step,
-    phase_duration,
-    phase_start,
+    phase_of,
     push_time,
 )
 
@@ -36,12 +35,12 @@ def test_lower_hips_reach_farther():
 
 def test_phases_follow_each_other():
     gait = Draft(Scenario()).gait
-    assert phase_start(gait, 1, "double") == gait.initial_stand
-    assert phase_start(gait, 1, "single") == gait.initial_stand + 2 * gait.double_support
+    assert phase_of(gait, 1, "double")[0] == gait.initial_stand
+    assert phase_of(gait, 1, "single")[0] == gait.initial_stand + 2 * gait.double_support
     for step in range(1, 5):
         for phase, following in (("double", (step, "single")), ("single", (step + 1, "double"))):
-            end = phase_start(gait, step, phase) + phase_duration(gait, step, phase)
-            assert phase_start(gait, *following) == pytest.approx(end)
+            end = sum(phase_of(gait, step, phase))
+            assert phase_of(gait, *following)[0] == pytest.approx(end)
 
 
 def test_pushes_by_point_of_the_gait():
@@ -49,7 +48,7 @@ def test_pushes_by_point_of_the_gait():
     push = PushSettings(step=2, phase="single", fraction=0.5)
     assert push_time(gait, push) == pytest.approx(1.0 + 1.0 + 2.0 + 0.75)
     assert push_time(gait, PushSettings(time=2.2)) == 2.2
-    with pytest.raises(ValueError, match="needs a time"):
+    with pytest.raises(ValueError, match="without a begin"):
         push_time(gait, PushSettings(step=2))
 
 

@@ -6,8 +6,7 @@ from surefoot.scenarios.file.schema import Gait, Scenario
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
-    phase_duration,
-    phase_start,
+    phase_of,
 )
 
 pytestmark = pytest.mark.unit
@@ -21,8 +20,8 @@ def test_times_are_those_of_the_planners_schedule(stand):
     doubles = [phase for phase in phases if phase.kind is PhaseKind.DOUBLE]
     for step, (single, double) in enumerate(zip(singles, doubles, strict=False), start=1):
         for name, phase in (("single", single), ("double", double)):
-            assert phase_start(Draft(scenario).gait, step, name) == pytest.approx(0.02 * phase.start)
-            assert phase_duration(Draft(scenario).gait, step, name) == pytest.approx(0.02 * phase.samples)
+            assert phase_of(Draft(scenario).gait, step, name)[0] == pytest.approx(0.02 * phase.start)
+            assert phase_of(Draft(scenario).gait, step, name)[1] == pytest.approx(0.02 * phase.samples)
     assert Draft(scenario).duration == pytest.approx(0.02 * phases[-1].start + FINAL_STAND)
 
 
@@ -34,8 +33,8 @@ def test_times_of_a_walk_that_stops():
     assert Draft(scenario).gait.steps == len(singles)
     for step, index in enumerate(singles, start=1):
         for name, phase in (("single", phases[index]), ("double", phases[index - 1])):
-            assert phase_start(Draft(scenario).gait, step, name) == pytest.approx(0.02 * phase.start)
-            assert phase_duration(Draft(scenario).gait, step, name) == pytest.approx(0.02 * phase.samples)
+            assert phase_of(Draft(scenario).gait, step, name)[0] == pytest.approx(0.02 * phase.start)
+            assert phase_of(Draft(scenario).gait, step, name)[1] == pytest.approx(0.02 * phase.samples)
     assert Draft(scenario).duration == pytest.approx(0.02 * phases[-1].start + FINAL_STAND)
 
 

@@ -1,0 +1,100 @@
+"""The QP of one axis, and its solution by the first solver that succeeds."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import daqp
+import numpy as np
+import qpsolvers
+
+from surefoot.planner.types import Array
+
+SOLVERS = ("daqp", "piqp")
+"""The solvers of qpsolvers that are tried, in this order.
+
+DAQP, a dual active-set method, is exact and the fastest. What it calls infeasible is asked of a second one of another
+kind, which must agree and lose no time: profile `paper` has such ticks in thousands. PIQP, a proximal interior-point
+method (BSD-2), said so in all 245 of them that were recorded, in 0.5 ms at most, missed no optimum, and with the
+tolerances below meets DAQP's cost to 1e-10 (its jerk to 4e-4 m/s^3 where the cost is flat, else to 1e-5). ProxQP missed
+12 of 170 optima; Clarabel takes ten times as long.
+"""
+
+OPTIONS: dict[str, dict[str, Any]] = {
+    "daqp": {"primal_tol": 1e-9, "dual_tol": 1e-12},
+    "piqp": dict.fromkeys(("eps_abs", "eps_rel", "eps_duality_gap_abs", "eps_duality_gap_rel"), 1e-12),
+}
+"""Tolerances that make the solvers exact to the last digits that matter, by name."""
+
+_UNBOUNDED = 1e30
+
+
+@dataclass(frozen=True, slots=True)
+class Qp:
+    """min ½ zᵀ P z + qᵀ z subject to G z <= h and lower <= z <= upper.
+
+    Attributes:
+        P: cost matrix, symmetric positive definite, shape (n, n).
+        q: cost vector, shape (n,).
+        G: inequality matrix, shape (m, n).
+        h: inequality vector, shape (m,).
+        lower: lower bounds, shape (n,).
+        upper: upper bounds, shape (n,).
+    """
+
+    P: Array
+    q: Array
+    G: Array
+    h: Array
+    lower: Array
+    upper: Array
+
+    def problem(self) -> qpsolvers.Problem:
+        """The same problem as qpsolvers takes it."""
+        return qpsolvers.Problem(self.P, self.q, self.G, self.h, None, None, self.lower, self.upper)
+
+
+@dataclass(frozen=True, slots=True)
+class QpSolution:
+    """Result of the first solver that succeeded.
+
+    Attributes:
+        qp: the problem that it belongs to, which may be a softened one.
+        z: optimum, shape (n,), or None when every solver failed.
+        attempt: index of the solver that succeeded, or the number of solvers.
+    """
+
+    qp: Qp
+    z: Array | None
+    attempt: int
+
+
+def solve(qp: Qp, solvers: tuple[str, ...] = SOLVERS) -> QpSolution:
+    """Solve with the first of the solvers that succeeds; a solver's exception counts as its failure.
+
+    Args:
+        qp: the problem.
+        solvers: names known to qpsolvers, in the order to try. DAQP is called without the wrapper, which would take as
+            long as the solver.
+    """
+    for attempt, name in enumerate(solvers):
+        try:
+            z = _daqp(qp) if name == "daqp" else _wrapped(qp, name)
+        except (ValueError, ArithmeticError, qpsolvers.QPError):
+            continue
+        if z is not None and np.isfinite(z).all():
+            return QpSolution(qp, z, attempt)
+    return QpSolution(qp, None, len(solvers))
+
+
+def _wrapped(qp: Qp, name: str) -> Array | None:
+    solution = qpsolvers.solve_problem(qp.problem(), name, **OPTIONS.get(name, {}))
+    return solution.x if solution.found else None
+
+
+def _daqp(qp: Qp) -> Array | None:
+    """DAQP takes bounds as its first rows, and rows from below too."""
+    n, rows = len(qp.q), len(qp.h)
+    upper, lower = np.concatenate((qp.upper, qp.h)), np.full(n + rows, -_UNBOUNDED)
+    lower[:n] = qp.lower
+    z, _, flag, _ = daqp.solve(qp.P, qp.q, qp.G, upper, lower, np.zeros(n + rows, dtype=np.intc), **OPTIONS["daqp"])
+    return np.asarray(z) if flag > 0 else None

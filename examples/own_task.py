@@ -5,9 +5,9 @@ import pinocchio as pin
 
 import surefoot
 from surefoot.wbc import BodyFrames, RobotTerms, WbcReference
-from surefoot.wbc.tasks import Task, angular_acceleration
+from surefoot.wbc.tasks import angular_acceleration
 
-Array = np.ndarray
+LOCAL = pin.ReferenceFrame.LOCAL
 
 
 class LookAside:
@@ -15,30 +15,25 @@ class LookAside:
 
     name, size, weight = "look aside", 3, 1.0
 
-    def __init__(self, model: pin.Model, frames: BodyFrames) -> None:
+    def __init__(self, model: pin.Model, frames: BodyFrames) -> None:  # by entry point: surefoot.tasks
         self.head = model.getFrameId("head")
 
-    def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> list[float]:
-        """Write J of the angular acceleration in the head's frame; return what it shall be."""
-        model, data, local = terms.model, terms.data, pin.ReferenceFrame.LOCAL
+    def write(self, terms: RobotTerms, reference: WbcReference, scale: np.ndarray, rows: np.ndarray) -> list[float]:
+        """Write J of the head's angular acceleration in its frame; return what that shall be."""
+        model, data = terms.model, terms.data
         placement = pin.updateFramePlacement(model, data, self.head)
-        rows[:, : model.nv] = scale * pin.getFrameJacobian(model, data, self.head, local)[3:]
+        rows[:, : model.nv] = scale * pin.getFrameJacobian(model, data, self.head, LOCAL)[3:]
         wanted = pin.utils.rotate("z", reference.heading + 0.5)
-        spin = pin.getFrameVelocity(model, data, self.head, local).angular
-        drift = pin.getFrameAcceleration(model, data, self.head, local).angular  # with zero joint accelerations
-        target = angular_acceleration((100.0, 20.0), placement.rotation, spin, wanted, (0.0, 0.0, 0.0))
-        return [float(a) for a in target - drift]
-
-
-def make(model: pin.Model, frames: BodyFrames) -> Task:  # by entry point: surefoot.tasks
-    """Make the task for a robot."""
-    return LookAside(model, frames)
+        spin = pin.getFrameVelocity(model, data, self.head, LOCAL).angular
+        drift = pin.getFrameAcceleration(model, data, self.head, LOCAL).angular  # of zero generalised acceleration
+        turn = angular_acceleration((100.0, 20.0), placement.rotation, spin, wanted, (0.0, 0.0, 0.0))
+        return [float(a) for a in turn - drift]
 
 
 if __name__ == "__main__":
-    with surefoot.Simulation(surefoot.load("walk", {"gait.steps": 4}), tasks=[make]) as sim:
+    with surefoot.Simulation(surefoot.load("walk", {"gait.steps": 4}), tasks=[LookAside]) as sim:
         while not sim.done:
             tick = sim.step()
-    names = sim.walk.robot.joint_names
-    assert tick.state is not None
-    print("fell" if sim.fell else "walked", f"neck yaw {tick.state.q[7 + names.index('neck_yaw')]:.2f} rad")
+    neck = 7 + sim.walk.robot.joint_names.index("neck_yaw")
+    if tick.state is not None:
+        print("fell" if sim.fell else "walked", f"with the neck turned by {tick.state.q[neck]:.2f} rad")

@@ -69,7 +69,7 @@ def run(
 ) -> None:
     """Run a scenario, write its log and judge it."""
     from surefoot.scenarios.loop.run import run_scenario
-    from surefoot.scenarios.record.provenance import LOG_NAME
+    from surefoot.scenarios.record.provenance import LOG_NAME, run_name
     from surefoot.scenarios.setup.load import load as load_scenario
     from surefoot.scenarios.setup.load import locate, output_folder
     from surefoot.scenarios.show.console import ProgressLine, print_result
@@ -77,11 +77,12 @@ def run(
 
     overrides = [*(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
     loaded = load_scenario(scenario, overrides)
-    folder = output_folder(scenario, loaded, out)
+    name = run_name(loaded.name, loaded.seed)
+    folder = output_folder(scenario, name, out)
     if video or view:
         check(loaded.fidelity, video=video, view=view)
     with ProgressLine(loaded.name) as progress:
-        live = LiveView(folder / f"{loaded.name}-{loaded.seed}" / LOG_NAME, progress)
+        live = LiveView(folder / name / LOG_NAME, progress)
         try:
             result = run_scenario(loaded, folder, live if view else progress)
         except SetupError as refusal:

@@ -135,7 +135,7 @@ class Simulation:
         elif self._path.exists():
             raise LogError(f"{self._path}: exists already; choose another file, or delete it")
         else:
-            self._writer = open_log(self._path, self.scenario, self.walk)
+            self._writer = open_log(self._path, self.walk)
         try:
             self._loop = closed_loop(self.walk, self._writer, self._parts)
             note_parts(self._writer, self._given)

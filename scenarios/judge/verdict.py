@@ -13,27 +13,14 @@ from pydantic import ValidationError
 from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import Gait, Scenario, TerrainSettings
+from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.digest import Digest
 from surefoot.scenarios.judge.metrics import known, measure
 from surefoot.scenarios.judge.text import FIRST_METRICS, shown_unit, value_text
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.gait import EQUAL_STEPS, commanded
-from surefoot.scenarios.setup.terrain import KINDS
-
-_NO_CONTACT = (
-    ("terrain", "friction"),
-    ("terrain", "height_noise"),
-    ("start", "angle_noise"),
-    ("errors", "friction"),
-    ("errors", "ground"),
-)
-"""Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
-
-_POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
-"""Keys of the pendulum alone."""
+from surefoot.scenarios.setup.notes import notes
 
 
 def asked(criteria: Mapping[str, Bound], fidelity: str) -> dict[str, Bound]:
@@ -41,52 +28,15 @@ def asked(criteria: Mapping[str, Bound], fidelity: str) -> dict[str, Bound]:
     return {name: bound for name, bound in criteria.items() if not _bodiless(name, fidelity)}
 
 
-def notes(scenario: Scenario, metrics: Mapping[str, Any]) -> tuple[str, ...]:
-    """List them, one sentence each.
-
-    Args:
-        scenario: as run.
-        metrics: of its log.
-    """
-    return (*_skipped(scenario), *_without_effect(scenario), *_cut_short(scenario), *_degraded(metrics))
-
-
 def _bodiless(criterion: str, fidelity: str) -> bool:
     metric = known(criterion)
     return metric is not None and not metric.applies(fidelity)
 
 
-def _skipped(scenario: Scenario) -> Iterator[str]:
-    for name in scenario.criteria:
-        if _bodiless(name, scenario.fidelity):
+def _skipped(criteria: Mapping[str, Bound], fidelity: str) -> Iterator[str]:
+    for name in criteria:
+        if _bodiless(name, fidelity):
             yield f"criterion {name} is not asked: a pendulum has no such metric"
-
-
-def _without_effect(scenario: Scenario) -> Iterator[str]:
-    for name in EQUAL_STEPS if commanded(scenario.gait) else ():
-        if getattr(scenario.gait, name) != Gait.model_fields[name].default:
-            yield f"gait.{name} has no effect beside gait.{'velocity' if scenario.gait.velocity else 'footsteps'}"
-    yield from _unshaped(scenario.terrain)
-    point = scenario.fidelity == "pendulum"
-    for group, name in _NO_CONTACT if point else _POINT_ONLY:
-        settings = getattr(scenario, group)
-        if getattr(settings, name) != type(settings).model_fields[name].default:
-            yield f"{group}.{name} has no effect on a {'pendulum' if point else 'whole body'}"
-    if point and scenario.wbc is not None:
-        yield "wbc has no effect on a pendulum"
-
-
-def _unshaped(terrain: TerrainSettings) -> Iterator[str]:
-    for name, field in TerrainSettings.model_fields.items():
-        elsewhere = name not in ("kind", "friction", *KINDS[terrain.kind].keys)
-        if elsewhere and getattr(terrain, name) != field.default:
-            yield f"terrain.{name} has no effect on terrain.kind {terrain.kind}"
-
-
-def _cut_short(scenario: Scenario) -> Iterator[str]:
-    whole = Draft(scenario).gait_duration
-    if scenario.duration is not None and scenario.duration < whole:
-        yield f"duration {scenario.duration:g} s ends before the gait does, which takes {whole:g} s"
 
 
 def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
@@ -187,7 +137,8 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     measured, scenario = measure(gathered or log), scenario_of(log)
     criteria = asked(scenario.criteria, scenario.fidelity)
     reasons = (*_unfinished(log), *missed(measured.values, criteria))
-    said = (*notes(scenario, measured.values), *measured.notes)
+    skipped = _skipped(scenario.criteria, scenario.fidelity)
+    said = (*skipped, *notes(Draft(scenario)), *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 

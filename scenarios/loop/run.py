@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import yaml
 from threadpoolctl import threadpool_limits
 
 from surefoot.planner.laws.profiles import Profile
@@ -22,6 +21,7 @@ from surefoot.scenarios.record.provenance import (
     SCENARIO_FILE,
     VERDICT_NAME,
     RunConstants,
+    run_name,
     versions,
 )
 from surefoot.scenarios.setup.load import load as load_scenario
@@ -120,8 +120,8 @@ def run_scenario(
     """
     with refusing():
         walk = resolve(scenario, robot, profile)
-    folder = made_folder(out / f"{walk.name}-{walk.seed}")
-    with one_thread(), open_log(folder / LOG_NAME, scenario, walk) as writer:
+    folder = made_folder(out / run_name(walk.name, walk.seed))
+    with one_thread(), open_log(folder / LOG_NAME, walk) as writer:
         (folder / VERDICT_NAME).unlink(missing_ok=True)
         end = _watched(simulate or _simulate, walk, writer, on_progress)
     verdict = judge(read(folder / LOG_NAME))
@@ -166,7 +166,7 @@ def _simulate(walk: Walk, writer: LogWriter, on_progress: OnProgress) -> End:
     return run_loop(closed_loop(walk, writer), on_progress)
 
 
-def open_log(path: Path, scenario: Scenario, walk: Walk) -> LogWriter:
+def open_log(path: Path, walk: Walk) -> LogWriter:
     """A log that says what its run is, before anything has happened.
 
     Raises:
@@ -174,16 +174,10 @@ def open_log(path: Path, scenario: Scenario, walk: Walk) -> LogWriter:
     """
     metadata = {RECORD: run_constants(walk).to_metadata(), "versions": versions()}
     attachments = [
-        AttachedFile(SCENARIO_FILE, "application/yaml", scenario_yaml(scenario).encode()),
+        AttachedFile(SCENARIO_FILE, "application/yaml", walk.text.encode()),
         AttachedFile("robot.xml", "application/xml", walk.robot.mjcf.encode()),
     ]
     return LogWriter(path, metadata, attachments)
-
-
-def scenario_yaml(scenario: Scenario) -> str:
-    """The scenario as run: every key with its value, but for keys and groups in which everything is left null."""
-    keys = scenario.model_dump(mode="json", exclude_none=True)
-    return yaml.safe_dump({key: value for key, value in keys.items() if value != {}}, sort_keys=False)
 
 
 def run_constants(walk: Walk) -> RunConstants:

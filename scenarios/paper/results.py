@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
-from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
-from surefoot.scenarios.loop.run import run_scenario, scenario_yaml
+from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.paper.studies import PROFILES, WORLD_SETTINGS, Experiment, Study, World
 from surefoot.scenarios.record.provenance import END_RECORD, LOG_NAME, SCENARIO_FILE, versions
 from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.setup.walk import scenario_yaml
 
 ENDED = ("completed", "fall")
 """How a run ends that is a result; a fall is one."""
@@ -51,7 +51,7 @@ def execute(experiment: Experiment, folder: Path) -> Outcome:
     try:
         scenario = load_scenario(experiment.base, experiment.overrides)
         log = folder / experiment.folder / LOG_NAME
-        if not is_done(log, scenario):
+        if not is_done(log, scenario_yaml(scenario)):
             run_scenario(scenario, folder)
         return outcome_of(experiment, log)
     except (ScenarioError, SetupError, LogError) as refusal:
@@ -60,11 +60,11 @@ def execute(experiment: Experiment, folder: Path) -> Outcome:
         return Outcome(experiment, failure=f"internal error, {type(error).__name__}: {error}")
 
 
-def is_done(path: Path, scenario: Scenario) -> bool:
+def is_done(path: Path, scenario: str) -> bool:
     """Whether a log is whole, and of this scenario, this code and these versions."""
     try:
         log = read(path)
-        same_scenario = log.attachments.get(SCENARIO_FILE) == scenario_yaml(scenario).encode()
+        same_scenario = log.attachments.get(SCENARIO_FILE) == scenario.encode()
     except LogError:
         return False
     ended = log.metadata.get(END_RECORD, {}).get("kind") in ENDED

@@ -35,6 +35,11 @@ LOG_NAME, VERDICT_NAME = "log.mcap", "verdict.json"
 """Files of a run in its folder."""
 
 
+def run_name(scenario: str, seed: int) -> str:
+    """Name of a run's own folder."""
+    return f"{scenario}-{seed}"
+
+
 @dataclass(frozen=True, slots=True)
 class RunConstants:
     """What is fixed during a run.

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError
-from surefoot.scenarios.errors import Problem, nearest
+from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.controller import controller_parameters
-from surefoot.scenarios.file.schema import PushSettings
+from surefoot.scenarios.file.schema import PushSettings, Sensing
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import longest_step, uncommanded
@@ -20,6 +21,17 @@ from surefoot.scenarios.setup.walk_checks import (
     swing_too_short,
     walk_problems,
 )
+
+_SENSED = ("source", "zmp_noise", "com_noise")
+"""What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
+
+_AVAILABLE: dict[Key, tuple[Any, ...]] = {
+    ("fidelity",): ("full", "pendulum"),
+    ("planner", "step_adaptation"): ("none", "location"),
+    **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
+}
+
+_PENDULUM_FAULTS = ("planner_freeze", "state_nan")
 
 
 def check(draft: Draft, robots: Robots) -> list[Problem]:
@@ -37,6 +49,7 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
         *_controller(draft),
         *walk_problems(draft),
         *_robot(draft, robots),
+        *_unavailable(draft),
     ]
 
 
@@ -154,3 +167,28 @@ def _reach(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
     elif gait.steps and not draft.commanded and abs(gait.step_length) > longest:
         what = f"gait.step_length {gait.step_length} m is out of reach at com_height {gait.com_height} m"
         yield Problem(("gait", "step_length"), what, f"use at most {longest:.3f} m, or lower gait.com_height")
+
+
+def _unavailable(draft: Draft) -> list[Problem]:
+    """List values that the contract allows and this version has not got."""
+    found = []
+    for key, values in _AVAILABLE.items():
+        value: Any = draft.keys
+        for part in key:
+            value = getattr(value, str(part))
+        if value not in values:
+            what = f"{dotted(key)} {value!r} is not available in this version"
+            found.append(Problem(key, what, f"available: {', '.join(str(v) for v in values)}"))
+    return [*found, *_without_body(draft)] if draft.keys.fidelity == "pendulum" else found
+
+
+def _without_body(draft: Draft) -> Iterator[Problem]:
+    """List what would test nothing on a pendulum."""
+    for index, fault in enumerate(draft.keys.faults):
+        if fault.kind not in _PENDULUM_FAULTS:
+            what = f"fault {fault.kind!r} needs joints, which fidelity pendulum has not got"
+            yield Problem(("faults", index, "kind"), what, f"use fidelity full, or {' or '.join(_PENDULUM_FAULTS)}")
+    for index, push in enumerate(draft.keys.pushes):
+        if push.force[2] != 0.0:
+            what = "a vertical push on a pendulum, whose height is prescribed"
+            yield Problem(("pushes", index, "force"), what, "use fidelity full, or [x, y, 0]")

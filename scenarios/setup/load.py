@@ -1,7 +1,7 @@
 """From a scenario's name, file or log to a checked scenario: every fault of a file is reported at once."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +9,9 @@ import yaml
 from pydantic import ValidationError
 
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, dotted, nearest
+from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import Scenario, Sensing
+from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import MAX_BYTES, Overrides, apply_overrides, parse
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
@@ -20,43 +20,6 @@ from surefoot.scenarios.record.provenance import LOG_NAME, PARTS_RECORD, PUSH_RE
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
-
-_SENSED = ("source", "zmp_noise", "com_noise")
-"""What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
-
-_AVAILABLE: dict[Key, tuple[Any, ...]] = {
-    ("fidelity",): ("full", "pendulum"),
-    ("planner", "step_adaptation"): ("none", "location"),
-    **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
-}
-
-_PENDULUM_FAULTS = ("planner_freeze", "state_nan")
-
-
-def unavailable(scenario: Scenario) -> list[Problem]:
-    """List values that the contract allows and this version has not got."""
-    found = []
-    for key, values in _AVAILABLE.items():
-        value: Any = scenario
-        for part in key:
-            value = getattr(value, str(part))
-        if value not in values:
-            what = f"{dotted(key)} {value!r} is not available in this version"
-            found.append(Problem(key, what, f"available: {', '.join(str(v) for v in values)}"))
-    return [*found, *_without_body(scenario)] if scenario.fidelity == "pendulum" else found
-
-
-def _without_body(scenario: Scenario) -> Iterator[Problem]:
-    """List what would test nothing on a pendulum."""
-    for index, fault in enumerate(scenario.faults):
-        if fault.kind not in _PENDULUM_FAULTS:
-            what = f"fault {fault.kind!r} needs joints, which fidelity pendulum has not got"
-            yield Problem(("faults", index, "kind"), what, f"use fidelity full, or {' or '.join(_PENDULUM_FAULTS)}")
-    for index, push in enumerate(scenario.pushes):
-        if push.force[2] != 0.0:
-            what = "a vertical push on a pendulum, whose height is prescribed"
-            yield Problem(("pushes", index, "force"), what, "use fidelity full, or [x, y, 0]")
-
 
 LOG_ENDING = ".mcap"
 RUNS, AGAIN = Path("runs"), Path("runs/again")
@@ -98,19 +61,19 @@ def _with_pushes(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
     return yaml.safe_dump({**keys, "pushes": [*keys.get("pushes", []), *given]}, sort_keys=False)
 
 
-def output_folder(reference: str, scenario: Scenario, chosen: Path | None) -> Path:
+def output_folder(reference: str, name: str, chosen: Path | None) -> Path:
     """Where a run goes; never over the log that it repeats.
 
     Args:
         reference: scenario or log.
-        scenario: to run.
+        name: of the run's own folder.
         chosen: by the user; None for the default.
 
     Raises:
         ScenarioError: the user chose the folder in which the log would be replaced.
     """
     out = RUNS if chosen is None else chosen
-    target = out / f"{scenario.name}-{scenario.seed}" / LOG_NAME
+    target = out / name / LOG_NAME
     if not is_log(reference) or not target.exists() or not target.samefile(reference):
         return out
     if chosen is not None:
@@ -165,7 +128,7 @@ def read_scenario(text: str, name: str, stem: str, overrides: Overrides, robots:
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
     draft = Draft(scenario)
-    semantic = [*check(draft, robots), *unavailable(draft.keys)]
+    semantic = check(draft, robots)
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:
         raise ScenarioError(source.describe(problem) for problem in sorted(problems, key=source.spot))

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import yaml
 
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.laws.profiles import Profile
@@ -36,6 +37,7 @@ class Walk:
 
     Attributes:
         name: of the scenario.
+        text: the scenario as run, in YAML.
         fidelity: full or pendulum.
         seed: of everything random.
         duration: simulated time [s].
@@ -68,6 +70,7 @@ class Walk:
     """
 
     name: str
+    text: str
     fidelity: str
     seed: int
     duration: float
@@ -144,6 +147,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
     apart = max(near, robot.sole_width + 0.5 * region.gap)
     return Walk(
         name=keys.name,
+        text=scenario_yaml(keys),
         fidelity=keys.fidelity,
         seed=keys.seed,
         duration=draft.duration,
@@ -190,3 +194,8 @@ def _pushes(draft: Draft, robot: "RobotDescription") -> tuple[Push, ...]:
         Push(push_time(draft.gait, push), push.duration, np.array(push.force), push.body or robot.torso_body)
         for push in draft.keys.pushes
     )
+
+
+def scenario_yaml(scenario: Scenario) -> str:
+    """The scenario as run: every key with its value, but for those left null."""
+    return yaml.safe_dump(scenario.model_dump(mode="json", exclude_none=True), sort_keys=False)

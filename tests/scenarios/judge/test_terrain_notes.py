@@ -1,7 +1,8 @@
 import pytest
 
-from surefoot.scenarios.judge.verdict import notes
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.setup.notes import notes
 
 pytestmark = pytest.mark.unit
 
@@ -18,9 +19,9 @@ pytestmark = pytest.mark.unit
 )
 def test_keys_of_other_terrain_are_noted(name: str, override: str, key: str) -> None:
     scenario = load_scenario(name, [override])
-    assert notes(scenario, {}) == (f"terrain.{key} has no effect on terrain.kind {scenario.terrain.kind}",)
+    assert notes(Draft(scenario)) == (f"terrain.{key} has no effect on terrain.kind {scenario.terrain.kind}",)
 
 
 @pytest.mark.parametrize("name", ["walk", "slope", "blocks", "stairs-up", "stairs-up-down", "stair-climbing"])
 def test_the_catalogue_sets_no_idle_key(name: str) -> None:
-    assert notes(load_scenario(name), {}) == ()
+    assert notes(Draft(load_scenario(name))) == ()

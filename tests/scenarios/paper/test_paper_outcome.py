@@ -11,6 +11,7 @@ from surefoot.scenarios.paper.results import execute, is_done
 from surefoot.scenarios.paper.studies import Experiment, Study, experiments
 from surefoot.scenarios.record.provenance import source_digest
 from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.setup.walk import scenario_yaml
 
 pytestmark = pytest.mark.unit
 
@@ -38,36 +39,36 @@ def logged(tmp_path, robot, motion, two_steps):
 
 def test_a_whole_log_of_the_same_scenario_and_code_is_done(logged, two_steps, monkeypatch):
     log = logged()
-    assert is_done(log, two_steps)
+    assert is_done(log, scenario_yaml(two_steps))
     made = {**module.versions(), "git_revision": "another commit, the same code"}
     monkeypatch.setattr(module, "versions", lambda: made)
-    assert is_done(log, two_steps)
+    assert is_done(log, scenario_yaml(two_steps))
 
 
 def test_a_fall_is_a_result(logged, motion, two_steps):
-    assert is_done(logged(motion(duration=0.2, end=End("fall", 0.1, "it fell"))), two_steps)
+    assert is_done(logged(motion(duration=0.2, end=End("fall", 0.1, "it fell"))), scenario_yaml(two_steps))
 
 
 @pytest.mark.parametrize("kind", ["interrupted", "fault"])
 def test_a_run_that_did_not_end_is_run_again(logged, motion, two_steps, kind):
-    assert not is_done(logged(motion(duration=0.2, end=End(kind, 0.1, "why"))), two_steps)
+    assert not is_done(logged(motion(duration=0.2, end=End(kind, 0.1, "why"))), scenario_yaml(two_steps))
 
 
 def test_other_scenarios_versions_and_code_are_run_again(logged, two_steps, tmp_path, monkeypatch):
     log = logged()
-    assert not is_done(log, two_steps.model_copy(update={"seed": 1}))
-    assert not is_done(tmp_path / "absent.mcap", two_steps)
+    assert not is_done(log, scenario_yaml(two_steps.model_copy(update={"seed": 1})))
+    assert not is_done(tmp_path / "absent.mcap", scenario_yaml(two_steps))
     for name in ("source_digest", "numpy"):
         made = {**module.versions(), name: "other"}
         with monkeypatch.context() as patch:
             patch.setattr(module, "versions", lambda made=made: made)
-            assert not is_done(log, two_steps)
+            assert not is_done(log, scenario_yaml(two_steps))
 
 
 def test_a_half_written_log_is_run_again(logged, two_steps):
     log = logged()
     log.write_bytes(log.read_bytes()[:-200])
-    assert not is_done(log, two_steps)
+    assert not is_done(log, scenario_yaml(two_steps))
 
 
 def test_a_scenario_that_is_refused_is_a_failure_with_its_reason(tmp_path):

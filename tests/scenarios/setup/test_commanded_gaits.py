@@ -11,11 +11,10 @@ from surefoot.planner.parameters import LegInertia
 from surefoot.planner.types import Foot
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.judge.verdict import notes
-from surefoot.scenarios.loop.run import scenario_yaml
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.walk import resolve
+from surefoot.scenarios.setup.notes import notes
+from surefoot.scenarios.setup.walk import resolve, scenario_yaml
 
 pytestmark = pytest.mark.unit
 
@@ -89,8 +88,8 @@ def test_footsteps_are_relative_to_the_start_stance(robots):
 
 def test_keys_of_equal_steps_beside_a_command_are_noted(robots):
     scenario = read(robots, "gait: {steps: 7, velocity: [{time: 0, v_x: 0.1}, {time: 3}]}")
-    assert notes(scenario, {}) == ("gait.steps has no effect beside gait.velocity",)
-    assert notes(read(robots, "gait: {steps: 7}"), {}) == ()
+    assert notes(Draft(scenario)) == ("gait.steps has no effect beside gait.velocity",)
+    assert notes(Draft(read(robots, "gait: {steps: 7}"))) == ()
 
 
 def test_a_push_by_step_counts_the_commanded_steps(robots):

@@ -60,11 +60,11 @@ def test_a_truncated_log_runs_again(log, tmp_path, original):
 
 def test_the_repeated_log_stays(log, original, monkeypatch):
     runs = log.parent.parent
-    assert output_folder(str(log), original, None) == RUNS
+    assert output_folder(str(log), "diagonal-walk-3", None) == RUNS
     with pytest.raises(ScenarioError, match=r"the run would replace .*; choose another directory"):
-        output_folder(str(log), original, runs)
-    assert output_folder(str(log), original.model_copy(update={"seed": 4}), runs) == runs
-    assert output_folder("diagonal-walk", original, runs) == runs
+        output_folder(str(log), "diagonal-walk-3", runs)
+    assert output_folder(str(log), "diagonal-walk-4", runs) == runs
+    assert output_folder("diagonal-walk", "diagonal-walk-3", runs) == runs
     monkeypatch.setattr("surefoot.scenarios.setup.load.RUNS", runs)
-    assert output_folder(str(log), original, None) == AGAIN
+    assert output_folder(str(log), "diagonal-walk-3", None) == AGAIN
     assert Path("runs") in AGAIN.parents

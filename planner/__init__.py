@@ -11,8 +11,9 @@ is a `Planner` can stand in a closed loop. The names below are imported when the
 the layer is wanted more often than its solvers.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from surefoot.lazy import face
 
 if TYPE_CHECKING:
     from surefoot.planner.ground.terrain import Box, Terrain, flat
@@ -26,20 +27,6 @@ if TYPE_CHECKING:
     from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
     from surefoot.planner.walk.commands import Twist, VelocityCommand, VelocityTimeline, velocity_bouts, walk_of
     from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
-
-_NAMES = {
-    "ground.terrain": ("Box", "Terrain", "flat"),
-    "laws.law": ("BuiltQps", "Motion", "MotionPlanner", "MotionProblem", "QpLaw"),
-    "laws.profiles": ("PROFILES", "Profile"),
-    "laws.qp": ("Qp", "QpSolution", "solve"),
-    "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),
-    "plan": ("PlanSample", "PlanSampler", "Planner", "WalkPlan"),
-    "planner": ("WalkingPlanner",),
-    "plants": ("IdealFeet", "Pendulum", "PointPush", "walk_pendulum"),
-    "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "PhaseKind"),
-    "walk.commands": ("Twist", "VelocityCommand", "VelocityTimeline", "velocity_bouts", "walk_of"),
-    "walk.gait": ("Bout", "GaitParameters", "Stride"),
-}
 
 __all__ = [
     "PROFILES",
@@ -82,14 +69,20 @@ __all__ = [
     "walk_pendulum",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    module = next((module for module, names in _NAMES.items() if name in names), None)
-    if module is None:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    thing = globals()[name] = getattr(import_module(f"{__name__}.{module}"), name)
-    return thing
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+if not TYPE_CHECKING:  # a type checker shall still refuse names that are not there
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            "ground.terrain": ("Box", "Terrain", "flat"),
+            "laws.law": ("BuiltQps", "Motion", "MotionPlanner", "MotionProblem", "QpLaw"),
+            "laws.profiles": ("PROFILES", "Profile"),
+            "laws.qp": ("Qp", "QpSolution", "solve"),
+            "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),
+            "plan": ("PlanSample", "PlanSampler", "Planner", "WalkPlan"),
+            "planner": ("WalkingPlanner",),
+            "plants": ("IdealFeet", "Pendulum", "PointPush", "walk_pendulum"),
+            "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "PhaseKind"),
+            "walk.commands": ("Twist", "VelocityCommand", "VelocityTimeline", "velocity_bouts", "walk_of"),
+            "walk.gait": ("Bout", "GaitParameters", "Stride"),
+        },
+    )

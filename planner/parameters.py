@@ -121,7 +121,7 @@ class PlannerParameters:
             the leg is stretched furthest, shortly before touchdown [-].
         touchdown_lead: the swing ends this long before single support does, so that the foot is felt in time [s].
         search: speed of the swing foot at the planned touchdown, and how it goes on while it feels no ground.
-        solvers: QP solvers of qpsolvers, in the order in which they are tried (see `planner.laws.qp` for the choice).
+        solvers: QP solvers of qpsolvers, in the order in which they are tried (see `planner.laws.law` for the choice).
 
     Raises:
         ParameterError: a number is not positive, or not finite where it must be.

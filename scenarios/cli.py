@@ -137,8 +137,7 @@ def _show_topic(
 ) -> None:
     """Summarise a topic, or export it and say where it is."""
     from surefoot.scenarios.judge.inspection import topic_summary
-    from surefoot.scenarios.show.console import print_topic
-    from surefoot.scenarios.show.export import export, selected
+    from surefoot.scenarios.show.console import export, print_topic, selected
 
     channel = selected(log, topic, *span, field)
     for loss in log.damage:
@@ -237,8 +236,8 @@ def paper(
     jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
 ) -> None:
     """Run the paper's experiments and write what holds as one HTML page; begun again, it goes on where it stopped."""
-    from surefoot.scenarios.paper.command import cores
-    from surefoot.scenarios.paper.command import paper as run_paper
+    from surefoot.scenarios.paper.page import cores
+    from surefoot.scenarios.paper.page import paper as run_paper
     from surefoot.scenarios.paper.runner import InterruptedRunsError
 
     try:

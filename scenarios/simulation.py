@@ -19,8 +19,8 @@ from surefoot.planner.types import PhaseKind
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
-from surefoot.scenarios.loop.faults import RunFault
 from surefoot.scenarios.loop.full import Parts, SimulatedRobot
+from surefoot.scenarios.loop.planning import RunFault
 from surefoot.scenarios.loop.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.loop.skeleton import ClosedLoop, End, refusing
 from surefoot.scenarios.record.provenance import PUSH_RECORD
@@ -32,7 +32,7 @@ from surefoot.wbc.types import RobotState, WbcReport
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
-    from surefoot.scenarios.loop.estimator import Estimator
+    from surefoot.scenarios.loop.sensing import Estimator
     from surefoot.wbc.controller import WholeBodyController
     from surefoot.wbc.tasks import TaskFactory
 
@@ -90,7 +90,7 @@ class Simulation:
         log: file that becomes the log; None for none. An existing file is not replaced.
         planner: a `Profile` in place of the scenario's: one's own law of motion, or a whole planner in it.
         controller: makes the whole-body controller; called with the arguments of `WholeBodyController` by name.
-        estimator: makes the state estimator from the walk; see `surefoot.scenarios.loop.estimator.Estimator`.
+        estimator: makes the state estimator from the walk; see `surefoot.scenarios.loop.sensing.Estimator`.
         robot: a description in place of the robot that the scenario names.
         tasks: make tasks for the whole-body QP beside its own; see `surefoot.wbc.tasks.Task`.
 

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from surefoot.scenarios.file.schema import Scenario
     from surefoot.scenarios.judge.verdict import Verdict, judge
     from surefoot.scenarios.log.reader import Log, read
-    from surefoot.scenarios.loop.faults import RunFault
     from surefoot.scenarios.loop.full import Parts
+    from surefoot.scenarios.loop.planning import RunFault
     from surefoot.scenarios.loop.run import Result, run
     from surefoot.scenarios.setup.load import load
     from surefoot.scenarios.setup.walk import Walk
@@ -64,7 +64,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "scenarios.file.schema": ("Scenario",),
             "scenarios.judge.verdict": ("Verdict", "judge"),
             "scenarios.log.reader": ("Log", "read"),
-            "scenarios.loop.faults": ("RunFault",),
+            "scenarios.loop.planning": ("RunFault",),
             "scenarios.loop.full": ("Parts",),
             "scenarios.loop.run": ("Result", "run"),
             "scenarios.setup.load": ("load",),

@@ -9,9 +9,8 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
-from surefoot.scenarios.file.controller import ControllerSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
-from surefoot.scenarios.file.group import Finite, Group, OneOf, as_tuple
+from surefoot.scenarios.file.group import ControllerSettings, Finite, Group, OneOf, as_tuple
 
 LONGEST_RUN = 86_400.0
 """Bound on the simulated time [s]."""
@@ -40,7 +39,7 @@ def _profiles() -> Iterable[str]:
 
 
 def _estimators() -> Iterable[str]:
-    from surefoot.scenarios.loop.estimator import ESTIMATORS
+    from surefoot.scenarios.loop.sensing import ESTIMATORS
 
     return ESTIMATORS
 

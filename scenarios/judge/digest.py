@@ -8,8 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.judge.roles import knees
-from surefoot.scenarios.judge.soles import headings
+from surefoot.scenarios.judge.body import headings, knees
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.record.provenance import RunConstants
 

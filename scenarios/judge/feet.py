@@ -7,9 +7,9 @@ import numpy as np
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.types import Foot, Footstep
+from surefoot.scenarios.judge.body import corners, forward
 from surefoot.scenarios.judge.digest import Array, RunView
 from surefoot.scenarios.judge.metric import metric
-from surefoot.scenarios.judge.soles import corners, forward
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
 
 _CLEARANCE_TICKS = 5

@@ -10,7 +10,7 @@ import numpy as np
 
 from surefoot.plugins import PluginError, Registry
 from surefoot.scenarios.errors import LogError, Problem, nearest
-from surefoot.scenarios.judge import balance, computing, effort, feet, health, walking, way
+from surefoot.scenarios.judge import balance, computing, effort, feet, health, walking
 from surefoot.scenarios.judge.digest import Digest, Reads, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
 from surefoot.scenarios.log import Log
@@ -33,7 +33,7 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
     return found
 
 
-OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, way, computing)
+OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, computing)
 """Ours, in the order in which they are shown."""
 
 METRICS = Registry(GROUP, Metric, OWN)

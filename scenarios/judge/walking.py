@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from surefoot.scenarios.judge.body import lies, lost
 from surefoot.scenarios.judge.digest import Mask, Reads, RunView
-from surefoot.scenarios.judge.fall import lies, lost
 from surefoot.scenarios.judge.metric import metric
 
 STILL_SPEED = 0.02

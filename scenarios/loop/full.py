@@ -11,25 +11,23 @@ from numpy.typing import NDArray
 from surefoot.models.pinocchio import limb_shapes, pinocchio_model
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState
-from surefoot.scenarios.judge.fall import lies
+from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
-from surefoot.scenarios.loop.estimator import ESTIMATORS, Estimator
-from surefoot.scenarios.loop.faults import FaultSchedule, RunFault
-from surefoot.scenarios.loop.planning import Planning, whole_body_reference
-from surefoot.scenarios.loop.sensing import PlannerSensing
+from surefoot.scenarios.loop.planning import FaultSchedule, Planning, RunFault, whole_body_reference
+from surefoot.scenarios.loop.sensing import ESTIMATORS, Estimator, PlannerSensing
 from surefoot.scenarios.loop.skeleton import ClosedLoop, Look
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.setup.leg_model import leg_inertia
 from surefoot.scenarios.setup.stance import (
     Body,
     body_of,
     disturbed,
     feet_at,
     frames_of,
+    leg_inertia,
     pressed,
     start_posture,
 )

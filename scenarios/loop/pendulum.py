@@ -14,10 +14,9 @@ from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.plants import CartTable, IdealFeet, Pendulum, PointPush
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep
 from surefoot.scenarios.file.schema import PendulumSettings
-from surefoot.scenarios.judge.fall import lost
+from surefoot.scenarios.judge.body import lost
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.loop.faults import FaultSchedule, RunFault
-from surefoot.scenarios.loop.planning import Planning
+from surefoot.scenarios.loop.planning import FaultSchedule, Planning, RunFault
 from surefoot.scenarios.loop.sensing import PlannerSensing
 from surefoot.scenarios.loop.skeleton import ClosedLoop, Look
 from surefoot.scenarios.record.channels import Sizes

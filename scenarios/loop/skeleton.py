@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
-from surefoot.scenarios.loop.faults import RunFault
-from surefoot.scenarios.loop.planning import Planning
+from surefoot.scenarios.loop.planning import Planning, RunFault
 from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.sim.measurement import Measurement

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from surefoot.scenarios.paper.results import Results, Sample
-from surefoot.scenarios.paper.tables import MM, WORLD_NAMES, fell_text
-from surefoot.scenarios.paper.text import number
+from surefoot.scenarios.paper.tables import MM, WORLD_NAMES, fell_text, number
 
 Verdict = Literal["holds", "holds with a change", "does not hold", "not measured"]
 

@@ -19,8 +19,7 @@ from surefoot.scenarios.paper.studies import (
     ZMP_ONLY,
     Study,
 )
-from surefoot.scenarios.paper.tables import PERCENT, error_norms, feasible, preview_gain, survived
-from surefoot.scenarios.paper.text import number, spread_text
+from surefoot.scenarios.paper.tables import PERCENT, error_norms, feasible, number, preview_gain, spread_text, survived
 
 BETTER = 1.1
 """Ratio from which a ZMP error counts as lower."""

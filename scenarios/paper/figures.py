@@ -30,7 +30,7 @@ from surefoot.scenarios.paper.grid import Column, Row, Views, grid
 from surefoot.scenarios.paper.results import Results
 from surefoot.scenarios.paper.studies import STAIRS, WALK, Study, World
 from surefoot.scenarios.paper.tables import WORLD_NAMES, error_norms
-from surefoot.scenarios.show.figures.balance import support_bounds
+from surefoot.scenarios.show.figures.motion import support_bounds
 from surefoot.scenarios.show.figures.style import canvas, in_style, kept
 from surefoot.scenarios.show.logview import LogView
 

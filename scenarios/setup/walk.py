@@ -14,7 +14,7 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.types import FeetState
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.scenarios.file.controller import controller_parameters
+from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, Rates, Scenario, Sensing, Start
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import push_time

@@ -1,21 +1,25 @@
 """What a person sees: a progress line on standard error, tables on standard output, numbers in engineers' units."""
 
+import csv
+import io
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, TextColumn
 from rich.progress import Progress as RichProgress
 from rich.table import Table
 from rich.text import Text
 
+from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.health import Finding
 from surefoot.scenarios.judge.inspection import Inspection
-from surefoot.scenarios.judge.text import FIRST_METRICS, bound_text, shown_unit, value_text
-from surefoot.scenarios.judge.verdict import Verdict
+from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text, shown_unit, value_text
+from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.loop.skeleton import Progress
 
 _REFRESH = 0.1
@@ -139,3 +143,72 @@ def plain_table(*columns: str) -> Table:
 def plain_console() -> Console:
     """Standard output; lines are never wrapped, so that paths and names can be copied."""
     return Console(soft_wrap=True, markup=False, highlight=False)
+
+
+_ROWS_AT_ONCE = 4096
+
+
+def selected(log: Log, topic: str, start: float | None, end: float | None, field: str | None) -> ChannelData:
+    """Messages of a topic in a window of time, with one field or all.
+
+    Args:
+        log: the log.
+        topic: its topic.
+        start: first time [s]; None from the beginning.
+        end: last time [s]; None to the end.
+        field: the field; None for all.
+
+    Raises:
+        LogError: there is no such topic or field, its messages are not of a fixed layout, or no message is left.
+    """
+    first, last = log.time_range()
+    channel = log.window(topic, first if start is None else start, last if end is None else end)
+    if not len(channel):
+        raise LogError(f"{log.path}: no message of {topic} in that time; the log is from {first:.3f} s to {last:.3f} s")
+    return channel if field is None else channel.only(field)
+
+
+def export(channel: ChannelData, path: Path) -> None:
+    """Write a channel to a file; time [s] is the first column, an array's elements are columns ``name_i_j``.
+
+    Raises:
+        LogError: the ending is unknown, the file cannot be written, or pyarrow is needed and missing.
+    """
+    writers: Mapping[str, Callable[[ChannelData], bytes]] = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}
+    write = writers.get(path.suffix.lower())
+    if write is None:
+        raise LogError(f"{path}: unknown kind of file '{path.suffix}'; end its name in {', '.join(writers)}")
+    try:
+        path.write_bytes(write(channel))
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise LogError(f"{path}: cannot be written, {reason}; choose another directory") from None
+
+
+def _csv(channel: ChannelData) -> bytes:
+    table, text = channel.columns(), io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(table)
+    for first in range(0, len(channel), _ROWS_AT_ONCE):
+        writer.writerows(
+            zip(*(column[first : first + _ROWS_AT_ONCE].tolist() for column in table.values()), strict=True)
+        )
+    return text.getvalue().encode()
+
+
+def _npz(channel: ChannelData) -> bytes:
+    data = io.BytesIO()
+    fields: dict[str, Any] = {field.name: channel.field(field.name) for field in channel.fields}
+    np.savez_compressed(data, time=channel.time, **fields)
+    return data.getvalue()
+
+
+def _parquet(channel: ChannelData) -> bytes:
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError:
+        raise LogError("parquet needs the package pyarrow; `pip install pyarrow`, or export to .csv or .npz") from None
+    data = io.BytesIO()
+    pyarrow.parquet.write_table(pyarrow.table(channel.columns()), data)
+    return data.getvalue()

@@ -6,7 +6,7 @@ import pytest
 import surefoot
 from surefoot.planner.laws.law import Motion
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.scenarios.loop.estimator import TrueState
+from surefoot.scenarios.loop.sensing import TrueState
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.types import RobotState
 

@@ -17,8 +17,7 @@ from surefoot.planner.types import SolverStatus
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.template import Template
 from surefoot.scenarios.record.foxglove import drawing as templates
-from surefoot.scenarios.record.foxglove.drawing import NOWHERE, Outlines, force_arrow, published
-from surefoot.scenarios.record.foxglove.scene import world_scene
+from surefoot.scenarios.record.foxglove.drawing import NOWHERE, Outlines, force_arrow, published, world_scene
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.world import World

@@ -11,7 +11,9 @@ from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.record.provenance import ABSENT
-from surefoot.scenarios.show.figures import balance, feet, height, solver, top_view, torques
+from surefoot.scenarios.show.figures import top_view
+from surefoot.scenarios.show.figures.effort import draw_solver, draw_torques
+from surefoot.scenarios.show.figures.motion import draw_balance, draw_feet, draw_height
 from surefoot.scenarios.show.figures.shading import Background, background
 from surefoot.scenarios.show.figures.style import Area, canvas, format_of, in_style, save
 from surefoot.scenarios.show.logview import LogView, MissingError
@@ -38,12 +40,12 @@ class Family:
 
 
 FIGURES: dict[str, Family] = {
-    "balance": Family(balance.draw, (_A3, 6.0)),
+    "balance": Family(draw_balance, (_A3, 6.0)),
     "top-view": Family(top_view.draw, (_A3, 5.5), over_time=False),
-    "height": Family(height.draw, (_A4, 4.5)),
-    "feet": Family(feet.draw, (_A4, 4.5)),
-    "torques": Family(torques.draw, (_A4, 6.0)),
-    "solver": Family(solver.draw, (_A3, 4.5)),
+    "height": Family(draw_height, (_A4, 4.5)),
+    "feet": Family(draw_feet, (_A4, 4.5)),
+    "torques": Family(draw_torques, (_A4, 6.0)),
+    "solver": Family(draw_solver, (_A3, 4.5)),
 }
 """The families of figures by name."""
 

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from surefoot.scenarios.judge.soles import headings, level_corners
+from surefoot.scenarios.judge.body import headings, level_corners
 from surefoot.scenarios.palette import COM, FEET, FOOTSTEP, GREY, SUPPORT, ZMP
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.figures.shading import Background

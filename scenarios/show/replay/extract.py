@@ -14,8 +14,7 @@ from surefoot.scenarios.show.replay.overlays import (
     push,
     taken_footprints,
 )
-from surefoot.scenarios.show.replay.poses import Window, body_poses, choose_frames, compile_world, world_text
-from surefoot.scenarios.show.replay.surfaces import surfaces
+from surefoot.scenarios.show.replay.poses import Window, body_poses, choose_frames, compile_world, surfaces, world_text
 
 
 def extract(log: Log, window: Window | None = None) -> Replay:

@@ -6,9 +6,8 @@ import numpy as np
 
 from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.body import level_corners, rotations, torso
 from surefoot.scenarios.judge.digest import RunView
-from surefoot.scenarios.judge.roles import torso
-from surefoot.scenarios.judge.soles import level_corners, rotations
 from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.show.replay.content import Array, Footprint, Track

@@ -5,7 +5,7 @@ import pytest
 
 from surefoot.planner.laws.constraints import StepContext
 from surefoot.planner.laws.law import MotionProblem
-from surefoot.planner.laws.step_laws import corrected_shift, paper_shift
+from surefoot.planner.laws.tvmpc import corrected_shift, paper_shift
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.zmp_reference import ZmpReference

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from surefoot.scenarios.judge.fall import FALLEN_HEIGHT, FALLEN_TILT, LOST_DISTANCE, lies, lost
+from surefoot.scenarios.judge.body import FALLEN_HEIGHT, FALLEN_TILT, LOST_DISTANCE, lies, lost
 
 pytestmark = pytest.mark.unit
 

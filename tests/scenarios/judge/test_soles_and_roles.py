@@ -8,10 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.types import Foot, Footstep
+from surefoot.scenarios.judge.body import corners, forward, headings, knees, leg, level_corners, rotations, torso
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute
-from surefoot.scenarios.judge.roles import knees, leg, torso
-from surefoot.scenarios.judge.soles import corners, forward, headings, level_corners, rotations
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop import run
 from surefoot.scenarios.loop.run import run_scenario

@@ -1,8 +1,8 @@
 import pytest
 
+from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.setup.notes import notes
 
 pytestmark = pytest.mark.unit
 

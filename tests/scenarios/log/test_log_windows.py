@@ -11,7 +11,7 @@ from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute, digest
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.show.export import export, selected
+from surefoot.scenarios.show.console import export, selected
 
 pytestmark = pytest.mark.unit
 

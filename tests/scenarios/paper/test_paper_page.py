@@ -12,13 +12,20 @@ from paper_samples import FALL, outcome, results
 from surefoot.scenarios import cli
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import read
-from surefoot.scenarios.paper import command, page, runner
+from surefoot.scenarios.paper import page, runner
 from surefoot.scenarios.paper.figures import JERKS, POSITIONS, grid
 from surefoot.scenarios.paper.grid import Column, svg
 from surefoot.scenarios.paper.results import Spread, execute
 from surefoot.scenarios.paper.studies import SHOVES, WALK, Experiment, Study
-from surefoot.scenarios.paper.tables import balance_table, feasible, shove_table
-from surefoot.scenarios.paper.text import number, spread_cell, spread_text, table_html
+from surefoot.scenarios.paper.tables import (
+    balance_table,
+    feasible,
+    number,
+    shove_table,
+    spread_cell,
+    spread_text,
+    table_html,
+)
 
 SHORT = ("gait.steps=1", "gait.single_support=0.6", "gait.initial_stand=0.2", "rates.control=100")
 SHORT_WALK = Study("short", "Short walk", "paper-walk", SHORT, "")
@@ -177,7 +184,7 @@ def test_a_few_experiments_end_to_end(tmp_path, monkeypatch):
     short = Study("walk", "Walk", "paper-walk", SHORT[:3], "")
     every = tuple(Experiment(short, "default", world) for world in ("cart-table", "pendulum", "full"))
     monkeypatch.setattr(command, "experiments", lambda: every)
-    written = command.paper(tmp_path, 2)
+    written = page.paper(tmp_path, 2)
     assert (written.runs, written.falls, written.failures) == (3, 0, ())
     text = written.page.read_text()
     assert Page(text).asked == []

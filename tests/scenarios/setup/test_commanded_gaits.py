@@ -11,9 +11,9 @@ from surefoot.planner.parameters import LegInertia
 from surefoot.planner.types import Foot
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.notes import notes
 from surefoot.scenarios.setup.walk import resolve, scenario_yaml
 
 pytestmark = pytest.mark.unit

@@ -8,8 +8,7 @@ import pytest
 
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.scenarios.setup.leg_model import leg_inertia
-from surefoot.scenarios.setup.stance import body_of
+from surefoot.scenarios.setup.stance import body_of, leg_inertia
 from surefoot.wbc.ik import PostureTarget
 
 pytestmark = pytest.mark.unit

@@ -4,7 +4,7 @@ import pytest
 
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.judge.metrics import OWN
-from surefoot.scenarios.judge.text import bound_text, shown_unit, value_text
+from surefoot.scenarios.judge.verdict import bound_text, shown_unit, value_text
 
 pytestmark = pytest.mark.unit
 

@@ -13,12 +13,11 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.show.figures.balance import support_bounds, true_dcm
+from surefoot.scenarios.show.figures.effort import groups, stretch_extremes
+from surefoot.scenarios.show.figures.motion import support_bounds, true_dcm
 from surefoot.scenarios.show.figures.page import FIGURES, page, plot, single
 from surefoot.scenarios.show.figures.shading import background, stretches
-from surefoot.scenarios.show.figures.solver import stretch_extremes
 from surefoot.scenarios.show.figures.top_view import is_wide
-from surefoot.scenarios.show.figures.torques import groups
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 pytestmark = pytest.mark.unit

@@ -12,8 +12,8 @@ from browser import Browser
 from PIL import Image
 
 from surefoot.scenarios.log import read
+from surefoot.scenarios.show.replay.command import write_page
 from surefoot.scenarios.show.replay.extract import extract
-from surefoot.scenarios.show.replay.page import write_page
 
 pytestmark = [
     pytest.mark.physics,

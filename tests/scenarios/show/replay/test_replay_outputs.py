@@ -177,6 +177,6 @@ def server_time(server) -> float:
 def test_importing_the_command_needs_no_extra(monkeypatch):
     for name in ("viser", "av"):
         monkeypatch.setitem(sys.modules, name, None)
-    for name in ("command", "page", "live", "video"):
+    for name in ("command", "live", "video"):
         importlib.reload(importlib.import_module(f"surefoot.scenarios.show.replay.{name}"))
     assert Window().frame_rate == 30.0

@@ -1,24 +1,46 @@
-"""ZMP, CoM and DCM with their references and the support's bounds, along x and along y, and what is left between."""
+"""Figures of the motion: ZMP, CoM and DCM with their references, the CoM's height, and the feet."""
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from surefoot.scenarios.palette import COM, COM_PLANNED, DCM, DCM_PLANNED, GREY, SUPPORT, ZMP, ZMP_PLANNED
+from surefoot.planner.types import GRAVITY
+from surefoot.scenarios.palette import (
+    BLACK,
+    COM,
+    COM_PLANNED,
+    DCM,
+    DCM_PLANNED,
+    FEET,
+    GREY,
+    PURPLE,
+    SUPPORT,
+    ZMP,
+    ZMP_PLANNED,
+)
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import Area, curve, legend, or_say, reference_curve, steps, time_axes
-from surefoot.scenarios.show.logview import LogView
+from surefoot.scenarios.show.figures.style import (
+    FOOT_NAMES,
+    Area,
+    curve,
+    legend,
+    or_say,
+    reference_curve,
+    steps,
+    time_axes,
+)
+from surefoot.scenarios.show.logview import LogView, MissingError
 
 Array = NDArray[np.float64]
 
-TITLE = "Balance: ZMP, CoM and DCM with their references"
+BALANCE_TITLE = "Balance: ZMP, CoM and DCM with their references"
 
 
-def draw(area: Area, view: LogView, background: Background) -> None:
+def draw_balance(area: Area, view: LogView, background: Background) -> None:
     """Draw position and error along x, then along y."""
-    axes = time_axes(area, view, TITLE, (3.0, 1.1, 3.0, 1.1))
+    axes = time_axes(area, view, BALANCE_TITLE, (3.0, 1.1, 3.0, 1.1))
     background.shade(axes)
     for axis, name in enumerate("xy"):
         position, error = axes[2 * axis : 2 * axis + 2]
@@ -82,3 +104,63 @@ def _errors(axes: Axes, view: LogView, axis: int) -> None:
 
 
 _REFERENCES = (("zmp_reference", 2), ("dcm", 2), ("com", 3))
+
+
+HEIGHT_TITLE = "CoM height and planned jerk"
+
+
+def draw_height(area: Area, view: LogView, background: Background) -> None:
+    """Draw the height over the ground frame, and the first jerk of each plan."""
+    height, jerk = axes = time_axes(area, view, HEIGHT_TITLE, (1.0, 1.0))
+    background.shade(axes)
+    height.set_ylabel("CoM z [m]")
+    jerk.set_ylabel("CoM jerk [m/s³]")
+    with or_say(height):
+        curve(height, view.time("/truth"), view.field("/truth", "com", 3)[:, 2], "true", COM, linewidth=1.5)
+        planned = view.field("/reference", "com", 3)[:, 2]
+        reference_curve(height, view.time("/reference"), planned, "reference", COM_PLANNED)
+    with or_say(jerk):
+        first = view.field("/plan", "jerk", -1, 2)[:, 0]
+        for axis, (name, color) in enumerate((("x", PURPLE), ("y", BLACK))):
+            values = np.ascontiguousarray(first[:, axis])
+            curve(jerk, view.time("/plan"), values, f"jerk {name}", color, drawstyle="steps-post", linewidth=0.9)
+    legend(height, 3)
+    legend(jerk, 2)
+
+
+FEET_TITLE = "Feet: sole heights and contact normal forces"
+
+
+def draw_feet(area: Area, view: LogView, background: Background) -> None:
+    """Draw the heights with the swing reference, and the forces with the weight."""
+    height, force = axes = time_axes(area, view, FEET_TITLE, (1.0, 1.0))
+    background.shade(axes)
+    height.set_ylabel("sole z [m]")
+    force.set_ylabel("normal force [N]")
+    with or_say(height):
+        for name, color in zip(FOOT_NAMES, FEET, strict=True):
+            pose = view.field("/truth", f"{name}_sole", 7)
+            curve(height, view.time("/truth"), pose[:, 2], f"{name} sole", color, linewidth=1.4)
+        _swing_reference(height, view)
+    with or_say(force):
+        forces = view.field("/contact", "normal_force", 2)
+        for foot, name in enumerate(FOOT_NAMES):
+            curve(force, view.time("/contact"), forces[:, foot], f"{name} foot", FEET[foot])
+        _weight(force, view)
+    legend(height, 3)
+    legend(force, 3)
+
+
+def _swing_reference(axes: Axes, view: LogView) -> None:
+    """The height that the swing foot should have, where one swings."""
+    values = view.field("/reference", "swing_position", 3)[:, 2]
+    swings = view.field("/reference", "stance") >= 0
+    reference_curve(axes, view.time("/reference"), np.where(swings, values, np.nan), "swing reference", BLACK)
+
+
+def _weight(axes: Axes, view: LogView) -> None:
+    try:
+        weight = view.number("mass") * GRAVITY
+    except MissingError:
+        return
+    axes.axhline(weight, color=GREY, linewidth=0.8, linestyle="--", label=f"weight {weight:.0f} N")

@@ -127,8 +127,8 @@ def surefoot(monkeypatch, capsys, tmp_path):
 
     def run(*arguments, studies=(SHORT_WALK,)):
         every = tuple(Experiment(study, "default", "pendulum") for study in studies)
-        monkeypatch.setattr(command, "experiments", lambda: every)
-        monkeypatch.setattr(command, "run_all", partial(runner.run_all, worker=lambda: ThreadPoolExecutor(1)))
+        monkeypatch.setattr(page, "experiments", lambda: every)
+        monkeypatch.setattr(page, "run_all", partial(runner.run_all, worker=lambda: ThreadPoolExecutor(1)))
         monkeypatch.setattr(page, "PLATES", {})
         monkeypatch.setattr("sys.argv", ["surefoot", "paper", *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
@@ -172,7 +172,7 @@ def test_an_interruption_ends_with_130_and_says_how_to_go_on(surefoot, tmp_path,
     def interrupted(*arguments, **named):
         raise runner.InterruptedRunsError
 
-    monkeypatch.setattr(command, "paper", interrupted)
+    monkeypatch.setattr(page, "paper", interrupted)
     code, _, err = surefoot("--out", tmp_path)
     assert code == 130
     assert "goes on from there" in err
@@ -183,7 +183,7 @@ def test_a_few_experiments_end_to_end(tmp_path, monkeypatch):
     """In processes of their own, pendulum and full physics, with every figure."""
     short = Study("walk", "Walk", "paper-walk", SHORT[:3], "")
     every = tuple(Experiment(short, "default", world) for world in ("cart-table", "pendulum", "full"))
-    monkeypatch.setattr(command, "experiments", lambda: every)
+    monkeypatch.setattr(page, "experiments", lambda: every)
     written = page.paper(tmp_path, 2)
     assert (written.runs, written.falls, written.failures) == (3, 0, ())
     text = written.page.read_text()

@@ -5,7 +5,9 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 
+from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import RegisteredRobots
 
@@ -28,6 +30,20 @@ def test_tables_are_up_to_date(reference, name):
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
     assert text == reference.updated(text, name, table()), "run python docs/reference.py"
     assert table() in text
+
+
+def test_every_key_of_the_table_is_one_and_takes_its_default(reference):
+    rows = re.findall(r"(?m)^\| `([\w.]+)` \| `(.*?)` \|", reference.keys_table())
+    keys: dict = {}
+    for name, default in rows:
+        *groups, last = name.split(".")
+        group = keys
+        for part in groups:
+            group = group.setdefault(part, {})
+        group[last] = yaml.safe_load(default)
+    assert len(rows) > 90
+    scenario = Scenario.model_validate(keys)
+    assert scenario.model_copy(update={"wbc": None}) == Scenario()
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/scenarios.md"])

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import RegisteredRobots
@@ -52,6 +53,15 @@ def test_scenarios_of_the_documentation_load(page):
     assert examples
     for text in examples:
         read_scenario(text, "example.yaml", "example", (), RegisteredRobots())
+
+
+def test_the_faults_that_the_page_shows_are_those_that_are_found():
+    page = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
+    text = re.search(r"(?s)```yaml\n(.*?)```", page)[1].replace("steps: 6", "step: 6").replace("0.25", "0.9", 1)
+    shown = re.search(r"(?s)```\n(pushed\.yaml:.*?)\n```", page)[1]
+    with pytest.raises(ScenarioError) as refusal:
+        read_scenario(text, "pushed.yaml", "pushed", (), RegisteredRobots())
+    assert str(refusal.value) == shown
 
 
 def test_links_lead_somewhere():

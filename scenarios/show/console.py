@@ -1,6 +1,5 @@
 """What a person sees: a progress line on standard error, tables on standard output, numbers in engineers' units."""
 
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -20,9 +19,6 @@ from surefoot.scenarios.judge.verdict import Verdict
 from surefoot.scenarios.loop.skeleton import Progress
 
 _REFRESH = 0.1
-
-WIDTH = 200
-"""Columns of tables that go into a file or another program: as many as any of them needs."""
 
 
 class ProgressLine:
@@ -141,5 +137,5 @@ def plain_table(*columns: str) -> Table:
 
 
 def plain_console() -> Console:
-    """Standard output; lines are never wrapped, so that paths and names can be copied, nor tables cut in a file."""
-    return Console(soft_wrap=True, markup=False, highlight=False, width=None if sys.stdout.isatty() else WIDTH)
+    """Standard output; lines are never wrapped, so that paths and names can be copied."""
+    return Console(soft_wrap=True, markup=False, highlight=False)

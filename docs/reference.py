@@ -8,7 +8,7 @@ Each table stands between two comment lines, `<!-- table: name -->` and `<!-- en
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -104,7 +104,9 @@ def _key_rows(prefix: str, group: type[BaseModel]) -> list[str]:
 
 
 def _group_of(annotation: Any) -> Any:
-    """The group that may stand in a key, also where null may."""
+    """The group that may stand in a key, also where null may; a mapping of names to groups is no group."""
+    if get_origin(annotation) is dict:
+        return annotation
     models = [a for a in get_args(annotation) if isinstance(a, type) and issubclass(a, BaseModel)]
     return models[0] if models else annotation
 

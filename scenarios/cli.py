@@ -51,8 +51,10 @@ def list_() -> None:
     from surefoot.scenarios import catalogue
     from surefoot.scenarios.setup.robot import RegisteredRobots
 
-    for name in catalogue.names():
-        typer.echo(f"scenario  {name:<16} {catalogue.summary(name)}")
+    names = catalogue.names()
+    width = max(map(len, names))
+    for name in names:
+        typer.echo(f"scenario  {name:<{width}} {catalogue.summary(name)}")
     for name in RegisteredRobots().names():
         typer.echo(f"robot     {name}")
 

@@ -5,7 +5,10 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 
+from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import RegisteredRobots
 
@@ -30,12 +33,35 @@ def test_tables_are_up_to_date(reference, name):
     assert table() in text
 
 
+def test_every_key_of_the_table_is_one_and_takes_its_default(reference):
+    rows = re.findall(r"(?m)^\| `([\w.]+)` \| `(.*?)` \|", reference.keys_table())
+    keys: dict = {}
+    for name, default in rows:
+        *groups, last = name.split(".")
+        group = keys
+        for part in groups:
+            group = group.setdefault(part, {})
+        group[last] = yaml.safe_load(default)
+    assert len(rows) > 90
+    scenario = Scenario.model_validate(keys)
+    assert scenario.model_copy(update={"wbc": None}) == Scenario()
+
+
 @pytest.mark.parametrize("page", ["README.md", "docs/scenarios.md"])
 def test_scenarios_of_the_documentation_load(page):
     examples = re.findall(r"(?s)```yaml\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"))
     assert examples
     for text in examples:
         read_scenario(text, "example.yaml", "example", (), RegisteredRobots())
+
+
+def test_the_faults_that_the_page_shows_are_those_that_are_found():
+    page = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
+    text = re.search(r"(?s)```yaml\n(.*?)```", page)[1].replace("steps: 6", "step: 6").replace("0.25", "0.9", 1)
+    shown = re.search(r"(?s)```\n(pushed\.yaml:.*?)\n```", page)[1]
+    with pytest.raises(ScenarioError) as refusal:
+        read_scenario(text, "pushed.yaml", "pushed", (), RegisteredRobots())
+    assert str(refusal.value) == shown
 
 
 def test_links_lead_somewhere():

@@ -1,0 +1,124 @@
+"""docs/architecture.md is true: names, rooms, links, and the way of a tick and of a push."""
+
+import ast
+import importlib
+import re
+from pathlib import Path
+from unittest.mock import MagicMock
+
+import pytest
+
+from surefoot.scenarios.file.schema import PushSettings
+from surefoot.scenarios.loop.skeleton import ClosedLoop
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.walk import resolve
+
+pytestmark = pytest.mark.unit
+
+ROOT = Path(__file__).parents[2]
+TEXT = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+PICTURE = re.search(r"(?s)```\n(Scenario .*?)```", TEXT)[1]
+ROOMS = ("planner", "wbc", "sim", "models", "scenarios")
+
+
+def exists(name):
+    """Whether a dotted name below surefoot is a module, or leads to something in one."""
+    module, parts = "surefoot", name.removeprefix("surefoot.").split(".")
+    while parts:
+        try:
+            importlib.import_module(f"{module}.{parts[0]}")
+        except ModuleNotFoundError:
+            break
+        module = f"{module}.{parts.pop(0)}"
+    found = importlib.import_module(module)
+    for part in parts:
+        found = getattr(found, part, None)
+    return found is not None
+
+
+def classes():
+    """Names of all classes of the code, each with those of its methods."""
+    found = {}
+    for room in ROOMS:
+        for file in (ROOT / room).rglob("*.py"):
+            for node in ast.parse(file.read_text(encoding="utf-8")).body:
+                if isinstance(node, ast.ClassDef):
+                    found.setdefault(node.name, set()).update(
+                        e.name for e in node.body if isinstance(e, ast.FunctionDef)
+                    )
+    return found
+
+
+@pytest.mark.parametrize(
+    "name", sorted(set(re.findall(r"`((?:planner|wbc|sim|models|scenarios|surefoot)\.[\w.]+\w)`", TEXT)))
+)
+def test_code_is_there(name):
+    assert exists(name)
+
+
+def test_a_name_that_is_not_there_is_found_out():
+    assert not exists("scenarios.setup.walk.no_such_function")
+    assert not exists("sim.world.World.shove")
+
+
+def test_what_the_picture_names_is_there():
+    known = classes()
+    words = re.findall(
+        r"\b([A-Z][a-z]\w*[A-Z]\w*|Scenario|Draft|Walk|Walker|World|Planning|Measurement|Log)(?:\.(\w+))?", PICTURE
+    )
+    assert len(words) > 30
+    for word, method in words:
+        assert word in known or word in {"MuJoCo", "CoM"}, word
+        assert not method or method in known[word], f"{word}.{method}"
+
+
+def test_the_picture_goes_through_a_tick_in_the_order_of_the_loop():
+    calls = MagicMock()
+    calls.walker.act.return_value, calls.walker.fallen.return_value = (0.0, 0.0), False
+    calls.walker.measured.return_value = (None, None, None)
+    ClosedLoop(calls.walker, calls.planning, calls.recorder, 500, 1.0).step()
+    verbs = {"walker": "Walker", "planning": "Planning"}
+    called = [name.split(".") for name, *_ in calls.mock_calls]
+    drawn = re.findall(r"(?m)^ (\w+\.\w+) +\d+ Hz", PICTURE)
+    done = [
+        f"{verbs[part[0]]}.{part[1]}" for part in called if part[0] in verbs and len(part) == 2 and part[1] != "due"
+    ]
+    assert drawn == done
+
+
+def test_every_room_of_the_planner_is_on_the_page():
+    rooms = {path.parent.name for path in (ROOT / "planner").glob("*/__init__.py")}
+    assert set(re.findall(r"(?m)^\| `(\w+)/` \|", TEXT)) == rooms
+
+
+def test_equation_12_is_where_the_page_says():
+    files = [file for file in (ROOT / "planner").rglob("*.py") if "eq. (12)" in file.read_text(encoding="utf-8")]
+    assert files == [ROOT / "planner" / "references" / "zmp_reference.py"]
+
+
+def test_the_push_of_the_page_becomes_what_the_page_says():
+    scenario = load("walk")
+    step, fraction = 4, 0.5
+    text = "{step: 4, phase: single, fraction: 0.5, force: [40, 0, 0]}"
+    assert f"`pushes: [{text}]`" in TEXT
+    keys = PushSettings(step=step, phase="single", fraction=fraction, force=[40.0, 0.0, 0.0])
+    walk = resolve(scenario.model_copy(update={"pushes": (keys,)}))
+    (push,) = walk.pushes
+    assert push.time == pytest.approx(walk.gait.lift_off(step) + fraction * walk.gait.single_support)
+    assert push.body == walk.robot.torso_body
+    assert push.force.tolist() == [40.0, 0.0, 0.0]
+
+
+def anchors(page):
+    """What a link may point to in a page: its headings as GitHub names them."""
+    heads = re.findall(r"(?m)^#+ (.*)$", page.read_text(encoding="utf-8"))
+    return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+@pytest.mark.parametrize(
+    "page", ["README.md", "CONTRIBUTING.md", *(f"docs/{p.name}" for p in (ROOT / "docs").glob("*.md"))]
+)
+def test_links_lead_to_a_heading(page):
+    path = ROOT / page
+    for target, heading in re.findall(r"\]\(([^)#:]*)#([^)]+)\)", path.read_text(encoding="utf-8")):
+        assert heading in anchors(path.parent / target if target else path), f"{target}#{heading}"

@@ -1,0 +1,35 @@
+"""The Python of the README does what it says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+TEXT = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+
+
+def block(heading):
+    """The first Python block below a heading."""
+    return re.search(rf"(?s)\n## {heading}\n.*?```python\n(.*?)```", TEXT)[1]
+
+
+@pytest.mark.physics
+def test_from_python_runs_as_it_stands(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    code, names = block("From Python"), {}
+    assert len(code.splitlines()) <= 20
+    exec(code, names)
+    result, com, tick, sim = (names[name] for name in ("result", "com", "tick", "sim"))
+    assert result.verdict.passed
+    assert com.shape == (round(tick.time * 500) + 1, 3)
+    assert not sim.fell
+    assert abs(com[-1] - tick.com).max() > 1e-6, "the push has left no trace"
+    assert capsys.readouterr().out.splitlines()[-1].startswith("walked <Tick")
+
+
+@pytest.mark.unit
+def test_the_examples_are_there_and_on_the_page():
+    names = {path.stem for path in (Path(__file__).parents[2] / "examples").glob("*.py")}
+    told = re.search(r"(?s)\[examples/\]\(examples\) has nine.*?\n\n", TEXT)[0]
+    assert set(re.findall(r"`(\w+)`", told)) == names
+    assert len(names) == 9

@@ -1,6 +1,6 @@
 """What every group of scenario keys is made of, and the keys wbc.* of the whole-body controller."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import Field as DataclassField
 from dataclasses import fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,6 +16,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError, core_schema
 
+from surefoot.errors import ParameterError
 from surefoot.wbc.parameters import WbcParameters
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -118,6 +119,29 @@ def controller_parameters(settings: "ControllerSettings | None") -> WbcParameter
     """
     changed: WbcParameters = _changed(WbcParameters(), settings)
     return changed
+
+
+def controller_faults(settings: "ControllerSettings | None") -> list[ParameterError]:
+    """List what `controller_parameters` would refuse: the fault of every key, each looked at alone.
+
+    Args:
+        settings: the group ``wbc``; None for none.
+    """
+    faults = []
+    for alone in () if settings is None else _one_by_one(settings):
+        try:
+            controller_parameters(alone)
+        except ParameterError as fault:
+            faults.append(fault)
+    return faults
+
+
+def _one_by_one(settings: Any) -> Iterator[Any]:
+    """Copies of a group, with one key each that is not null."""
+    for name, value in settings:
+        parts = _one_by_one(value) if isinstance(value, BaseModel) else () if value is None else (value,)
+        for part in parts:
+            yield type(settings).model_construct(**{name: part})
 
 
 def _changed(parameters: Any, settings: Any) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
-from surefoot.scenarios.file.group import controller_parameters
+from surefoot.scenarios.file.group import controller_faults
 from surefoot.scenarios.file.schema import Gait, PushSettings, Sensing, TerrainSettings
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.draft import Draft
@@ -125,10 +125,8 @@ def _beliefs(draft: Draft) -> Iterator[Problem]:
 
 
 def _controller(draft: Draft) -> Iterator[Problem]:
-    try:
-        controller_parameters(draft.keys.wbc)
-    except ParameterError as error:
-        yield Problem(error.key, error.what, error.right)
+    for fault in controller_faults(draft.keys.wbc):
+        yield Problem(fault.key, fault.what, fault.right)
 
 
 def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:

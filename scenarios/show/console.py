@@ -2,6 +2,7 @@
 
 import csv
 import io
+import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -23,6 +24,9 @@ from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.loop.skeleton import Progress
 
 _REFRESH = 0.1
+
+WIDTH = 200
+"""Columns of tables that go into a file or another program: as many as any of them needs."""
 
 
 class ProgressLine:
@@ -141,8 +145,8 @@ def plain_table(*columns: str) -> Table:
 
 
 def plain_console() -> Console:
-    """Standard output; lines are never wrapped, so that paths and names can be copied."""
-    return Console(soft_wrap=True, markup=False, highlight=False)
+    """Standard output; lines are never wrapped, so that paths and names can be copied, nor tables cut in a file."""
+    return Console(soft_wrap=True, markup=False, highlight=False, width=None if sys.stdout.isatty() else WIDTH)
 
 
 _ROWS_AT_ONCE = 4096

@@ -45,6 +45,15 @@ def test_criteria_forbid_a_fall_unless_they_speak_of_it(robots):
     assert read_scenario("criteria: {fell: true}", "f", "f", (), robots).criteria["fell"].equals is True
 
 
+def test_every_fault_of_the_controllers_keys_is_told_at_once(robots):
+    found = problems(robots, "wbc: {weights: {swing: -1, force: 2}, solver: nope, arm_swing: -2}")
+    assert [problem.split(" is ")[0] for problem in found] == [
+        "f.yaml:1:24: wbc.weights.swing",
+        "f.yaml:1:47: wbc.solver",
+        "f.yaml:1:64: wbc.arm_swing",
+    ]
+
+
 CASES = {
     "gait: {step: 3}": "f.yaml:1:8: unknown key 'step'; did you mean 'steps'?",
     "gait: {steps: 2.5}": "f.yaml:1:15: gait.steps is 2.5; give a whole number",

@@ -5,6 +5,7 @@ import pytest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.judge.verdict import bound_text, shown_unit, value_text
+from surefoot.scenarios.show.console import plain_console, plain_table
 
 pytestmark = pytest.mark.unit
 
@@ -38,3 +39,10 @@ def test_bounds_are_shown_in_the_unit_of_the_value():
 
 def test_lengths_are_in_millimetres():
     assert all(shown_unit(name) == "mm" for name in OWN if name.endswith("error_rms") or name.startswith("foot"))
+
+
+def test_a_table_that_goes_into_a_file_is_not_cut(capsys):
+    table = plain_table("metric", "value")
+    table.add_row("m" * 60, "v" * 60)
+    plain_console().print(table)
+    assert f"{'m' * 60} {'v' * 60}" in " ".join(capsys.readouterr().out.split())

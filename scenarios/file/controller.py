@@ -1,6 +1,5 @@
 """The keys ``wbc.*``: every number of the whole-body controller, made of the dataclasses that own it."""
 
-from collections.abc import Iterable
 from dataclasses import Field as DataclassField
 from dataclasses import fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any
@@ -8,13 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BaseModel, BeforeValidator, Field, create_model
 
 from surefoot.scenarios.file.group import Finite, Group, OneOf, as_tuple
+from surefoot.scenarios.file.plugged import tasks
 from surefoot.wbc.parameters import WbcParameters
-
-
-def _tasks() -> Iterable[str]:
-    from surefoot.wbc.tasks import TASKS
-
-    return TASKS
 
 
 def _group(name: str, parameters: Any, doc: str, more: dict[str, Any] | None = None) -> type[Group]:
@@ -40,7 +34,7 @@ def _annotation(value: Any) -> Any:
     return int if isinstance(value, int) else str if isinstance(value, str) else Finite
 
 
-_TASKS = Annotated[tuple[Annotated[str, OneOf("", _tasks)], ...], BeforeValidator(as_tuple)]
+_TASKS = Annotated[tuple[Annotated[str, OneOf("", tasks)], ...], BeforeValidator(as_tuple)]
 
 if TYPE_CHECKING:
 

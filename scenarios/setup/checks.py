@@ -129,7 +129,7 @@ def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
         yield Problem(("robot_options", *error.key), error.what, error.right)
         return
     except PluginError as error:
-        yield Problem(("robot",), str(error), "use another robot")
+        yield Problem(("robot",), error.what, error.right)
         return
     bodies = [(("pushes", i, "body"), push.body) for i, push in enumerate(draft.keys.pushes)]
     for key, body in (*bodies, (("robot_options", "payload_body"), draft.keys.robot_options.payload_body)):

@@ -83,13 +83,14 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    module = next((module for module, names in _NAMES.items() if name in names), None)
-    if module is None:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    thing = globals()[name] = getattr(import_module(f"{__name__}.{module}"), name)
-    return thing
+if not TYPE_CHECKING:  # a type checker shall still refuse names that are not there
 
+    def __getattr__(name: str) -> Any:
+        module = next((module for module, names in _NAMES.items() if name in names), None)
+        if module is None:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        thing = globals()[name] = getattr(import_module(f"{__name__}.{module}"), name)
+        return thing
 
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *__all__})

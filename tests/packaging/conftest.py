@@ -112,9 +112,22 @@ def site(tmp_path: Path) -> Callable[[str], Site]:
 
 
 @pytest.fixture
-def at_hand(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Iterator[Callable[..., Answer]]:
-    """Give a command in this process, as a user who has distributions on the path; what they leave is cleared away."""
-    modules = set(sys.modules)
+def importing() -> Iterator[None]:
+    """Forget afterwards what was imported of strangers."""
+    before = set(sys.modules)
+    yield
+    for name in set(sys.modules) - before:
+        if name.startswith(("my_package", "broken")):
+            del sys.modules[name]
+    for registry in (KINDS, PROFILES, ESTIMATORS, TASKS, ROBOTS, METRICS, SCENARIOS):
+        registry._loaded.clear()
+
+
+@pytest.fixture
+def at_hand(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], importing: None
+) -> Callable[..., Answer]:
+    """Give a command in this process, as a user who has distributions on the path."""
 
     def give(*arguments: str, sites: Iterable[Site] = ()) -> Answer:
         for made in sites:
@@ -125,12 +138,7 @@ def at_hand(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str])
         said = capsys.readouterr()
         return Answer(int(ended.value.code or 0), said.out, said.err)
 
-    yield give
-    for name in set(sys.modules) - modules:
-        if name.partition(".")[0] in ("my_package", "broken"):
-            del sys.modules[name]
-    for registry in (KINDS, PROFILES, ESTIMATORS, TASKS, ROBOTS, METRICS, SCENARIOS):
-        registry._loaded.clear()
+    return give
 
 
 @pytest.fixture

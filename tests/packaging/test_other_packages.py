@@ -68,13 +68,6 @@ def test_planners_of_the_documentation_walk(documented, profile):
 
 
 @pytest.mark.physics
-def test_three_steps_go_over_a_ditch_that_another_package_brings(documented):
-    ditch = ("terrain={kind: ditch, riser: 0.1, tread: 0.15}", "gait={steps: 3, step_length: 0.3, step_width: 0.22}")
-    found = ran(documented, "diagonal-walk", *(word for keys in ditch for word in ("--set", keys)), "--json")
-    assert found["steps_taken"] == 3
-
-
-@pytest.mark.physics
 def test_a_log_of_a_ditch_is_judged_where_nobody_knows_ditches(documented, site):
     keys = ("terrain={kind: ditch, riser: 0.1, tread: 0.15}", "gait.step_length=0.3", "duration=0.1", "criteria={}")
     done = documented.run("run", "diagonal-walk", *(word for key in keys for word in ("--set", key)), "--json")

@@ -32,7 +32,7 @@ def describe(name: str, options: RobotOptions) -> RobotDescription:
         RobotError: an option is out of range, or the description contradicts itself.
     """
     try:
-        robot: Robot = ROBOTS[name]
+        robot = ROBOTS[name]
     except KeyError:
         raise UnknownRobotError(f"there is no robot '{name}': {nearest(name, robot_names())}") from None
     description = robot.build(options)

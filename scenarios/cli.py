@@ -57,6 +57,8 @@ def list_() -> None:
         typer.echo(f"scenario  {name:<{width}} {catalogue.summary(name)}")
     for name in RegisteredRobots().names():
         typer.echo(f"robot     {name}")
+    for refusal in catalogue.refusals():
+        typer.echo(refusal, err=True)
 
 
 @app.command()
@@ -260,11 +262,8 @@ def paper(
 def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.")]) -> None:
     """Print the commented YAML of a catalogue scenario, to start one's own from."""
     from surefoot.scenarios import catalogue
-    from surefoot.scenarios.errors import nearest
 
-    if scenario not in catalogue.names():
-        raise ScenarioError([f"{scenario}: no such catalogue name; {nearest(scenario, catalogue.names())}"])
-    typer.echo(catalogue.text(scenario), nl=False)
+    typer.echo(catalogue.text(scenario)[0], nl=False)
 
 
 @app.command()

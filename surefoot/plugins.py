@@ -8,16 +8,32 @@ A package says in its ``pyproject.toml`` what it has, and every command finds it
 Nothing is imported before the name is asked for.
 """
 
+import sys
 from collections.abc import Iterator, Mapping
-from importlib.metadata import entry_points
-from typing import Any
+from contextlib import redirect_stdout
+from importlib.metadata import EntryPoint, entry_points
+from typing import TypeVar, cast
+
+T = TypeVar("T")
 
 
 class PluginError(ValueError):
-    """What a package has registered cannot be used; the message names the package, the entry and the reason."""
+    """What a package has registered cannot be used.
+
+    Attributes:
+        what: the fault, with the names of package and entry, without a full stop.
+        right: what would be right, without a full stop.
+    """
+
+    def __init__(self, what: str, right: str) -> None:
+        self.what, self.right = what, right
+        super().__init__(what, right)
+
+    def __str__(self) -> str:
+        return f"{self.what}; {self.right}"
 
 
-class Registry(Mapping[str, Any]):
+class Registry(Mapping[str, T]):
     """Objects of one kind by name: those of this package, those registered by code, those found by entry point.
 
     A name of this package always means this package's object. The order of names is: own ones as given, then others
@@ -25,25 +41,25 @@ class Registry(Mapping[str, Any]):
 
     Args:
         group: group of entry points, such as ``surefoot.profiles``.
-        kind: class, or abstract one, that every object must be an instance of.
+        kind: class that every object must be an instance of; None for what is called, a function or a class.
         own: the objects of this package.
     """
 
-    def __init__(self, group: str, kind: Any, own: Mapping[str, Any]) -> None:
+    def __init__(self, group: str, kind: type[T] | None, own: Mapping[str, T]) -> None:
         self.group = group
         self._kind = kind
         self._own = dict(own)
-        self._added: dict[str, Any] = {}
-        self._loaded: dict[str, Any] = {}
+        self._added: dict[str, T] = {}
+        self._loaded: dict[str, T] = {}
 
-    def add(self, name: str, thing: Any) -> Any:
+    def add(self, name: str, thing: T) -> T:
         """Register an object for the running process, over one of the same name that was added before.
 
         Raises:
             PluginError: the name is taken by this package, or the object is of another kind.
         """
         if name in self._own:
-            raise PluginError(f"'{name}' of {self.group} is surefoot's own; choose another name")
+            raise PluginError(f"'{name}' of {self.group} is surefoot's own", "choose another name")
         self._added[name] = self._checked(thing, f"'{name}'")
         return thing
 
@@ -51,26 +67,23 @@ class Registry(Mapping[str, Any]):
         """Take back what was added, if it was."""
         self._added.pop(name, None)
 
-    def __getitem__(self, name: str) -> Any:
+    def __getitem__(self, name: str) -> T:
         """The object of that name.
 
         Raises:
             KeyError: there is none.
-            PluginError: its package cannot be loaded, or gives something of another kind.
+            PluginError: its package cannot be loaded, or gives something of another kind, or two packages have it.
         """
         for known in (self._own, self._added, self._loaded):
             if name in known:
                 return known[name]
-        entry = next((entry for entry in entry_points(group=self.group) if entry.name == name), None)
-        if entry is None:
+        entries = self._entries(name)
+        if not entries:
             raise KeyError(name)
-        package = entry.dist.name if entry.dist is not None else entry.value
-        try:
-            thing = entry.load()
-        except Exception as error:
-            reason = f"{type(error).__name__}: {error}"
-            raise PluginError(f"'{name}' of package {package} cannot be loaded, {reason}; mend or remove it") from error
-        self._loaded[name] = self._checked(thing, f"'{name}' of package {package}")
+        packages = [package_of(entry) for entry in entries]
+        if len(entries) > 1:
+            raise PluginError(f"'{name}' in {self.group} is of packages {' and '.join(packages)}", "remove one of them")
+        self._loaded[name] = thing = self._checked(_load(entries[0]), f"'{name}' of package {packages[0]}")
         return thing
 
     def __iter__(self) -> Iterator[str]:
@@ -81,9 +94,48 @@ class Registry(Mapping[str, Any]):
         return sum(1 for _ in self)
 
     def __contains__(self, name: object) -> bool:
-        return any(name == known for known in self)
+        return any(name in known for known in (self._own, self._added, self._loaded)) or name in list(self)
 
-    def _checked(self, thing: Any, who: str) -> Any:
-        if not isinstance(thing, self._kind):
-            raise PluginError(f"{who} in {self.group} is a {type(thing).__name__}; it must be a {self._kind.__name__}")
-        return thing
+    def clashes(self) -> dict[str, PluginError]:
+        """What to say of each name of surefoot's own under which another package has something too.
+
+        The name goes on meaning surefoot's; the other thing is never looked at.
+        """
+        found = [entry for entry in entry_points(group=self.group) if entry.name in self._own]
+        return {
+            entry.name: PluginError(
+                f"'{entry.name}' of package {package_of(entry)} in {self.group} has the name of one of surefoot's own",
+                "give it another name there, or remove it",
+            )
+            for entry in found
+        }
+
+    def _entries(self, name: str) -> list[EntryPoint]:
+        return [entry for entry in entry_points(group=self.group) if entry.name == name]
+
+    def _checked(self, thing: object, who: str) -> T:
+        wanted = "a function or a class" if self._kind is None else f"a {self._kind.__name__}"
+        if callable(thing) if self._kind is None else isinstance(thing, self._kind):
+            return cast("T", thing)
+        if self._kind is not None and isinstance(thing, type) and issubclass(thing, self._kind):
+            raise PluginError(f"{who} in {self.group} is the class {thing.__name__}", "register an instance of it")
+        raise PluginError(f"{who} in {self.group} is of type {type(thing).__name__}", f"it must be {wanted}")
+
+
+def package_of(entry: EntryPoint) -> str:
+    """Name of the package that an entry point is of, for messages."""
+    return entry.dist.name if entry.dist is not None else entry.value
+
+
+def _load(entry: EntryPoint) -> object:
+    """What an entry point leads to; what its package prints meanwhile goes to where messages go.
+
+    Raises:
+        PluginError: it cannot be loaded, whatever the reason.
+    """
+    try:
+        with redirect_stdout(sys.stderr):
+            return entry.load()
+    except (Exception, SystemExit) as error:
+        what = f"'{entry.name}' of package {package_of(entry)} cannot be loaded, {type(error).__name__}: {error}"
+        raise PluginError(" ".join(what.split()), "mend or remove it") from error

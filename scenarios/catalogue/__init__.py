@@ -1,19 +1,94 @@
-"""The scenarios that come with the package, found by name."""
+"""The scenarios found by name: those that come with Surefoot, and those of other packages.
 
+Another distribution names a package in which its YAML files lie:
+
+    [project.entry-points."surefoot.scenarios"]
+    my-package = "my_package.scenarios"
+"""
+
+from collections.abc import Mapping
 from importlib.resources import files
+from importlib.resources.abc import Traversable
+from types import ModuleType
+
+from surefoot.plugins import PluginError, Registry
+from surefoot.scenarios.errors import ScenarioError, nearest
+from surefoot.scenarios.file.source import decoded
+
+_ENDING = ".yaml"
+
+
+def _inside(package: str) -> dict[str, Traversable]:
+    """The YAML files of a package by name, sorted."""
+    entries = {entry.name: entry for entry in files(package).iterdir() if entry.name.endswith(_ENDING)}
+    return {name.removesuffix(_ENDING): entries[name] for name in sorted(entries)}
+
+
+OWN: Mapping[str, Traversable] = _inside(__name__)
+"""Ours; their names always mean them."""
+
+SCENARIOS = Registry("surefoot.scenarios", ModuleType, {})
+"""The packages in which the files of others lie, by the name of their entry point."""
 
 
 def names() -> tuple[str, ...]:
-    """Names of the catalogue's scenarios, sorted."""
-    entries = (entry.name for entry in files(__name__).iterdir())
-    return tuple(sorted(name.removesuffix(".yaml") for name in entries if name.endswith(".yaml")))
+    """Names of all scenarios: ours sorted, then those of other packages sorted."""
+    return (*OWN, *sorted(_others()[0]))
 
 
-def text(name: str) -> str:
-    """YAML text of a catalogue scenario."""
-    return (files(__name__) / f"{name}.yaml").read_text(encoding="utf-8")
+def refusals() -> tuple[str, ...]:
+    """What is not to be found of other packages, and why, one sentence each."""
+    return _others()[1]
+
+
+def text(name: str) -> tuple[str, str]:
+    """YAML text of a scenario, and what to call it in messages.
+
+    Raises:
+        ScenarioError: its file is too large or no UTF-8, or there is none.
+    """
+    if name in OWN:
+        place, file = f"catalogue/{name}{_ENDING}", OWN[name]
+    elif name in (others := _others()[0]):
+        place, file = others[name]
+    else:
+        raise unknown(name, "no such catalogue name")
+    with file.open("rb") as opened:
+        return decoded(opened, place), place
 
 
 def summary(name: str) -> str:
-    """First comment line of a catalogue scenario: what it is."""
-    return text(name).split("\n", 1)[0].lstrip("# ")
+    """First comment line of a scenario: what it is, or what is wrong with its file."""
+    try:
+        return text(name)[0].split("\n", 1)[0].lstrip("# ")
+    except ScenarioError as error:
+        return str(error)
+
+
+def unknown(name: str, what: str) -> ScenarioError:
+    """What to say of a name that no scenario has, with the packages whose scenarios could not be looked at."""
+    return ScenarioError([f"{name}: {what}; {nearest(name, names())}", *refusals()])
+
+
+def _others() -> tuple[dict[str, tuple[str, Traversable]], tuple[str, ...]]:
+    """The scenarios of other packages by name, each with its place, and what is not among them and why."""
+    found: dict[str, tuple[str, Traversable]] = {}
+    refused: list[str] = []
+    for entry in SCENARIOS:
+        try:
+            module = SCENARIOS[entry]
+        except PluginError as error:
+            refused.append(f"scenarios {error}")
+            continue
+        if not hasattr(module, "__path__"):
+            refused.append(f"scenarios '{entry}': {module.__name__} is no package; name one in which YAML files lie")
+            continue
+        for name, file in _inside(module.__name__).items():
+            place = f"{module.__name__}:{file.name}"
+            if name in OWN:
+                refused.append(f"{place}: '{name}' is a scenario of surefoot's own; give the file another name")
+            elif name in found:
+                refused.append(f"{place}: '{name}' is {found[name][0]} already; give one of them another name")
+            else:
+                found[name] = place, file
+    return found, tuple(refused)

@@ -1,4 +1,4 @@
-"""What every group of scenario keys is made of, and the keys wbc.* of the whole-body controller."""
+"""What groups of scenario keys are made of, names that other packages bring, and the keys wbc.* of the controller."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import Field as DataclassField
@@ -17,6 +17,8 @@ from pydantic import (
 from pydantic_core import PydanticCustomError, core_schema
 
 from surefoot.errors import ParameterError
+from surefoot.plugins import PluginError, Registry
+from surefoot.scenarios.errors import Key, Problem, dotted
 from surefoot.wbc.parameters import WbcParameters
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -61,10 +63,101 @@ class OneOf:
         raise PydanticCustomError("literal_error", "{expected}", {"expected": expected})
 
 
-def _tasks() -> Iterable[str]:
+def terrain_kinds() -> Registry[Any]:
+    """Of ``terrain.kind``."""
+    from surefoot.scenarios.setup.terrain import KINDS
+
+    return KINDS
+
+
+def profiles() -> Registry[Any]:
+    """Of ``planner.profile``."""
+    from surefoot.planner.laws.profiles import PROFILES
+
+    return PROFILES
+
+
+def estimators() -> Registry[Any]:
+    """Of ``sensing.source``."""
+    from surefoot.scenarios.loop.sensing import ESTIMATORS
+
+    return ESTIMATORS
+
+
+def tasks() -> Registry[Any]:
+    """Of each element of ``wbc.tasks``."""
     from surefoot.wbc.tasks import TASKS
 
     return TASKS
+
+
+def robots() -> Registry[Any]:
+    """Of ``robot``."""
+    from surefoot.models.registry import ROBOTS
+
+    return ROBOTS
+
+
+DEFAULTS = {"terrain": "flat", "planner": "default", "sensing": "truth", "robot": "humanoid100"}
+"""Names that are always there, by the group of the key."""
+
+_REGISTRIES: dict[Key, Callable[[], Registry[Any]]] = {
+    ("robot",): robots,
+    ("terrain", "kind"): terrain_kinds,
+    ("planner", "profile"): profiles,
+    ("sensing", "source"): estimators,
+    ("wbc", "tasks"): tasks,
+}
+
+
+def unusable(keys: Any) -> list[Problem]:
+    """List names whose package cannot be used, or has taken a name of surefoot's own for something else.
+
+    Args:
+        keys: plain values of a scenario; what is of another type, or unknown, is for the schema to say.
+    """
+    return [Problem(key, f"{dotted(key)} {refusal.what}", refusal.right) for key, refusal in _refusals(keys)]
+
+
+def unknown(keys: Any) -> list[Problem]:
+    """List names that no installed package brings; no package is loaded.
+
+    Args:
+        keys: plain values of a scenario.
+    """
+    return [
+        Problem(key, f"{dotted(key)} '{name}' is not known here", "install the package that brings it")
+        for key, name, registry in _named(keys)
+        if name != DEFAULTS.get(str(key[0])) and name not in registry()
+    ]
+
+
+def _refusals(keys: Any) -> Iterator[tuple[Key, PluginError]]:
+    for key, name, registry in _named(keys):
+        found = registry()
+        try:
+            found[name]
+        except KeyError:
+            continue
+        except PluginError as refusal:
+            yield key, refusal
+        else:
+            clash = found.clashes().get(name)
+            if clash is not None:
+                yield key, clash
+
+
+def _named(keys: Any) -> Iterator[tuple[Key, str, Callable[[], Registry[Any]]]]:
+    """Every name that is written, with its place."""
+    for key, registry in _REGISTRIES.items():
+        value = keys
+        for part in key:
+            value = value.get(part) if isinstance(value, dict) else None
+        if isinstance(value, str):
+            yield key, value, registry
+        for index, name in enumerate(value if isinstance(value, list) else ()):
+            if isinstance(name, str):
+                yield (*key, index), name, registry
 
 
 def _group(name: str, parameters: Any, doc: str, more: dict[str, Any] | None = None) -> type[Group]:
@@ -90,7 +183,7 @@ def _annotation(value: Any) -> Any:
     return int if isinstance(value, int) else str if isinstance(value, str) else Finite
 
 
-_TASKS = Annotated[tuple[Annotated[str, OneOf("", _tasks)], ...], BeforeValidator(as_tuple)]
+_TASKS = Annotated[tuple[Annotated[str, OneOf("", tasks)], ...], BeforeValidator(as_tuple)]
 
 if TYPE_CHECKING:
 

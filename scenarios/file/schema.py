@@ -4,13 +4,22 @@ One frozen model per group. Every key has a default, so a scenario file states o
 relates several keys (rates that divide, steps within reach) is checked in ``checks``.
 """
 
-from collections.abc import Iterable
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
 from surefoot.scenarios.file.criteria import Bound, standing_walk
-from surefoot.scenarios.file.group import ControllerSettings, Finite, Group, OneOf, as_tuple
+from surefoot.scenarios.file.group import (
+    DEFAULTS,
+    ControllerSettings,
+    Finite,
+    Group,
+    OneOf,
+    as_tuple,
+    estimators,
+    profiles,
+    terrain_kinds,
+)
 
 LONGEST_RUN = 86_400.0
 """Bound on the simulated time [s]."""
@@ -24,26 +33,6 @@ Speed = Annotated[float, Field(ge=-10, le=10, allow_inf_nan=False)]
 Noise = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000)]
-
-
-def _terrain_kinds() -> Iterable[str]:
-    from surefoot.scenarios.setup.terrain import KINDS
-
-    return KINDS
-
-
-def _profiles() -> Iterable[str]:
-    from surefoot.planner.laws.profiles import PROFILES
-
-    return PROFILES
-
-
-def _estimators() -> Iterable[str]:
-    from surefoot.scenarios.loop.sensing import ESTIMATORS
-
-    return ESTIMATORS
-
-
 Vector = Annotated[tuple[Finite, Finite, Finite], BeforeValidator(as_tuple)]
 
 
@@ -61,7 +50,9 @@ class RobotSettings(Group):
 class TerrainSettings(Group):
     """The ground."""
 
-    kind: Annotated[str, OneOf("flat", _terrain_kinds)] = Field(default="flat", description="shape of the ground")
+    kind: Annotated[str, OneOf(DEFAULTS["terrain"], terrain_kinds)] = Field(
+        default=DEFAULTS["terrain"], description="shape of the ground"
+    )
     riser: NonNegative = Field(
         default=0.1, description="height of a stair, or how much higher or lower a block may be [m]"
     )
@@ -141,8 +132,8 @@ class Gait(Group):
 class PlannerSettings(Group):
     """The walking planner."""
 
-    profile: Annotated[str, OneOf("default", _profiles)] = Field(
-        default="default", description="formulation of the planner"
+    profile: Annotated[str, OneOf(DEFAULTS["planner"], profiles)] = Field(
+        default=DEFAULTS["planner"], description="formulation of the planner"
     )
     horizon: Annotated[int, Field(ge=2, le=1000)] | None = Field(
         default=None, description="samples of the horizon, N_p, null: the profile's own [-]"
@@ -174,8 +165,8 @@ class PlannerSettings(Group):
 class Sensing(Group):
     """What planner and controller know of the robot; noises are standard deviations."""
 
-    source: Annotated[str, OneOf("truth", _estimators)] = Field(
-        default="truth", description="estimator of the state that controller and planner are given"
+    source: Annotated[str, OneOf(DEFAULTS["sensing"], estimators)] = Field(
+        default=DEFAULTS["sensing"], description="estimator of the state that controller and planner are given"
     )
     zmp_noise: NonNegative = Field(default=0.0, description="of the ZMP that the planner measures [m]")
     com_noise: NonNegative = Field(
@@ -277,7 +268,7 @@ class Scenario(Group):
     name: str = Field(
         default="scenario", min_length=1, max_length=100, pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", description="name"
     )
-    robot: str = Field(default="humanoid100", description="name of a robot, see `surefoot list`")
+    robot: str = Field(default=DEFAULTS["robot"], description="name of a robot, see `surefoot list`")
     fidelity: Literal["full", "pendulum"] = Field(
         default="full", description="whole body in MuJoCo, or the pendulum alone"
     )

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import IO, Any
 
 import yaml
 
@@ -66,6 +66,27 @@ class Source:
         inside = (self.overridden[key[:n]] for n in range(len(key), 0, -1) if key[:n] in self.overridden)
         made = (place for path, place in self.overridden.items() if path[: len(key)] == key and key)
         return next(inside, None) or (next(made, None) if key not in self.value_places else None)
+
+
+def decoded(file: IO[bytes], name: str) -> str:
+    """Text of an open file, whoever it is from.
+
+    Args:
+        file: opened to read bytes.
+        name: what to call it in messages.
+
+    Raises:
+        ScenarioError: it is too large, or no UTF-8.
+    """
+    data = file.read(MAX_BYTES + 1)
+    if len(data) > MAX_BYTES:
+        raise ScenarioError([f"{name}:1:1: larger than {MAX_BYTES} bytes; a scenario is a short YAML file"])
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        column = error.start - data.rfind(b"\n", 0, error.start)
+        raise ScenarioError([f"{name}:{line}:{column}: not UTF-8 text; save the file as UTF-8"]) from None
 
 
 def parse(text: str, name: str) -> Source:

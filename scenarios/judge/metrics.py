@@ -29,14 +29,14 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
     for module in modules:
         for thing in vars(module).values():
             if isinstance(thing, Metric) and found.setdefault(thing.name, thing) is not thing:
-                raise PluginError(f"metric '{thing.name}' is there twice; choose another name")
+                raise PluginError(f"metric '{thing.name}' is there twice", "choose another name")
     return found
 
 
 OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, computing)
 """Ours, in the order in which they are shown."""
 
-METRICS = Registry(GROUP, Metric, OWN)
+METRICS: Registry[Metric[Any]] = Registry(GROUP, Metric, OWN)
 """All by name: ours, then those of other packages."""
 
 
@@ -71,8 +71,7 @@ def _unknown(name: Any) -> Iterator[Problem]:
         names = [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
         yield Problem(("criteria", name), f"unknown metric '{name}'", nearest(str(name), names), True)
     except PluginError as error:
-        what, _, right = str(error).rpartition("; ")
-        yield Problem(("criteria", name), f"metric {what}", right, True)
+        yield Problem(("criteria", name), f"metric {error.what}", error.right, True)
 
 
 def _usable(name: str) -> Metric[Any]:
@@ -82,9 +81,9 @@ def _usable(name: str) -> Metric[Any]:
         KeyError: there is none.
         PluginError: its package cannot be loaded, or has it under another name.
     """
-    found: Metric[Any] = METRICS[name]
+    found = METRICS[name]
     if found.name != name:
-        raise PluginError(f"'{name}' in {GROUP} is named '{found.name}' where it is made; give both one name")
+        raise PluginError(f"'{name}' in {GROUP} is named '{found.name}' where it is made", "give both one name")
     return found
 
 
@@ -116,7 +115,7 @@ def measure(log: Log | Digest) -> Measured:
         LogError: the log does not describe a run.
     """
     run = RunView(log if isinstance(log, Digest) else digest(log))
-    notes: list[str] = []
+    notes = [f"metric {clash}" for clash in METRICS.clashes().values()]
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         values = {name: _own_value(run, metric) for name, metric in OWN.items()}
         for name in METRICS:

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -12,9 +12,11 @@ import yaml
 from pydantic import ValidationError
 
 from surefoot.scenarios import palette
-from surefoot.scenarios.errors import LogError, nearest
+from surefoot.scenarios.errors import LogError, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.group import unknown
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.digest import Digest
 from surefoot.scenarios.judge.metrics import known, measure
 from surefoot.scenarios.log import Log
@@ -190,22 +192,31 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     Raises:
         LogError: the log does not describe a run.
     """
-    measured, scenario = measure(gathered or log), scenario_of(log)
+    measured, (scenario, absent) = measure(gathered or log), _known_part(log)
     criteria = asked(scenario.criteria, scenario.fidelity)
-    reasons = (*_unfinished(log), *missed(measured.values, criteria))
+    reasons = (*_unfinished(log), *map(str, absent), *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
     said = (*skipped, *notes(Draft(scenario)), *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 
 def scenario_of(log: Log) -> Scenario:
-    """The scenario that a log carries.
+    """The scenario that a log carries, without the names that only packages know which are not installed here.
 
     Raises:
         LogError: it carries none that can be read.
     """
+    return _known_part(log)[0]
+
+
+def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
+    """The scenario of a log, and which of its names nobody knows here."""
     try:
-        return Scenario.model_validate(yaml.safe_load(log.attachments[SCENARIO_FILE]))
+        keys = yaml.safe_load(log.attachments[SCENARIO_FILE])
+        absent = unknown(keys)
+        # Without its kind the other keys of the ground mean nothing.
+        places = [replace(one, key=one.key[:1]) if one.key[0] == "terrain" else one for one in absent]
+        return Scenario.model_validate(without(keys, places)), absent
     except (KeyError, ValidationError, yaml.YAMLError, ValueError, RecursionError):
         raise LogError(f"{log.path}: holds no readable scenario; its criteria are unknown") from None
 

@@ -55,7 +55,7 @@ class TrueState:
 
 EstimatorMaker = Callable[[Walk], Estimator]
 
-ESTIMATORS = Registry("surefoot.estimators", Callable, {"truth": TrueState})
+ESTIMATORS: Registry[EstimatorMaker] = Registry("surefoot.estimators", None, {"truth": TrueState})
 """What makes an estimator of a walk, by the value of ``sensing.source``."""
 
 

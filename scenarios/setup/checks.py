@@ -140,7 +140,7 @@ def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
         yield Problem(("robot_options", *error.key), error.what, error.right)
         return
     except PluginError as error:
-        yield Problem(("robot",), str(error), "use another robot")
+        yield Problem(("robot",), error.what, error.right)
         return
     bodies = [(("pushes", i, "body"), push.body) for i, push in enumerate(draft.keys.pushes)]
     for key, body in (*bodies, (("robot_options", "payload_body"), draft.keys.robot_options.payload_body)):
@@ -227,8 +227,12 @@ def _without_effect(draft: Draft) -> Iterator[str]:
 
 def _unshaped(draft: Draft) -> Iterator[str]:
     terrain = draft.keys.terrain
+    try:
+        shaping = ("kind", "friction", *draft.kind.keys)
+    except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
+        return
     for name, field in TerrainSettings.model_fields.items():
-        elsewhere = name not in ("kind", "friction", *draft.kind.keys)
+        elsewhere = name not in shaping
         if elsewhere and getattr(terrain, name) != field.default:
             yield f"terrain.{name} has no effect on terrain.kind {terrain.kind}"
 

@@ -155,8 +155,7 @@ class Draft:
     @cached_property
     def profile(self) -> Profile:
         """The formulation of the planner."""
-        profile: Profile = PROFILES[self.keys.planner.profile]
-        return profile
+        return PROFILES[self.keys.planner.profile]
 
     @cached_property
     def heights(self) -> HeightProfile:

@@ -9,10 +9,11 @@ import yaml
 from pydantic import ValidationError
 
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, nearest
+from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.group import unusable
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import MAX_BYTES, Overrides, apply_overrides, parse
+from surefoot.scenarios.file.source import Overrides, apply_overrides, decoded, parse
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
@@ -140,26 +141,20 @@ def read_scenario(text: str, name: str, stem: str, overrides: Overrides, robots:
 
 def _text(reference: str) -> tuple[str, str, str]:
     """Text, name for messages, and stem of a scenario."""
-    if reference in catalogue.names():
-        return catalogue.text(reference), f"catalogue/{reference}.yaml", reference
+    if reference in catalogue.OWN:
+        return *catalogue.text(reference), reference
     if is_log(reference):
         return *attached_scenario(reference), Path(reference).stem
     path = Path(reference)
     try:
+        if not path.is_file() and reference in catalogue.names():
+            return *catalogue.text(reference), reference
         with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
-        if len(data) > MAX_BYTES:
-            raise ScenarioError([f"{reference}:1:1: larger than {MAX_BYTES} bytes; a scenario is a short YAML file"])
-        return data.decode("utf-8-sig"), reference, path.stem
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        column = error.start - data.rfind(b"\n", 0, error.start)
-        raise ScenarioError([f"{reference}:{line}:{column}: not UTF-8 text; save the file as UTF-8"]) from None
+            return decoded(file, reference), reference, path.stem
     except IsADirectoryError:
         raise ScenarioError([f"{reference}: a directory; give a scenario file or a catalogue name"]) from None
     except FileNotFoundError:
-        right = nearest(reference, catalogue.names())
-        raise ScenarioError([f"{reference}: no such scenario file or catalogue name; {right}"]) from None
+        raise catalogue.unknown(reference, "no such scenario file or catalogue name") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise ScenarioError([f"{reference}: cannot be read, {reason}; give a readable scenario file"]) from None
@@ -167,8 +162,8 @@ def _text(reference: str) -> tuple[str, str, str]:
 
 def _validated(data: Any) -> tuple[Scenario, list[Problem]]:
     """The scenario that the sound part of the data gives, and the faults of the rest."""
-    problems = unknown_metrics(data.get("criteria"))
-    data = without(data, problems)
+    problems = [*unknown_metrics(data.get("criteria")), *unusable(data)]
+    data = without(data, [problem for problem in problems if problem.key != ("robot",)])
     while True:
         try:
             return Scenario.model_validate(data), problems

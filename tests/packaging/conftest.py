@@ -1,12 +1,27 @@
-"""Fixtures: the distributions of this tree, built without a network, and the wheel as an installer unpacks it."""
+"""Fixtures: the distributions of this tree, the wheel as an installer unpacks it, and packages of strangers."""
 
+import os
+import re
+import shutil
 import subprocess
 import sys
 import tarfile
+import tomllib
 import zipfile
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
+
+from surefoot.models.registry import ROBOTS
+from surefoot.planner.laws.profiles import PROFILES
+from surefoot.scenarios import cli
+from surefoot.scenarios.catalogue import SCENARIOS
+from surefoot.scenarios.judge.metrics import METRICS
+from surefoot.scenarios.loop.sensing import ESTIMATORS
+from surefoot.scenarios.setup.terrain import KINDS
+from surefoot.wbc.tasks import TASKS
 
 ROOT = Path(__file__).parents[2]
 
@@ -43,3 +58,106 @@ def unpacked(distributions: tuple[Path, Path], tmp_path_factory: pytest.TempPath
     with zipfile.ZipFile(distributions[0]) as archive:
         archive.extractall(folder)
     return folder
+
+
+class Site:
+    """A folder on the path with a distribution in it that nobody has built: files, and a list of entry points.
+
+    Attributes:
+        folder: what goes onto the path.
+        points: name and target of the entry points by group.
+    """
+
+    def __init__(self, folder: Path, name: str) -> None:
+        self.folder, self._metadata = folder, folder / f"{name.replace('-', '_')}-1.0.dist-info"
+        self.points: dict[str, dict[str, str]] = {}
+        self._metadata.mkdir(parents=True)
+        (self._metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+
+    def write(self, path: str, text: str) -> None:
+        """Put a file into it."""
+        (self.folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (self.folder / path).write_text(text, encoding="utf-8")
+
+    def register(self, group: str, **points: str) -> None:
+        """Add entry points."""
+        self.points.setdefault(group, {}).update(points)
+        sections = (
+            f"[{group}]\n" + "".join(f"{n} = {t}\n" for n, t in of.items()) for group, of in self.points.items()
+        )
+        (self._metadata / "entry_points.txt").write_text("\n".join(sections))
+
+    def run(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        """Give a command of a user who has it on the path."""
+        path = os.pathsep.join([str(self.folder), *filter(None, [os.environ.get("PYTHONPATH")])])
+        command = [sys.executable, "-m", "surefoot", *arguments]
+        environment = {**os.environ, "PYTHONPATH": path}
+        return subprocess.run(
+            command, env=environment, cwd=self.folder.parent, capture_output=True, text=True, timeout=120
+        )
+
+
+class Answer(NamedTuple):
+    """Exit code and output of a command."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def site(tmp_path: Path) -> Callable[[str], Site]:
+    """Make an empty distribution of that name."""
+    return lambda name: Site(tmp_path / name, name)
+
+
+@pytest.fixture
+def importing() -> Iterator[None]:
+    """Forget afterwards what was imported of strangers."""
+    before = set(sys.modules)
+    yield
+    for name in set(sys.modules) - before:
+        if name.startswith(("my_package", "broken")):
+            del sys.modules[name]
+    for registry in (KINDS, PROFILES, ESTIMATORS, TASKS, ROBOTS, METRICS, SCENARIOS):
+        registry._loaded.clear()
+
+
+@pytest.fixture
+def at_hand(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], importing: None
+) -> Callable[..., Answer]:
+    """Give a command in this process, as a user who has distributions on the path."""
+
+    def give(*arguments: str, sites: Iterable[Site] = ()) -> Answer:
+        for made in sites:
+            monkeypatch.syspath_prepend(str(made.folder))
+        monkeypatch.setattr(sys, "argv", ["surefoot", *arguments])
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        said = capsys.readouterr()
+        return Answer(int(ended.value.code or 0), said.out, said.err)
+
+    return give
+
+
+@pytest.fixture
+def documented(site: Callable[[str], Site]) -> Site:
+    """The package that docs/extending.md makes: its files and entry points as they stand there."""
+    page = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
+    made = site("my-package")
+    for path, text in re.findall(r"(?s)```(?:python|yaml)\n# (my_package/\S+)\n(.*?)```", page):
+        made.write(path, text)
+    for table in re.findall(r"(?s)```toml\n(.*?)```", page):
+        for group, points in tomllib.loads(table)["project"]["entry-points"].items():
+            made.register(group, **points)
+    return made
+
+
+@pytest.fixture
+def disguised(site: Callable[[str], Site]) -> Site:
+    """A package with a robot whose names tell nothing."""
+    made = site("disguised")
+    shutil.copy(Path(__file__).with_name("disguised.py"), made.folder)
+    made.register("surefoot.robots", disguised="disguised:DISGUISED")
+    return made

@@ -3,10 +3,8 @@
 import os
 import subprocess
 import sys
-import sysconfig
 import tarfile
 import tomllib
-import venv
 import zipfile
 from pathlib import Path
 
@@ -90,23 +88,3 @@ def test_no_text_teaches_an_import_that_is_not_installed():
         if line.lstrip().startswith(starts)
     ]
     assert not bare
-
-
-@pytest.mark.physics
-def test_a_type_checker_reads_the_installed_package(tmp_path, distributions):
-    venv.create(tmp_path / "env", with_pip=False)
-    (site,) = (tmp_path / "env").glob("lib/python*/site-packages")
-    with zipfile.ZipFile(distributions[0]) as archive:
-        archive.extractall(site)
-    (site / "others.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
-    (tmp_path / "right.py").write_text(
-        "import surefoot\nfrom surefoot.models.registry import describe\n"
-        "from surefoot.models.types import RobotOptions\n"
-        "mass: float = describe('humanoid100', RobotOptions()).mass\nversion: str = surefoot.__version__\n"
-    )
-    wrong = (tmp_path / "right.py").read_text().replace("float", "str") + "surefoot.nothing\n"
-    (tmp_path / "wrong.py").write_text(wrong)
-    python = str(tmp_path / "env" / "bin" / "python")
-    checker = [sys.executable, "-m", "mypy", "--strict", "--python-executable", python]
-    found = subprocess.run([*checker, "right.py", "wrong.py"], cwd=tmp_path, capture_output=True, text=True)
-    assert [line.split(":")[:2] for line in found.stdout.splitlines()[:-1]] == [["wrong.py", "4"], ["wrong.py", "6"]]

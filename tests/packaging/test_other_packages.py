@@ -1,45 +1,78 @@
 """What another package brings: found by its entry point alone, and as good as our own."""
 
 import json
-import os
-import shutil
-import subprocess
-import sys
-from pathlib import Path
 
+import numpy as np
 import pytest
 
-WALK = ["diagonal-walk", "--set", "gait.steps=2", "--json"]
+from surefoot.scenarios.log import read
+from surefoot.wbc.tasks import DEFAULT_LAYOUT
+
+SHORT = ("--set", "duration=0.6", "--set", "criteria={fell: false, com_sway: {max: 0.1}}", "--json")
 
 
-@pytest.fixture
-def surefoot(tmp_path):
-    """The command line of a user who has installed a package with a robot in it."""
-    site = tmp_path / "site"
-    metadata = site / "disguised-1.0.dist-info"
-    metadata.mkdir(parents=True)
-    shutil.copy(Path(__file__).with_name("disguised.py"), site)
-    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: disguised\nVersion: 1.0\n")
-    (metadata / "entry_points.txt").write_text("[surefoot.robots]\ndisguised = disguised:DISGUISED\n")
-    path = os.pathsep.join([str(site), *filter(None, [os.environ.get("PYTHONPATH")])])
-
-    def run(*arguments):
-        command = [sys.executable, "-m", "surefoot", *arguments]
-        environment = {**os.environ, "PYTHONPATH": path}
-        return subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-
-    return run
+def ran(site, *arguments):
+    """The JSON of a run, which passes."""
+    done = site.run("run", *arguments)
+    assert done.returncode == 0, (done.stdout, done.stderr)
+    return json.loads(done.stdout)
 
 
 @pytest.mark.unit
-def test_a_robot_is_listed_beside_ours(surefoot):
-    listed = surefoot("list").stdout.splitlines()
+def test_a_robot_is_listed_beside_ours(disguised):
+    listed = disguised.run("list").stdout.splitlines()
     assert listed[-2:] == ["robot     humanoid100", "robot     disguised"]
 
 
 @pytest.mark.physics
-def test_a_robot_whose_names_tell_nothing_walks_by_its_roles(surefoot):
-    done = surefoot("run", *WALK, "--set", "robot=disguised")
-    assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
+def test_a_robot_whose_names_tell_nothing_walks_by_its_roles(disguised):
+    found = ran(disguised, "diagonal-walk", "--set", "gait.steps=2", "--json", "--set", "robot=disguised")
     assert (found["verdict"], found["steps_taken"]) == ("pass", 2)
+
+
+@pytest.mark.physics
+def test_the_package_of_the_documentation_brings_all_at_once(documented, site):
+    """Metric, law, task, estimator, robot and scenario; where the package is gone, their log is no pass."""
+    found = ran(documented, "two-slow-steps", "--set", "planner.profile=spring", *SHORT)
+    assert 0.0 < found["com_sway"] < 0.1
+    assert found["estimation_error_rms"] == pytest.approx(0.002, rel=0.05)
+    path = documented.folder.parent / found["log"]
+    assert json.loads(path.with_name("verdict.json").read_text())["com_sway"] == found["com_sway"]
+    log = read(path)
+    rows = sum(size for _, size in DEFAULT_LAYOUT)
+    error = log["/wbc"].field("task_error")
+    assert error.shape[1] == rows + 3
+    assert np.all(np.any(error[:, rows:] != 0.0, axis=0))
+    assert 'name="neck_yaw"' in log.attachments["robot.xml"].decode()
+
+    elsewhere = site("elsewhere")
+    seen = elsewhere.run("inspect", str(path), "--json")
+    assert (seen.returncode, seen.stderr) == (1, "")
+    reasons = json.loads(seen.stdout)["reasons"]
+    places = ("robot 'heavy'", "planner.profile 'spring'", "sensing.source 'low-base'", "wbc.tasks.0 'look-aside'")
+    assert reasons[:4] == [f"{place} is not known here; install the package that brings it" for place in places]
+    assert reasons[4].startswith("com_sway is not known here")
+    assert len(reasons) == 5
+    again = elsewhere.run("run", str(path))
+    assert (again.returncode, again.stdout) == (2, "")
+    faults = [line.split(": ", 1)[1] for line in again.stderr.splitlines()]
+    for fault, name in zip(faults, ("heavy", "spring", "low-base", "look-aside", "com_sway"), strict=True):
+        assert f"'{name}'" in fault
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("profile", ["spring", "calm"])
+def test_planners_of_the_documentation_walk(documented, profile):
+    found = ran(documented, "two-slow-steps", "--set", f"planner.profile={profile}", "--json")
+    assert found["steps_taken"] == 2
+
+
+@pytest.mark.physics
+def test_a_log_of_a_ditch_is_judged_where_nobody_knows_ditches(documented, site):
+    keys = ("terrain={kind: ditch, riser: 0.1, tread: 0.15}", "gait.step_length=0.3", "duration=0.1", "criteria={}")
+    done = documented.run("run", "diagonal-walk", *(word for key in keys for word in ("--set", key)), "--json")
+    assert done.returncode == 0, done.stderr
+    log = str(documented.folder.parent / json.loads(done.stdout)["log"])
+    seen = json.loads(site("elsewhere").run("inspect", log, "--json").stdout)
+    assert seen["reasons"] == ["terrain.kind 'ditch' is not known here; install the package that brings it"]
+    assert not [note for note in seen["notes"] if "terrain" in note]

@@ -158,5 +158,5 @@ def test_a_registered_name_makes_a_task(robot):
     finally:
         TASKS.discard("left-elbow")
     assert "left-elbow" not in TASKS
-    with pytest.raises(PluginError, match="must be a Callable"):
+    with pytest.raises(PluginError, match="must be a function or a class"):
         TASKS.add("left-elbow", "no factory")

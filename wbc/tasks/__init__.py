@@ -7,9 +7,6 @@ default ones, or registered by name in ``TASKS``, as what makes it for a robot:
     still-hand = "my_package.hand:StillHand"        # StillHand(model, frames) is a Task
 """
 
-from collections.abc import Callable
-from typing import Any, cast
-
 from surefoot.plugins import Registry
 from surefoot.wbc.tasks.default import DEFAULT_LAYOUT
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
@@ -29,5 +26,5 @@ __all__ = [
     "angular_acceleration",
 ]
 
-TASKS = Registry("surefoot.tasks", cast("type[Any]", Callable), {})
+TASKS: Registry[TaskFactory] = Registry("surefoot.tasks", None, {})
 """Tasks of other packages by name: a ``TaskFactory`` each."""

@@ -1,10 +1,9 @@
 """The kinds of terrain that a scenario may name: what their keys mean, and what makes them impossible."""
 
-from collections.abc import Mapping
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from surefoot.planner.ground.terrain import Terrain, flat
+from surefoot.plugins import Registry
 from surefoot.scenarios.setup.terrain.blocks import BlocksKind
 from surefoot.scenarios.setup.terrain.kind import TerrainKind
 from surefoot.scenarios.setup.terrain.slope import SlopeKind
@@ -24,9 +23,9 @@ class FlatKind(TerrainKind):
         return flat(draft.keys.terrain.friction)
 
 
-KINDS: Mapping[str, TerrainKind] = MappingProxyType(
-    {kind.name: kind for kind in (FlatKind(), StairsKind(), BlocksKind(), SlopeKind())}
-)
-"""Every kind of terrain by its name."""
+_OWN: tuple[TerrainKind, ...] = (FlatKind(), StairsKind(), BlocksKind(), SlopeKind())
+
+KINDS = Registry("surefoot.terrains", TerrainKind, {kind.name: kind for kind in _OWN})
+"""Every kind of terrain by its name: these, and those of other packages (see `surefoot.plugins`)."""
 
 __all__ = ["KINDS", "TerrainKind"]

@@ -29,7 +29,8 @@ MOST_STEPS = 2000
 class TerrainKind:
     """A kind of terrain: how it is built of a scenario's keys, and what makes it impossible.
 
-    To add one is a subclass in a file of its own, and its line in `KINDS`.
+    To add one is a subclass in a file of its own, and its line in `KINDS`; another package registers an instance under
+    an entry point of the group ``surefoot.terrains``.
 
     Attributes:
         name: value of ``terrain.kind``.

@@ -68,6 +68,12 @@ def test_an_object_of_another_kind(broken, at_hand, group):
     refused(answer, f"'five' of package broken-parts in {group} is of type int; {RIGHT[group]}")
 
 
+def test_a_robot_that_cannot_be_loaded_leaves_nothing_to_say_of_its_bodies(broken, at_hand):
+    broken.register("surefoot.robots", bang="broken.bang:THING")
+    settings = ("--set", "robot=bang", "--set", "pushes=[{time: 1, force: [1, 0, 0], body: its_tail}]")
+    refused(at_hand("run", "diagonal-walk", *settings, sites=[broken]), "'bang' of package broken-parts")
+
+
 @pytest.mark.parametrize("target", ["broken.leaves", "broken.nowhere:X", "broken:NOTHING"])
 def test_a_module_that_leaves_or_is_not_there(broken, at_hand, target):
     broken.register("surefoot.tasks", away=target)

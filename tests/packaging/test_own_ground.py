@@ -1,5 +1,7 @@
 """A kind of ground of another package: refused where a gait cannot cross it, and stepped over where it can."""
 
+import importlib
+
 import numpy as np
 import pytest
 
@@ -20,9 +22,7 @@ WALK = {
 def ditch(documented, importing, monkeypatch):
     """The kind of docs/extending.md, registered from Python."""
     monkeypatch.syspath_prepend(str(documented.folder))
-    from my_package.ground import Ditch
-
-    kind = KINDS.add("ditch", Ditch())
+    kind = KINDS.add("ditch", importlib.import_module("my_package.ground").Ditch())
     yield kind
     KINDS.discard("ditch")
 

@@ -11,7 +11,10 @@ Nothing is imported before the name is asked for.
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import redirect_stdout
-from importlib.metadata import EntryPoint, entry_points
+from functools import lru_cache
+from importlib import metadata
+from importlib.metadata import EntryPoint, EntryPoints
+from pathlib import Path
 from typing import TypeVar, cast
 
 T = TypeVar("T")
@@ -120,6 +123,24 @@ class Registry(Mapping[str, T]):
         if self._kind is not None and isinstance(thing, type) and issubclass(thing, self._kind):
             raise PluginError(f"{who} in {self.group} is the class {thing.__name__}", "register an instance of it")
         raise PluginError(f"{who} in {self.group} is of type {type(thing).__name__}", f"it must be {wanted}")
+
+
+def entry_points(group: str) -> EntryPoints:
+    """Every entry point of a group, of the packages on ``sys.path``."""
+    return _entry_points(group, tuple((place, _changed(place)) for place in sys.path))
+
+
+@lru_cache(maxsize=16)
+def _entry_points(group: str, _places: tuple[tuple[str, int], ...]) -> EntryPoints:
+    """Found once, and again when a package was installed since, which alters one of the places."""
+    return metadata.entry_points(group=group)
+
+
+def _changed(place: str) -> int:
+    try:
+        return Path(place).stat().st_mtime_ns
+    except OSError:
+        return 0
 
 
 def package_of(entry: EntryPoint) -> str:

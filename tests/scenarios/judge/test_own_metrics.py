@@ -82,7 +82,8 @@ def load(robots):
 
 @pytest.fixture
 def verdict(tmp_path, robot, motion, load):
-    return lambda **criteria: run_scenario(load(**criteria), tmp_path, None, motion(), robot).verdict
+    stand = motion(duration=0.3)
+    return lambda **criteria: run_scenario(load(**criteria), tmp_path, None, stand, robot).verdict
 
 
 def test_it_is_computed_shown_and_bounded_after_ours(brought, verdict):

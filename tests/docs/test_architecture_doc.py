@@ -1,12 +1,12 @@
 """docs/architecture.md is true: names, rooms, links, and the way of a tick and of a push."""
 
 import ast
-import importlib
 import re
 from pathlib import Path
 from unittest.mock import MagicMock
 
 import pytest
+from dotted import named
 
 from surefoot.scenarios.file.schema import PushSettings
 from surefoot.scenarios.loop.skeleton import ClosedLoop
@@ -19,21 +19,6 @@ ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 PICTURE = re.search(r"(?s)```\n(Scenario .*?)```", TEXT)[1]
 ROOMS = ("planner", "wbc", "sim", "models", "scenarios")
-
-
-def exists(name):
-    """Whether a dotted name below surefoot is a module, or leads to something in one."""
-    module, parts = "surefoot", name.removeprefix("surefoot.").split(".")
-    while parts:
-        try:
-            importlib.import_module(f"{module}.{parts[0]}")
-        except ModuleNotFoundError:
-            break
-        module = f"{module}.{parts.pop(0)}"
-    found = importlib.import_module(module)
-    for part in parts:
-        found = getattr(found, part, None)
-    return found is not None
 
 
 def classes():
@@ -53,12 +38,12 @@ def classes():
     "name", sorted(set(re.findall(r"`((?:planner|wbc|sim|models|scenarios|surefoot)\.[\w.]+\w)`", TEXT)))
 )
 def test_code_is_there(name):
-    assert exists(name)
+    assert named(name) is not None
 
 
 def test_a_name_that_is_not_there_is_found_out():
-    assert not exists("scenarios.setup.walk.no_such_function")
-    assert not exists("sim.world.World.shove")
+    assert named("scenarios.setup.walk.no_such_function") is None
+    assert named("sim.world.World.shove") is None
 
 
 def test_what_the_picture_names_is_there():

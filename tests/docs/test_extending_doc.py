@@ -1,11 +1,11 @@
 """docs/extending.md names what is there: protocols, functions, arguments, keys. Its code is run in tests/packaging."""
 
-import importlib
 import inspect
 import re
 from pathlib import Path
 
 import pytest
+from dotted import named
 
 import surefoot
 from surefoot.scenarios.file.group import _REGISTRIES
@@ -17,14 +17,6 @@ TEXT = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding=
 ROWS = [line.strip("| ").split(" | ") for line in TEXT.splitlines() if line.startswith("| ") and line.count("|") == 6][
     1:
 ]
-
-
-def named(name):
-    """What a dotted name below surefoot leads to."""
-    module, parts = "surefoot", name.split(".")
-    while len(parts) > 1:
-        module = f"{module}.{parts.pop(0)}"
-    return getattr(importlib.import_module(module), parts[0])
 
 
 def test_there_is_a_row_for_every_key_that_names_a_part():

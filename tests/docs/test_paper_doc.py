@@ -1,11 +1,11 @@
 """docs/paper.md names code and tests that exist."""
 
-import importlib
 import inspect
 import re
 from pathlib import Path
 
 import pytest
+from dotted import named
 
 from surefoot.scenarios import catalogue
 
@@ -15,29 +15,14 @@ ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
 
 
-def found(name):
-    """What a dotted name leads to: a module, or something in one; None when there is no such thing."""
-    module, parts = "surefoot.planner", name.split(".")[1:]
-    while parts:
-        try:
-            importlib.import_module(f"{module}.{parts[0]}")
-        except ModuleNotFoundError:
-            break
-        module = f"{module}.{parts.pop(0)}"
-    thing = importlib.import_module(module)
-    for part in parts:
-        thing = getattr(thing, part, None)
-    return thing
-
-
 @pytest.mark.parametrize("name", sorted(set(re.findall(r"`(planner\.[a-zA-Z_.]+)`", TEXT)) - {"planner.profile"}))
 def test_code_is_there(name):
-    assert found(name) is not None
+    assert named(name) is not None
 
 
 def test_a_name_that_is_not_there_is_found_out():
-    assert found("planner.model.dcm.no_such_function") is None
-    assert found("planner.no_such_module") is None
+    assert named("planner.model.dcm.no_such_function") is None
+    assert named("planner.no_such_module") is None
 
 
 @pytest.mark.parametrize("reference", sorted(set(re.findall(r"`(tests/[^`]+::[^`]+)`", TEXT))))
@@ -71,7 +56,7 @@ def test_every_equation_is_on_the_page_and_at_its_code(number):
     rows = rows_of(number)
     assert rows
     for names in rows:
-        assert any(f"eq. ({number})" in (inspect.getdoc(found(name)) or "") for name in names), names
+        assert any(f"eq. ({number})" in (inspect.getdoc(named(name)) or "") for name in names), names
 
 
 def test_no_label_of_the_manuscript_is_left():

@@ -1,6 +1,5 @@
 """docs/whole-body.md names code that exists and numbers that are the defaults."""
 
-import importlib
 import re
 from dataclasses import fields
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
+from dotted import named
 
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
@@ -21,21 +21,6 @@ from surefoot.wbc.tasks import DEFAULT_LAYOUT
 pytestmark = pytest.mark.unit
 
 TEXT = (Path(__file__).parents[2] / "docs" / "whole-body.md").read_text(encoding="utf-8")
-
-
-def exists(name):
-    """Whether a dotted name below surefoot is a module, or leads to something in one."""
-    module, parts = "surefoot", name.split(".")
-    while parts:
-        try:
-            importlib.import_module(f"{module}.{parts[0]}")
-        except ModuleNotFoundError:
-            break
-        module = f"{module}.{parts.pop(0)}"
-    found = importlib.import_module(module)
-    for part in parts:
-        found = getattr(found, part, None)
-    return found is not None
 
 
 def shown(value):
@@ -54,12 +39,12 @@ def rows(settings, prefix=""):
 
 @pytest.mark.parametrize("name", sorted(set(re.findall(r"`(wbc\.[a-zA-Z_.]+)`", TEXT)) - {"wbc."}))
 def test_code_is_there(name):
-    assert exists(name)
+    assert named(name) is not None
 
 
 def test_a_name_that_is_not_there_is_found_out():
-    assert not exists("wbc.controller.WholeBodyController.assemble")
-    assert not exists("wbc.no_such_module")
+    assert named("wbc.controller.WholeBodyController.assemble") is None
+    assert named("wbc.no_such_module") is None
 
 
 def test_the_table_of_numbers_is_that_of_the_code():

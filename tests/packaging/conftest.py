@@ -5,7 +5,6 @@ import re
 import shutil
 import subprocess
 import sys
-import tarfile
 import tomllib
 import zipfile
 from collections.abc import Callable, Iterable, Iterator
@@ -44,8 +43,7 @@ def distributions(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]
 def wheel_from_sdist(distributions: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel that an installer makes of the sdist."""
     folder = tmp_path_factory.mktemp("sdist")
-    with tarfile.open(distributions[1]) as archive:
-        archive.extractall(folder, filter="data")
+    shutil.unpack_archive(distributions[1], folder)
     (tree,) = folder.iterdir()
     (wheel,) = build(tree, tmp_path_factory.mktemp("again"), "-t", "wheel")
     return wheel

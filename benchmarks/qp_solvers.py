@@ -68,7 +68,7 @@ def recorded(scenario: str, overrides: list[str], every: int) -> list[QpData]:
     with tempfile.TemporaryDirectory() as folder:
         for i, _ in enumerate(walk.ticks(Path(folder) / "walk.mcap")):
             if i % every == 0:
-                problems.append(walk.loop.rig.controller.qp.copy())
+                problems.append(walk.loop.walker.controller.qp.copy())
     return problems
 
 

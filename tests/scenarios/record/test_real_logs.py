@@ -119,9 +119,9 @@ def assert_readable_until(log, told, folder):
 _TELLING = """
 import sys
 from pathlib import Path
-from surefoot.scenarios.setup.load import load_scenario
+from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.loop.run import run_scenario
-run_scenario(load_scenario("diagonal-walk"), Path(sys.argv[1]), lambda progress: print(progress.time, flush=True))
+run_scenario(load("diagonal-walk"), Path(sys.argv[1]), lambda progress: print(progress.time, flush=True))
 """
 
 

@@ -22,5 +22,6 @@ class LowBase:
 
 
 if __name__ == "__main__":
-    result = surefoot.run("diagonal-walk", parts=surefoot.Parts(estimator=LowBase))
+    scenario = surefoot.load("diagonal-walk", {"gait.steps": 2})
+    result = surefoot.run(scenario, parts=surefoot.Parts(estimator=LowBase))
     print(result, f"estimation error {1e3 * result.verdict['estimation_error_rms']:.2f} mm")

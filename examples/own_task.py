@@ -31,7 +31,7 @@ class LookAside:
 
 
 if __name__ == "__main__":
-    with surefoot.Simulation(surefoot.load("walk", {"gait.steps": 4}), tasks=[LookAside]) as sim:
+    with surefoot.Simulation(surefoot.load("walk", {"gait.steps": 3}), tasks=[LookAside]) as sim:
         while not sim.done:
             tick = sim.step()
     neck = 7 + sim.walk.robot.joint_names.index("neck_yaw")

@@ -4,7 +4,7 @@ import numpy as np
 
 import surefoot
 
-scenario = surefoot.load("walk", {"gait.steps": 12, "gait.step_length": 0.4, "terrain.friction": 0.6})
+scenario = surefoot.load("walk", {"gait.steps": 6, "gait.step_length": 0.4, "terrain.friction": 0.6})
 result = surefoot.run(scenario, seed=3, out="runs")
 print(result.verdict)
 print("CoP of the stance foot, 99th percentile:", result.verdict.metrics["cop_ratio_p99"])

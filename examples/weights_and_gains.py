@@ -3,7 +3,7 @@
 import surefoot
 
 for stiffness in (400.0, 200.0):
-    keys = {"wbc.gains.swing": [stiffness, 2.0 * stiffness**0.5], "wbc.weights.swing": 5.0, "gait.steps": 5}
+    keys = {"wbc.gains.swing": [stiffness, 2.0 * stiffness**0.5], "wbc.weights.swing": 5.0, "gait.steps": 2}
     sim = surefoot.Simulation(surefoot.load("walk", keys))
     strain = 0.0
     while not sim.done:

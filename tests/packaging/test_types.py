@@ -14,20 +14,21 @@ pytestmark = pytest.mark.physics
 FACE = Path(__file__).with_name("whole_face.py").read_text(encoding="utf-8")
 
 
-@pytest.fixture
-def checked(tmp_path, distributions):
+@pytest.fixture(scope="module")
+def checked(tmp_path_factory, distributions):
     """Check files strictly against the unpacked wheel; gives the places of faults, file and line."""
-    venv.create(tmp_path / "env", with_pip=False)
-    (site,) = (tmp_path / "env").glob("lib/python*/site-packages")
+    home = tmp_path_factory.mktemp("user")
+    venv.create(home / "env", with_pip=False)
+    (site,) = (home / "env").glob("lib/python*/site-packages")
     with zipfile.ZipFile(distributions[0]) as archive:
         archive.extractall(site)
     (site / "others.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
-    (tmp_path / "mypy.ini").write_text("[mypy]\nstrict = true\n[mypy-pinocchio.*]\nignore_missing_imports = true\n")
-    python = str(tmp_path / "env" / "bin" / "python")
+    (home / "mypy.ini").write_text("[mypy]\nstrict = true\n[mypy-pinocchio.*]\nignore_missing_imports = true\n")
+    settings = ["--config-file", str(home / "mypy.ini"), "--cache-dir", str(home / "cache")]
+    command = [sys.executable, "-m", "mypy", *settings, "--python-executable", str(home / "env" / "bin" / "python")]
 
-    def check(*files):
-        command = [sys.executable, "-m", "mypy", "--python-executable", python, *files]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    def check(folder, *files):
+        done = subprocess.run([*command, *files], cwd=folder, capture_output=True, text=True, check=False)
         faults = [line for line in done.stdout.splitlines() if ": error: " in line]
         assert bool(faults) == bool(done.returncode), (done.stdout, done.stderr)
         return {(file, int(line)): text for file, line, text in (fault.split(":", 2) for fault in faults)}
@@ -77,7 +78,7 @@ def test_a_program_with_the_whole_face_and_the_package_of_the_documentation(tmp_
         wrong = wrong.replace(part, fault)
     (tmp_path / "right.py").write_text(FACE)
     (tmp_path / "wrong.py").write_text(wrong)
-    found = checked("right.py", "wrong.py", "my_package")
+    found = checked(tmp_path, "right.py", "wrong.py", "my_package")
     assert not {place: fault for place, fault in found.items() if place[0] != "wrong.py"}
     assert {line for _, line in found} == faulty
 
@@ -86,4 +87,4 @@ def test_names_that_are_not_there_are_found(tmp_path, checked):
     (tmp_path / "wrong.py").write_text(
         "import surefoot\nversion: int = surefoot.__version__\nsurefoot.nothing\nfrom surefoot.planner import Nobody\n"
     )
-    assert {line for _, line in checked("wrong.py")} == {2, 3, 4}
+    assert {line for _, line in checked(tmp_path, "wrong.py")} == {2, 3, 4}

@@ -14,7 +14,7 @@ from typing import Any, Self
 FLAGS = (
     *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update", "--enable-unsafe-swiftshader"),
-    *("--window-size=1000,700", "--proxy-server=127.0.0.1:9"),
+    *("--window-size=560,400", "--proxy-server=127.0.0.1:9"),
 )
 
 

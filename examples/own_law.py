@@ -29,7 +29,7 @@ class SpringLaw:
 PROFILE = Profile("spring", "DCM feedback", PlannerParameters(), SpringLaw, moves=False)  # surefoot.profiles
 
 if __name__ == "__main__":
-    scenario = surefoot.load("diagonal-walk", {"gait.steps": 3})
+    scenario = surefoot.load("diagonal-walk", {"fidelity": "pendulum"})
     for name, profile in (("own", PROFILE), ("default", None)):
         result = surefoot.run(scenario, out=f"runs/{name}", planner=profile)
         print(name, result, "ZMP error", [f"{1e3 * error:.1f} mm" for error in result.verdict["zmp_error_rms"]])

@@ -90,14 +90,13 @@ class _Acting:
     end: float
 
 
-def start_tick(push: Push, rate: int) -> float:
-    """Start in physics ticks, free of rounding noise."""
-    return round(push.time * rate, 6)
+def physics_window(time: float, duration: float, rate: int) -> tuple[float, float]:
+    """Start and end of a push in physics ticks, free of rounding noise."""
+    return round(time * rate, 6), round((time + duration) * rate, 6)
 
 
 def _acting(push: Push, body: int, rate: int) -> _Acting:
-    end = round((push.time + push.duration) * rate, 6)
-    return _Acting(body, np.array(push.force, dtype=np.float64), start_tick(push, rate), end)
+    return _Acting(body, np.array(push.force, dtype=np.float64), *physics_window(push.time, push.duration, rate))
 
 
 def _timeline(pushes: Sequence[_Acting], begin: int) -> tuple[list[int], list[list[tuple[int, Array]]]]:

@@ -11,7 +11,7 @@ from surefoot.models.types import RobotDescription, nearest
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.errors import SimulationDiverged, WorldError
 from surefoot.sim.measurement import Array, Measurement
-from surefoot.sim.pushes import Push, PushSchedule, start_tick
+from surefoot.sim.pushes import Push, PushSchedule, physics_window
 from surefoot.sim.scene import world_mjcf
 from surefoot.sim.sensors import SensorReader
 
@@ -98,7 +98,7 @@ class World:
             WorldError: it starts in the past, or could not have been given to the constructor.
         """
         _check_push(push, self.description, ("push",))
-        if start_tick(push, self.physics_rate) < self.tick:
+        if physics_window(push.time, push.duration, self.physics_rate)[0] < self.tick:
             what = f"push on '{push.body}' at {push.time} s, which is in the past"
             raise WorldError(("push", "time"), what, f"it must start at {self.time} s or later")
         self._pushes.add(push, self.model.body(push.body).id, self.tick)

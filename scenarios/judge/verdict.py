@@ -11,6 +11,7 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
+from surefoot.errors import ParameterError
 from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
@@ -23,6 +24,7 @@ from surefoot.scenarios.log import Log
 from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
+from surefoot.scenarios.setup.events import never_act
 
 FIRST_METRICS = (
     "steps_taken",
@@ -194,7 +196,7 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     """
     measured, (scenario, absent) = measure(gathered or log), _known_part(log)
     criteria = asked(scenario.criteria, scenario.fidelity)
-    reasons = (*_unfinished(log), *map(str, absent), *missed(measured.values, criteria))
+    reasons = (*_unfinished(log), *map(str, absent), *_unacted(log, scenario), *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
     said = (*skipped, *notes(Draft(scenario)), *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
@@ -262,6 +264,15 @@ def _unfinished(log: Log) -> list[str]:
     if end.get("kind") in _ACCEPTED_ENDS:
         return []
     return [f"the run ended at {end.get('time', '?')} s: {end.get('reason', 'unknown reason')}"]
+
+
+def _unacted(log: Log, scenario: Scenario) -> list[str]:
+    """Say what was to happen after the run had ended."""
+    end = log.time_range()[1] + 1.0 / scenario.rates.control
+    try:
+        return [problem.what for problem in never_act(Draft(scenario), end)]
+    except ParameterError as fault:
+        return [f"when its pushes and faults act cannot be known: {fault}"]
 
 
 def _lookup(metrics: Mapping[str, Any], name: str) -> Any:

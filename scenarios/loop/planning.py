@@ -12,6 +12,7 @@ from surefoot.planner.types import CentroidalState, FeetState, PhaseKind
 from surefoot.scenarios.file.schema import Fault, Rates
 from surefoot.scenarios.loop.sensing import PlannerSensing
 from surefoot.scenarios.record.walk import WalkRecorder
+from surefoot.scenarios.setup.events import FaultWindow
 from surefoot.wbc.types import WbcReference
 
 
@@ -24,17 +25,11 @@ class FaultSchedule:
 
     def __init__(self, faults: Sequence[Fault], control_rate: int) -> None:
         """Faults with times in seconds, on a clock of ``control_rate`` [Hz]."""
-        self._windows = tuple(
-            (fault.kind, round(fault.time * control_rate), _end(fault, control_rate)) for fault in faults
-        )
+        self._windows = tuple(FaultWindow.of(fault, control_rate) for fault in faults)
 
     def active(self, kind: str, tick: int) -> bool:
         """Whether a fault of that kind acts at that control tick."""
-        return any(name == kind and start <= tick < end for name, start, end in self._windows)
-
-
-def _end(fault: Fault, control_rate: int) -> float:
-    return float("inf") if fault.duration is None else round((fault.time + fault.duration) * control_rate)
+        return any(window.kind == kind and window.holds(tick) for window in self._windows)
 
 
 class Planning:

@@ -8,9 +8,10 @@ from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
-from surefoot.scenarios.file.schema import Gait, PushSettings, Sensing, TerrainSettings
+from surefoot.scenarios.file.schema import Gait, Sensing, TerrainSettings
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.draft import Draft
+from surefoot.scenarios.setup.events import idle_commands, never_act
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
 from surefoot.scenarios.setup.robot import RobotFacts, Robots
 from surefoot.scenarios.setup.walk_checks import (
@@ -39,11 +40,13 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
     commands = command_problems(draft)
     if commands:
         draft = Draft(draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)}))
+    clock = [*_rates(draft), *_pushes(draft)]
     return [
         *commands,
-        *_rates(draft),
+        *clock,
         *_durations(draft),
-        *_pushes(draft),
+        *(() if clock else never_act(draft, draft.duration)),
+        *(() if commands else idle_commands(draft)),
         *_criteria(draft),
         *_beliefs(draft),
         *_controller(draft),
@@ -93,15 +96,9 @@ def _pushes(draft: Draft) -> Iterator[Problem]:
             yield Problem(key, "a push with both a time and a point of the gait", "give one of them")
         elif push.time is None and (push.step is None or push.phase is None):
             yield Problem(key, "a push without a begin", "give time, or step, phase and fraction")
-        else:
-            yield from _within_gait(draft, push, index)
-
-
-def _within_gait(draft: Draft, push: PushSettings, index: int) -> Iterator[Problem]:
-    steps = draft.gait.steps
-    if push.step is not None and push.step > steps:
-        what = f"a push in step {push.step} of a gait of {steps} steps"
-        yield Problem(("pushes", index, "step"), what, f"give a step of at most {steps}")
+        elif push.step is not None and push.step > draft.gait.steps:
+            what = f"a push in step {push.step} of a gait of {draft.gait.steps} steps"
+            yield Problem((*key, "step"), what, f"give a step of at most {draft.gait.steps}")
 
 
 def _criteria(draft: Draft) -> Iterator[Problem]:

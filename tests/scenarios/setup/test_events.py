@@ -1,0 +1,87 @@
+"""Pushes, faults and commands that never act: refused before the run, and no pass where a fall came first."""
+
+import pytest
+
+from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.events import FaultWindow
+from surefoot.scenarios.setup.load import load
+
+pytestmark = pytest.mark.unit
+
+SHORT = ("fidelity=pendulum", "gait.steps=2", "criteria={fell: false}")
+
+
+@pytest.mark.parametrize(
+    ("settings", "key", "words"),
+    [
+        (
+            ["pushes=[{time: 60, force: [1, 0, 0]}]"],
+            "pushes",
+            "pushes.0 begins at 60 s and never acts: the run ends at",
+        ),
+        (
+            ["pushes=[{time: 1, force: [1, 0, 0], duration: 1.0e-10}]"],
+            "pushes",
+            "rounds to nothing on a clock of 1000 Hz",
+        ),
+        (["pushes=[{time: 1}]"], "pushes", "pushes.0.force is zero"),
+        (
+            ["duration=1", "pushes=[{step: 2, phase: single, force: [1, 0, 0]}]"],
+            "pushes",
+            "never acts: the run ends at 1 s",
+        ),
+        (["faults=[{kind: state_nan, time: 60}]"], "faults", "faults.0 acts first at 60 s and never acts"),
+        (["faults=[{kind: state_nan, time: 1, duration: 1.0e-4}]"], "faults", "ends before the state_nan acts"),
+        (["faults=[{kind: planner_freeze, time: 1.004, duration: 0.012}]"], "faults", "at any tick of 50 Hz"),
+        (["faults=[{kind: planner_freeze, duration: 0.02}]"], "faults", "at any tick of 50 Hz"),
+    ],
+)
+def test_what_never_acts_is_refused_with_its_place(settings, key, words):
+    with pytest.raises(ScenarioError) as refused:
+        load("walk", [*SHORT, *settings])
+    (problem,) = refused.value.problems
+    assert words in problem
+    assert f"--set {key}" in problem
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ["pushes=[{time: 1, force: [1, 0, 0], duration: 1.0e-8}]"],
+        ["faults=[{kind: state_nan, time: 1, duration: 0.0011}]"],
+        ["faults=[{kind: planner_freeze, time: 1.004, duration: 0.02}]"],
+        ["faults=[{kind: planner_freeze, duration: 0.04}]"],
+    ],
+)
+def test_what_acts_however_shortly_is_taken(settings):
+    load("walk", [*SHORT, *settings])
+
+
+@pytest.mark.parametrize(("start", "duration", "first"), [(0.0, None, 0.02), (0.02, None, 0.02), (0.024, 0.02, 0.04)])
+def test_a_frozen_planner_is_noticed_when_a_plan_is_due(start, duration, first):
+    scenario = load("walk", [f"faults=[{{kind: planner_freeze, time: {start}, duration: {duration or 'null'}}}]"])
+    window = FaultWindow.of(scenario.faults[0], scenario.rates.control)
+    assert window.first_act(scenario.rates) == pytest.approx(first)
+
+
+def test_a_command_that_is_over_before_a_foot_lifts_off_is_refused():
+    keys = "gait.velocity=[{time: 0, v_x: 0.3}, {time: 2.0, v_x: 0.1}, {time: 2.02, v_x: 0.3}, {time: 4}]"
+    with pytest.raises(ScenarioError) as refused:
+        load("stop-and-go", ["criteria={fell: false}", keys])
+    (problem,) = refused.value.problems
+    assert "gait.velocity.1 is over at 2.02 s, before any foot lifts off by it, and never acts" in problem
+    load("stop-and-go", ["criteria={fell: false}", keys.replace("2.02", "3.0")])
+
+
+def test_a_push_after_a_fall_is_no_pass(tmp_path):
+    """The fall is what is asked for, and comes before the second push could act."""
+    pushes = "pushes=[{time: 1, force: [2000, 0, 0], duration: 0.5}, {time: 6, force: [1, 0, 0]}]"
+    both = load("walk", ["fidelity=pendulum", "gait.steps=8", pushes, "criteria={fell: true}"])
+    verdict = run_scenario(both, tmp_path).verdict
+    assert verdict.metrics["fell"] is True
+    assert not verdict.passed
+    (reason,) = verdict.reasons
+    assert reason.startswith("pushes.1 begins at 6 s and never acts: the run ends at")
+    alone = both.model_copy(update={"pushes": both.pushes[:1]})
+    assert run_scenario(alone, tmp_path).verdict.passed

@@ -1,0 +1,75 @@
+"""Five whole-body controllers that a careless change could have made, each worse in a way that a user would call bad."""
+
+from collections import deque
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.wbc.controller import WholeBodyController
+
+LATE_TICKS = 2
+"""4 ms at 500 Hz."""
+
+
+class SoftSwing(WholeBodyController):
+    """Half the gain of the swing foot's task."""
+
+    def __init__(self, *, parameters, **rest):
+        stiffness, damping = parameters.gains.swing
+        gains = replace(parameters.gains, swing=(0.5 * stiffness, 0.5 * damping))
+        super().__init__(parameters=replace(parameters, gains=gains), **rest)
+
+
+class HeavyLeg(WholeBodyController):
+    """The left leg's weight is not compensated."""
+
+    def __init__(self, *, model, leg_joints, **rest):
+        super().__init__(model=model, leg_joints=leg_joints, **rest)
+        left = np.array([name.startswith("left") for name in model.names[2:]])
+        self._leg, self._data = left & leg_joints, model.createData()
+
+    def interpret(self, terms, solution):
+        answer = super().interpret(terms, solution)
+        gravity = pin.computeGeneralizedGravity(terms.model, self._data, terms.q)
+        answer.torque[self._leg] -= gravity[6:][self._leg]
+        return answer
+
+
+class LongStep(WholeBodyController):
+    """The left foot swings to a place a centimetre ahead of where it shall."""
+
+    def update(self, reference, sensing, fail_solvers=False):
+        if reference.swing_foot == 0:
+            reference = replace(reference, swing_position=reference.swing_position + (0.01, 0.0, 0.0))
+        return super().update(reference, sensing, fail_solvers)
+
+
+class LateTorque(WholeBodyController):
+    """Torques arrive 4 ms late."""
+
+    def __init__(self, **given):
+        super().__init__(**given)
+        self._late = deque(maxlen=LATE_TICKS + 1)
+
+    def update(self, reference, sensing, fail_solvers=False):
+        report = super().update(reference, sensing, fail_solvers)
+        self._late.append(report.torque.copy())
+        return replace(report, torque=self._late[0])
+
+
+class WideCone(WholeBodyController):
+    """Believes in three times the friction that there is."""
+
+    def __init__(self, *, sole, **rest):
+        wide = replace(sole, friction=3.0 * sole.friction)
+        super().__init__(sole=wide, **rest)
+
+
+SABOTAGES = {
+    "task gain halved": SoftSwing,
+    "gravity compensation of a leg dropped": HeavyLeg,
+    "foot target off by 1 cm": LongStep,
+    "torque 4 ms late": LateTorque,
+    "friction cone too wide": WideCone,
+}

@@ -259,6 +259,46 @@ def paper(
 
 
 @app.command()
+def check(
+    scenarios: Annotated[
+        list[str] | None, typer.Argument(help="Catalogue names, files or folders; all of the catalogue by default.")
+    ] = None,
+    update: Annotated[bool, typer.Option("--update", help="Write the baselines anew, and show the change.")] = False,
+    baselines: Annotated[
+        Path | None, typer.Option(help="Directory of the baselines; beside the scenario files by default.")
+    ] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.")] = None,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
+    out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/check"),
+    junit: Annotated[Path | None, typer.Option(help="Also write JUnit XML to this file.")] = None,
+    markdown: Annotated[Path | None, typer.Option(help="Also write a summary for a CI page to this file.")] = None,
+) -> None:
+    """Run scenarios and compare their metrics with those that were kept."""
+    from surefoot.scenarios.check import check as checking
+    from surefoot.scenarios.check import report
+    from surefoot.scenarios.paper.page import cores
+    from surefoot.scenarios.show.console import plain_console
+
+    console = plain_console()
+    chosen = checking.cases(scenarios or (), baselines, set_ or ())
+    try:
+        found = checking.check(chosen, out, jobs or cores(), lambda one: report.print_checked(one, console))
+    except KeyboardInterrupt:
+        typer.echo("interrupted", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    if junit is not None:
+        report.write(junit, report.junit(found))
+    if markdown is not None:
+        report.write(markdown, report.markdown(found).encode())
+    typer.echo(report.summary(found))
+    if update:
+        for path in checking.update(found):
+            typer.echo(f"written: {path}")
+        raise typer.Exit(0 if all(one.now is not None and one.status != "failed" for one in found) else MISSED)
+    raise typer.Exit(0 if all(one.passed for one in found) else MISSED)
+
+
+@app.command()
 def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.")]) -> None:
     """Print the commented YAML of a catalogue scenario, to start one's own from."""
     from surefoot.scenarios import catalogue

@@ -1,0 +1,1 @@
+"""Physics regression: metrics of runs against those that were kept."""

@@ -1,0 +1,197 @@
+"""``surefoot check``: runs scenarios side by side and holds each against its baseline."""
+
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Literal
+
+import yaml
+
+from surefoot.scenarios import catalogue
+from surefoot.scenarios.check.baseline import ENDING, Baseline, Move, Parting, read_baseline, write_baseline
+from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.log import read
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.load import load
+
+OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
+"""Baselines of the catalogue."""
+
+Status = Literal["same", "better", "moved", "failed", "without baseline", "other scenario", "could not run"]
+
+PASSING: tuple[Status, ...] = ("same", "better")
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A scenario and its baseline.
+
+    Attributes:
+        reference: as the user gave it: a catalogue name or a file.
+        scenario: fit to run.
+        baseline: where its baseline is, or would be.
+    """
+
+    reference: str
+    scenario: Scenario
+    baseline: Path
+
+    @property
+    def settings(self) -> str:
+        """What shapes the run and is not a default, which a baseline is good for."""
+        chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude={"name", "criteria"})
+        return yaml.safe_dump(chosen, sort_keys=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What became of a case.
+
+    Attributes:
+        case: that was run.
+        status: how the run compares with its baseline.
+        reasons: why it failed or could not run, one sentence each.
+        moves: metrics that are not where the baseline has them.
+        parting: where the run first parts from its baseline.
+        log: of the run, None when there is none.
+        now: what the run would be as a baseline, None when there was no run.
+    """
+
+    case: Case
+    status: Status
+    reasons: tuple[str, ...] = ()
+    moves: tuple[Move, ...] = ()
+    parting: Parting | None = None
+    log: Path | None = None
+    now: Baseline | None = None
+
+    @property
+    def passed(self) -> bool:
+        """Whether the run met its criteria and is no worse than its baseline."""
+        return self.status in PASSING
+
+
+def cases(references: Sequence[str], folder: Path | None = None, overrides: Sequence[str] = ()) -> tuple[Case, ...]:
+    """The scenarios to check; all of the catalogue if none are named.
+
+    Args:
+        references: catalogue names, scenario files, or folders of scenario files.
+        folder: of the baselines; by default ours for the catalogue, ``baselines`` beside a file.
+        overrides: ``key=value``, for all of them.
+
+    Raises:
+        ScenarioError: one of them cannot be found, read or run, or two have the same name.
+    """
+    named = [name for reference in references for name in _unfolded(reference)] or list(catalogue.OWN)
+    found: dict[str, Case] = {}
+    for reference in named:
+        scenario = load(reference, overrides)
+        own = OWN if reference in catalogue.OWN else Path(reference).parent / "baselines"
+        case = Case(reference, scenario, (folder or own) / f"{scenario.name}{ENDING}")
+        if scenario.name in found:
+            first = found[scenario.name].reference
+            raise ScenarioError([f"{reference}: is named '{scenario.name}' as {first} is; give each a name of its own"])
+        found[scenario.name] = case
+    return tuple(found.values())
+
+
+def _unfolded(reference: str) -> list[str]:
+    """The scenario files of a folder, or the reference itself.
+
+    Raises:
+        ScenarioError: the folder holds none.
+    """
+    folder = Path(reference)
+    if reference in catalogue.OWN or not folder.is_dir():
+        return [reference]
+    files = sorted(str(path) for path in folder.glob("*.yaml") if not path.name.endswith(ENDING))
+    if not files:
+        raise ScenarioError([f"{reference}: holds no scenario; give a folder with *.yaml files"])
+    return files
+
+
+def run_case(case: Case, out: Path) -> Checked:
+    """Run a case and compare it with its baseline."""
+    try:
+        result = run_scenario(case.scenario, out)
+        log = read(result.log)
+        now = Baseline.of(case.scenario.name, case.settings, result.verdict.metrics, log)
+        known = replace(Checked(case, "same"), log=result.log, now=now, reasons=result.verdict.reasons)
+        before = read_baseline(case.baseline) if case.baseline.exists() else None
+        if before is None:
+            return replace(known, status="without baseline" if result.verdict.passed else "failed")
+        moves = tuple(before.moves(result.verdict.metrics, case.scenario.criteria))
+        compared = replace(known, moves=moves, parting=before.parting(log))
+        if not result.verdict.passed:
+            return replace(compared, status="failed")
+        if yaml.safe_load(before.settings) != yaml.safe_load(case.settings):
+            return replace(compared, status="other scenario")
+        if any(move.direction != "better" for move in moves):
+            return replace(compared, status="moved")
+        return replace(compared, status="better" if moves else "same")
+    except (ScenarioError, SetupError, LogError) as refusal:
+        return Checked(case, "could not run", (" ".join(str(refusal).split()),))
+
+
+def check(
+    chosen: Sequence[Case], out: Path, jobs: int, on_done: Callable[[Checked], None] = lambda _: None
+) -> tuple[Checked, ...]:
+    """Run cases side by side.
+
+    Args:
+        chosen: to run.
+        out: directory of their logs.
+        jobs: runs at once.
+        on_done: is told each as it is done.
+
+    Returns:
+        what became of each, in their order.
+    """
+    done: dict[str, Checked] = {}
+    for case, checked in _side_by_side(chosen, out, jobs):
+        done[case.scenario.name] = checked
+        on_done(checked)
+    return tuple(done[case.scenario.name] for case in chosen)
+
+
+def _side_by_side(chosen: Sequence[Case], out: Path, jobs: int) -> Iterator[tuple[Case, Checked]]:
+    with ProcessPoolExecutor(min(jobs, len(chosen)), get_context("spawn"), initializer=_leave_interrupts) as pool:
+        futures: dict[Future[Checked], Case] = {pool.submit(run_case, case, out): case for case in chosen}
+        try:
+            for future in as_completed(futures):
+                yield futures[future], _outcome(futures[future], future)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _outcome(case: Case, future: "Future[Checked]") -> Checked:
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        return Checked(case, "could not run", ("its process ended unexpectedly, as when memory runs out",))
+
+
+def _leave_interrupts() -> None:
+    """Leave Ctrl-C to the parent process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def update(checked: Sequence[Checked]) -> tuple[Path, ...]:
+    """Write the baselines of the runs that met their criteria; returns the files that changed.
+
+    Raises:
+        LogError: one cannot be written.
+    """
+    written = []
+    for one in checked:
+        if one.now is None or one.status in ("failed", "could not run") or one.status == "same":
+            continue
+        write_baseline(one.case.baseline, one.now)
+        written.append(one.case.baseline)
+    return tuple(written)

@@ -1,0 +1,100 @@
+"""What a check found, for a person, for a CI page and for a CI server."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from xml.etree import ElementTree as Xml
+
+from rich.console import Console
+
+from surefoot.scenarios.check.baseline import Move
+from surefoot.scenarios.check.check import Checked
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.verdict import shown_unit, value_text
+
+_SHOWN_MOVES = 12
+"""Moves of a run that are named; the others are counted."""
+
+
+def move_text(move: Move) -> str:
+    """One move: from where to where, how it is meant, and what would have been allowed."""
+    name = move.name.partition("[")[0]
+    unit = shown_unit(name)
+    before, now = (value_text(name, value) for value in (move.before, move.now))
+    allowed = "" if not move.allowed else f", {value_text(name, move.allowed)} {unit} is allowed".replace("  ", " ")
+    direction = "" if move.direction == "other" else f", {move.direction}"
+    return f"{move.name}: {before} -> {now} {unit}".rstrip() + direction + allowed
+
+
+def lines_of(checked: Checked) -> list[str]:
+    """What is to be known of one run, worst first: why it failed, what moved, where to look."""
+    order = {"worse": 0, "other": 1, "better": 2}
+    moves = [move_text(move) for move in sorted(checked.moves, key=lambda move: order[move.direction])]
+    lines = [*checked.reasons, *moves[:_SHOWN_MOVES]]
+    if len(moves) > _SHOWN_MOVES:
+        lines.append(f"and {len(moves) - _SHOWN_MOVES} metrics more")
+    if checked.parting is not None:
+        lines.append(f"parts first from its baseline: {checked.parting}")
+    if checked.status == "other scenario":
+        lines.append(f"{checked.case.baseline} is of other settings; --update writes it anew")
+    if checked.status == "without baseline":
+        lines.append(f"no baseline at {checked.case.baseline}; --update writes it")
+    if checked.log is not None and not checked.passed:
+        lines.append(f"look at: surefoot plot {checked.log}")
+    return lines
+
+
+def print_checked(checked: Checked, console: Console) -> None:
+    """Print one run as soon as it is done."""
+    style = "bold green" if checked.passed else "bold red"
+    console.print(f"{checked.case.scenario.name}: ", end="", markup=False, highlight=False)
+    console.print(checked.status, style=style, highlight=False)
+    for line in lines_of(checked):
+        console.print(f"  - {line}", markup=False, highlight=False, soft_wrap=True)
+
+
+def summary(checked: Sequence[Checked]) -> str:
+    """All in a sentence."""
+    counts = {
+        status: sum(one.status == status for one in checked) for status in dict.fromkeys(c.status for c in checked)
+    }
+    return f"{len(checked)} scenarios: " + ", ".join(f"{count} {status}" for status, count in counts.items())
+
+
+def markdown(checked: Sequence[Checked]) -> str:
+    """A summary for the page of a CI run."""
+    rows = ["| scenario | result | what |", "|---|---|---|"]
+    for one in checked:
+        what = "<br>".join(line.replace("|", "\\|") for line in lines_of(one))
+        rows.append(f"| {one.case.scenario.name} | {'✅' if one.passed else '❌'} {one.status} | {what} |")
+    return "\n".join([f"### surefoot check: {summary(checked)}", "", *rows, ""])
+
+
+def junit(checked: Sequence[Checked]) -> bytes:
+    """JUnit XML: a test case for each scenario."""
+    failures = sum(not one.passed and one.status != "could not run" for one in checked)
+    errors = sum(one.status == "could not run" for one in checked)
+    numbers = {"tests": str(len(checked)), "failures": str(failures), "errors": str(errors)}
+    suite = Xml.Element("testsuite", {"name": "surefoot check", **numbers})
+    for one in checked:
+        time = one.now.metrics.get("duration", 0.0) if one.now is not None else 0.0
+        case = Xml.SubElement(suite, "testcase", classname="surefoot", name=one.case.scenario.name, time=f"{time:.3f}")
+        text = "\n".join(lines_of(one))
+        if not one.passed:
+            kind = "error" if one.status == "could not run" else "failure"
+            Xml.SubElement(case, kind, message=one.status).text = text
+        elif text:
+            Xml.SubElement(case, "system-out").text = text
+    return bytes(Xml.tostring(suite, encoding="utf-8", xml_declaration=True))
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write a report.
+
+    Raises:
+        LogError: it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    except OSError as error:
+        raise LogError(f"{path}: cannot be written, {(error.strerror or str(error)).lower()}") from None

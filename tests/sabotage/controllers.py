@@ -41,7 +41,7 @@ class LongStep(WholeBodyController):
 
     def update(self, reference, sensing, fail_solvers=False):
         if reference.swing_foot == 0:
-            reference = replace(reference, swing_position=reference.swing_position + (0.01, 0.0, 0.0))
+            reference = replace(reference, swing_position=reference.swing_position + np.array([0.01, 0.0, 0.0]))
         return super().update(reference, sensing, fail_solvers)
 
 

@@ -1,4 +1,4 @@
-"""Five whole-body controllers that a careless change could have made, each worse in a way that a user would call bad."""
+"""Five whole-body controllers that a careless change could have made, each worse in a way a user would call bad."""
 
 from collections import deque
 from dataclasses import replace

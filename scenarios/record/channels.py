@@ -137,8 +137,8 @@ def reference(_: Sizes) -> ChannelSpec:
         _real("dcm", 2, "m", "world", "planned DCM"),
         _scalar("omega", "1/s", "natural frequency of the pendulum"),
         _real("zmp_reference", 2, "m", "world", "ZMP that the footsteps define"),
-        _real("swing_position", 3, "m", "world", "sole centre of the swing foot"),
-        _real("swing_velocity", 3, "m/s", "world", "sole centre of the swing foot"),
+        _real("swing_position", 3, "m", "world", "sole centre of the swing foot, its roll in it"),
+        _real("swing_velocity", 3, "m/s", "world", "sole centre of the swing foot, its roll in it"),
         _int("phase", "0 standing, 1 double support, 2 single support"),
         _int("stance", "stance foot: 0 left, 1 right, -1 both"),
         _int("step", "footsteps completed"),
@@ -146,6 +146,7 @@ def reference(_: Sizes) -> ChannelSpec:
         _scalar("phase_duration", "s", "of the phase"),
         _real("support", (SUPPORT_VERTICES, 2), "m", "world", "planned support polygon; the last vertex pads"),
         _int("support_count", "vertices of the polygon"),
+        _real("roll", 2, "rad", "", "planned pitch about the toe edge, heel up: left, right"),
     )
     return ChannelSpec("/reference", "Reference", fields, reference.__doc__ or "")
 

@@ -46,6 +46,15 @@ def joint_limit_margin(run: RunView) -> Array:
 
 
 @reduction("/measurement")
+def joint_speed_ratio(run: RunView) -> Array:
+    """Largest joint speed over the joint's no-load speed at each tick, shape (n,); NaN in a log without these."""
+    if not run.constants.velocity_limit:
+        return np.full(run.ticks, np.nan)
+    speed = np.abs(run.field("/measurement", "joint_velocity"))
+    return np.asarray(np.max(speed / np.array(run.constants.velocity_limit), axis=1))
+
+
+@reduction("/measurement")
 def knee_flexion(run: RunView) -> Array:
     """Mean flexion of the knees at each tick, shape (n,) [rad]."""
     return np.asarray(np.abs(run.field("/measurement", "joint_position")[:, run.knees]).mean(axis=1))
@@ -82,6 +91,12 @@ def torque_at_limit_fraction(run: RunView) -> float:
 def joint_limit_margin_min(run: RunView) -> float:
     """Least distance of a joint from its limits, negative beyond them [rad]."""
     return float(run.reduced(joint_limit_margin).min())
+
+
+@metric(shown=(1e2, "% of no-load speed"), reduces=(joint_speed_ratio,), body=True)
+def joint_speed_ratio_max(run: RunView) -> float:
+    """Largest joint speed over the joint's no-load speed, above 1 where no motor could follow [-]."""
+    return float(run.reduced(joint_speed_ratio).max())
 
 
 @metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads={"/reference": ()}, reduces=(knee_flexion,), body=True)

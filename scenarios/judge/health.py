@@ -90,21 +90,19 @@ def foot_slip(run: RunView) -> Finding:
 
 def late_touchdowns(run: RunView) -> Finding:
     """How much longer than planned a single support lasts [s]."""
-    single, rate = run.single_support.copy(), run.constants.control_rate
-    single[_standing(run) :] = False
-    planned = run.field("/reference", "phase_duration")
-    stance = run.field("/reference", "stance")
-    phases = [phase for foot in (0, 1) for phase in walking.runs_of(single & (stance == foot))]
-    late = [(end - start) / rate - float(planned[start]) for start, end in phases if end < len(single)]
+    planned, swings = run.field("/reference", "phase_duration"), walking.swings_ended(run)
+    late = [(end - start) / run.constants.control_rate - float(planned[start]) for start, end in swings]
     if not late:
         return judged("touchdowns", False, None, None, "")
-    worst = int(np.argmax(late))
+    worst, missed = int(np.argmax(late)), walking.touchdowns_missed(run)
     count = sum(value > LATE for value in late)
+    never = f"{missed} of {len(late)} swings end without their foot ever touching the ground; " if missed else ""
     cause = (
-        f"{count} of {len(late)} touchdowns are late, the worst by {1000 * late[worst]:.0f} ms: the ground is lower "
-        "than planned, the swing foot lags behind its reference, or its contact is felt too late"
+        f"{never}{count} of {len(late)} touchdowns are late, the worst by {1000 * late[worst]:.0f} ms: the ground is "
+        "lower than planned, the swing foot lags behind its reference, or its contact is felt too late"
     )
-    return judged("touchdowns", late[worst] > LATE, float(run.time[phases[worst][1]]), late[worst], cause)
+    warn = missed > 0 or late[worst] > LATE
+    return judged("touchdowns", warn, float(run.time[swings[worst][1]]), late[worst], cause)
 
 
 def zmp_at_edge(run: RunView) -> Finding:

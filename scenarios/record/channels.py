@@ -182,11 +182,11 @@ def footsteps(_: Sizes) -> ChannelSpec:
 
 
 def footstep(_: Sizes) -> ChannelSpec:
-    """A footstep taken, at its touchdown."""
+    """A footstep taken, when its swing is over and its foot has touched down; none of a foot that never does."""
     fields = (
         _int("index", "1 is the first"),
         _int("foot", "0 left, 1 right"),
-        _real("planned", 4, "m, rad", "world", "x y z yaw as last planned"),
+        _real("planned", 4, "m, rad", "world", "x y z yaw as last planned before it touched down"),
         _real("actual", 4, "m, rad", "world", "x y z yaw"),
     )
     return ChannelSpec("/footstep", "Footstep", fields, footstep.__doc__ or "")

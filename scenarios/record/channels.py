@@ -53,7 +53,7 @@ def measurement(n: Sizes) -> ChannelSpec:
         _real("accelerometer", 3, "m/s^2", "imu", "specific force"),
         _real("wrench_left", 6, "N, N m", "left sole", "contact wrench at the sole centre"),
         _real("wrench_right", 6, "N, N m", "right sole", "contact wrench at the sole centre"),
-        _real("external_force", 3, "N", "world", "sum of pushes"),
+        _real("external_force", 3, "N", "world", "sum of pushes, mean over the tick that ends at the message's time"),
     )
     return ChannelSpec("/measurement", "Measurement", fields, measurement.__doc__ or "")
 
@@ -82,7 +82,7 @@ def point_truth(_: Sizes) -> ChannelSpec:
         _real("com_velocity", 3, "m/s", "world", "CoM velocity"),
         _real("left_sole", 7, "m, -", "world", "pose of the sole centre"),
         _real("right_sole", 7, "m, -", "world", "pose of the sole centre"),
-        _real("external_force", 3, "N", "world", "sum of pushes, mean until the next tick"),
+        _real("external_force", 3, "N", "world", "sum of pushes, mean over the tick that begins at the message's time"),
     )
     return ChannelSpec("/truth", "PointTruth", fields, point_truth.__doc__ or "")
 

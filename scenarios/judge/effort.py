@@ -39,10 +39,37 @@ def knee_torque_squared(run: RunView) -> Array:
 @reduction("/measurement")
 def joint_limit_margin(run: RunView) -> Array:
     """Least distance of a joint from its limits at each tick, shape (n,) [rad]."""
+    return np.asarray(_limit_margins(run).min(axis=1))
+
+
+@reduction("/measurement")
+def joint_at_limit(run: RunView) -> Array:
+    """Which joint is nearest to its limits at each tick, index, shape (n,)."""
+    return np.asarray(np.argmin(_limit_margins(run), axis=1).astype(np.uint8))
+
+
+def _limit_margins(run: RunView) -> Array:
     position = run.field("/measurement", "joint_position")
     below = position - np.array(run.constants.position_lower)
     above = np.array(run.constants.position_upper) - position
-    return np.asarray(np.minimum(below, above).min(axis=1))
+    return np.asarray(np.minimum(below, above))
+
+
+@reduction("/measurement")
+def joint_speed_ratio(run: RunView) -> Array:
+    """Largest joint speed over the joint's no-load speed at each tick, shape (n,); NaN in a log without these."""
+    return np.asarray(_speed_ratios(run).max(axis=1))
+
+
+@reduction("/measurement")
+def fastest_joint(run: RunView) -> Array:
+    """Which joint is nearest to its no-load speed at each tick, index, shape (n,)."""
+    return np.asarray(np.argmax(_speed_ratios(run), axis=1).astype(np.uint8))
+
+
+def _speed_ratios(run: RunView) -> Array:
+    speed = np.abs(run.field("/measurement", "joint_velocity"))
+    return np.asarray(speed / np.array(run.constants.velocity_limit or (np.nan,)))
 
 
 @reduction("/measurement")
@@ -82,6 +109,12 @@ def torque_at_limit_fraction(run: RunView) -> float:
 def joint_limit_margin_min(run: RunView) -> float:
     """Least distance of a joint from its limits, negative beyond them [rad]."""
     return float(run.reduced(joint_limit_margin).min())
+
+
+@metric(shown=(1e2, "% of no-load speed"), reduces=(joint_speed_ratio,), body=True)
+def joint_speed_ratio_max(run: RunView) -> float:
+    """Largest joint speed over the joint's no-load speed, above 1 where no motor could follow [-]."""
+    return float(run.reduced(joint_speed_ratio).max())
 
 
 @metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads={"/reference": ()}, reduces=(knee_flexion,), body=True)

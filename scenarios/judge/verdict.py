@@ -103,6 +103,8 @@ def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
     softened = metrics.get("planner_infeasible_fraction")
     if softened:
         yield f"the planner's hard constraints had no solution in {100 * softened:.1f} % of the plans and were softened"
+    if missed := metrics.get("touchdowns_missed"):
+        yield f"steps whose foot never touched the ground, so that they do not count: {missed}"
     failures, fallbacks = metrics.get("qp_failures"), metrics.get("wbc_fallbacks")
     if fallbacks:
         yield f"the whole-body QP had no solution at {fallbacks} ticks, which used the fallback torque"

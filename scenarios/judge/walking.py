@@ -50,12 +50,26 @@ def steps_planned(run: RunView) -> int:
 
 @metric(needs=("/truth",), reads={**FALL_READS, "/footstep": ()})
 def steps_taken(run: RunView) -> int:
-    """Touchdowns before a fall."""
+    """Footsteps whose foot touched the ground, before a fall."""
     if "/footstep" not in run.log:
         return 0
     end = fall_time(run)
     times = run.log["/footstep"].time
     return len(times) if end is None else int(np.count_nonzero(times < end))
+
+
+@metric(reads={**FALL_READS, "/reference": ("omega", "phase", "stance")})
+def touchdowns_missed(run: RunView) -> int:
+    """Swings that were over before a fall, but whose foot never touched the ground."""
+    return len(swings_ended(run)) - steps_taken(run)
+
+
+def swings_ended(run: RunView) -> list[tuple[int, int]]:
+    """Begin and end of each planned single support that was over before a fall and the end of the log, in ticks."""
+    fall = fall_time(run)
+    end = run.ticks if fall is None else int(np.searchsorted(run.time, fall))
+    single, stance = run.single_support[:end], run.field("/reference", "stance")[:end]
+    return sorted(swing for foot in (0, 1) for swing in runs_of(single & (stance == foot)) if swing[1] < end)
 
 
 @metric(unit="s", reads=_STILL_READS)

@@ -198,6 +198,7 @@ def run_constants(walk: Walk) -> RunConstants:
         torque_limit=tuple(float(value) for value in robot.torque_limit),
         position_lower=tuple(float(value) for value in robot.position_lower),
         position_upper=tuple(float(value) for value in robot.position_upper),
+        velocity_limit=tuple(float(value) for value in robot.velocity_limit),
         terrain=walk.terrain_kind,
         plant=walk.pendulum.plant,
         roles=_roles(robot),

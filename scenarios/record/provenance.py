@@ -63,6 +63,7 @@ class RunConstants:
         plant: of fidelity pendulum.
         boxes: the solids on the ground plane, each as centre, half sizes [m] and rotation to the world, row by row.
         roles: names of joints and bodies by role (knees, left_leg, right_leg, torso); a log may lack them.
+        velocity_limit: no-load speed by joint; empty in a log that lacks them [rad/s].
     """
 
     scenario: str
@@ -83,6 +84,7 @@ class RunConstants:
     plant: str = "pendulum"
     boxes: tuple[tuple[float, ...], ...] = ()
     roles: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    velocity_limit: tuple[float, ...] = ()
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""

@@ -111,11 +111,11 @@ class _Loop:
         out["truth"].append(ns, np.zeros(11), np.zeros(10), com, velocity, zero3, *soles, 0.01, 0, 0)
         out["estimate"].append(ns, com + np.array([0.001, 0, 0]), velocity, com[:2], zero3, zero6)
         zmp = np.array([*(center + offset), 0.0])
-        out["contact"].append(ns, zmp, [490, 490], loaded, loaded, loaded, cop, cop)
+        out["contact"].append(ns, zmp, 490.0 * np.array(loaded), loaded, loaded, loaded, cop, cop)
         out["reference"].append(
             ns,
             *(com, velocity, zero3, center, com[:2], 3.13, center, zero3, zero3),
-            *(2 if single else 0, stance, 0, 0.0, 0.5, support, 4),
+            *(2 if single else 0, stance, 0, 0.0, 0.5, support, 4, np.zeros(2)),
         )
         out["wbc"].append(ns, 0, 0, 5, 0, 1e-9, 1e-9, np.zeros(10), zero6, zero6, np.zeros(18))
         out["torque"].append(ns, np.array([30.0, -40.0, 5.0, 0.0]), 0.4)
@@ -150,6 +150,7 @@ def robot() -> SimpleNamespace:
         roles=SimpleNamespace(knees=JOINTS[1::2], left_leg=JOINTS[:2], right_leg=JOINTS[2:]),
         torso_body="torso",
         torque_limit=np.full(4, 100.0),
+        velocity_limit=np.full(4, 10.0),
         position_lower=np.full(4, -0.6),
         position_upper=np.full(4, 2.0),
     )

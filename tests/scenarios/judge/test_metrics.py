@@ -11,10 +11,12 @@ from surefoot.scenarios.loop.run import run_scenario
 pytestmark = pytest.mark.unit
 
 NAMES = (
-    "fell fall_time duration steps_planned steps_taken standing_time_final standing_time_between zmp_inside_fraction "
+    "fell fall_time duration steps_planned steps_taken touchdowns_missed standing_time_final "
+    "standing_time_between zmp_inside_fraction "
     "zmp_excursion_max cop_ratio_p99 cop_ratio_max zmp_error_rms zmp_error_max com_error_rms dcm_error_rms "
-    "footstep_error_max stair_edge_margin_min swing_clearance_min foot_slip_max self_contact_time torque_ratio_max "
-    "knee_torque_rms torque_at_limit_fraction joint_limit_margin_min knee_angle_mean cost_of_transport speed_mean "
+    "footstep_error_max stair_edge_margin_min swing_clearance_min foot_slip_max stance_twist_max stance_tilt_max "
+    "unplanned_flight_time self_contact_time torque_ratio_max knee_torque_rms torque_at_limit_fraction "
+    "joint_limit_margin_min joint_speed_ratio_max knee_angle_mean cost_of_transport speed_mean "
     "path_length displacement heading_change com_height_range estimation_error_rms planner_infeasible_fraction "
     "dcm_estimation_error_rms planner_time wbc_time real_time_factor qp_failures wbc_fallbacks log_bytes"
 )

@@ -112,3 +112,12 @@ def test_impulses_are_exact_whatever_the_rate():
     for rate in (50, 333, 500, 1000):
         impulse = sum(mean_force(push, tick / rate, 1 / rate) / rate for tick in range(rate))
         np.testing.assert_allclose(impulse, 0.0077 * push[0].force, atol=1e-12)
+
+
+def test_the_logged_swing_of_ideal_feet_is_where_they_are_though_they_cannot_roll(walk):
+    log = read(walk("gait.heel_off=0.5").log)
+    stance, swing = log["/reference"].field("stance"), log["/reference"].field("swing_position")
+    for foot, name in enumerate(("left_sole", "right_sole")):
+        error = (swing - log["/truth"].field(name)[:, :3])[stance == 1 - foot]
+        assert np.abs(error).max() < 1e-3
+    assert not log["/reference"].field("roll").any()

@@ -76,7 +76,9 @@ def _fill(writer: LogWriter, sizes: channels.Sizes, posture: np.ndarray, duratio
         zmp = np.array([time, 0.0, 0.0]) if time < 0.9 else np.full(3, np.nan)
         out["contact"].append(ns, zmp, (900, 0), (1, 0), (1, 0), (1, 0), cop(0), cop(1))
         clock = (2, 0, 0, 0.0, 0.5)
-        out["reference"].append(ns, com, zero, zero, zero[:2], zero[:2], 3.1, zero[:2], zero, zero, *clock, support, 4)
+        out["reference"].append(
+            ns, com, zero, zero, zero[:2], zero[:2], 3.1, zero[:2], zero, zero, *clock, support, 4, zero[:2]
+        )
         if tick % 10 == 0:
             ahead = np.full((3, 4), np.nan)
             ahead[0] = (0.2 + time, 0.11, 0.0, 0.0)

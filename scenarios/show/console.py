@@ -2,7 +2,6 @@
 
 import csv
 import io
-import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -25,8 +24,8 @@ from surefoot.scenarios.loop.skeleton import Progress
 
 _REFRESH = 0.1
 
-WIDTH = 200
-"""Columns of tables that go into a file or another program: as many as any of them needs."""
+WIDTH = 10_000
+"""Columns that a table may have: as many as it needs. A narrow terminal wraps a line; it never loses what it says."""
 
 
 class ProgressLine:
@@ -145,8 +144,11 @@ def plain_table(*columns: str) -> Table:
 
 
 def plain_console() -> Console:
-    """Standard output; lines are never wrapped, so that paths and names can be copied, nor tables cut in a file."""
-    return Console(soft_wrap=True, markup=False, highlight=False, width=None if sys.stdout.isatty() else WIDTH)
+    """Standard output; lines are never wrapped, so that paths and names can be copied, nor tables cut.
+
+    The height is given too: without it a dumb terminal, as of many CI services, has 80 columns whatever the width.
+    """
+    return Console(soft_wrap=True, markup=False, highlight=False, width=WIDTH, height=25)
 
 
 _ROWS_AT_ONCE = 4096

@@ -191,14 +191,9 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
-_WIDTH = 110
-"""Columns that the widest line needs; a narrower terminal wraps it rather than losing what it says."""
-
-
 def print_comparison(found: Comparison) -> None:
     """Print what is the same and what is not, the answer first."""
     console = plain_console()
-    console.width = max(console.width, _WIDTH)
     console.print(found.summary)
     console.print(f"A: {found.a}\nB: {found.b}")
     for note in found.notes:

@@ -76,7 +76,7 @@ def text(name: str) -> tuple[str, str]:
 
 
 def starter(name: str) -> str:
-    """YAML text of a scenario to start one's own from: its comments, and how an editor checks it; errors as of `text`."""
+    """YAML text of a scenario to start one's own from, with what lets an editor check it; errors as of `text`."""
     lines = text(name)[0].splitlines(keepends=True)
     head = next((number for number, line in enumerate(lines) if not line.startswith("#")), len(lines))
     return "".join((*lines[:head], _EDITOR, *lines[head:]))

@@ -93,11 +93,11 @@ def _health_lines(health: Sequence[Finding]) -> list[str]:
 
 def print_topic(topic: str, fields: Mapping[str, Mapping[str, Any]]) -> None:
     """Print the summary of a topic's fields."""
-    table = plain_table(topic, "shape", "messages", "not finite", "min", "mean", "max")
+    table = plain_table(topic, "shape", "unit", "messages", "not finite", "min", "mean", "max")
     for name, row in fields.items():
         shape = "x".join(str(n) for n in row["shape"]) or "scalar"
         spread = [number(row[key]) for key in ("min", "mean", "max")]
-        table.add_row(name, shape, str(row["messages"]), str(row["not_finite"]), *spread)
+        table.add_row(name, shape, row["unit"], str(row["messages"]), str(row["not_finite"]), *spread)
     plain_console().print(table)
 
 
@@ -175,7 +175,9 @@ def selected(log: Log, topic: str, start: float | None, end: float | None, field
 
 
 def export(channel: ChannelData, path: Path) -> None:
-    """Write a channel to a file; time [s] is the first column, an array's elements are columns ``name_i_j``.
+    """Write a channel to a file; time is the first column, the others are those of `ChannelData.columns`.
+
+    CSV has units in its headings, parquet has unit, frame and meaning as metadata of the columns.
 
     Raises:
         LogError: the ending is unknown, the file cannot be written, or pyarrow is needed and missing.
@@ -194,7 +196,8 @@ def export(channel: ChannelData, path: Path) -> None:
 def _csv(channel: ChannelData) -> bytes:
     table, text = channel.columns(), io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(table)
+    units = {name: note["unit"] for name, note in channel.notes().items()}
+    writer.writerow(name if units[name] in ("", "-") else f"{name} [{units[name]}]" for name in table)
     for first in range(0, len(channel), _ROWS_AT_ONCE):
         writer.writerows(
             zip(*(column[first : first + _ROWS_AT_ONCE].tolist() for column in table.values()), strict=True)
@@ -215,6 +218,7 @@ def _parquet(channel: ChannelData) -> bytes:
         import pyarrow.parquet
     except ImportError:
         raise LogError("parquet needs the package pyarrow; `pip install pyarrow`, or export to .csv or .npz") from None
-    data = io.BytesIO()
-    pyarrow.parquet.write_table(pyarrow.table(channel.columns()), data)
+    table, notes, data = pyarrow.table(channel.columns()), channel.notes(), io.BytesIO()
+    fields = [column.with_metadata(notes[column.name]) for column in table.schema]
+    pyarrow.parquet.write_table(table.cast(pyarrow.schema(fields)), data)
     return data.getvalue()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from surefoot.scenarios.errors import LogError, nearest
+from surefoot.scenarios.errors import LogError, nearest, require
 from surefoot.scenarios.log.encoding import MAGIC, decompress
 from surefoot.scenarios.log.messages import MESSAGE_BYTES, ChannelData, block_of, content_at, gathered, sound_records
 from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
@@ -77,13 +77,9 @@ class Log:
         Raises:
             LogError: there is no such topic, its messages are not of a fixed layout, or pandas is missing.
         """
-        try:
-            from pandas import DataFrame
-        except ImportError:
-            right = f"`pip install pandas`, or use log['{topic}'].field(name)"
-            raise LogError(f"a data frame needs the package pandas; {right}") from None
+        pandas = require("pandas", "frame", "a data frame", f"use log['{topic}'].field(name)")
         channel = self[topic]
-        frame = DataFrame(channel.columns()).set_index("time")
+        frame: DataFrame = pandas.DataFrame(channel.columns()).set_index("time")
         frame.attrs.update(channel.notes())
         return frame
 

@@ -1,6 +1,7 @@
 """What a person sees: a progress line on standard error, tables on standard output, numbers in engineers' units."""
 
 import csv
+import importlib
 import io
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -15,7 +16,7 @@ from rich.progress import Progress as RichProgress
 from rich.table import Table
 from rich.text import Text
 
-from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.judge.health import Finding
 from surefoot.scenarios.judge.inspection import Inspection
 from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text, shown_unit, value_text
@@ -213,12 +214,9 @@ def _npz(channel: ChannelData) -> bytes:
 
 
 def _parquet(channel: ChannelData) -> bytes:
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise LogError("parquet needs the package pyarrow; `pip install pyarrow`, or export to .csv or .npz") from None
+    pyarrow = require("pyarrow", "parquet", "parquet", "export to .csv or .npz")
+    parquet = importlib.import_module("pyarrow.parquet")
     table, notes, data = pyarrow.table(channel.columns()), channel.notes(), io.BytesIO()
     fields = [column.with_metadata(notes[column.name]) for column in table.schema]
-    pyarrow.parquet.write_table(table.cast(pyarrow.schema(fields)), data)
+    parquet.write_table(table.cast(pyarrow.schema(fields)), data)
     return data.getvalue()

@@ -151,7 +151,7 @@ def test_one_field_alone(log, tmp_path):
 
 def test_parquet_needs_pyarrow(log, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(LogError, match="pip install pyarrow"):
+    with pytest.raises(LogError, match=r"package pyarrow; install it with: .*\[parquet\]', or export to .csv"):
         export(selected(log, "/x", None, None, None), tmp_path / "x.parquet")
 
 

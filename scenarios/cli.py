@@ -17,7 +17,7 @@ app = typer.Typer(
     name="surefoot",
     help="A humanoid walks in full physics, and its log gives the verdict.",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
@@ -45,26 +45,42 @@ def _surefoot(
     """Take the options that need no command."""
 
 
-@app.command("list")
-def list_() -> None:
-    """List scenarios and robots, one line each."""
+def _scenarios(incomplete: str) -> list[str]:
+    """Catalogue names that begin so; where there is none, shells go on to complete file names."""
     from surefoot.scenarios import catalogue
-    from surefoot.scenarios.setup.robot import RegisteredRobots
 
-    names = catalogue.names()
-    width = max(map(len, names))
-    for name in names:
-        typer.echo(f"scenario  {name:<{width}} {catalogue.summary(name)}")
-    for name in RegisteredRobots().names():
-        typer.echo(f"robot     {name}")
-    for refusal in catalogue.refusals():
+    return [name for name in catalogue.names() if name.startswith(incomplete)]
+
+
+def _settings(incomplete: str) -> list[str]:
+    """Keys that begin so, each as the beginning of a setting."""
+    from surefoot.scenarios.show.listing import keys
+
+    return [f"{key}=" for key in keys() if key.startswith(incomplete)]
+
+
+@app.command("list")
+def list_(as_json: AsJson = False) -> None:
+    """List scenarios, robots and parts, one line each."""
+    from surefoot.scenarios.show import listing
+
+    if as_json:
+        typer.echo(json.dumps(listing.to_json(), allow_nan=False))
+    else:
+        typer.echo("\n".join(listing.lines()))
+    for refusal in listing.refusals():
         typer.echo(refusal, err=True)
 
 
 @app.command()
 def run(
-    scenario: Annotated[str, typer.Argument(help="Catalogue name, scenario file, or a log to run again.")],
-    set_: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.")] = None,
+    scenario: Annotated[
+        str, typer.Argument(help="Catalogue name, scenario file, or a log to run again.", autocompletion=_scenarios)
+    ],
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.", autocompletion=_settings),
+    ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed, over that of the scenario.")] = None,
     out: Annotated[Path | None, typer.Option(help="Directory for the log and the verdict; runs by default.")] = None,
     video: Annotated[Path | None, typer.Option(help="Also render the run to this .mp4 file.")] = None,
@@ -177,20 +193,28 @@ def compare(
     a: Annotated[Path, typer.Argument(metavar="A", help="A log.")],
     b: Annotated[Path, typer.Argument(metavar="B", help="Another log.")],
     out: Annotated[Path | None, typer.Option(help="Draw both over each other: PNG, SVG or PDF.")] = None,
-    tolerance: Annotated[float, typer.Option(help="Relative, and absolute below 1.")] = 1e-6,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Of values that still agree: relative, and absolute below 1; 1e-6 by default.")
+    ] = None,
+    exit_code: Annotated[
+        bool,
+        typer.Option("--exit-code", help="Exit with 1 unless they are the same: to the bit, or within --tolerance."),
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Show two logs side by side, and where their channels part."""
+    from surefoot.scenarios.show.compare.compare import TOLERANCE, draw, print_comparison
     from surefoot.scenarios.show.compare.compare import compare as compare_logs
-    from surefoot.scenarios.show.compare.compare import draw, print_comparison
 
-    found, first, second = compare_logs(a, b, tolerance)
+    found, first, second = compare_logs(a, b, TOLERANCE if tolerance is None else tolerance)
     if out is not None:
         draw(found, first, second, out)
     if as_json:
         typer.echo(json.dumps(found.to_json(), allow_nan=False))
     else:
         print_comparison(found)
+    same = found.identical if tolerance is None else found.agree
+    raise typer.Exit(MISSED if exit_code and not same else 0)
 
 
 @app.command()
@@ -239,7 +263,10 @@ def paper(
     out: Annotated[Path, typer.Option(help="Directory for the page and its runs.")] = Path("runs/paper"),
     jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
 ) -> None:
-    """Run the paper's experiments and write what holds as one HTML page; begun again, it goes on where it stopped."""
+    """Run the paper's experiments; write what holds as an HTML page.
+
+    Begun again, it goes on where it stopped.
+    """
     from surefoot.scenarios.paper.page import cores
     from surefoot.scenarios.paper.page import paper as run_paper
     from surefoot.scenarios.paper.runner import InterruptedRunsError
@@ -259,11 +286,11 @@ def paper(
 
 
 @app.command()
-def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.")]) -> None:
-    """Print the commented YAML of a catalogue scenario, to start one's own from."""
+def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocompletion=_scenarios)]) -> None:
+    """Print a scenario's commented YAML, to start one's own from."""
     from surefoot.scenarios import catalogue
 
-    typer.echo(catalogue.text(scenario)[0], nl=False)
+    typer.echo(catalogue.starter(scenario), nl=False)
 
 
 @app.command()
@@ -280,7 +307,7 @@ def main() -> None:
     An error that the user can mend is one message; a defect of the program is a traceback and an exit code of its own.
     """
     try:
-        app()
+        app(prog_name=app.info.name)  # not how it was started, which is no name that a shell can complete
     except (ScenarioError, LogError) as error:
         typer.echo(str(error), err=True)
         sys.exit(BAD_INPUT)

@@ -1,8 +1,16 @@
 """Errors that a user can mend, and what is said about them."""
 
 import difflib
+import importlib
+import json
+import shutil
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from shlex import quote
+from types import ModuleType
 
 Key = tuple[str | int, ...]
 """Path of a value in a scenario: keys and list indices."""
@@ -54,6 +62,50 @@ class SetupError(Exception):
 
 class LogError(Exception):
     """A log that cannot be written or read; the message says what, where and what would be right."""
+
+
+class MissingExtraError(LogError):
+    """An output needs a package that is not installed; the message says how to install it."""
+
+
+def require(module: str, extra: str, purpose: str, otherwise: str = "") -> ModuleType:
+    """Import an optional package.
+
+    Args:
+        module: to import.
+        extra: of the distribution that brings it.
+        purpose: what needs it, for the message.
+        otherwise: what one can do without it.
+
+    Raises:
+        MissingExtraError: it is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        right = f"install it with: {install_command(extra)}" + (f", or {otherwise}" if otherwise else "")
+        raise MissingExtraError(f"{purpose} needs the package {module}; {right}") from None
+
+
+def install_command(extra: str) -> str:
+    """What installs an extra of Surefoot where this Surefoot came from: its clone, what pip was given, or an index."""
+    here, clone = Path(sys.executable).parent, Path(__file__).parents[2]
+    pip = "pip" if Path(shutil.which("pip") or "").parent == here else f"{quote(sys.executable)} -m pip"
+    if (clone / "constraints.txt").is_file():
+        folder = Path() if Path.cwd() == clone else clone
+        return f"{pip} install -c {quote(str(folder / 'constraints.txt'))} -e {quote(f'{folder}[{extra}]')}"
+    source = _installed_from()
+    return f"{pip} install {quote(f'surefoot[{extra}] @ {source}' if source else f'surefoot[{extra}]')}"
+
+
+def _installed_from() -> str:
+    """Address of the archive, folder or repository that pip was given; empty when it came from an index."""
+    try:
+        origin = json.loads(distribution("surefoot").read_text("direct_url.json") or "{}")
+    except PackageNotFoundError:
+        return ""
+    repository = origin.get("vcs_info", {}).get("vcs")
+    return f"{repository}+{origin['url']}" if repository else str(origin.get("url", ""))
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

@@ -97,7 +97,7 @@ def _file_findings(log: Log, end: float) -> list[Finding]:
 
 
 def topic_summary(channel: ChannelData) -> dict[str, dict[str, Any]]:
-    """Summarise every field of a channel: shape, count of values that are not finite, least, mean, greatest."""
+    """Summarise every field of a channel: what it is, how many values are not finite, least, mean and greatest."""
     summary: dict[str, dict[str, Any]] = {}
     for field in channel.fields:
         values = channel.field(field.name).astype(float)
@@ -105,6 +105,9 @@ def topic_summary(channel: ChannelData) -> dict[str, dict[str, Any]]:
         spread = (float(sound.min()), float(sound.mean()), float(sound.max())) if sound.size else (None, None, None)
         summary[field.name] = {
             "shape": list(field.shape),
+            "unit": field.unit,
+            "frame": field.frame,
+            "doc": field.doc,
             "messages": len(values),
             "not_finite": int(values.size - sound.size),
             **dict(zip(("min", "mean", "max"), spread, strict=True)),

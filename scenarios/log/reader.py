@@ -1,14 +1,15 @@
 """Reads a log into numpy arrays by channel and field name; also a truncated or damaged one, as far as it goes."""
 
+import json
 import mmap
 import zlib
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from surefoot.scenarios.errors import LogError, nearest
+from surefoot.scenarios.errors import LogError, nearest, require
 from surefoot.scenarios.log.encoding import MAGIC, decompress
 from surefoot.scenarios.log.messages import MESSAGE_BYTES, ChannelData, block_of, content_at, gathered, sound_records
 from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
@@ -30,6 +31,7 @@ class Log:
         metadata: named records of key and value; of equal names the last.
         attachments: contents by name.
         topics: every topic, in order of channel id.
+        joints: names of the robot's joints in order; () when the log does not say.
         truncated: whether the end of the file is missing, as after a killed run.
         damage: what could not be read, in words; grows as channels are loaded.
         contents: records of the file and their places.
@@ -49,6 +51,7 @@ class Log:
         self.attachments = {record.name: record.data for record in contents.attachments}
         self._ids = {channel.topic: number for number, channel in sorted(contents.channels.items(), reverse=True)}
         self.topics = tuple(reversed(self._ids))
+        self.joints = _joints(self.metadata)
         self._loaded: dict[str, ChannelData] = {}
 
     def __contains__(self, topic: str) -> bool:
@@ -69,15 +72,16 @@ class Log:
     def frame(self, topic: str) -> "DataFrame":
         """Messages of a topic as a pandas data frame: the index is time [s], the elements of a field are columns.
 
+        Unit, frame and meaning of the columns are in its ``attrs``, as of `ChannelData.notes`.
+
         Raises:
             LogError: there is no such topic, its messages are not of a fixed layout, or pandas is missing.
         """
-        try:
-            from pandas import DataFrame
-        except ImportError:
-            right = f"`pip install pandas`, or use log['{topic}'].field(name)"
-            raise LogError(f"a data frame needs the package pandas; {right}") from None
-        return DataFrame(self[topic].columns()).set_index("time")
+        pandas = require("pandas", "frame", "a data frame", f"use log['{topic}'].field(name)")
+        channel = self[topic]
+        frame: DataFrame = pandas.DataFrame(channel.columns()).set_index("time")
+        frame.attrs.update(channel.notes())
+        return frame
 
     def load(self, *topics: str) -> None:
         """Load topics in one pass through the file.
@@ -229,7 +233,7 @@ class Log:
         records = sound_records(whole, number, dtype)
         if len(records) < expected:
             self.damage.append(f"{expected - len(records)} messages of {topic} are damaged or not of its layout")
-        return ChannelData(topic, fields, records)
+        return ChannelData(topic, fields, records, self.joints)
 
     def _sound(self, chunk: ChunkPlace) -> bytes | None:
         """Decompressed bytes of a chunk if they agree with its checksum."""
@@ -258,6 +262,16 @@ class Log:
                 data = self._decompressed(chunk)
                 if data is not None:
                     chunk.index = dict(index_chunk(data, self.contents))
+
+
+def _joints(metadata: Mapping[str, Mapping[str, str]]) -> tuple[str, ...]:
+    """Names of the joints as the constants of the run have them (`record.provenance.RunConstants`)."""
+    try:
+        names = json.loads(metadata["run"]["joint_names"])
+    except (KeyError, ValueError, RecursionError):
+        return ()
+    sound = isinstance(names, list) and all(isinstance(name, str) for name in names) and len(set(names)) == len(names)
+    return tuple(names) if sound else ()
 
 
 def read(path: str | Path) -> Log:

@@ -1,6 +1,7 @@
 """The command line: exit codes, one message for what a user can mend, JSON alone on standard output."""
 
 import json
+import re
 import subprocess
 import sys
 
@@ -8,6 +9,7 @@ import pytest
 
 from surefoot.errors import ParameterError
 from surefoot.scenarios import cli
+from surefoot.scenarios.cli import app
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop import run
@@ -49,12 +51,56 @@ def test_list(surefoot):
     assert code == 0
     assert "diagonal-walk" in out
     assert "robot     humanoid100" in out
+    assert "profile   repaired" in out
+    assert "metric " not in out, "every verdict shows ours"
+    summaries = [line for line in out.splitlines() if line.startswith("scenario ")]
+    assert [line for line in summaries if not line.endswith(".")] == []
+
+
+def test_list_json_has_the_same_and_the_metrics(surefoot):
+    found = json.loads(surefoot("list", "--json")[1])
+    assert found["robot"] == [{"name": "humanoid100", "package": "surefoot", "doc": ""}]
+    assert "speed_mean" in [entry["name"] for entry in found["metric"]]
+    assert all(entry["doc"] for kind in ("scenario", "profile", "terrain", "metric") for entry in found[kind])
+
+
+def test_every_command_takes_h_for_help_and_is_told_in_full(surefoot):
+    code, out, _ = surefoot("-h")
+    commands = re.findall(r"(?m)^  ([a-z]+)  +(.*)$", out.partition("Commands:")[2])
+    assert (code, len(commands)) == (0, len(app.registered_commands))
+    for name, help_ in commands:
+        assert help_.endswith("."), f"{name}: {help_}"
+        assert not help_.endswith("..."), f"{name}: {help_}"
+        assert surefoot(name, "-h")[1].startswith(f"Usage: surefoot {name} ")
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [
+        ("run stairs-u", ["stairs-up-down", "stairs-up"]),
+        ("show diag", ["diagonal-walk"]),
+        ("run no-such-f", []),
+        ("run walk --set gait.st", ["gait.steps=", "gait.step_length=", "gait.step_width="]),
+        ("run walk --set wbc.weights.sw", ["wbc.weights.swing="]),
+        ("insp", ["inspect"]),
+    ],
+)
+def test_a_shell_completes_commands_scenarios_and_keys(surefoot, monkeypatch, words, completed):
+    for name, value in (("COMP_WORDS", f"surefoot {words}"), ("COMP_CWORD", str(len(words.split())))):
+        monkeypatch.setenv(name, value)
+    monkeypatch.setenv("_SUREFOOT_COMPLETE", "complete_bash")
+    code, out, err = surefoot()
+    assert (code, out.split(), err) == (0, completed, "")
 
 
 def test_show_prints_a_file_that_runs(surefoot, tmp_path):
     code, out, _ = surefoot("show", "diagonal-walk")
     assert code == 0
     (tmp_path / "mine.yaml").write_text(out)
+    comment, hint, line, first, *_ = out.splitlines()
+    assert comment.startswith("# The walk of the paper's table")
+    assert "`surefoot schema > surefoot.schema.json`" in hint
+    assert (line, first) == ("# yaml-language-server: $schema=surefoot.schema.json", "name: diagonal-walk")
     assert load(str(tmp_path / "mine.yaml")) == load("diagonal-walk")
     code, _, err = surefoot("show", "diagonal-wlk")
     assert code == 2

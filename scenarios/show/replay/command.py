@@ -8,12 +8,12 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.skeleton import OnProgress, Progress
 from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.console import ProgressLine
-from surefoot.scenarios.show.replay.content import Replay, require, write_whole
+from surefoot.scenarios.show.replay.content import Replay, write_whole
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.poses import Window
 from surefoot.scenarios.show.replay.scene import ViserScene, rgb, serving

@@ -1,12 +1,10 @@
 """What a replay shows, independent of what shows it: surfaces on bodies, marks that move, footprints that stay."""
 
 import contextlib
-import importlib
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
 from typing import Literal
 
 import numpy as np
@@ -116,28 +114,6 @@ class Replay:
 
     def __len__(self) -> int:
         return len(self.time)
-
-
-class MissingExtraError(LogError):
-    """An output needs a package that is not installed; the message says how to install it."""
-
-
-def require(module: str, extra: str, purpose: str) -> ModuleType:
-    """Import an optional package.
-
-    Args:
-        module: to import.
-        extra: of the distribution that brings it.
-        purpose: what needs it, for the message.
-
-    Raises:
-        MissingExtraError: it is not installed.
-    """
-    try:
-        return importlib.import_module(module)
-    except ImportError:
-        install = f"pip install 'surefoot[{extra}]'"
-        raise MissingExtraError(f"{purpose} needs the package {module}; install it with: {install}") from None
 
 
 @contextlib.contextmanager

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from surefoot.scenarios.errors import require
 from surefoot.scenarios.palette import Color
-from surefoot.scenarios.show.replay.content import Array, Footprint, Replay, Track, require
+from surefoot.scenarios.show.replay.content import Array, Footprint, Replay, Track
 
 if TYPE_CHECKING:
     import viser

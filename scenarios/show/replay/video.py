@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from surefoot.scenarios.errors import MissingExtraError, require
 from surefoot.scenarios.palette import Color
-from surefoot.scenarios.show.replay.content import Array, MissingExtraError, Replay, Track, require, write_whole
+from surefoot.scenarios.show.replay.content import Array, Replay, Track, write_whole
 from surefoot.sim.gl import RenderingUnavailableError
 from surefoot.sim.marks import Mark
 from surefoot.sim.render import Camera, Image, Quality, render_frames

@@ -84,6 +84,10 @@ class Footprint:
     since: float
 
 
+SWAY = 1.0
+"""Over how long a camera that follows the robot takes the mean of where it is [s]."""
+
+
 @dataclass(frozen=True, slots=True)
 class Replay:
     """A stretch of a run at an even frame rate.
@@ -116,6 +120,12 @@ class Replay:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def followed(self) -> Array:
+        """What a camera that follows the robot looks at: the base without the sway of its steps, shape (n, 3) [m]."""
+        base, half = self.body_position[:, 1], round(SWAY * self.frame_rate / 2)
+        padded = np.pad(base, ((half, half), (0, 0)), mode="edge")
+        return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0).mean(axis=-1))
 
 
 class MissingExtraError(LogError):

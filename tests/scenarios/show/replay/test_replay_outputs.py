@@ -1,20 +1,23 @@
 """Page, video and live view of one log; what is missing is said in one sentence."""
 
 import importlib
+import json
 import re
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from surefoot.scenarios import cli
+from surefoot.scenarios import cli, palette
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.show.replay import content as extras
 from surefoot.scenarios.show.replay import video
 from surefoot.scenarios.show.replay.content import write_whole
 from surefoot.scenarios.show.replay.extract import extract
+from surefoot.scenarios.show.replay.page import Chart, Curve, column
 from surefoot.scenarios.show.replay.poses import Window
 from surefoot.scenarios.show.replay.video import marks_of
 from surefoot.sim import gl
@@ -47,6 +50,24 @@ def test_a_page_is_whole_and_alone(surefoot, log_path, tmp_path):
     assert "__VISER_EMBED_DATA__" in text
     assert not re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"']?(?:https?:)?//", text)
     assert [file.name for file in tmp_path.iterdir()] == ["walk.html"]
+    data = json.loads(re.findall(r"<script id=surefoot-data type=application/json>(.*?)</script>", text)[0])
+    assert data["layers"][:2] == ["/Ground", "/Robot"]
+    forward, left, force = data["charts"]
+    assert [chart["label"][-3:] for chart in (forward, left, force)] == ["[m]", "[m]", "[N]"]
+    assert [curve["name"] for curve in force["curves"]] == ["left foot", "right foot"]
+    assert {curve["name"] for curve in left["curves"]} >= {"ZMP", "CoM", "DCM", "ZMP planned"}
+    assert all(len(curve["values"]) == len(data["time"]) for chart in data["charts"] for curve in chart["curves"])
+    zmp = next(curve["values"] for curve in forward["curves"] if curve["name"] == "ZMP")
+    assert zmp[10] == pytest.approx(data["time"][10], abs=2e-3)  # the stance foot stands at the origin
+    assert zmp[-1] is None
+
+
+def test_a_page_with_a_hostile_name_stays_one_script(log):
+    curve = Curve("</script>$x", palette.COM, False, np.zeros(1))
+    text = column(replace(extract(log, Window(end=0.0)), title="<b>"), ("/a",), [Chart("[m]", 1, (curve,))])
+    assert text.count("</script>") == 2
+    assert "&lt;b&gt;" in text
+    assert "$x" in text
 
 
 def test_a_video_has_every_frame(surefoot, log_path, tmp_path, monkeypatch):
@@ -158,12 +179,29 @@ def test_a_live_view_plays_and_follows_a_growing_log(log_path, tmp_path):
         frame = np.searchsorted(part.time, server_time(server), side="right") - 1
         assert 0.1 < server_time(server) < 0.3
         assert pelvis.position == pytest.approx(part.body_position[frame, part.body_names.index("pelvis")])
+        robot = server.scene.get_handle_by_name("/Robot")
+        assert part.followed()[frame] + robot.position == pytest.approx(part.followed()[0])
+        camera = next(h for h in handles(server) if h.label == "camera follows the robot")
+        camera.value, stays = False, robot.position
         player.replace(whole)
         following = next(h for h in handles(server) if h.label == "follow the run")
         following.value = True
         player.advance(begin + 0.3)
         assert server_time(server) == pytest.approx(whole.time[-1], abs=1e-3)
         assert pelvis.position == pytest.approx(whole.body_position[-1, whole.body_names.index("pelvis")])
+        assert robot.position == pytest.approx(stays)
+
+
+def test_a_camera_follows_the_walk_and_not_its_sway(log):
+    replay = extract(log)
+    time = np.arange(0, 10, 1 / 30)
+    base = np.column_stack([0.5 * time, 0.03 * np.sin(2 * np.pi * time), 1.0 + 0.1 * time])
+    position = np.repeat(base[:, None], 2, axis=1)
+    followed = replace(replay, time=time, body_position=position).followed()
+    inside = slice(20, -20)
+    assert followed[inside, 0] == pytest.approx(base[inside, 0])
+    assert followed[inside, 2] == pytest.approx(base[inside, 2])
+    assert np.abs(followed[inside, 1]).max() < 0.003
 
 
 def handles(server):

@@ -26,19 +26,22 @@ def html_page(log: Path, out: Path, window: Window) -> None:
     write_page(replay, out, charts(LogView(opened), replay.time))
 
 
-def video(log: Path, out: Path, window: Window) -> None:
-    """Write a video, with a progress line; errors as of `extract` and `write_video`."""
-    from surefoot.scenarios.show.replay.video import write_video
+def video(
+    log: Path, out: Path, window: Window, speed: float = 1.0, camera: str = "follow", size: str = "1280x720"
+) -> None:
+    """Write a video, with a progress line; errors as of `extract`, `Film.of` and `write_video`."""
+    from surefoot.scenarios.show.replay.video import FRAME_RATE, Film, write_video
 
-    replay, begin = extract(read(log), window), time.monotonic()
-    length = len(replay) / replay.frame_rate
+    film = Film.of(speed, camera, size)
+    replay, begin = extract(read(log), film.window(window)), time.monotonic()
+    length = len(replay) / FRAME_RATE
     with ProgressLine(out.name) as line:
 
         def note(frames: int) -> None:
-            done = frames / replay.frame_rate
+            done = frames / FRAME_RATE
             line(Progress(done, length, "drawn", done / max(time.monotonic() - begin, 1e-9)))
 
-        write_video(replay, out, note)
+        write_video(replay, out, note, film)
 
 
 def live(log: Path, window: Window, say: Callable[[str], None]) -> None:

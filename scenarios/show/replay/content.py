@@ -121,6 +121,15 @@ class Replay:
     def __len__(self) -> int:
         return len(self.time)
 
+    def legend(self) -> dict[str, Color]:
+        """Colours of the marks that are ever shown, by name."""
+        found: dict[str, Color] = {}
+        for track in self.tracks:
+            name = track.layer if track.layer != "Contact forces" else f"Force, {track.name}"
+            if np.isfinite(track.vertices).all(axis=(1, 2)).any():
+                found.setdefault(name, track.color)
+        return found
+
     def followed(self) -> Array:
         """What a camera that follows the robot looks at: the base without the sway of its steps, shape (n, 3) [m]."""
         base, half = self.body_position[:, 1], round(SWAY * self.frame_rate / 2)

@@ -132,17 +132,14 @@ def page(replay: Replay, beside: Iterable[Chart] = ()) -> str:
 
 def column(replay: Replay, layers: tuple[str, ...], beside: Iterable[Chart]) -> str:
     """What stands beside the picture: title, legend, charts, and the room for viser's switches of the layers."""
-    # Marks have a legend; the walk's own points and feet are named by the charts in the same colours as well.
-    marks: dict[str, Color] = {}
-    for track in replay.tracks:
-        name = track.layer if track.layer != "Contact forces" else f"Force, {track.name}"
-        marks.setdefault(name, track.color)
     time = replay.time.round(4).tolist()
     data = {"time": time, "layers": layers, "charts": [_chart(chart) for chart in beside]}
     return Template(files(__package__).joinpath("column.html").read_text(encoding="utf-8")).substitute(
         title=html.escape(replay.title),
         span=f"{time[0]:.1f} s to {time[-1]:.1f} s",
-        legend="".join(f'<span><b style="background:{hexadecimal(c)}"></b>{name}</span>' for name, c in marks.items()),
+        legend="".join(
+            f'<span><b style="background:{hexadecimal(c)}"></b>{name}</span>' for name, c in replay.legend().items()
+        ),
         # An end of the script inside a name would end it.
         data=json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/"),
     )

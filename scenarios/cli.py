@@ -240,10 +240,17 @@ def replay(
     live: Annotated[bool, typer.Option("--live", help="Serve it on this machine, following a growing log.")] = False,
     start: Annotated[float | None, typer.Option("--from", help="First time [s].")] = None,
     end: Annotated[float | None, typer.Option("--to", help="Last time [s].")] = None,
+    speed: Annotated[float, typer.Option(help="Of the video over that of the run, 0.1 to 10.")] = 1.0,
+    camera: Annotated[
+        str, typer.Option(help="Of the video: follow, side, front, fixed, or azimuth,elevation,distance [deg, deg, m].")
+    ] = "follow",
+    size: Annotated[str, typer.Option(metavar="WxH", help="Of the video [px].")] = "1280x720",
 ) -> None:
     """Show a log in 3D: as a page, as a video or live."""
     if (html is not None) + (video is not None) + live != 1:
         raise typer.BadParameter("give one of --html FILE, --video FILE and --live")
+    if video is None and (speed, camera, size) != (1.0, "follow", "1280x720"):
+        raise typer.BadParameter("--speed, --camera and --size are of a video; give them with --video FILE")
     from surefoot.scenarios.show.replay import command
     from surefoot.scenarios.show.replay.poses import Window
 
@@ -252,7 +259,7 @@ def replay(
         command.html_page(log, html, window)
         typer.echo(str(html))
     elif video is not None:
-        command.video(log, video, window)
+        command.video(log, video, window, speed, camera, size)
         typer.echo(str(video))
     else:
         command.live(log, window, typer.echo)

@@ -1,7 +1,6 @@
 """The commands that show a log in 3D, and a run while it goes on."""
 
 import contextlib
-import html
 import subprocess
 import sys
 import time
@@ -11,93 +10,37 @@ from pathlib import Path
 from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.skeleton import OnProgress, Progress
-from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.console import ProgressLine
-from surefoot.scenarios.show.replay.content import Replay, write_whole
+from surefoot.scenarios.show.logview import LogView
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.poses import Window
-from surefoot.scenarios.show.replay.scene import ViserScene, rgb, serving
-
-_STYLE = """
-#surefoot { position: fixed; left: 1em; bottom: 4.5em; z-index: 1; font: 13px/1.5 system-ui, sans-serif;
-  color: #333; background: rgba(255, 255, 255, 0.75); padding: 0.4em 0.8em; border-radius: 4px; pointer-events: none }
-#surefoot b { display: inline-block; width: 0.8em; height: 0.8em; margin-right: 0.5em; border-radius: 50% }
-"""
-
-_OPEN_SCENE_TREE = """
-const opening = setInterval(() => {
-  const button = document.querySelector('[aria-label="Show scene tree"]');
-  if (button) { clearInterval(opening); button.click(); }
-}, 200);
-"""
-"""The scene tree holds the switches of the layers, and viser keeps it closed at first."""
-
-
-def write_page(replay: Replay, path: Path) -> None:
-    """Write the page.
-
-    Raises:
-        MissingExtraError: viser is not installed.
-        LogError: the file cannot be written.
-    """
-    with write_whole(path) as temporary:
-        temporary.write_text(page(replay), encoding="utf-8")
-
-
-def page(replay: Replay) -> str:
-    """The page as text.
-
-    Raises:
-        MissingExtraError: viser is not installed.
-    """
-    with serving() as server:
-        scene = ViserScene(server, replay)
-        recorder = server.get_scene_serializer()
-        for frame in range(1, len(replay)):
-            recorder.insert_sleep(float(replay.time[frame] - replay.time[frame - 1]))
-            scene.show(frame)
-        recorded: str = recorder.as_html()
-    return _with_legend(recorded, replay)
-
-
-def _with_legend(recorded: str, replay: Replay) -> str:
-    """Add title, legend and open switches to a recorded page."""
-    span = f"{replay.time[0]:.1f} s to {replay.time[-1]:.1f} s"
-    layers: dict[str, Color] = {}
-    for track in replay.tracks:
-        layers.setdefault(
-            track.layer if track.layer != "Contact forces" else f"{track.layer}, {track.name}", track.color
-        )
-    entries = "".join(f'<div><b style="background:rgb{rgb(color)}"></b>{name}</div>' for name, color in layers.items())
-    title = html.escape(replay.title)
-    legend = (
-        f"<style>{_STYLE}</style><div id=surefoot>{title}, {span}{entries}</div><script>{_OPEN_SCENE_TREE}</script>"
-    )
-    head, tail = recorded.rsplit("</body>", 1)
-    before, after = head.split("<head>", 1)
-    return f"{before}<head><title>{title}</title>{after}{legend}</body>{tail}"
 
 
 def html_page(log: Path, out: Path, window: Window) -> None:
     """Write a page; errors as of `extract` and `write_page`."""
-    from surefoot.scenarios.show.replay.command import write_page
+    from surefoot.scenarios.show.replay.page import charts, write_page
 
-    write_page(extract(read(log), window), out)
+    opened = read(log)
+    replay = extract(opened, window)
+    write_page(replay, out, charts(LogView(opened), replay.time))
 
 
-def video(log: Path, out: Path, window: Window) -> None:
-    """Write a video, with a progress line; errors as of `extract` and `write_video`."""
-    from surefoot.scenarios.show.replay.video import write_video
+def video(
+    log: Path, out: Path, window: Window, speed: float = 1.0, camera: str = "follow", size: str = "1280x720"
+) -> None:
+    """Write a video, with a progress line; errors as of `extract`, `Film.of` and `write_video`."""
+    from surefoot.scenarios.show.replay.video import FRAME_RATE, Film, write_video
 
-    replay, begin = extract(read(log), window), time.monotonic()
-    length = len(replay) / replay.frame_rate
+    film = Film.of(speed, camera, size)
+    replay, begin = extract(read(log), film.window(window)), time.monotonic()
+    length = len(replay) / FRAME_RATE
     with ProgressLine(out.name) as line:
 
         def note(frames: int) -> None:
-            done = frames / replay.frame_rate
+            done = frames / FRAME_RATE
             line(Progress(done, length, "drawn", done / max(time.monotonic() - begin, 1e-9)))
 
-        write_video(replay, out, note)
+        write_video(replay, out, note, film)
 
 
 def live(log: Path, window: Window, say: Callable[[str], None]) -> None:

@@ -82,6 +82,10 @@ class Footprint:
     since: float
 
 
+SWAY = 1.0
+"""Over how long a camera that follows the robot takes the mean of where it is [s]."""
+
+
 @dataclass(frozen=True, slots=True)
 class Replay:
     """A stretch of a run at an even frame rate.
@@ -114,6 +118,21 @@ class Replay:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def legend(self) -> dict[str, Color]:
+        """Colours of the marks that are ever shown, by name."""
+        found: dict[str, Color] = {}
+        for track in self.tracks:
+            name = track.layer if track.layer != "Contact forces" else f"Force, {track.name}"
+            if np.isfinite(track.vertices).all(axis=(1, 2)).any():
+                found.setdefault(name, track.color)
+        return found
+
+    def followed(self) -> Array:
+        """What a camera that follows the robot looks at: the base without the sway of its steps, shape (n, 3) [m]."""
+        base, half = self.body_position[:, 1], round(SWAY * self.frame_rate / 2)
+        padded = np.pad(base, ((half, half), (0, 0)), mode="edge")
+        return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0).mean(axis=-1))
 
 
 @contextlib.contextmanager

@@ -98,6 +98,39 @@ def test_the_dcm_is_the_coms_position_and_velocity_over_omega(pendulum):
     np.testing.assert_allclose(true_dcm(LogView(log)), expected, atol=1e-12)
 
 
+def test_positions_are_seen_from_the_sole_that_bears(pendulum):
+    log = read(pendulum)
+    view, stance = LogView(log), log["/reference"].field("stance")
+    clock, zmp = view.time("/contact"), view.field("/contact", "zmp", 3)[:, :2]
+    seen = view.from_stance(clock, zmp)
+    alone = np.flatnonzero(stance == 1)[10:-10]
+    foot = log["/truth"].field("right_sole")[alone, :2]
+    np.testing.assert_allclose(seen[alone], zmp[alone] - foot, atol=1e-6)  # which does not turn
+    assert 1 <= np.isnan(seen[:, 0]).sum() <= 4  # a break at each change of the stance foot
+
+
+def test_a_turned_foot_looks_along_itself(log_of):
+    view = log_of(stance=[-1, 0, 0, -1, 1], left=(1.0, 2.0, 0.0, np.pi / 2), right=(0.0, 0.0, 0.0, 0.0))
+    seen = view.from_stance(view.time("/reference"), np.tile([1.0, 2.5], (5, 1)))
+    np.testing.assert_allclose(seen[:4], np.tile([0.5, 0.0], (4, 1)), atol=1e-12)
+    assert np.isnan(seen[4]).all()
+
+
+@pytest.fixture
+def log_of(pendulum, monkeypatch):
+    """A view of invented stance feet, one per second."""
+
+    def make(stance, left, right):
+        view, ticks = LogView(read(pendulum)), len(stance)
+        fields = {"stance": np.array(stance, float)}
+        fields |= {"current_left": np.tile(left, (ticks, 1)), "current_right": np.tile(right, (ticks, 1))}
+        monkeypatch.setattr(view, "field", lambda topic, name, *shape: fields[name])
+        monkeypatch.setattr(view, "time", lambda topic: np.arange(float(ticks)))
+        return view
+
+    return make
+
+
 def test_phases_pushes_and_falls_lie_behind(pendulum, tmp_path, robot, motion, two_steps):
     behind = background(LogView(read(pendulum)))
     singles = [stretch for stretch in behind.phases if stretch.value[0] == 2]

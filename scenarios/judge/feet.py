@@ -16,7 +16,7 @@ _CLEARANCE_TICKS = 5
 """Every how many control ticks the clearance of a swing is looked at."""
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/footstep": ("planned", "actual")}, body=True)
+@metric(unit="m", shown=(1e3, "mm"), reads={"/footstep": ("planned", "actual")}, body=True, least=0.0)
 def footstep_error_max(run: RunView) -> float | None:
     """Largest distance of a sole at touchdown from its footstep as last planned [m]."""
     steps = run.log["/footstep"]
@@ -95,13 +95,19 @@ def stance_slips(run: RunView) -> list[Slip]:
     return slips
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/contact": ("planned", "felt")}, body=True)
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/contact": ("planned", "felt")}, body=True, least=0.0)
 def foot_slip_max(run: RunView) -> float | None:
     """Largest horizontal distance of a sole from where its stance began, over all stances [m]."""
     return max((slip.distance for slip in stance_slips(run)), default=None)
 
 
-@metric(unit="s", needs=("/truth",), reads={**FALL_READS, "/truth": (*FALL_READS["/truth"], "self_contact")}, body=True)
+@metric(
+    unit="s",
+    needs=("/truth",),
+    reads={**FALL_READS, "/truth": (*FALL_READS["/truth"], "self_contact")},
+    body=True,
+    least=0.0,
+)
 def self_contact_time(run: RunView) -> float:
     """How long the robot touched itself, before a fall [s]."""
     fallen = fall_time(run)

@@ -19,6 +19,7 @@ from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
 from surefoot.scenarios.record.provenance import LOG_NAME, PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check
+from surefoot.scenarios.setup.criteria_checks import criteria_problems
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
 
@@ -129,7 +130,7 @@ def read_scenario(text: str, name: str, stem: str, overrides: Overrides, robots:
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
     draft = Draft(scenario)
-    semantic = check(draft, robots)
+    semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *check(draft, robots)]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:
         raise ScenarioError(source.describe(problem) for problem in sorted(problems, key=source.spot))

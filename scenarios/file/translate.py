@@ -2,6 +2,7 @@
 
 import copy
 import itertools
+from functools import partial
 from typing import Any, cast
 
 from pydantic import BaseModel, ValidationError
@@ -25,6 +26,8 @@ _EXPECTED = {
     "too_long": "give fewer elements",
     "too_short": "give more elements",
     "string_pattern_mismatch": "use letters, digits, '.', '_' and '-'",
+    "string_too_long": "use fewer letters",
+    "string_unicode": "use plain text",
 }
 _BOUNDS = {"greater_than": ("gt", "more than"), "greater_than_equal": ("ge", "at least")} | {
     "less_than": ("lt", "less than"),
@@ -60,9 +63,8 @@ def _problem(detail: ErrorDetails, data: Any) -> Problem:
     value, kind, context = detail["input"], detail["type"], detail.get("ctx", {})
     name = dotted(key) or "the file"
     if kind == "extra_forbidden":
-        return Problem(
-            key, f"unknown key '{key[-1]}'", nearest(str(key[-1]), _group(key[:-1]).model_fields), at_key=True
-        )
+        names = partial(nearest, str(key[-1]), _group(key[:-1]).model_fields)
+        return Problem(key, f"unknown key '{key[-1]}'", names, at_key=True)
     if kind == "missing":
         missing = detail["loc"][-1]
         return Problem(key, f"{name} lacks element {missing}", f"give '{missing}'")

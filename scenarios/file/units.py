@@ -91,7 +91,10 @@ def meant(value: float, si: str, most: float) -> str:
     """
     for spelling in {"m": ("cm", "mm"), "s": ("ms",), "rad": (_DEGREE,), "rad/s": (f"{_DEGREE}/s",)}.get(si, ()):
         factor = _SPELLINGS[si][1][spelling]
-        if max(1.0, 1.5 * most) <= abs(value) < 1e6 and abs(_si(Decimal(repr(float(value))) * factor, spelling)) <= most:
+        if (
+            max(1.0, 1.5 * most) <= abs(value) < 1e6
+            and abs(_si(Decimal(repr(float(value))) * factor, spelling)) <= most
+        ):
             return f"; for {value:g} {spelling} write '{value:g} {spelling}'"
     return ""
 

@@ -19,7 +19,7 @@ DESCRIPTION = (
     "controller refuses; rates that do not divide; pushes without a begin or with two, in a step that is not "
     "walked, or on a body that the robot has not got; gaits and grounds that the legs cannot reach or stand "
     "on; criteria with min above max, that any run meets, or that the fidelity cannot measure; keys given "
-    "twice; more than 20 levels or a megabyte."
+    "twice; more than 20 levels or half a megabyte."
 )
 
 

@@ -22,6 +22,7 @@ from surefoot.scenarios.file.schema import (
     Scenario,
     VelocitySettings,
 )
+from surefoot.scenarios.file.units import unit_of
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log.spec import ChannelSpec
 from surefoot.scenarios.log.writer import CHUNK_PERIOD_NS
@@ -133,7 +134,9 @@ def _group_of(annotation: Any) -> Any:
 
 def _key_row(name: str, field: FieldInfo) -> str:
     default = "required" if field.is_required() else _default(field.get_default(call_default_factory=True))
-    return f"| `{name}` | {default} | {(field.description or '').replace('|', '/')} |"
+    unit = unit_of(field.annotation, field.metadata)
+    meaning = (field.description or "").replace("|", "/") + (f" [{unit}]" if unit else "")
+    return f"| `{name}` | {default} | {meaning} |"
 
 
 def _default(value: Any) -> str:

@@ -303,9 +303,9 @@ def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocom
 @app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors."""
-    from surefoot.scenarios.file.schema import Scenario
+    from surefoot.scenarios.setup.published import published
 
-    typer.echo(json.dumps(Scenario.model_json_schema(), indent=2))
+    typer.echo(json.dumps(published(), indent=2))
 
 
 def main() -> None:

@@ -5,7 +5,7 @@ import importlib
 import json
 import shutil
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
@@ -23,28 +23,33 @@ class Problem:
     Attributes:
         key: the value's path in the scenario.
         what: the fault.
-        right: what would be right.
+        right: what would be right, or what says it: of thousands of problems only the first are told.
         at_key: whether the key is at fault rather than its value.
     """
 
     key: Key
     what: str
-    right: str
+    right: str | Callable[[], str]
     at_key: bool = False
 
     def __str__(self) -> str:
-        return f"{self.what}; {self.right}"
+        return f"{self.what}; {self.right if isinstance(self.right, str) else self.right()}"
+
+
+LONGEST_SENTENCE = 2000
+"""Characters of a problem that are told; names and values may be longer than anyone reads."""
 
 
 class ScenarioError(Exception):
     """A scenario that cannot be run.
 
     Attributes:
-        problems: one sentence each, with its place: ``file:line:column: what; what would be right``.
+        problems: one sentence each, with its place: ``file:line:column: what; what would be right``; what a terminal
+            would obey or not show is escaped.
     """
 
     def __init__(self, problems: Iterable[str]) -> None:
-        self.problems = tuple(problems)
+        self.problems = tuple(map(_readable, problems))
         super().__init__("\n".join(self.problems))
 
 
@@ -62,6 +67,12 @@ class SetupError(Exception):
 
 class LogError(Exception):
     """A log that cannot be written or read; the message says what, where and what would be right."""
+
+
+def _readable(problem: str) -> str:
+    if len(problem) > LONGEST_SENTENCE:
+        problem = f"{problem[: LONGEST_SENTENCE // 2]} ... {problem[-LONGEST_SENTENCE // 2 :]}"
+    return "".join(sign if sign.isprintable() else repr(sign)[1:-1] for sign in problem)
 
 
 class MissingExtraError(LogError):
@@ -111,7 +122,7 @@ def _installed_from() -> str:
 def nearest(name: str, valid: Iterable[str]) -> str:
     """Say which of the valid names was meant, or list them."""
     names = sorted(valid)
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+    close = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.6)
     return f"did you mean '{close[0]}'?" if close else f"valid are {', '.join(names)}"
 
 

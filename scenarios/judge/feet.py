@@ -20,7 +20,7 @@ _CLEARANCE_TICKS = 5
 """Every how many control ticks the clearance of a swing is looked at."""
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/footstep": ("planned", "actual")}, body=True)
+@metric(unit="m", shown=(1e3, "mm"), reads={"/footstep": ("planned", "actual")}, body=True, least=0.0)
 def footstep_error_max(run: RunView) -> float | None:
     """Largest distance of a sole at touchdown from its footstep as last planned [m]."""
     steps = run.log["/footstep"]
@@ -153,20 +153,22 @@ def stance_slips(run: RunView) -> list[Slip]:
 _STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "normal_force")}
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads=_STANCE_READS, body=True)
+@metric(unit="m", shown=(1e3, "mm"), reads=_STANCE_READS, body=True, least=0.0)
 def foot_slip_max(run: RunView) -> float | None:
     """Largest horizontal way of a corner of a sole on the ground from where it came to it, over all stances [m]."""
     return max((slip.distance for slip in stance_slips(run)), default=None)
 
 
-@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads=_STANCE_READS, body=True)
+@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads=_STANCE_READS, body=True, least=0.0)
 def stance_twist_max(run: RunView) -> float | None:
     """Largest yaw of a loaded stance foot away from its yaw at first load, over all stances [rad]."""
     yaws = (np.unwrap(run.sole_yaw[stance.ticks, stance.foot]) for stance in stances(run))
     return max((float(np.abs(yaw - yaw[0]).max()) for yaw in yaws), default=None)
 
 
-@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads={**_STANCE_READS, "/reference": ("roll",)}, body=True)
+@metric(
+    unit="rad", shown=(180.0 / math.pi, "deg"), reads={**_STANCE_READS, "/reference": ("roll",)}, body=True, least=0.0
+)
 def stance_tilt_max(run: RunView) -> float | None:
     """Largest angle of a loaded stance sole to the ground under it; only sideways while it is planned to roll [rad]."""
     rolling, terrain = run.field("/reference", "roll") != 0.0, _terrain(run)
@@ -179,7 +181,7 @@ def stance_tilt_max(run: RunView) -> float | None:
     return max(largest, default=None)
 
 
-@metric(unit="s", reads=_STANCE_READS, body=True)
+@metric(unit="s", reads=_STANCE_READS, body=True, least=0.0)
 def unplanned_flight_time(run: RunView) -> float:
     """How long, after the first load, no foot carried load though one was planned in contact [s]."""
     standing, planned = loaded(run).any(axis=1), (run.field("/contact", "planned") != 0).any(axis=1)
@@ -187,7 +189,13 @@ def unplanned_flight_time(run: RunView) -> float:
     return float(np.count_nonzero(flying) / run.constants.control_rate)
 
 
-@metric(unit="s", needs=("/truth",), reads={**FALL_READS, "/truth": (*FALL_READS["/truth"], "self_contact")}, body=True)
+@metric(
+    unit="s",
+    needs=("/truth",),
+    reads={**FALL_READS, "/truth": (*FALL_READS["/truth"], "self_contact")},
+    body=True,
+    least=0.0,
+)
 def self_contact_time(run: RunView) -> float:
     """How long the robot touched itself, before a fall [s]."""
     fallen = fall_time(run)

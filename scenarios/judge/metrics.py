@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import ModuleType
 from typing import Any
 
@@ -68,10 +69,15 @@ def _unknown(name: Any) -> Iterator[Problem]:
         if name not in _usable(str(name).partition(".")[0]).bounded:
             raise KeyError(name)
     except KeyError:
-        names = [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
-        yield Problem(("criteria", name), f"unknown metric '{name}'", nearest(str(name), names), True)
+        yield Problem(("criteria", name), f"unknown metric '{name}'", partial(_meant, str(name)), True)
     except PluginError as error:
         yield Problem(("criteria", name), f"metric {error.what}", error.right, True)
+
+
+def _meant(name: str) -> str:
+    return nearest(
+        name, [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
+    )
 
 
 def _usable(name: str) -> Metric[Any]:

@@ -237,7 +237,8 @@ def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str
     value = _lookup(metrics, name)
     if bound.equals is not None:
         expected = metrics.get(bound.equals, bound.equals) if isinstance(bound.equals, str) else bound.equals
-        if value is None or value != expected:
+        alike = isinstance(value, bool) == isinstance(expected, bool)  # 1 is not true
+        if value is None or not alike or value != expected:
             fall = f" at {metrics['fall_time']:.3f} s" if name == "fell" and value is True else ""
             yield f"{name} is {_text(value)}{fall}, must be {_text(expected)}"
     if bound.min is None and bound.max is None:
@@ -246,10 +247,14 @@ def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str
         yield f"{name} is not available, so its bound cannot be checked"
         return
     values = value if isinstance(value, list) else [value]
+    sizes = [len(limit) for limit in (bound.min, bound.max) if isinstance(limit, tuple)]
+    if not values or any(size != len(values) for size in sizes):
+        yield f"{name} has {len(values)} elements, and its bound {sizes[0] if sizes else 1}"
+        return
     for index, element in enumerate(values):
         label = name if len(values) == 1 else f"{name}[{index}]"
         low, high = (_element(limit, index) for limit in (bound.min, bound.max))
-        if element is None:
+        if element is None or isinstance(element, bool):
             yield f"{label} is not a number"
         elif low is not None and element < low:
             yield f"{label} is {_text(element)}, bound is at least {_text(low)}"
@@ -285,9 +290,7 @@ def _lookup(metrics: Mapping[str, Any], name: str) -> Any:
 
 
 def _element(limit: float | tuple[float, ...] | None, index: int) -> float | None:
-    if isinstance(limit, tuple):
-        return limit[index] if index < len(limit) else None
-    return limit
+    return limit[index] if isinstance(limit, tuple) else limit
 
 
 def _text(value: Any) -> str:

@@ -9,7 +9,7 @@ from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
 from surefoot.scenarios.file.schema import Gait, Sensing, TerrainSettings
-from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import idle_commands, never_act
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
@@ -26,11 +26,12 @@ from surefoot.scenarios.setup.walk_checks import (
 _SENSED = ("source", "zmp_noise", "com_noise")
 """What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
 
-_AVAILABLE: dict[Key, tuple[Any, ...]] = {
+AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
     ("planner", "step_adaptation"): ("none", "location"),
     **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
 }
+"""Values of the format's keys that this version has; of other keys it has all."""
 
 _PENDULUM_FAULTS = ("planner_freeze", "state_nan")
 
@@ -47,7 +48,6 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
         *_durations(draft),
         *(() if clock else never_act(draft, draft.duration)),
         *(() if commands else idle_commands(draft)),
-        *_criteria(draft),
         *_beliefs(draft),
         *_controller(draft),
         *walk_problems(draft),
@@ -101,19 +101,6 @@ def _pushes(draft: Draft) -> Iterator[Problem]:
             yield Problem((*key, "step"), what, f"give a step of at most {draft.gait.steps}")
 
 
-def _criteria(draft: Draft) -> Iterator[Problem]:
-    for name, bound in draft.keys.criteria.items():
-        low, high = bound.min, bound.max
-        if isinstance(low, float) and isinstance(high, float) and low > high:
-            yield Problem(("criteria", name), f"criteria.{name}: min {low} exceeds max {high}", "swap them")
-        metric = known(name)
-        size = metric.size if metric else 1
-        for side, limit in (("min", low), ("max", high)):
-            if isinstance(limit, tuple) and len(limit) != size:
-                what = f"criteria.{name}.{side} has {len(limit)} elements"
-                yield Problem(("criteria", name, side), what, f"give one number, or {size} of them")
-
-
 def _beliefs(draft: Draft) -> Iterator[Problem]:
     height, error = draft.keys.gait.com_height, draft.keys.errors.com_height
     if error > 0.5 * height:
@@ -152,22 +139,26 @@ def _reach(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
     sideways = (gait.step_width - facts.hip_width) / 2
     if abs(sideways) >= facts.leg_length:
         what = f"gait.step_width {gait.step_width} m is out of reach of the legs"
-        yield Problem(("gait", "step_width"), what, f"use for example {facts.hip_width:.3f} m")
+        hint = meant(gait.step_width, "m", facts.leg_length)
+        yield Problem(("gait", "step_width"), what, f"use for example {facts.hip_width:.3f} m{hint}")
         return
     longest = longest_step(facts.leg_length, gait.com_height - facts.com_above_hip, facts.hip_width, gait.step_width)
     if math.isnan(longest):
         highest = facts.com_above_hip + math.sqrt(facts.leg_length**2 - sideways**2)
         what = f"gait.com_height {gait.com_height} m is out of reach with feet {gait.step_width} m apart"
-        yield Problem(("gait", "com_height"), what, f"use less than {highest:.3f} m")
+        yield Problem(
+            ("gait", "com_height"), what, f"use less than {highest:.3f} m{meant(gait.com_height, 'm', highest)}"
+        )
     elif gait.steps and not draft.commanded and abs(gait.step_length) > longest:
         what = f"gait.step_length {gait.step_length} m is out of reach at com_height {gait.com_height} m"
-        yield Problem(("gait", "step_length"), what, f"use at most {longest:.3f} m, or lower gait.com_height")
+        right = f"use at most {longest:.3f} m, or lower gait.com_height{meant(gait.step_length, 'm', longest)}"
+        yield Problem(("gait", "step_length"), what, right)
 
 
 def _unavailable(draft: Draft) -> list[Problem]:
     """List values that the contract allows and this version has not got."""
     found = []
-    for key, values in _AVAILABLE.items():
+    for key, values in AVAILABLE.items():
         value: Any = draft.keys
         for part in key:
             value = getattr(value, str(part))

@@ -13,16 +13,20 @@ from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, Set
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import unusable
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import Overrides, apply_overrides, decoded, parse
+from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, decoded, parse
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
 from surefoot.scenarios.record.provenance import LOG_NAME, PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check
+from surefoot.scenarios.setup.criteria_checks import criteria_problems
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
 
 LOG_ENDING = ".mcap"
+MOST_TOLD = 20
+"""Problems of a scenario that are told at once."""
+
 RUNS, AGAIN = Path("runs"), Path("runs/again")
 """Where runs go by default, and where the repetition of one goes that lies there."""
 
@@ -129,26 +133,35 @@ def read_scenario(text: str, name: str, stem: str, overrides: Overrides, robots:
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
     draft = Draft(scenario)
-    semantic = check(draft, robots)
+    semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *check(draft, robots)]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:
-        raise ScenarioError(source.describe(problem) for problem in sorted(problems, key=source.spot))
+        raise ScenarioError(_told(source, problems))
     if "fell" not in scenario.criteria:
         criteria = {"fell": Bound(equals=False), **scenario.criteria}
         scenario = scenario.model_copy(update={"criteria": criteria})
     return scenario
 
 
+def _told(source: Source, problems: list[Problem]) -> list[str]:
+    """The first problems with their places, in the order of the file, and how many more there are."""
+    told = [source.describe(problem) for problem in sorted(problems, key=source.spot)[:MOST_TOLD]]
+    rest = len(problems) - len(told)
+    return [*told, f"{source.name}: {rest} problems more; mend these first"] if rest else told
+
+
 def _text(reference: str) -> tuple[str, str, str]:
     """Text, name for messages, and stem of a scenario."""
     if reference in catalogue.OWN:
         return *catalogue.text(reference), reference
-    if is_log(reference):
-        return *attached_scenario(reference), Path(reference).stem
     path = Path(reference)
     try:
         if not path.is_file() and reference in catalogue.names():
             return *catalogue.text(reference), reference
+        if path.exists() and not path.is_file() and not path.is_dir():
+            raise ScenarioError([f"{reference}: a pipe or a device; give a regular file, or a catalogue name"])
+        if is_log(reference):
+            return *attached_scenario(reference), path.stem
         with path.open("rb") as file:
             return decoded(file, reference), reference, path.stem
     except IsADirectoryError:

@@ -45,7 +45,7 @@ def test_metrics_without_a_meaning_are_null_and_the_others_are_not(plain):
 
 
 def test_a_criterion_of_the_body_alone_is_noted_not_missed(walk):
-    verdict = walk("criteria={knee_angle_mean: {max: 0.1}, wbc_time.p99: {max: 1}}").verdict
+    verdict = walk("criteria={fell: false, knee_angle_mean: {max: 0.1}, wbc_time.p99: {max: 1}}").verdict
     assert verdict.passed
     assert [note.split()[1] for note in verdict.notes] == ["knee_angle_mean", "wbc_time.p99"]
 

@@ -20,6 +20,7 @@ from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.digest import Digest
 from surefoot.scenarios.judge.metrics import known, measure
 from surefoot.scenarios.log import Log
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
@@ -173,13 +174,10 @@ class Verdict:
         """Write as a JSON file.
 
         Raises:
-            LogError: it cannot be written.
+            LogError: it exists or cannot be written.
         """
-        try:
-            path.write_text(json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        except OSError as error:
-            path.unlink(missing_ok=True)
-            raise LogError(f"{path}: cannot be written, {(error.strerror or str(error)).lower()}") from None
+        with write_whole(path) as temporary:
+            temporary.write_text(json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def judge(log: Log, gathered: Digest | None = None) -> Verdict:

@@ -13,6 +13,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.encoding import MAGIC, Summary, encoded
 from surefoot.scenarios.log.reader import Log, read
 from surefoot.scenarios.log.scan import PREFIX, index_chunk
+from surefoot.scenarios.output import write_whole
 
 Index = dict[int, NDArray[np.void]]
 
@@ -34,24 +35,22 @@ class Recovery:
     lost: tuple[str, ...]
 
 
-def recover(source: str | Path, target: str | Path) -> Recovery:
+def recover(source: str | Path, target: str | Path, replace: bool = False) -> Recovery:
     """Write everything sound of a log to a new file, which appears under its name only when it is whole.
 
+    Args:
+        source: a log.
+        target: the file.
+        replace: an existing file.
+
     Raises:
-        LogError: the source is no MCAP file, the target is the source or cannot be written.
+        LogError: the source is no MCAP file, the target is the source, exists or cannot be written.
     """
     log, target = read(source), Path(target)
     if target.exists() and target.samefile(log.path):
         raise LogError(f"{target}: the log that is to be recovered; give another file to write to")
-    temporary = target.with_name(f".{target.name}.new")
-    try:
-        with temporary.open("wb") as file:
-            messages = _Rewriter(log, file).run()
-        temporary.replace(target)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{target}: cannot be written, {reason}; choose another directory") from None
+    with write_whole(target, replace) as temporary, temporary.open("wb") as file:
+        messages = _Rewriter(log, file).run()
     start, end = log.time_range()
     return Recovery(messages, start, end, tuple(log.damage))
 

@@ -11,9 +11,10 @@ from pathlib import Path
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.skeleton import OnProgress, Progress
+from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.console import ProgressLine
-from surefoot.scenarios.show.replay.content import Replay, require, write_whole
+from surefoot.scenarios.show.replay.content import Replay, require
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.poses import Window
 from surefoot.scenarios.show.replay.scene import ViserScene, rgb, serving
@@ -33,14 +34,14 @@ const opening = setInterval(() => {
 """The scene tree holds the switches of the layers, and viser keeps it closed at first."""
 
 
-def write_page(replay: Replay, path: Path) -> None:
+def write_page(replay: Replay, path: Path, replace: bool = False) -> None:
     """Write the page.
 
     Raises:
         MissingExtraError: viser is not installed.
-        LogError: the file cannot be written.
+        LogError: the file exists, and shall not be replaced, or cannot be written.
     """
-    with write_whole(path) as temporary:
+    with write_whole(path, replace) as temporary:
         temporary.write_text(page(replay), encoding="utf-8")
 
 
@@ -78,17 +79,17 @@ def _with_legend(recorded: str, replay: Replay) -> str:
     return f"{before}<head><title>{title}</title>{after}{legend}</body>{tail}"
 
 
-def html_page(log: Path, out: Path, window: Window) -> None:
+def html_page(log: Path, out: Path, window: Window, replace: bool = False) -> None:
     """Write a page; errors as of `extract` and `write_page`."""
-    from surefoot.scenarios.show.replay.command import write_page
+    refuse_existing(out, replace)
+    write_page(extract(read(log), window), out, replace)
 
-    write_page(extract(read(log), window), out)
 
-
-def video(log: Path, out: Path, window: Window) -> None:
+def video(log: Path, out: Path, window: Window, replace: bool = False) -> None:
     """Write a video, with a progress line; errors as of `extract` and `write_video`."""
     from surefoot.scenarios.show.replay.video import write_video
 
+    refuse_existing(out, replace)
     replay, begin = extract(read(log), window), time.monotonic()
     length = len(replay) / replay.frame_rate
     with ProgressLine(out.name) as line:
@@ -97,7 +98,7 @@ def video(log: Path, out: Path, window: Window) -> None:
             done = frames / replay.frame_rate
             line(Progress(done, length, "drawn", done / max(time.monotonic() - begin, 1e-9)))
 
-        write_video(replay, out, note)
+        write_video(replay, out, note, replace)
 
 
 def live(log: Path, window: Window, say: Callable[[str], None]) -> None:
@@ -108,12 +109,12 @@ def live(log: Path, window: Window, say: Callable[[str], None]) -> None:
         serve(log, window, say)
 
 
-def check(fidelity: str, *, video: Path | None, view: bool) -> None:
+def check(fidelity: str, *, video: Path | None, view: bool, replace: bool = False) -> None:
     """Say before a run what its pictures would lack after it.
 
     Raises:
         MissingExtraError: an optional package is not installed.
-        LogError: the fidelity has no body to show, or the video's name does not end in .mp4.
+        LogError: the fidelity has no body to show, or the video exists or its name does not end in .mp4.
     """
     if fidelity == "pendulum":
         raise LogError("a pendulum has no body to show; drop --video and --view, or run with fidelity full")
@@ -121,16 +122,21 @@ def check(fidelity: str, *, video: Path | None, view: bool) -> None:
         if video.suffix != ".mp4":
             raise LogError(f"{video}: a video is an MP4 file; give a name that ends in .mp4")
         require("av", "video", "--video")
+        refuse_existing(video, replace)
     if view:
         require("viser", "replay", "--view")
 
 
 class LiveView:
-    """Progress of a run, passed on; the first of it opens the replay, since the log exists from then on."""
+    """Progress of a run, passed on; the first of it opens the replay, since the log holds something from then on."""
 
-    def __init__(self, log: Path, on_progress: OnProgress) -> None:
-        self._log, self._on_progress = log, on_progress
+    def __init__(self, on_progress: OnProgress) -> None:
+        self._log, self._on_progress = Path(), on_progress
         self._process: subprocess.Popen[bytes] | None = None
+
+    def begin(self, log: Path) -> None:
+        """Take note of where the log is."""
+        self._log = log
 
     def __call__(self, progress: Progress) -> None:
         """See `OnProgress`."""

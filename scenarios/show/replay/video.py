@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.palette import Color
-from surefoot.scenarios.show.replay.content import Array, MissingExtraError, Replay, Track, require, write_whole
+from surefoot.scenarios.show.replay.content import Array, MissingExtraError, Replay, Track, require
 from surefoot.sim.gl import RenderingUnavailableError
 from surefoot.sim.marks import Mark
 from surefoot.sim.render import Camera, Image, Quality, render_frames
@@ -62,20 +63,21 @@ CODEC = {"crf": "20", "preset": "veryfast"}
 OnFrame = Callable[[int], None]
 
 
-def write_video(replay: Replay, path: Path, on_frame: OnFrame | None = None) -> None:
+def write_video(replay: Replay, path: Path, on_frame: OnFrame | None = None, replace: bool = False) -> None:
     """Write an mp4 file that plays at the speed of the run.
 
     Args:
         replay: what to show; its frame rate is that of the video.
         path: of the file.
         on_frame: is told the number of each frame that is done.
+        replace: an existing file.
 
     Raises:
         MissingExtraError: PyAV or an off-screen OpenGL is not installed.
-        LogError: the file cannot be written.
+        LogError: the file exists or cannot be written.
     """
     av = require("av", "video", "video")
-    with write_whole(path) as temporary:
+    with write_whole(path, replace) as temporary:
         try:
             encode(av, _pictures(replay), temporary, replay.frame_rate, on_frame or (lambda _: None))
         except RenderingUnavailableError as error:

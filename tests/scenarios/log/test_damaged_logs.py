@@ -33,8 +33,8 @@ def run(motion, robot, two_steps, tmp_path):
 def commands(path, out):
     return (
         ["inspect", str(path), "--json"],
-        ["inspect", str(path), "--topic", "/truth", "--from", "0.1", "--export", str(out.with_suffix(".csv"))],
-        ["recover", str(path), str(out)],
+        ["inspect", str(path), "--topic", "/truth", "--from", "0.1", "--export", str(out.with_suffix(".csv")), "-f"],
+        ["recover", str(path), str(out), "--force"],
     )
 
 

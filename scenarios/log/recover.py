@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.encoding import MAGIC, Summary, encoded
-from surefoot.scenarios.log.reader import Log, read
+from surefoot.scenarios.log.reader import RECOVERED, Log, read
 from surefoot.scenarios.log.scan import PREFIX, index_chunk
 from surefoot.scenarios.output import write_whole
 
@@ -52,14 +52,14 @@ def recover(source: str | Path, target: str | Path, replace: bool = False) -> Re
     with write_whole(target, replace) as temporary, temporary.open("wb") as file:
         messages = _Rewriter(log, file).run()
     start, end = log.time_range()
-    return Recovery(messages, start, end, tuple(log.damage))
+    return Recovery(messages, start, end, log.losses())
 
 
 class _Rewriter:
     def __init__(self, log: Log, file: BinaryIO) -> None:
         self._log = log
         self._file = file
-        self._position = 0
+        self._position = self._crc = 0
         self._summary = Summary()
         self._counts: dict[int, int] = {}
 
@@ -68,8 +68,9 @@ class _Rewriter:
         chunks = [(place, index_chunk(data, contents)) for place, data in self._log.sound_chunks()]
         self._write(MAGIC + encoded(Header("", "surefoot recover")))
         for record in contents.metadata:
-            self._write(self._summary.add_metadata(record, self._position))
-        origin = Metadata("recovered", {"from": self._log.path.name, "lost": "; ".join(self._log.damage)})
+            if record.name != RECOVERED:
+                self._write(self._summary.add_metadata(record, self._position))
+        origin = Metadata(RECOVERED, {"from": self._log.path.name, "lost": "; ".join(self._log.losses())})
         self._write(self._summary.add_metadata(origin, self._position))
         for attachment in contents.attachments:
             self._attach(attachment)
@@ -85,7 +86,7 @@ class _Rewriter:
             )
             self._chunk(chunk, index)
         self._loose()
-        self._write(self._summary.finish(self._position, self._counts))
+        self._write(self._summary.finish(self._position, self._counts, self._crc))
         return sum(self._counts.values())
 
     def _attach(self, attachment: Attachment) -> None:
@@ -120,3 +121,4 @@ class _Rewriter:
     def _write(self, data: bytes) -> None:
         self._file.write(data)
         self._position += len(data)
+        self._crc = zlib.crc32(data, self._crc)

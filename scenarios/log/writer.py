@@ -24,9 +24,10 @@ class Output:
     Attributes:
         path: where the log is.
         position: bytes written.
+        crc: CRC-32 of the bytes written.
     """
 
-    __slots__ = ("_file", "_temporary", "path", "position")
+    __slots__ = ("_file", "crc", "path", "position")
 
     def __init__(self, path: Path, beginning: bytes) -> None:
         """Create the file with its beginning.
@@ -35,7 +36,7 @@ class Output:
             LogError: it exists, cannot be created or the beginning does not fit.
         """
         self.path = path
-        self.position = 0
+        self.position = self.crc = 0
         try:
             self._file = path.open("xb", buffering=0)
         except FileExistsError:
@@ -76,6 +77,7 @@ class Output:
         while rest:
             rest = rest[self._file.write(rest) :]
         self.position += len(data)
+        self.crc = zlib.crc32(data, self.crc)
 
     def _set_aside(self) -> Path:
         """Cut off the record that did not fit and take away the name of a log, if the other name is free."""
@@ -236,7 +238,7 @@ class LogWriter:
             return
         self.flush()
         counts = {channel.channel_id: channel.total for channel in self._channels}
-        self._output.write(self._summary.finish(self._output.position, counts))
+        self._output.write(self._summary.finish(self._output.position, counts, self._output.crc))
         self._output.close()
 
     def discard(self) -> None:

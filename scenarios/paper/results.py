@@ -67,7 +67,7 @@ def is_done(path: Path, scenario: str) -> bool:
     except LogError:
         return False
     ended = log.metadata.get(END_RECORD, {}).get("kind") in ENDED
-    return ended and not log.truncated and same_scenario and _made_by(log) == _relevant(versions())
+    return ended and not log.truncated and same_scenario and not log.losses() and _made_by(log) == _relevant(versions())
 
 
 def outcome_of(experiment: Experiment, path: Path) -> Outcome:

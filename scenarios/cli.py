@@ -24,6 +24,7 @@ app = typer.Typer(
 
 MISSED, BAD_INPUT, DEFECT, INTERRUPTED = 1, 2, 70, 130
 
+Force = Annotated[bool, typer.Option("--force", "-f", help="Replace the file if it exists.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 
 
@@ -82,29 +83,27 @@ def run(
         typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.", autocompletion=_settings),
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed, over that of the scenario.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Directory for the log and the verdict; runs by default.")] = None,
+    out: Annotated[Path, typer.Option(help="Directory that gets the run's own folder.")] = Path("runs"),
     video: Annotated[Path | None, typer.Option(help="Also render the run to this .mp4 file.")] = None,
     view: Annotated[bool, typer.Option("--view", help="Show the run in a browser while it goes on.")] = False,
+    force: Annotated[bool, typer.Option("--force", "-f", help="Replace the video if it exists.")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a scenario, write its log and judge it."""
     from surefoot.scenarios.loop.run import run_scenario
-    from surefoot.scenarios.record.provenance import LOG_NAME, run_name
     from surefoot.scenarios.setup.load import load as load_scenario
-    from surefoot.scenarios.setup.load import locate, output_folder
+    from surefoot.scenarios.setup.load import locate
     from surefoot.scenarios.show.console import ProgressLine, print_result
     from surefoot.scenarios.show.replay.command import LiveView, check
 
     overrides = [*(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
     loaded = load_scenario(scenario, overrides)
-    name = run_name(loaded.name, loaded.seed)
-    folder = output_folder(scenario, name, out)
     if video or view:
-        check(loaded.fidelity, video=video, view=view)
+        check(loaded.fidelity, video=video, view=view, replace=force)
     with ProgressLine(loaded.name) as progress:
-        live = LiveView(folder / name / LOG_NAME, progress)
+        live = LiveView(progress)
         try:
-            result = run_scenario(loaded, folder, live if view else progress)
+            result = run_scenario(loaded, out, live if view else progress, on_begin=live.begin)
         except SetupError as refusal:
             raise locate(scenario, overrides, refusal) from None
     if as_json:
@@ -118,7 +117,7 @@ def run(
         from surefoot.scenarios.show.replay import command
         from surefoot.scenarios.show.replay.poses import Window
 
-        command.video(result.log, video, Window())
+        command.video(result.log, video, Window(), replace=force)
     live.wait()
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 
@@ -131,6 +130,7 @@ def inspect(
     start: Annotated[float | None, typer.Option("--from", help="From this time on [s].")] = None,
     end: Annotated[float | None, typer.Option("--to", help="Up to this time [s].")] = None,
     export: Annotated[Path | None, typer.Option(help="Write the topic to a .csv, .npz or .parquet file.")] = None,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Show verdict, metrics, health, topics and rates of a log."""
@@ -140,7 +140,7 @@ def inspect(
 
     opened = read(log)
     if topic is not None:
-        _show_topic(opened, topic, (start, end), field, export, as_json)
+        _show_topic(opened, topic, (start, end), field, export, force, as_json)
         return
     if (field, start, end, export) != (None, None, None, None):
         raise LogError("--field, --from, --to and --export choose from one topic; name it with --topic")
@@ -153,7 +153,13 @@ def inspect(
 
 
 def _show_topic(
-    log: "Log", topic: str, span: tuple[float | None, float | None], field: str | None, file: Path | None, as_json: bool
+    log: "Log",
+    topic: str,
+    span: tuple[float | None, float | None],
+    field: str | None,
+    file: Path | None,
+    force: bool,
+    as_json: bool,
 ) -> None:
     """Summarise a topic, or export it and say where it is."""
     from surefoot.scenarios.judge.inspection import topic_summary
@@ -163,7 +169,7 @@ def _show_topic(
     for loss in log.damage:
         typer.echo(f"not read: {loss}", err=True)
     if file is not None:
-        export(channel, file)
+        export(channel, file, force)
         typer.echo(json.dumps({"file": str(file), "messages": len(channel)}) if as_json else str(file))
     elif as_json:
         typer.echo(json.dumps(topic_summary(channel), allow_nan=False))
@@ -178,11 +184,12 @@ def plot(
     what: Annotated[str | None, typer.Option(metavar="NAME", help="One figure instead of the page of all.")] = None,
     start: Annotated[float | None, typer.Option("--from", metavar="T", help="Begin of the window [s].")] = None,
     end: Annotated[float | None, typer.Option("--to", metavar="T", help="End of the window [s].")] = None,
+    force: Force = False,
 ) -> None:
     """Draw the figures that a walking engineer looks at."""
     from surefoot.scenarios.show.figures.page import plot as plot_log
 
-    drawn = plot_log(log, out, what, start, end)
+    drawn = plot_log(log, out, what, start, end, force)
     for note in drawn.notes:
         typer.echo(f"note: {note}", err=True)
     typer.echo(str(drawn.path))
@@ -200,15 +207,19 @@ def compare(
         bool,
         typer.Option("--exit-code", help="Exit with 1 unless they are the same: to the bit, or within --tolerance."),
     ] = False,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Show two logs side by side, and where their channels part."""
+    from surefoot.scenarios.output import refuse_existing
     from surefoot.scenarios.show.compare.compare import TOLERANCE, draw, print_comparison
     from surefoot.scenarios.show.compare.compare import compare as compare_logs
 
+    if out is not None:
+        refuse_existing(out, force)
     found, first, second = compare_logs(a, b, TOLERANCE if tolerance is None else tolerance)
     if out is not None:
-        draw(found, first, second, out)
+        draw(found, first, second, out, force)
     if as_json:
         typer.echo(json.dumps(found.to_json(), allow_nan=False))
     else:
@@ -221,11 +232,12 @@ def compare(
 def recover(
     log: Annotated[Path, typer.Argument(help="A truncated or damaged log.")],
     out: Annotated[Path, typer.Argument(help="The whole log to write.")],
+    force: Force = False,
 ) -> None:
     """Make a whole, indexed log of what a truncated one still holds."""
     from surefoot.scenarios.log.recover import recover as recover_log
 
-    recovery = recover_log(log, out)
+    recovery = recover_log(log, out, force)
     for loss in recovery.lost:
         typer.echo(f"lost: {loss}", err=True)
     typer.echo(f"{recovery.messages} messages from {recovery.start:.3f} s to {recovery.end:.3f} s", err=True)
@@ -245,6 +257,7 @@ def replay(
         str, typer.Option(help="Of the video: follow, side, front, fixed, or azimuth,elevation,distance [deg, deg, m].")
     ] = "follow",
     size: Annotated[str, typer.Option(metavar="WxH", help="Of the video [px].")] = "1280x720",
+    force: Force = False,
 ) -> None:
     """Show a log in 3D: as a page, as a video or live."""
     if (html is not None) + (video is not None) + live != 1:
@@ -256,10 +269,10 @@ def replay(
 
     window = Window(start, end)
     if html is not None:
-        command.html_page(log, html, window)
+        command.html_page(log, html, window, force)
         typer.echo(str(html))
     elif video is not None:
-        command.video(log, video, window, speed, camera, size)
+        command.video(log, video, window, command.Filming(speed, camera, size), force)
         typer.echo(str(video))
     else:
         command.live(log, window, typer.echo)
@@ -269,6 +282,7 @@ def replay(
 def paper(
     out: Annotated[Path, typer.Option(help="Directory for the page and its runs.")] = Path("runs/paper"),
     jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
+    force: Annotated[bool, typer.Option("--force", "-f", help="Replace the page of an earlier time.")] = False,
 ) -> None:
     """Run the paper's experiments; write what holds as an HTML page.
 
@@ -279,7 +293,7 @@ def paper(
     from surefoot.scenarios.paper.runner import InterruptedRunsError
 
     try:
-        written = run_paper(out, jobs or cores())
+        written = run_paper(out, jobs or cores(), force)
     except InterruptedRunsError:
         typer.echo(f"interrupted; finished runs are kept in {out}, the same command goes on from there", err=True)
         raise typer.Exit(INTERRUPTED) from None

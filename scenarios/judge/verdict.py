@@ -18,9 +18,11 @@ from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import unknown
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.translate import without
-from surefoot.scenarios.judge.digest import Digest
-from surefoot.scenarios.judge.metrics import known, measure
+from surefoot.scenarios.judge.agreement import contradictions
+from surefoot.scenarios.judge.digest import Digest, RunView
+from surefoot.scenarios.judge.metrics import digest, known, measure
 from surefoot.scenarios.log import Log
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
@@ -112,6 +114,7 @@ def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
         yield f"the whole-body QP needed its second solver at {failures} ticks"
 
 
+_LOSSES_SAID = 3
 _ACCEPTED_ENDS = ("completed", "fall")
 
 
@@ -177,13 +180,10 @@ class Verdict:
         """Write as a JSON file.
 
         Raises:
-            LogError: it cannot be written.
+            LogError: it exists or cannot be written.
         """
-        try:
-            path.write_text(json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        except OSError as error:
-            path.unlink(missing_ok=True)
-            raise LogError(f"{path}: cannot be written, {(error.strerror or str(error)).lower()}") from None
+        with write_whole(path) as temporary:
+            temporary.write_text(json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def judge(log: Log, gathered: Digest | None = None) -> Verdict:
@@ -196,9 +196,11 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     Raises:
         LogError: the log does not describe a run.
     """
-    measured, (scenario, absent) = measure(gathered or log), _known_part(log)
+    (scenario, absent), gathered = _known_part(log), gathered or digest(log)
+    measured = measure(gathered)
     criteria = asked(scenario.criteria, scenario.fidelity)
-    reasons = (*_unfinished(log), *map(str, absent), *_unacted(log, scenario), *missed(measured.values, criteria))
+    untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(RunView(gathered))
+    reasons = (*untrue, *map(str, absent), *_unacted(log, scenario), *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
     said = (*skipped, *notes(Draft(scenario)), *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
@@ -280,6 +282,13 @@ def _unacted(log: Log, scenario: Scenario) -> list[str]:
         return [problem.what for problem in never_act(Draft(scenario), end)]
     except ParameterError as fault:
         return [f"when its pushes and faults act cannot be known: {fault}"]
+
+
+def _incomplete(log: Log) -> list[str]:
+    """Say what of the log is missing or damaged, if anything is."""
+    losses = log.losses()
+    more = [f"and {len(losses) - _LOSSES_SAID} more"] if len(losses) > _LOSSES_SAID else []
+    return ["the log is incomplete: " + "; ".join((*losses[:_LOSSES_SAID], *more))] if losses else []
 
 
 def _lookup(metrics: Mapping[str, Any], name: str) -> Any:

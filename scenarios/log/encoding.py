@@ -136,14 +136,15 @@ class Summary:
         )
         self._chunks.append(entry)
 
-    def finish(self, position: int, counts: Mapping[int, int]) -> bytes:
+    def finish(self, position: int, counts: Mapping[int, int], crc: int) -> bytes:
         """Give the end of the file: end of data, summary, footer, magic.
 
         Args:
             position: where it will stand in the file.
             counts: messages by channel.
+            crc: CRC-32 of everything before it.
         """
-        end = encoded(DataEnd(0))
+        end = encoded(DataEnd(crc))
         start = position + len(end)
         groups: list[tuple[Opcode, Sequence[McapRecord]]] = [
             (Opcode.SCHEMA, self._schemas),
@@ -162,8 +163,8 @@ class Summary:
         offset_start = start + len(summary)
         summary += offsets
         footer = encoded(Footer(start, offset_start, 0))
-        crc = zlib.crc32(footer[:-4], zlib.crc32(summary))
-        return b"".join((end, summary, encoded(Footer(start, offset_start, crc)), MAGIC))
+        summary_crc = zlib.crc32(footer[:-4], zlib.crc32(summary))
+        return b"".join((end, summary, encoded(Footer(start, offset_start, summary_crc)), MAGIC))
 
     def _statistics(self, counts: Mapping[int, int]) -> Statistics:
         def over_chunks(choose: Callable[..., int], name: str) -> int:

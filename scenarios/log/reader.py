@@ -18,6 +18,9 @@ from surefoot.scenarios.log.spec import FieldSpec, layout_of, record_dtype
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+RECOVERED = "recovered"
+"""Metadata record of a log that was made of a truncated or damaged one: of which, and what was lost."""
+
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""
 
@@ -33,7 +36,7 @@ class Log:
         topics: every topic, in order of channel id.
         joints: names of the robot's joints in order; () when the log does not say.
         truncated: whether the end of the file is missing, as after a killed run.
-        damage: what could not be read, in words; grows as channels are loaded.
+        damage: what could not be read, in words; grows as channels are loaded; `losses` knows all.
         contents: records of the file and their places.
         data: bytes of the file.
     """
@@ -46,6 +49,7 @@ class Log:
         self.truncated = contents.truncated
         self.damage = contents.damage
         self._verified: set[int] = set()
+        self._unproven: str | None = None
         self._index_rest()
         self.metadata = {record.name: record.metadata for record in contents.metadata}
         self.attachments = {record.name: record.data for record in contents.attachments}
@@ -175,6 +179,29 @@ class Log:
         for chunk in self.contents.chunks:
             if chunk.position not in self._verified:
                 self._sound(chunk)
+
+    def losses(self) -> tuple[str, ...]:
+        """Whatever keeps the log from being proven whole, in words, when everything was compared with its checksums.
+
+        A log without its index may be whole: the record that ends its data has the checksum of everything before it.
+        """
+        self.verify()
+        if self._unproven is None:
+            self._unproven = self._data_fault()
+        before = self.metadata.get(RECOVERED, {}).get("lost", "")
+        return tuple(dict.fromkeys(loss for loss in (before, self._unproven, *self.damage) if loss))
+
+    def _data_fault(self) -> str:
+        """Why the data as a whole are not those that were written; empty if they are."""
+        end, crc, step = self.contents.data_end, 0, 1 << 24
+        if end is None:
+            return f"its end is missing, it can be read up to {self.time_range()[1]:.3f} s"
+        if not self.contents.data_crc:
+            return "it has no checksum of its data, by which it could be shown to be whole"
+        for start in range(0, end, step):
+            crc = zlib.crc32(self.data[start : min(start + step, end)], crc)
+            release(self.data, start, start + step)
+        return "" if crc == self.contents.data_crc else "its data do not agree with their checksum"
 
     def sound_chunks(self) -> Iterator[tuple[ChunkPlace, bytes]]:
         """Every chunk that agrees with its checksum, and its decompressed bytes; the others add to `damage`."""

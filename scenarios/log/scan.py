@@ -27,6 +27,7 @@ _OFFSET = struct.Struct("<Q")
 _INDEX_RECORD = struct.Struct("<BQHI")
 _RELEASE_BYTES = 1 << 25
 _CHUNK = struct.Struct("<QQQII")
+_CRC = struct.Struct("<I")
 _MESSAGE = struct.Struct("<HIQQ")
 _PRIVATE = 0x80
 _T = TypeVar("_T")
@@ -92,6 +93,8 @@ class Contents:
         loose: index of the messages outside chunks, by channel id.
         metadata: records in file order.
         attachments: in file order.
+        data_end: where the record that ends the data begins; None when it is missing.
+        data_crc: CRC-32 of everything before it by that record, 0 for none.
         truncated: whether the end of the file is missing.
         damage: what could not be read, in words.
     """
@@ -102,6 +105,8 @@ class Contents:
     loose: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
     metadata: list[Metadata] = field(default_factory=list)
     attachments: list[Attachment] = field(default_factory=list)
+    data_end: int | None = None
+    data_crc: int = 0
     truncated: bool = True
     damage: list[str] = field(default_factory=list)
 
@@ -201,7 +206,13 @@ _UNREADABLE = (McapError, ValueError, struct.error, OverflowError, MemoryError)
 
 
 def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Contents) -> None:
-    if opcode == Opcode.CHUNK:
+    if contents.data_end is not None:  # a summary, which says nothing that the data have not said
+        if opcode == Opcode.FOOTER:
+            contents.truncated = data[body.stop : body.stop + len(MAGIC)] != MAGIC
+    elif opcode == Opcode.DATA_END:
+        (contents.data_crc,) = _CRC.unpack(data[body])
+        contents.data_end = position
+    elif opcode == Opcode.CHUNK:
         contents.chunks.append(_chunk(data, position, body))
     elif opcode == Opcode.MESSAGE_INDEX and contents.chunks:
         channel_id, length = _INDEX_HEAD.unpack_from(data, body.start)
@@ -218,8 +229,6 @@ def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Conte
         contents.metadata.append(_decode(Metadata.read, data[body]))
     elif opcode == Opcode.ATTACHMENT:
         contents.attachments.append(_decode(Attachment.read, data[body]))
-    elif opcode == Opcode.FOOTER:
-        contents.truncated = data[body.stop : body.stop + len(MAGIC)] != MAGIC
 
 
 def _chunk(data: Buffer, position: int, body: slice) -> ChunkPlace:

@@ -1,10 +1,11 @@
 """What a log carries about its run beside the channels: its constants, and the versions of all that it depends on."""
 
 import hashlib
+import itertools
 import json
 import platform
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -35,9 +36,15 @@ LOG_NAME, VERDICT_NAME = "log.mcap", "verdict.json"
 """Files of a run in its folder."""
 
 
-def run_name(scenario: str, seed: int) -> str:
-    """Name of a run's own folder."""
-    return f"{scenario}-{seed}"
+def run_folders(out: Path, scenario: str, seed: int) -> Iterator[Path]:
+    """Folders that a run may have for its own, in order: the first that nobody has taken."""
+    yield out / f"{scenario}-{seed}"
+    yield from (out / f"{scenario}-{seed}-{number}" for number in itertools.count(2))
+
+
+def taken_folders(out: Path, scenario: str, seed: int) -> Iterator[Path]:
+    """Folders of the runs of a scenario's name and seed that there are."""
+    return itertools.takewhile(Path.exists, run_folders(out, scenario, seed))
 
 
 @dataclass(frozen=True, slots=True)

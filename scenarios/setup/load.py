@@ -17,7 +17,7 @@ from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, d
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
-from surefoot.scenarios.record.provenance import LOG_NAME, PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
+from surefoot.scenarios.record.provenance import PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria_checks import criteria_problems
 from surefoot.scenarios.setup.draft import Draft
@@ -26,9 +26,6 @@ from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
 LOG_ENDING = ".mcap"
 MOST_TOLD = 20
 """Problems of a scenario that are told at once."""
-
-RUNS, AGAIN = Path("runs"), Path("runs/again")
-"""Where runs go by default, and where the repetition of one goes that lies there."""
 
 
 def is_log(reference: str) -> bool:
@@ -64,26 +61,6 @@ def _with_pushes(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
         return text
     keys = yaml.safe_load(text)
     return yaml.safe_dump({**keys, "pushes": [*keys.get("pushes", []), *given]}, sort_keys=False)
-
-
-def output_folder(reference: str, name: str, chosen: Path | None) -> Path:
-    """Where a run goes; never over the log that it repeats.
-
-    Args:
-        reference: scenario or log.
-        name: of the run's own folder.
-        chosen: by the user; None for the default.
-
-    Raises:
-        ScenarioError: the user chose the folder in which the log would be replaced.
-    """
-    out = RUNS if chosen is None else chosen
-    target = out / name / LOG_NAME
-    if not is_log(reference) or not target.exists() or not target.samefile(reference):
-        return out
-    if chosen is not None:
-        raise ScenarioError([f"--out {chosen}: the run would replace {reference}; choose another directory"])
-    return AGAIN
 
 
 def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None = None) -> Scenario:

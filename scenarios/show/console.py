@@ -22,6 +22,7 @@ from surefoot.scenarios.judge.inspection import Inspection
 from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text, shown_unit, value_text
 from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.loop.skeleton import Progress
+from surefoot.scenarios.output import refuse_existing, write_whole
 
 _REFRESH = 0.1
 
@@ -175,23 +176,22 @@ def selected(log: Log, topic: str, start: float | None, end: float | None, field
     return channel if field is None else channel.only(field)
 
 
-def export(channel: ChannelData, path: Path) -> None:
+def export(channel: ChannelData, path: Path, replace: bool = False) -> None:
     """Write a channel to a file; time is the first column, the others are those of `ChannelData.columns`.
 
     CSV has units in its headings, parquet has unit, frame and meaning as metadata of the columns.
 
     Raises:
-        LogError: the ending is unknown, the file cannot be written, or pyarrow is needed and missing.
+        LogError: the ending is unknown, the file exists or cannot be written, or pyarrow is needed and missing.
     """
     writers: Mapping[str, Callable[[ChannelData], bytes]] = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}
     write = writers.get(path.suffix.lower())
     if write is None:
         raise LogError(f"{path}: unknown kind of file '{path.suffix}'; end its name in {', '.join(writers)}")
-    try:
-        path.write_bytes(write(channel))
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{path}: cannot be written, {reason}; choose another directory") from None
+    refuse_existing(path, replace)
+    data = write(channel)
+    with write_whole(path, replace) as temporary:
+        temporary.write_bytes(data)
 
 
 def _csv(channel: ChannelData) -> bytes:

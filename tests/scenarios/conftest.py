@@ -1,7 +1,7 @@
 """A robot, robots and a closed loop that need neither engine: the log is filled with motion of known metrics."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
@@ -53,14 +53,17 @@ class Motion:
     pause: float = 0.0
     fall_at: float = np.inf
     stop_at: float = np.inf
-    end: End = field(default_factory=lambda: End("completed", 4.0))
+    end: End | None = None
     raises: BaseException | None = None
 
     def __call__(self, walk: Any, writer: LogWriter, on_progress: Callable[[Progress], None]) -> End:
         _Loop(self, writer).run(on_progress)
         if self.raises is not None:
             raise self.raises
-        return self.end
+        if self.end is not None:
+            return self.end
+        fell = self.fall_at < self.duration
+        return End("fall", self.fall_at, "the robot fell") if fell else End("completed", self.duration)
 
 
 class _Loop:

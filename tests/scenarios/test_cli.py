@@ -169,7 +169,7 @@ def test_what_a_part_refuses_is_bad_input_at_the_key_it_names(surefoot, scenario
     assert code == 2
     assert out == ""
     assert err.strip().endswith(message)
-    assert not list((tmp_path / "two-steps-0").iterdir())
+    assert not (tmp_path / "two-steps-0").exists()
 
 
 def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
@@ -242,6 +242,28 @@ def test_inspect_a_topic(surefoot, scenario, tmp_path):
     assert (com["shape"], com["messages"], com["not_finite"], com["min"], com["max"]) == ([3], 2000, 0, 0.0, 1.0)
     assert "com_velocity" in surefoot("inspect", log, "--topic", "/truth")[1]
     assert surefoot("inspect", log, "--topic", "/trut")[0] == 2
+
+
+def test_no_file_is_replaced_without_being_told(surefoot, scenario, tmp_path):
+    surefoot("run", scenario, "--out", tmp_path)
+    log = tmp_path / "two-steps-0" / "log.mcap"
+    for name, command in {
+        "a.mcap": ["recover", log],
+        "a.csv": ["inspect", log, "--topic", "/torque", "--to", "0.1", "--export"],
+        "a.png": ["plot", log, "--what", "height", "--out"],
+        "b.png": ["compare", log, log, "--out"],
+        "a.html": ["replay", log, "--html"],
+        "a.mp4": ["replay", log, "--video"],
+    }.items():
+        file = tmp_path / name
+        file.write_text("precious")
+        code, out, err = surefoot(*command, file)
+        assert (code, out) == (2, ""), command
+        assert err.strip() == f"{file}: exists already; choose another file, or replace it with --force"
+        assert file.read_text() == "precious"
+    assert surefoot("recover", log, tmp_path / "a.mcap", "--force")[0] == 0
+    assert read(tmp_path / "a.mcap").count("/truth") == 2000
+    assert not list(tmp_path.glob(".*"))
 
 
 def test_help_needs_no_heavy_package():

@@ -153,7 +153,7 @@ def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[C
     return found, a, b
 
 
-def draw(found: Comparison, a: Log, b: Log, out: Path) -> None:
+def draw(found: Comparison, a: Log, b: Log, out: Path, replace: bool = False) -> None:
     """Draw both runs over each other.
 
     Args:
@@ -161,16 +161,17 @@ def draw(found: Comparison, a: Log, b: Log, out: Path) -> None:
         a: first log.
         b: second log.
         out: file to write, PNG, SVG or PDF by its ending.
+        replace: an existing file.
 
     Raises:
-        LogError: there is nothing to draw, or the file cannot be written.
+        LogError: there is nothing to draw, or the file exists or cannot be written.
     """
     from surefoot.scenarios.show.figures.overlay import overlay
     from surefoot.scenarios.show.figures.style import save
 
     when = None if found.first is None else found.first.time
     header = f"A: {found.a}\nB: {found.b}\n{found.summary}".replace("$", r"\$")
-    save(overlay(LogView(a), LogView(b), header, when), out)
+    save(overlay(LogView(a), LogView(b), header, when), out, replace)
 
 
 def describe(channel: ChannelDifference) -> str:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.output import refuse_existing
 from surefoot.scenarios.record.provenance import ABSENT
 from surefoot.scenarios.show.figures import top_view
 from surefoot.scenarios.show.figures.effort import draw_solver, draw_torques
@@ -134,6 +135,7 @@ def plot(
     what: str | None = None,
     start: float | None = None,
     end: float | None = None,
+    replace: bool = False,
 ) -> Drawn:
     """Draw the figures of a log.
 
@@ -144,16 +146,19 @@ def plot(
         what: one figure by name, all on one page by default.
         start: of the window [s].
         end: of the window [s].
+        replace: an existing file.
 
     Raises:
-        LogError: the log cannot be read, the window is empty, there is no such figure or the file cannot be written.
+        LogError: the log cannot be read, the window is empty, there is no such figure, or the file exists or cannot be
+            written.
     """
     out = out or log_path.parent / (f"{what}.png" if what else PAGE_NAME)
     format_of(out)
+    refuse_existing(out, replace)
     log = read(log_path)
     view = LogView(log, start, end)
     figure = page(view, _header(view)) if what is None else single(view, _header(view), what)
-    save(figure, out)
+    save(figure, out, replace)
     return Drawn(out, _notes(log))
 
 

@@ -15,6 +15,7 @@ from matplotlib.typing import RcKeyType
 from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Color
 from surefoot.scenarios.show.logview import LogView, MissingError
 
@@ -154,20 +155,17 @@ def format_of(out: Path) -> str:
     return ending
 
 
-def save(figure: Figure, out: Path) -> None:
+def save(figure: Figure, out: Path, replace: bool = False) -> None:
     """Write a figure.
 
     Raises:
-        LogError: the ending is none of a figure, or the file cannot be written.
+        LogError: the ending is none of a figure, or the file exists or cannot be written.
     """
     kind, drawn = format_of(out), BytesIO()
     with in_style():
         figure.savefig(drawn, format=kind, dpi=_DPI, metadata=_UNDATED[kind])
-    try:
-        out.write_bytes(drawn.getvalue())
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{out}: cannot be written, {reason}; choose another file with --out") from None
+    with write_whole(out, replace) as temporary:
+        temporary.write_bytes(drawn.getvalue())
 
 
 BUCKETS = 800

@@ -1,16 +1,11 @@
 """What a replay shows, independent of what shows it: surfaces on bodies, marks that move, footprints that stay."""
 
-import contextlib
-import os
-from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.palette import Color
 
 Array = NDArray[np.float64]
@@ -133,31 +128,3 @@ class Replay:
         base, half = self.body_position[:, 1], round(SWAY * self.frame_rate / 2)
         padded = np.pad(base, ((half, half), (0, 0)), mode="edge")
         return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0).mean(axis=-1))
-
-
-@contextlib.contextmanager
-def write_whole(path: Path) -> Iterator[Path]:
-    """A temporary file beside the wanted one, which it replaces when the context ends well.
-
-    Args:
-        path: the wanted file.
-
-    Yields:
-        path of the temporary file, which exists and can be written.
-
-    Raises:
-        LogError: the file cannot be written.
-    """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.new")
-    try:
-        if path.is_dir():
-            raise IsADirectoryError(0, "is a directory")
-        temporary.touch()
-        yield temporary
-        temporary.replace(path)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{path}: cannot be written, {reason}; choose another file") from None
-    finally:
-        with contextlib.suppress(OSError):
-            temporary.unlink()

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.palette import (
     COM,
     COM_PLANNED,
@@ -23,7 +24,7 @@ from surefoot.scenarios.palette import (
     hexadecimal,
 )
 from surefoot.scenarios.show.logview import LogView, MissingError
-from surefoot.scenarios.show.replay.content import Array, Replay, write_whole
+from surefoot.scenarios.show.replay.content import Array, Replay
 from surefoot.scenarios.show.replay.scene import ViserScene, serving
 
 
@@ -99,14 +100,14 @@ def _sampled(view: LogView, topic: str, field: str, size: int, time: Array) -> A
     return np.asarray(values[np.maximum(np.searchsorted(clock, time + 1e-9, side="right") - 1, 0)])
 
 
-def write_page(replay: Replay, path: Path, beside: Iterable[Chart] = ()) -> None:
+def write_page(replay: Replay, path: Path, beside: Iterable[Chart] = (), replace: bool = False) -> None:
     """Write the page.
 
     Raises:
         MissingExtraError: viser is not installed.
-        LogError: the file cannot be written.
+        LogError: the file exists, and shall not be replaced, or cannot be written.
     """
-    with write_whole(path) as temporary:
+    with write_whole(path, replace) as temporary:
         temporary.write_text(page(replay, beside), encoding="utf-8")
 
 

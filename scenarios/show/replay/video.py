@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from surefoot.scenarios.errors import LogError, MissingExtraError, require
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.replay.caption import Caption
-from surefoot.scenarios.show.replay.content import Array, Replay, Track, write_whole
+from surefoot.scenarios.show.replay.content import Array, Replay, Track
 from surefoot.scenarios.show.replay.poses import Window
 from surefoot.sim.gl import RenderingUnavailableError
 from surefoot.sim.marks import Mark
@@ -139,7 +140,9 @@ class Film:
 OnFrame = Callable[[int], None]
 
 
-def write_video(replay: Replay, path: Path, on_frame: OnFrame | None = None, film: Film | None = None) -> None:
+def write_video(
+    replay: Replay, path: Path, on_frame: OnFrame | None = None, film: Film | None = None, replace: bool = False
+) -> None:
     """Write an mp4 file.
 
     Args:
@@ -147,14 +150,15 @@ def write_video(replay: Replay, path: Path, on_frame: OnFrame | None = None, fil
         path: of the file.
         on_frame: is told the number of each frame that is done.
         film: how; at the speed of the run, following, by default.
+        replace: an existing file.
 
     Raises:
         MissingExtraError: PyAV or an off-screen OpenGL is not installed.
-        LogError: the file cannot be written.
+        LogError: the file exists or cannot be written.
     """
     av = require("av", "video", "video")
     film = film or Film()
-    with write_whole(path) as temporary:
+    with write_whole(path, replace) as temporary:
         try:
             encode(av, _pictures(replay, film), temporary, film.size, on_frame or (lambda _: None))
         except RenderingUnavailableError as error:

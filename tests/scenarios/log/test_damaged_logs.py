@@ -33,8 +33,8 @@ def run(motion, robot, two_steps, tmp_path):
 def commands(path, out):
     return (
         ["inspect", str(path), "--json"],
-        ["inspect", str(path), "--topic", "/truth", "--from", "0.1", "--export", str(out.with_suffix(".csv"))],
-        ["recover", str(path), str(out)],
+        ["inspect", str(path), "--topic", "/truth", "--from", "0.1", "--export", str(out.with_suffix(".csv")), "-f"],
+        ["recover", str(path), str(out), "--force"],
     )
 
 
@@ -64,10 +64,9 @@ def test_bits_flipped_at_200_places(run, tmp_path):
         answered += survives(path, out)
         log = read(path) if damaged[:8] == data[:8] else None
         if log is not None:
-            log.verify()
-            noticed += bool(log.damage)
+            noticed += bool(log.losses())
     assert answered > 2.5 * FLIPS
-    assert noticed > 0.3 * FLIPS
+    assert noticed > 0.75 * FLIPS  # the others are in the summary, out of which nothing is read
 
 
 def test_cut_at_random_places(run, tmp_path):

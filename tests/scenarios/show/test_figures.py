@@ -57,7 +57,7 @@ def test_formats_by_ending_and_the_same_file_each_time(body, tmp_path, ending, m
     assert plot(body, out, "height").path == out
     first = out.read_bytes()
     assert first.startswith(magic)
-    plot(body, out, "height")
+    plot(body, out, "height", replace=True)
     assert out.read_bytes() == first
 
 

@@ -14,8 +14,8 @@ import pytest
 from surefoot.scenarios import cli, errors, palette
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.show.replay.caption import Caption
-from surefoot.scenarios.show.replay.content import write_whole
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.page import Chart, Curve, column
 from surefoot.scenarios.show.replay.poses import Window
@@ -217,8 +217,11 @@ def test_a_foreign_file_is_no_log(surefoot, tmp_path):
 def test_a_failure_leaves_the_older_file(tmp_path):
     path = tmp_path / "out"
     path.write_text("older")
-    with pytest.raises(RuntimeError), write_whole(path) as temporary:
-        temporary.write_text("half")
+    for place in (path, tmp_path / "new"):
+        with pytest.raises(RuntimeError), write_whole(place, replace=True) as temporary:
+            temporary.write_text("half")
+            raise RuntimeError
+    with pytest.raises(RuntimeError), write_whole(tmp_path / "new"):
         raise RuntimeError
     assert path.read_text() == "older"
     assert list(tmp_path.iterdir()) == [path]

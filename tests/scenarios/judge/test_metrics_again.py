@@ -201,6 +201,12 @@ def stances(raw):
             yield foot, [tick for tick in range(early, k) if load[tick]]
 
 
+def footstep_error(raw):
+    steps = zip(raw.time("/footstep"), raw["/footstep", "foot"], raw["/footstep", "planned"], strict=True)
+    places = [(raw.soles[foot][np.argmin(np.abs(raw.time("/truth") - t))], planned) for t, foot, planned in steps]
+    return max(np.linalg.norm(pose[:3] - planned[:3]) for pose, planned in places)
+
+
 def slip(raw):
     """Of each corner within 5 mm of the flat ground, from where it came to it."""
     farthest = 0.0
@@ -282,9 +288,7 @@ BOTH = {
     "log_bytes": lambda raw: raw.path.stat().st_size,
 }
 BODY = {
-    "footstep_error_max": lambda raw: max(
-        np.linalg.norm((raw["/footstep", "actual"] - raw["/footstep", "planned"])[:, :3], axis=1)
-    ),
+    "footstep_error_max": footstep_error,
     "swing_clearance_min": clearance,
     "foot_slip_max": slip,
     "stance_twist_max": lambda raw: max(

@@ -1,6 +1,6 @@
 """A log as metrics and health checks see it: gathered in one pass with bounded memory, on common control ticks."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.scenarios.judge.body import headings, knees
-from surefoot.scenarios.log import Log
+from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.record.provenance import RunConstants
 
 Reads = Mapping[str, tuple[str, ...]]
@@ -133,13 +133,13 @@ class Digest:
         times: dict[str, list[NDArray[np.int64]]] = {topic: [] for topic in topics}
         fields: dict[tuple[str, str], list[NDArray[Any]]] = {}
         reduced: dict[Any, list[NDArray[Any]]] = {}
-        for channels in log.windows(topics):
+        for channels, whole in _whole_ticks(log.windows(topics)):
             for topic, channel in channels.items():
                 times[topic].append(channel.time_ns)
                 for name in held[topic]:
                     if any(field.name == name for field in channel.fields):
                         fields.setdefault((topic, name), []).append(channel.field(name))
-            for key, values in reduce(Window(log, channels)).items():
+            for key, values in reduce(Window(log, channels)).items() if whole else ():
                 reduced.setdefault(key, []).append(values)
         self.reduced = {key: np.concatenate(parts) for key, parts in reduced.items() if _alike(parts)}
         kept = {key: np.concatenate(parts) for key, parts in fields.items()}
@@ -155,6 +155,57 @@ class Digest:
 
     def __getitem__(self, topic: str) -> KeptChannel:
         return self._channels[topic]
+
+
+_EVER = 2**62
+"""A time after every message [ns]."""
+
+
+class _Part:
+    """Messages of a channel in neighbouring windows of a log.
+
+    Attributes:
+        pieces: of each window.
+        fields: of the channel.
+        time_ns: simulated time of each message, shape (n,) [ns].
+    """
+
+    def __init__(self, pieces: Sequence[ChannelData]) -> None:
+        self.pieces, self.fields = pieces, pieces[-1].fields
+        self.time_ns: NDArray[np.int64] = np.concatenate([piece.time_ns for piece in pieces])
+
+    def __len__(self) -> int:
+        return len(self.time_ns)
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        return np.asarray(self.time_ns / 1e9)
+
+    def field(self, name: str) -> NDArray[Any]:
+        return np.concatenate([piece.field(name) for piece in self.pieces])
+
+    def between(self, start_ns: int, end_ns: int) -> "_Part":
+        return _Part([piece.between(start_ns, end_ns) for piece in self.pieces])
+
+
+def _whole_ticks(windows: Iterable[Mapping[str, ChannelData]]) -> Iterator[tuple[dict[str, _Part], bool]]:
+    """Windows that all control topics end with the same tick, and True; what is left in the end, and False.
+
+    A chunk of the log may end within a tick, with some of its messages in the next one. Cut there, a window would lose
+    that tick, and the next one would see the topics a tick apart.
+    """
+    rest: dict[str, _Part] = {}
+    for window in windows:
+        parts = {topic: _Part([*_pieces(rest.get(topic)), piece]) for topic, piece in window.items()}
+        control = {topic: parts[topic] for topic in CONTROL_TOPICS if topic in parts and len(parts[topic])}
+        end = min((int(part.time_ns[-1]) for part in control.values()), default=0)
+        yield {**parts, **{topic: part.between(0, end) for topic, part in control.items()}}, True
+        rest = {topic: part.between(end + 1, _EVER) for topic, part in control.items()}
+    yield rest, False
+
+
+def _pieces(part: _Part | None) -> list[ChannelData]:
+    return [] if part is None else [piece for piece in part.pieces if len(piece)]
 
 
 def _united(reads: Iterable[Reads]) -> dict[str, list[str]]:

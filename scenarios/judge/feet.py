@@ -20,26 +20,34 @@ _CLEARANCE_TICKS = 5
 """Every how many control ticks the clearance of a swing is looked at."""
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/footstep": ("planned", "actual")}, body=True, least=0.0)
-def footstep_error_max(run: RunView) -> float | None:
-    """Largest distance of a sole at touchdown from its footstep as last planned [m]."""
+def landed(run: RunView) -> Array:
+    """Where each footstep's sole truly was when it was booked, x y z yaw, shape (k, 4) [m, rad].
+
+    Not ``/footstep.actual``, which is where the controller believed it.
+    """
     steps = run.log["/footstep"]
-    errors = np.linalg.norm(steps.field("actual")[:, :3] - steps.field("planned")[:, :3], axis=1)
-    return float(errors.max())
+    ticks, foot = np.minimum(run.rows_at("/truth", steps.time_ns)[0], run.ticks - 1), steps.field("foot")
+    return np.column_stack((run.soles[ticks, foot, :3], run.sole_yaw[ticks, foot]))
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/footstep": ("actual",)})
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("planned", "foot")}, body=True, least=0.0)
+def footstep_error_max(run: RunView) -> float | None:
+    """Largest distance of a sole at touchdown from its footstep as last planned before it [m]."""
+    return float(np.linalg.norm((landed(run) - run.log["/footstep"].field("planned"))[:, :3], axis=1).max())
+
+
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("foot",)})
 def stair_edge_margin_min(run: RunView) -> float | None:
     """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
     terrain = _terrain(run)
     if not terrain.boxes:
         return None
     half_size = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
-    landed = run.log["/footstep"].field("actual")
-    normals = terrain.normals(landed[:, :2])
-    soles = [Footstep(Foot.LEFT, pose[:3], float(pose[3]), up) for pose, up in zip(landed, normals, strict=True)]
+    poses = landed(run)
+    normals = terrain.normals(poses[:, :2])
+    soles = [Footstep(Foot.LEFT, pose[:3], float(pose[3]), up) for pose, up in zip(poses, normals, strict=True)]
     placed = np.array([sole_corners(sole, half_size) for sole in soles])
-    return float(terrain.edge_margins(landed[:, :2], placed).min())
+    return float(terrain.edge_margins(poses[:, :2], placed).min())
 
 
 @metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/reference": ("phase", "stance")}, body=True)

@@ -187,7 +187,7 @@ def footstep(_: Sizes) -> ChannelSpec:
         _int("index", "1 is the first"),
         _int("foot", "0 left, 1 right"),
         _real("planned", 4, "m, rad", "world", "x y z yaw as last planned before it touched down"),
-        _real("actual", 4, "m, rad", "world", "x y z yaw"),
+        _real("actual", 4, "m, rad", "world", "x y z yaw in the state that the planner was given"),
     )
     return ChannelSpec("/footstep", "Footstep", fields, footstep.__doc__ or "")
 

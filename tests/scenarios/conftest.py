@@ -84,7 +84,9 @@ class _Loop:
             if time in (1.0, 1.5):
                 error = 0.006 if time == 1.0 else 0.002
                 index = int(time * 2) - 1
-                self.out["footstep"].append(tick * 10**9 // motion.rate, index, 0, np.zeros(4), [error, 0, 0, 0])
+                sole = np.array([self.com(time)[0], 0.125, 0.0, 0.0])
+                ns = tick * 10**9 // motion.rate
+                self.out["footstep"].append(ns, index, 0, sole - (error, 0.0, 0.0, 0.0), sole)
 
     def com(self, time: Any) -> Any:
         moved = self.motion.speed * (np.clip(time, 0.5, 1.5) - 0.5)

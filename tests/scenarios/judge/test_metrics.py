@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.metrics import OWN, compute
+from surefoot.scenarios.judge.digest import RunView
+from surefoot.scenarios.judge.metrics import OWN, compute, digest
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.loop.run import run_scenario
 
@@ -151,6 +152,18 @@ def test_nan_is_never_a_number_of_the_verdict(metrics, motion):
 def test_an_empty_run_has_no_metrics_but_its_size(metrics, motion):
     found = metrics(motion(stop_at=0.0))
     assert {name for name, value in found.items() if value is not None} == {"steps_planned", "log_bytes"}
+
+
+def test_windows_of_a_long_log_lose_no_tick_and_shift_none(tmp_path, robot, two_steps, motion):
+    """Chunks end within a tick, with some of its messages in the next one; what is gathered is as of the whole log."""
+    log = read(run_scenario(two_steps, tmp_path, None, motion(duration=9.0, zmp_offset=(0.003, 0.0)), robot).log)
+    gathered, whole = digest(log), RunView(log)
+    sizes = [[len(part[topic]) for topic in ("/measurement", "/truth", "/timing")] for part in log.windows(log.numeric)]
+    assert len(sizes) > 2
+    assert any(len(set(row)) > 1 for row in sizes)
+    assert gathered.reduced
+    for reduction, values in gathered.reduced.items():
+        np.testing.assert_array_equal(values, reduction(whole), err_msg=reduction.function.__name__)
 
 
 def test_a_log_of_something_else(tmp_path):

@@ -39,6 +39,7 @@ class Walk:
         self.force = 490.0 * self.planned
         self.roll = np.zeros((TICKS, 2))
         self.speed = np.zeros((TICKS, 2))
+        self.footstep = [0.3, -0.1, 0.0, 0.0]
         self.boxes = ()
         self.velocity_limit = (10.0, 20.0)
 
@@ -55,17 +56,18 @@ class Walk:
             mass=100.0, foot_length=LENGTH, foot_width=WIDTH, control_rate=RATE, boxes=self.boxes,
             velocity_limit=self.velocity_limit, fidelity="full", com_height=0.9,
         )  # fmt: skip
-        return RunView({topic: _Channel(of) for topic, of in fields.items()}, constants)
+        footstep = _Channel({"foot": [1], "planned": np.array([self.footstep])}, [350])
+        return RunView({**{topic: _Channel(of) for topic, of in fields.items()}, "/footstep": footstep}, constants)
 
 
 class _Channel:
-    def __init__(self, fields):
+    def __init__(self, fields, ticks=range(TICKS)):
         self._fields = fields
-        self.time_ns = np.arange(TICKS) * 2_000_000
+        self.time_ns = np.array(ticks) * 2_000_000
         self.time = self.time_ns / 1e9
 
     def __len__(self):
-        return TICKS
+        return len(self.time_ns)
 
     def field(self, name):
         return self._fields[name]
@@ -189,3 +191,12 @@ def test_a_foot_on_the_edge_of_a_block_counts_by_its_centre(walk):
     walk.left[:, 2] = 0.05
     walk.left[100:, 0] = 0.007
     assert measured(walk)[0] == pytest.approx(0.007)
+
+
+def test_a_footstep_is_measured_where_the_sole_truly_is_not_where_it_is_believed(walk):
+    """The invented log does not even say where the controller believes the sole."""
+    assert feet.footstep_error_max(walk.view) == pytest.approx(0.0)
+    walk.right[350:, 1] -= 0.004
+    assert feet.footstep_error_max(walk.view) == pytest.approx(0.004)
+    walk.boxes = ((0.3, -0.1, -0.1, 0.13, 0.08, 0.15, 1, 0, 0, 0, 1, 0, 0, 0, 1),)
+    assert feet.stair_edge_margin_min(walk.view) == pytest.approx(min(0.13 - LENGTH / 2, 0.08 - 0.004 - WIDTH / 2))

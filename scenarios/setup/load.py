@@ -17,6 +17,7 @@ from surefoot.scenarios.file.source import Overrides, apply_overrides, decoded, 
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
+from surefoot.scenarios.log.encoding import MAGIC
 from surefoot.scenarios.record.provenance import LOG_NAME, PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.draft import Draft
@@ -28,8 +29,14 @@ RUNS, AGAIN = Path("runs"), Path("runs/again")
 
 
 def is_log(reference: str) -> bool:
-    """Whether a reference to a scenario is the path of a log."""
-    return reference.endswith(LOG_ENDING)
+    """Whether a reference to a scenario is the path of a log, by its ending or by how the file begins."""
+    if reference.endswith(LOG_ENDING):
+        return True
+    try:
+        with Path(reference).open("rb") as file:
+            return file.read(len(MAGIC)) == MAGIC
+    except (OSError, ValueError):
+        return False
 
 
 def attached_scenario(path: str) -> tuple[str, str]:

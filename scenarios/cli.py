@@ -93,7 +93,7 @@ def _keys(incomplete: str) -> list[str]:
     """Keys of scenarios that begin so."""
     from surefoot.scenarios.show.listing import keys
 
-    return [key for key in keys() if key.startswith(incomplete)]
+    return [key for key, _ in keys() if key.startswith(incomplete)]
 
 
 def _settings(incomplete: str) -> list[str]:
@@ -330,9 +330,9 @@ def paper(
 @app.command()
 def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocompletion=_scenarios)]) -> None:
     """Print a scenario's commented YAML, to start one's own from."""
-    from surefoot.scenarios import catalogue
+    from surefoot.scenarios.show.listing import starter
 
-    typer.echo(catalogue.starter(scenario), nl=False)
+    typer.echo(starter(scenario), nl=False)
 
 
 @app.command()

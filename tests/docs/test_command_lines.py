@@ -34,7 +34,7 @@ def faults(line):
     if command is None:
         return [words[0]]
     given = [word for text in words for word in re.findall(r"^-[\w-]+", text.strip("()[]"))]
-    known = {re.sub(r"\.\d+", "", key) for key in keys()}
+    known = {re.sub(r"\.\d+", "", key) for key, _ in keys()}
     settings = [text.partition("=")[0] for before, text in pairwise(words) if before == "--set"]
     return [word for word in given if word not in options(command)] + [key for key in settings if key not in known]
 
@@ -52,7 +52,7 @@ def test_what_is_not_there_is_found():
 
 
 def test_keys_that_the_pages_set_are_there():
-    known = set(keys())
+    known = dict(keys())
     for page in PAGES:
         for key in re.findall(r"--set [\"']?([a-z_.]+)=", page.read_text(encoding="utf-8")):
             assert key in known, f"{page.name}: {key}"

@@ -6,17 +6,21 @@ import subprocess
 import sys
 
 import pytest
+import yaml
 
 from surefoot.errors import ParameterError
-from surefoot.scenarios import cli
+from surefoot.scenarios import catalogue, cli
 from surefoot.scenarios.cli import app
 from surefoot.scenarios.errors import SetupError
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop import run
 from surefoot.scenarios.setup import walk
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.show.listing import starter
 
 pytestmark = pytest.mark.unit
 
@@ -97,14 +101,35 @@ def test_show_prints_a_file_that_runs(surefoot, tmp_path):
     code, out, _ = surefoot("show", "diagonal-walk")
     assert code == 0
     (tmp_path / "mine.yaml").write_text(out)
-    comment, hint, line, first, *_ = out.splitlines()
+    comment, hint, line, first, *rest = out.splitlines()
     assert comment.startswith("# The walk of the paper's table")
     assert "`surefoot schema > surefoot.schema.json`" in hint
-    assert (line, first) == ("# yaml-language-server: $schema=surefoot.schema.json", "name: diagonal-walk")
+    assert (line, first) == (
+        "# yaml-language-server: $schema=surefoot.schema.json",
+        "name: diagonal-walk",
+    )
+    explained = {key.strip(): meaning for key, _, meaning in (text.partition(" # ") for text in rest)}
+    assert explained["steps: 5"] == Scenario.model_fields["gait"].annotation.model_fields["steps"].description
+    assert explained["steps_taken: steps_planned"] == OWN["steps_taken"].meaning
     assert load(str(tmp_path / "mine.yaml")) == load("diagonal-walk")
     code, _, err = surefoot("show", "diagonal-wlk")
     assert code == 2
     assert "did you mean 'diagonal-walk'" in err
+
+
+@pytest.mark.parametrize("name", catalogue.OWN)
+def test_what_show_prints_says_what_the_file_says(name):
+    shown, file = starter(name), catalogue.text(name)[0]
+    assert yaml.safe_load(shown) == yaml.safe_load(file)
+    assert "yaml-language-server" in shown
+    unexplained = [line for line in shown.splitlines() if "#" not in line and line != f"name: {name}"]
+    assert unexplained == [line for line in unexplained if line.lstrip().startswith(("-", "{"))]
+
+
+def test_a_file_that_cannot_be_explained_is_shown_as_it_is(monkeypatch):
+    for text in ("gait: {steps: [1\n", "robot: 'two\n  lines: 3'\n"):
+        monkeypatch.setattr(catalogue, "text", lambda name, text=text: (text, "x"))
+        assert starter("x") == text
 
 
 def test_schema_is_json(surefoot):

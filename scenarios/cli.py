@@ -3,18 +3,55 @@
 import json
 import sys
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer._click.exceptions import NoArgsIsHelpError, NoSuchOption, UsageError
+from typer.core import TyperGroup
 
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 
 if TYPE_CHECKING:
+    from typer._click.core import Context
+
     from surefoot.scenarios.log import Log
+
+
+@contextmanager
+def _one_sentence() -> Iterator[None]:
+    """Say what is wrong with the words of a command as of any other bad input: what, where, and what would be right."""
+    try:
+        yield
+    except NoArgsIsHelpError:
+        raise
+    except UsageError as error:
+        path = error.ctx.command_path if error.ctx else "surefoot"
+        what = error.format_message().rstrip(".")
+        right = f"`{path} -h` tells what there is"
+        if isinstance(error, NoSuchOption) and path.endswith(" run"):
+            key = error.option_name.lstrip("-").replace("-", "_")
+            right = f"a key of the scenario is given as --set {key}=VALUE" if key in _keys(key) else right
+        raise ScenarioError([f"{path}: {what[:1].lower()}{what[1:]}; {right}"]) from None
+
+
+class _Commands(TyperGroup):
+    """All commands."""
+
+    def parse_args(self, ctx: "Context", args: list[str]) -> list[str]:
+        with _one_sentence():
+            return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: "Context") -> Any:
+        with _one_sentence():
+            return super().invoke(ctx)
+
 
 app = typer.Typer(
     name="surefoot",
+    cls=_Commands,
     help="A humanoid walks in full physics, and its log gives the verdict.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -53,11 +90,16 @@ def _scenarios(incomplete: str) -> list[str]:
     return [name for name in catalogue.names() if name.startswith(incomplete)]
 
 
-def _settings(incomplete: str) -> list[str]:
-    """Keys that begin so, each as the beginning of a setting."""
+def _keys(incomplete: str) -> list[str]:
+    """Keys of scenarios that begin so."""
     from surefoot.scenarios.show.listing import keys
 
-    return [f"{key}=" for key in keys() if key.startswith(incomplete)]
+    return [key for key, _ in keys() if key.startswith(incomplete)]
+
+
+def _settings(incomplete: str) -> list[str]:
+    """Keys that begin so, each as the beginning of a setting."""
+    return [f"{key}=" for key in _keys(incomplete)]
 
 
 @app.command("list")
@@ -82,7 +124,7 @@ def run(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.", autocompletion=_settings),
     ] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed, over that of the scenario.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed, over that of the scenario.")] = None,
     out: Annotated[Path, typer.Option(help="Directory that gets the run's own folder.")] = Path("runs"),
     video: Annotated[Path | None, typer.Option(help="Also render the run to this .mp4 file.")] = None,
     view: Annotated[bool, typer.Option("--view", help="Show the run in a browser while it goes on.")] = False,
@@ -309,9 +351,9 @@ def paper(
 @app.command()
 def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocompletion=_scenarios)]) -> None:
     """Print a scenario's commented YAML, to start one's own from."""
-    from surefoot.scenarios import catalogue
+    from surefoot.scenarios.show.listing import starter
 
-    typer.echo(catalogue.starter(scenario), nl=False)
+    typer.echo(starter(scenario), nl=False)
 
 
 @app.command()

@@ -17,10 +17,6 @@ from surefoot.scenarios.errors import ScenarioError, nearest
 from surefoot.scenarios.file.source import decoded
 
 _ENDING = ".yaml"
-_EDITOR = """\
-# Every key has a default; `surefoot schema > surefoot.schema.json` lets an editor complete and check them:
-# yaml-language-server: $schema=surefoot.schema.json
-"""
 
 
 class _Other(NamedTuple):
@@ -73,13 +69,6 @@ def text(name: str) -> tuple[str, str]:
         raise unknown(name, "no such catalogue name")
     with file.open("rb") as opened:
         return decoded(opened, place), place
-
-
-def starter(name: str) -> str:
-    """YAML text of a scenario to start one's own from, with what lets an editor check it; errors as of `text`."""
-    lines = text(name)[0].splitlines(keepends=True)
-    head = next((number for number, line in enumerate(lines) if not line.startswith("#")), len(lines))
-    return "".join((*lines[:head], _EDITOR, *lines[head:]))
 
 
 def summary(name: str) -> str:

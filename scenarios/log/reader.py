@@ -315,7 +315,8 @@ def read(path: str | Path) -> Log:
                 raise LogError(f"{path}: not an MCAP file; give a log that `surefoot run` has written")
             return Log(path, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
     except IsADirectoryError:
-        raise LogError(f"{path}: a directory; give a log file") from None
+        inside = next(iter(sorted(path.glob("*.mcap"))), None)
+        raise LogError(f"{path}: a directory; give {'a log file' if inside is None else inside}") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise LogError(f"{path}: cannot be read, {str(reason).lower()}; give a log file") from None

@@ -17,6 +17,7 @@ from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, d
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
+from surefoot.scenarios.log.encoding import MAGIC
 from surefoot.scenarios.record.provenance import PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria_checks import criteria_problems
@@ -29,8 +30,14 @@ MOST_TOLD = 20
 
 
 def is_log(reference: str) -> bool:
-    """Whether a reference to a scenario is the path of a log."""
-    return reference.endswith(LOG_ENDING)
+    """Whether a reference to a scenario is the path of a log, by its ending or by how the file begins."""
+    if reference.endswith(LOG_ENDING):
+        return True
+    try:
+        with Path(reference).open("rb") as file:
+            return file.read(len(MAGIC)) == MAGIC
+    except (OSError, ValueError):
+        return False
 
 
 def attached_scenario(path: str) -> tuple[str, str]:

@@ -167,8 +167,10 @@ def selected(log: Log, topic: str, start: float | None, end: float | None, field
         field: the field; None for all.
 
     Raises:
-        LogError: there is no such topic or field, its messages are not of a fixed layout, or no message is left.
+        LogError: there is no such topic or field, its messages are not of a fixed layout, or none is in the window.
     """
+    if start is not None and end is not None and start > end:
+        raise LogError(f"--from {start:g} is after --to {end:g}; give the earlier time as --from")
     first, last = log.time_range()
     channel = log.window(topic, first if start is None else start, last if end is None else end)
     if not len(channel):

@@ -1,9 +1,11 @@
 """What a scenario can name, and which package brings it; and the words that a shell completes."""
 
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, get_args
 
+import yaml
 from pydantic import BaseModel
 
 from surefoot.models.registry import ROBOTS
@@ -84,13 +86,57 @@ def to_json() -> dict[str, list[dict[str, str]]]:
     return found
 
 
-def keys(group: type[BaseModel] = Scenario, prefix: str = "") -> Iterator[str]:
-    """Every key of a scenario by its dotted name, groups before what is in them."""
+def keys(group: type[BaseModel] = Scenario, prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Every key of a scenario by its dotted name with its meaning, groups before what is in them."""
     for name, field in group.model_fields.items():
-        yield prefix + name
+        yield prefix + name, field.description or ""
         for inner in (field.annotation, *get_args(field.annotation)):
             if isinstance(inner, type) and issubclass(inner, BaseModel):
                 yield from keys(inner, f"{prefix}{name}.")
+
+
+_EDITOR = """\
+# Every key has a default; `surefoot schema > surefoot.schema.json` lets an editor complete and check them:
+# yaml-language-server: $schema=surefoot.schema.json
+"""
+_KEY = re.compile(r"( *)(\w+):(?: +[^#|>\s][^#]*)?")
+_COLUMN = 40
+
+
+def starter(name: str) -> str:
+    """YAML text of a scenario to start one's own from: each key with its meaning, and what lets an editor check them.
+
+    Raises:
+        ScenarioError: its file is too large or no UTF-8, or there is none.
+    """
+    text = catalogue.text(name)[0]
+    lines = text.splitlines(keepends=True)
+    head = next((number for number, line in enumerate(lines) if not line.startswith("#")), len(lines))
+    made = "".join((*lines[:head], _EDITOR, *_explained(lines[head:])))
+    said = _content(text)
+    return made if said is not None and _content(made) == said else text
+
+
+def _explained(lines: Sequence[str]) -> Iterator[str]:
+    """Lines of a scenario, with a comment after each key of whose meaning something is known."""
+    meanings = {**dict(keys()), **{f"criteria.{name}": metric.meaning for name, metric in OWN_METRICS.items()}}
+    path: list[tuple[int, str]] = []
+    for line in lines:
+        key = _KEY.fullmatch(line.rstrip())
+        if key is None:
+            yield line
+            continue
+        path = [*((indent, name) for indent, name in path if indent < len(key[1])), (len(key[1]), key[2])]
+        meaning = meanings.get(".".join(name for _, name in path), "")
+        yield f"{key[0]:<{_COLUMN}}  # {meaning}\n" if meaning not in ("", key[2]) else line
+
+
+def _content(text: str) -> Any:
+    """What a YAML text says; None where it cannot be read."""
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError:
+        return None
 
 
 def _first_line(thing: object) -> str:

@@ -6,17 +6,21 @@ import subprocess
 import sys
 
 import pytest
+import yaml
 
 from surefoot.errors import ParameterError
-from surefoot.scenarios import cli
+from surefoot.scenarios import catalogue, cli
 from surefoot.scenarios.cli import app
 from surefoot.scenarios.errors import SetupError
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop import run
 from surefoot.scenarios.setup import walk
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.show.listing import starter
 
 pytestmark = pytest.mark.unit
 
@@ -97,14 +101,35 @@ def test_show_prints_a_file_that_runs(surefoot, tmp_path):
     code, out, _ = surefoot("show", "diagonal-walk")
     assert code == 0
     (tmp_path / "mine.yaml").write_text(out)
-    comment, hint, line, first, *_ = out.splitlines()
+    comment, hint, line, first, *rest = out.splitlines()
     assert comment.startswith("# The walk of the paper's table")
     assert "`surefoot schema > surefoot.schema.json`" in hint
-    assert (line, first) == ("# yaml-language-server: $schema=surefoot.schema.json", "name: diagonal-walk")
+    assert (line, first) == (
+        "# yaml-language-server: $schema=surefoot.schema.json",
+        "name: diagonal-walk",
+    )
+    explained = {key.strip(): meaning for key, _, meaning in (text.partition(" # ") for text in rest)}
+    assert explained["steps: 5"] == Scenario.model_fields["gait"].annotation.model_fields["steps"].description
+    assert explained["steps_taken: steps_planned"] == OWN["steps_taken"].meaning
     assert load(str(tmp_path / "mine.yaml")) == load("diagonal-walk")
     code, _, err = surefoot("show", "diagonal-wlk")
     assert code == 2
     assert "did you mean 'diagonal-walk'" in err
+
+
+@pytest.mark.parametrize("name", catalogue.OWN)
+def test_what_show_prints_says_what_the_file_says(name):
+    shown, file = starter(name), catalogue.text(name)[0]
+    assert yaml.safe_load(shown) == yaml.safe_load(file)
+    assert "yaml-language-server" in shown
+    unexplained = [line for line in shown.splitlines() if "#" not in line and line != f"name: {name}"]
+    assert unexplained == [line for line in unexplained if line.lstrip().startswith(("-", "{"))]
+
+
+def test_a_file_that_cannot_be_explained_is_shown_as_it_is(monkeypatch):
+    for text in ("gait: {steps: [1\n", "robot: 'two\n  lines: 3'\n"):
+        monkeypatch.setattr(catalogue, "text", lambda name, text=text: (text, "x"))
+        assert starter("x") == text
 
 
 def test_schema_is_json(surefoot):
@@ -188,22 +213,72 @@ def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
         (["run", "no-such"], "no such scenario file or catalogue name"),
         (["run", "walk", "--set", "gait.steps=x", "--set", "seed=-1"], "--set gait.steps: gait.steps is 'x'"),
         (["run", "walk", "--out", "/dev/null/x"], "cannot be created"),
-        (["run", "walk", "--vidoe", "x"], "No such option"),
+        (
+            ["run", "walk", "--vidoe", "x"],
+            "surefoot run: no such option: --vidoe (Possible options: --video, --view); ",
+        ),
         (["run", "walk", "--video", "x"], "a name that ends in .mp4"),
-        (["run"], "Missing argument"),
-        (["fly"], "No such command"),
+        (["run"], "surefoot run: missing argument 'scenario'; `surefoot run -h` tells what there is"),
+        (["run", "walk", "stand"], "surefoot run: got unexpected extra argument(s) (stand); "),
+        (["run", "walk", "--fidelity", "pendulum"], "a key of the scenario is given as --set fidelity=VALUE"),
+        (["run", "walk", "--seed", "x"], "surefoot run: invalid value for '--seed': Input should be a valid integer"),
+        (["run", "walk", "--seed", "-1"], "invalid value for '--seed': Input should be greater than or equal to 0"),
+        (["run", "walk", "--set", "gait.steps"], "--set gait.steps: not a setting; write --set key=value"),
+        (["run", "{folder}"], "a directory; give a scenario file or a catalogue name"),
+        (["run", "{folder}/none.yaml"], "none.yaml: no such scenario file or catalogue name"),
+        (["run", "stand", "--out", "{file}", "--set", "duration=0.1"], "cannot be created, not a directory"),
+        (["rnu", "walk"], "surefoot: no such command 'rnu'. Did you mean 'run'?"),
+        (["help"], "surefoot: no such command 'help'; `surefoot -h` tells what there is"),
+        (["-V"], "surefoot: no such option: -V; `surefoot -h` tells"),
+        (["fly"], "surefoot: no such command 'fly'"),
+        (["show", "{file}"], "no such catalogue name; valid are blocks, "),
+        (["list", "walk"], "surefoot list: got unexpected extra argument(s) (walk)"),
+        (["inspect", "{file}"], "not an MCAP file; give a log that `surefoot run` has written"),
+        (["inspect", "{folder}"], "a directory; give {folder}/x.mcap"),
+        (["inspect", "{folder}/x.mcap"], "not an MCAP file"),
+        (["replay", "{folder}/x.mcap"], "give one of --html FILE, --video FILE and --live"),
+        (["compare", "{file}"], "surefoot compare: missing argument 'B'"),
+        (["paper", "--jobs", "0"], "invalid value for '--jobs': Input should be greater than or equal to 1"),
         (["inspect", "/dev/null"], "not an MCAP file"),
         (["inspect", "/"], "a directory"),
         (["inspect", "/no/such"], "no such file"),
         (["recover", "/dev/null", "whole.mcap"], "not an MCAP file"),
     ],
 )
-def test_bad_input_is_one_message_and_2(surefoot, arguments, message):
+def test_bad_input_is_one_sentence_and_2(surefoot, arguments, message, tmp_path):
+    (tmp_path / "mine.yaml").write_text("name: mine\n")
+    (tmp_path / "x.mcap").touch()
+    places = {"{folder}": str(tmp_path), "{file}": str(tmp_path / "mine.yaml")}
+    for place, path in places.items():
+        arguments, message = [word.replace(place, path) for word in arguments], message.replace(place, path)
     code, out, err = surefoot(*arguments)
     assert code == 2
     assert message in err
     assert out == ""
-    assert "Traceback" not in err
+    sentences = err.splitlines()
+    assert len(sentences) == arguments.count("--set") or len(sentences) == 1
+    assert all("; " in sentence and not sentence.endswith(".") for sentence in sentences)
+
+
+def test_a_command_alone_shows_what_there_is(surefoot):
+    code, out, err = surefoot()
+    assert code == 2
+    assert "Commands:" in out + err
+
+
+def test_a_window_that_ends_before_it_begins(surefoot, scenario, tmp_path):
+    surefoot("run", scenario, "--out", tmp_path)
+    log = tmp_path / "two-steps-0" / "log.mcap"
+    code, _, err = surefoot("inspect", log, "--topic", "/truth", "--from", "2", "--to", "1")
+    assert (code, err) == (2, "--from 2 is after --to 1; give the earlier time as --from\n")
+
+
+def test_a_log_of_any_name_is_known_by_how_it_begins(surefoot, scenario, tmp_path):
+    surefoot("run", scenario, "--out", tmp_path)
+    log = tmp_path / "two-steps-0" / "log.mcap"
+    other = log.rename(log.with_name("kept.log"))
+    code, out, _ = surefoot("run", other, "--out", tmp_path / "again")
+    assert (code, out.splitlines()[0]) == (0, "two-steps: verdict pass")
 
 
 def test_inspect_repeats_the_verdict(surefoot, scenario, tmp_path):

@@ -187,11 +187,11 @@ def test_json_is_one_object(command, logs):
         (["compare", "{log}", "{log}", "--tolerance", "-1"], "not a tolerance"),
         (["compare", "{log}", "{log}", "--tolerance", "nan"], "not a tolerance"),
         (["compare", "{log}", "{log}", "--out", "x.txt"], "end the file's name with one of them"),
-        (["compare", "{log}"], "Missing argument"),
+        (["compare", "{log}"], "missing argument"),
         (["plot", "{log}", "--what", "torque"], "did you mean 'torques'?"),
         (["plot", "{log}", "--from", "99"], "holds nothing from 99 s on"),
         (["plot", "/"], "a directory"),
-        (["plot"], "Missing argument"),
+        (["plot"], "missing argument"),
     ],
 )
 def test_bad_input_is_one_message_and_2(command, logs, arguments, message):

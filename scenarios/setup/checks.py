@@ -186,7 +186,20 @@ _POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
 
 def notes(draft: Draft) -> tuple[str, ...]:
     """List them, one sentence each."""
-    return (*draft.moved, *_without_effect(draft), *_cut_short(draft))
+    return (*draft.moved, *_unlikely(draft), *_without_effect(draft), *_cut_short(draft))
+
+
+_LONG = 60.0
+"""Time from which a stand or a push may have been meant in milliseconds [s]."""
+
+
+def _unlikely(draft: Draft) -> Iterator[str]:
+    """Tell times that are what they say and were perhaps meant in another unit."""
+    times = {f"pushes.{index}.duration": push.duration for index, push in enumerate(draft.keys.pushes)}
+    for name, value in {"gait.initial_stand": draft.keys.gait.initial_stand, **times}.items():
+        hint = meant(value, "s", _LONG)
+        if hint:
+            yield f"{name} is {value:g} s{hint}"
 
 
 def _without_effect(draft: Draft) -> Iterator[str]:

@@ -118,7 +118,10 @@ class Gait(Group):
     """The walk that is asked for; defaults are the paper's table."""
 
     steps: Annotated[int, Field(ge=0, le=100_000), WHOLE] = Field(default=5, description="footsteps to take [-]")
-    step_length: Length = Field(default=0.2, description="forward distance between successive footsteps")
+    step_length: Length = Field(
+        default=0.2,
+        description="forward distance between successive footsteps; on stairs, unless given, terrain.tread",
+    )
     step_width: Size = Field(default=0.2, description="lateral distance between the feet's centres")
     lateral_step: Length = Field(default=0.0, description="lateral progress of each footstep, left positive")
     turn: Angle = Field(default=0.0, description="heading change of each footstep, left positive")

@@ -56,12 +56,6 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
     ]
 
 
-def is_multiple(value: float, unit: float) -> bool:
-    """Whether a time is a whole number of units, to a billionth of a unit per unit."""
-    ratio = value / unit
-    return math.isclose(ratio, round(ratio), rel_tol=1e-9, abs_tol=1e-9)
-
-
 def _rates(draft: Draft) -> Iterator[Problem]:
     rates = draft.keys.rates
     for fast, slow in (("physics", "control"), ("control", "planner")):
@@ -76,16 +70,10 @@ def _rates(draft: Draft) -> Iterator[Problem]:
 
 
 def _durations(draft: Draft) -> Iterator[Problem]:
-    sample_time = draft.keys.planner.sample_time
-    for name in ("single_support", "double_support", "initial_stand"):
-        value = getattr(draft.keys.gait, name)
-        if name == "single_support" and swing_too_short(draft):
-            what = f"gait.{name} {value} s is too short for a swing of the foot"
-            yield Problem(("gait", name), what, f"use at least {FEWEST_SWING_SAMPLES * sample_time:g} s")
-        elif not is_multiple(value, sample_time):
-            near = max(1, round(value / sample_time)) * sample_time
-            what = f"gait.{name} {value} s is not a multiple of planner.sample_time {sample_time} s"
-            yield Problem(("gait", name), what, f"use for example {near:.6g} s")
+    if swing_too_short(draft):
+        what = f"gait.single_support {draft.asked.gait.single_support} s is too short for a swing of the foot"
+        right = f"use at least {FEWEST_SWING_SAMPLES * draft.keys.planner.sample_time:g} s"
+        yield Problem(("gait", "single_support"), what, right)
 
 
 def _pushes(draft: Draft) -> Iterator[Problem]:
@@ -195,7 +183,20 @@ _POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
 
 def notes(draft: Draft) -> tuple[str, ...]:
     """List them, one sentence each."""
-    return (*_without_effect(draft), *_cut_short(draft))
+    return (*draft.moved, *_unlikely(draft), *_without_effect(draft), *_cut_short(draft))
+
+
+_LONG = 60.0
+"""Time from which a stand or a push may have been meant in milliseconds [s]."""
+
+
+def _unlikely(draft: Draft) -> Iterator[str]:
+    """Tell times that are what they say and were perhaps meant in another unit."""
+    times = {f"pushes.{index}.duration": push.duration for index, push in enumerate(draft.keys.pushes)}
+    for name, value in {"gait.initial_stand": draft.keys.gait.initial_stand, **times}.items():
+        hint = meant(value, "s", _LONG)
+        if hint:
+            yield f"{name} is {value:g} s{hint}"
 
 
 def _without_effect(draft: Draft) -> Iterator[str]:

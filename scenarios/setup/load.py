@@ -23,6 +23,7 @@ from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria_checks import criteria_problems
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
+from surefoot.scenarios.setup.terrain import KINDS
 
 LOG_ENDING = ".mcap"
 MOST_TOLD = 20
@@ -116,6 +117,7 @@ def read_scenario(text: str, name: str, stem: str, overrides: Overrides, robots:
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
+    scenario = KINDS[scenario.terrain.kind].completed(scenario)
     draft = Draft(scenario)
     semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *check(draft, robots)]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]

@@ -65,7 +65,6 @@ CASES = {
     "rates: {control: 300}": "does not divide rates.physics 1000 Hz; use a divisor of 1000 Hz",
     "rates: {control: 40}": "rates.planner 50 Hz does not divide rates.control 40 Hz",
     "planner: {sample_time: 0.01}": "f.yaml:1:24: planner.sample_time 0.01 s is not the period of rates.planner 50 Hz",
-    "gait: {double_support: 0.51}": "f.yaml:1:24: gait.double_support 0.51 s is not a multiple of planner.sample_time",
     "robot: humanoid10": "f.yaml:1:8: unknown robot 'humanoid10'; did you mean 'humanoid100'?",
     "gait: {step_length: 0.9}": "f.yaml:1:21: gait.step_length 0.9 m is out of reach at com_height 1.0 m; use at",
     "gait: {com_height: 1.2}": "f.yaml:1:20: gait.com_height 1.2 m is out of reach",

@@ -7,6 +7,8 @@ import yaml
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.setup.checks import notes
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.walk import scenario_yaml
 
@@ -114,3 +116,11 @@ def test_a_wrong_unit_is_said_in_a_sentence(robots, text, said):
 
 def test_bare_numbers_are_what_they_were(robots):
     assert load(robots, "gait: {step_length: 0.25, steps: 5.0}").gait == Scenario(gait={"step_length": 0.25}).gait
+
+
+def test_a_time_that_is_possible_and_unlikely_is_a_note(robots):
+    text = "gait: {initial_stand: 500}\npushes: [{time: 1, duration: 100}, {time: 2, duration: 1}]"
+    assert notes(Draft(load(robots, text))) == (
+        "gait.initial_stand is 500 s; for 500 ms write '500 ms'",
+        "pushes.0.duration is 100 s; for 100 ms write '100 ms'",
+    )

@@ -13,9 +13,10 @@ from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import refuse_existing
 from surefoot.scenarios.record.provenance import ABSENT
 from surefoot.scenarios.show.figures import top_view
-from surefoot.scenarios.show.figures.effort import draw_solver, draw_torques
-from surefoot.scenarios.show.figures.motion import draw_balance, draw_feet, draw_height
+from surefoot.scenarios.show.figures.effort import draw_joints, draw_solver, draw_torques
+from surefoot.scenarios.show.figures.motion import draw_balance, draw_feet, draw_height, strips
 from surefoot.scenarios.show.figures.shading import Background, background
+from surefoot.scenarios.show.figures.soles import draw_grip, draw_soles
 from surefoot.scenarios.show.figures.style import Area, canvas, format_of, in_style, save
 from surefoot.scenarios.show.logview import LogView, MissingError
 
@@ -33,19 +34,28 @@ class Family:
         draw: how.
         size: width and height when it stands alone [in].
         over_time: whether its axes are of time, with what happened behind them.
+        longer: height of each strip more that a long run needs [in].
     """
 
     draw: Draw
     size: tuple[float, float]
     over_time: bool = True
+    longer: float = 0.0
+
+    def more(self, view: LogView) -> float:
+        """Height beyond that of a short run [in]."""
+        return self.longer * (len(strips(view)) - 1)
 
 
 FIGURES: dict[str, Family] = {
-    "balance": Family(draw_balance, (_A3, 6.0)),
+    "balance": Family(draw_balance, (_A3, 6.0), longer=2.7),
     "top-view": Family(top_view.draw, (_A3, 5.5), over_time=False),
     "height": Family(draw_height, (_A4, 4.5)),
     "feet": Family(draw_feet, (_A4, 4.5)),
+    "soles": Family(draw_soles, (_A4, 4.0), over_time=False),
+    "grip": Family(draw_grip, (_A4, 4.5)),
     "torques": Family(draw_torques, (_A4, 6.0)),
+    "joints": Family(draw_joints, (_A3, 6.0)),
     "solver": Family(draw_solver, (_A3, 4.5)),
 }
 """The families of figures by name."""
@@ -63,13 +73,17 @@ _COMPACT = (
     Row(5.1, ("balance",)),
     Row(3.6, ("top-view", "height")),
     Row(3.9, ("feet", "torques")),
+    Row(3.3, ("soles", "grip")),
+    Row(3.9, ("joints",)),
     Row(3.3, ("solver",)),
 )
 _WIDE = (
-    Row(4.5, ("balance",)),
-    Row(2.0, ("top-view",)),
+    Row(4.8, ("balance",)),
+    Row(0.9, ("top-view",)),
     Row(3.1, ("height", "feet")),
-    Row(3.1, ("torques",)),
+    Row(3.3, ("soles", "grip")),
+    Row(3.3, ("torques",)),
+    Row(3.9, ("joints",)),
     Row(3.1, ("solver",)),
 )
 
@@ -77,7 +91,9 @@ _WIDE = (
 def page(view: LogView, header: str) -> Figure:
     """Draw all figures on one page, A3 wide."""
     rows = _WIDE if top_view.is_wide(view) else _COMPACT
-    heights = [_HEADER, *(row.height for row in rows)]
+    heights = [_HEADER, *(row.height + max(FIGURES[name].more(view) for name in row.names) for row in rows)]
+    if rows is _WIDE:
+        heights[2] += top_view.height(view, _A3)
     with in_style():
         figure, areas = canvas(_A3, heights)
         behind = background(view)
@@ -98,7 +114,7 @@ def single(view: LogView, header: str, name: str) -> Figure:
         raise LogError(f"--what {name}: no such figure; {nearest(name, FIGURES)}")
     with in_style():
         width, tall = FIGURES[name].size
-        figure, (top, area) = canvas(width, (_HEADER, tall))
+        figure, (top, area) = canvas(width, (_HEADER, tall + FIGURES[name].more(view)))
         behind = background(view) if FIGURES[name].over_time else Background((), (), None)
         _head(top, header, behind, 9.0)
         FIGURES[name].draw(area, view, behind)

@@ -43,9 +43,10 @@ def swing_clearance_min(run: RunView) -> float | None:
     """Least height of a swing sole's corner over the ground, but for the first and last quarter of each swing [m]."""
     stance, least = run.field("/reference", "stance"), []
     for foot in range(2):
+        sole = run.sole(foot)
         for start, end in runs_of(run.single_support & (stance == 1 - foot)):
             edge = (end - start) // 4
-            least.append(_clearance(run, run.soles[start + edge : end - edge : _CLEARANCE_TICKS, foot]))
+            least.append(_clearance(run, sole[start + edge : end - edge : _CLEARANCE_TICKS]))
     return min(least, default=None)
 
 
@@ -84,11 +85,13 @@ def stance_slips(run: RunView) -> list[Slip]:
     A foot that rolls moves its sole's centre but not its toe edge, so that of the two counts which moved less.
     """
     contact = (run.field("/contact", "planned") != 0) & (run.field("/contact", "felt") != 0)
-    centre, slips = run.soles[..., :2], []
-    toe = centre + 0.5 * run.constants.foot_length * forward(run.soles[..., 3:])
+    slips = []
     for foot in range(2):
+        sole = run.sole(foot)
         for start, end in runs_of(contact[:, foot]):
-            moved = [np.linalg.norm(at[start:end, foot] - at[start, foot], axis=1) for at in (centre, toe)]
+            centre = sole[start:end, :2]
+            toe = centre + 0.5 * run.constants.foot_length * forward(sole[start:end, 3:])
+            moved = [np.linalg.norm(at - at[0], axis=1) for at in (centre, toe)]
             distance = np.minimum(*moved)
             farthest = int(np.argmax(distance))
             slips.append(Slip(foot, start, start + farthest, float(distance[farthest])))

@@ -213,7 +213,7 @@ def overrun_ticks(run: RunView) -> Finding:
 def not_finite(run: RunView) -> Finding:
     """Ticks with a state, sensor value or torque that is not a number."""
     values = {
-        "/truth": run.field("/truth", "com").sum(axis=1) + run.soles.sum(axis=(1, 2)),
+        "/truth": run.field("/truth", "com").sum(axis=1) + run.sole(0).sum(axis=1) + run.sole(1).sum(axis=1),
         "/measurement": run.reduced(effort.joint_power) + run.reduced(effort.joint_limit_margin),
         "/estimate": run.field("/estimate", "com").sum(axis=1),
         "/torque": run.reduced(effort.torque_ratio),

@@ -195,5 +195,5 @@ def digest(log: Log) -> Digest:
     reads: list[Reads] = [health.READS, *(metric.reads for metric in metrics)]
     gathered = Digest(log, reads, reduce)
     for reduction in failed:
-        gathered.reduced.pop(reduction, None)
+        gathered.reduced.forget(reduction)
     return gathered

@@ -189,7 +189,7 @@ class Log:
 
     def _data_fault(self) -> str:
         """Why the data as a whole are not those that were written; empty if they are."""
-        end, crc, step = self.contents.data_end, 0, 1 << 24
+        end, crc, step = self.contents.data_end, 0, 1 << 22
         if end is None:
             return f"its end is missing, it can be read up to {self.time_range()[1]:.3f} s"
         if not self.contents.data_crc:
@@ -227,7 +227,7 @@ class Log:
         blocks: dict[int, list[memoryview | bytes]] = {number: [] for number in sizes}
         expected = dict.fromkeys(sizes, 0)
         for chunk in chunks:
-            numbers = sizes.keys() & chunk.index.keys()
+            numbers = sizes.keys() & chunk.channels
             data = (self._sound(chunk) if verify else self._decompressed(chunk)) if numbers or verify else None
             if data is not None:
                 view = memoryview(data)
@@ -280,11 +280,11 @@ class Log:
     def _index_rest(self) -> None:
         """Index chunks that stand without an index, or whose channels are defined only inside them."""
         for chunk in self.contents.chunks:
-            foreign = chunk.index.keys() - self.contents.channels.keys()
-            if not chunk.index or chunk.index_damaged or foreign:
+            foreign = chunk.channels - self.contents.channels.keys()
+            if not chunk.places or chunk.index_damaged or foreign:
                 data = self._decompressed(chunk)
                 if data is not None:
-                    chunk.index = dict(index_chunk(data, self.contents))
+                    chunk.made = index_chunk(data, self.contents)
 
 
 def read(path: str | Path) -> Log:

@@ -42,7 +42,12 @@ class Columns:
             LogError: there is no room for the files.
         """
         kind = (values.shape[1:], values.dtype)
-        if key in self._unlike or not values.ndim or self._kinds.setdefault(key, kind) != kind:
+        if (
+            key in self._unlike
+            or not values.ndim
+            or values.dtype.hasobject
+            or self._kinds.setdefault(key, kind) != kind
+        ):
             self.forget(key)
             return
         self._rows[key] = self._rows.get(key, 0) + len(values)

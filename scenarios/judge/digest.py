@@ -157,6 +157,10 @@ class Digest:
         return self._channels[topic]
 
 
+LAG_NS = 100_000_000
+"""What is put off at most [ns]."""
+
+
 def _in_step(windows: Iterable[dict[str, ChannelData]]) -> Iterator[dict[str, ChannelData]]:
     """The same windows, each with whole control ticks.
 
@@ -166,7 +170,9 @@ def _in_step(windows: Iterable[dict[str, ChannelData]]) -> Iterator[dict[str, Ch
     for channels in windows:
         joined = {topic: rest[topic].joined(channel) if rest else channel for topic, channel in channels.items()}
         clocks = [joined[topic].time_ns for topic in CONTROL_TOPICS if topic in joined and len(joined[topic])]
-        last = min((int(times[-1]) for times in clocks), default=np.iinfo(np.int64).max - 1)
+        ends = [int(times[-1]) for times in clocks]
+        # No sound channel lags by more than a tick; one that does must not hold up all others.
+        last = max(min(ends), max(ends) - LAG_NS) if ends else np.iinfo(np.int64).max - 1
         rest = {topic: channel.between(last + 1, np.iinfo(np.int64).max - 1) for topic, channel in joined.items()}
         yield {topic: channel.between(np.iinfo(np.int64).min, last) for topic, channel in joined.items()}
     yield rest

@@ -272,7 +272,15 @@ def findings(digest: Digest) -> tuple[Finding, ...]:
     """
     run = RunView(digest)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        return tuple(check(run) for topics, check in _CHECKS if run.has("/truth", *topics))
+        return tuple(_found(check, run) for topics, check in _CHECKS if run.has("/truth", *topics))
+
+
+def _found(check: Callable[[RunView], Finding], run: RunView) -> Finding:
+    """What a check finds, also in values that no run has."""
+    try:
+        return check(run)
+    except (ValueError, IndexError, TypeError) as error:
+        return judged(check.__name__, True, None, None, f"cannot be looked at: {error}")
 
 
 __all__ = ["Finding", "findings"]

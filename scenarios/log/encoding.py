@@ -29,8 +29,8 @@ from surefoot.scenarios.errors import LogError
 _LZ4_LEVEL = -3
 """Twice as fast as the default, for 8 % more bytes of a log."""
 
-_GREATEST_RATIO = 100_000
-"""No sound chunk is compressed more; a damaged size must not exhaust the memory."""
+GREATEST_CHUNK = 1 << 26
+"""No sound chunk holds more; a size that is damaged, or made to hurt, must not exhaust the memory [bytes]."""
 
 
 def compress(data: bytes, method: str) -> bytes:
@@ -51,13 +51,13 @@ def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:
     Raises:
         LogError: the bytes are damaged or the method is unknown.
     """
-    if size > _GREATEST_RATIO * len(data) + 1024:
-        raise LogError("a chunk states more bytes than compression can yield; its bytes are damaged")
+    if size > GREATEST_CHUNK:
+        raise LogError(f"a chunk states {size} bytes, more than the {GREATEST_CHUNK} that one may hold; it is damaged")
     try:
         if method == "lz4":
-            whole = lz4.frame.decompress(data)
+            whole = lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=size + 1)
         elif method == "zstd":
-            whole = zstandard.ZstdDecompressor().decompress(data, max_output_size=size)
+            whole = _unzstd(data, size)
         elif method == "":
             whole = bytes(data)
         else:
@@ -67,6 +67,12 @@ def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:
     if len(whole) != size:
         raise LogError(f"a chunk holds {len(whole)} bytes where it states {size}; its bytes are damaged")
     return bytes(whole)
+
+
+def _unzstd(data: bytes | memoryview, size: int) -> bytes:
+    """At most one byte more than there should be, whatever the frame says of its size."""
+    with zstandard.ZstdDecompressor().stream_reader(data) as reader:
+        return reader.read(size + 1)
 
 
 MAGIC = b"\x89MCAP0\r\n"

@@ -3,6 +3,7 @@
 import mmap
 import struct
 from array import array
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from io import BytesIO
@@ -113,6 +114,7 @@ class Contents:
         data_end: where the record that ends the data begins; None when it is missing.
         data_crc: CRC-32 of everything before it by that record, 0 for none.
         truncated: whether the end of the file is missing.
+        known: positions of the chunks by the summary, once it was asked.
         damage: what could not be read, in words.
     """
 
@@ -125,6 +127,7 @@ class Contents:
     data_end: int | None = None
     data_crc: int = 0
     truncated: bool = True
+    known: list[int] | None = None
     damage: list[str] = field(default_factory=list)
 
 
@@ -262,7 +265,9 @@ def _chunk(data: Buffer, position: int, body: slice) -> ChunkPlace:
 
 def _resume(data: Buffer, position: int, contents: Contents) -> int:
     """Where to read on after a record that makes no sense: the next chunk that the file's own index knows."""
-    following = next((start for start in _indexed_chunks(data) if start > position), None)
+    if contents.known is None:
+        contents.known = _indexed_chunks(data)
+    following = next(iter(contents.known[bisect_right(contents.known, position) :]), None)
     if following is None:
         if data[-len(MAGIC) :] == MAGIC:
             contents.damage.append(f"nothing can be read from byte {position} on")
@@ -279,7 +284,8 @@ def _indexed_chunks(data: Buffer) -> list[int]:
             return []
         summary = data[_decode(Footer.read, data[footer_at + PREFIX.size :]).summary_start : footer_at]
         indexes = [summary[body] for opcode, _, body in records_in(summary) if opcode == Opcode.CHUNK_INDEX]
-        return sorted(_decode(ChunkIndex.read, index).chunk_start_offset for index in indexes)
+        found = sorted({_decode(ChunkIndex.read, index).chunk_start_offset for index in indexes})
+        return [start for start in found if start < len(data) and data[start] == Opcode.CHUNK]
     except (*_UNREADABLE, IndexError):
         return []
 

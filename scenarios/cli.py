@@ -1,6 +1,12 @@
-"""The command line. Exit codes: 0 criteria met, 1 missed, 2 bad input or usage, 70 a defect, 130 interrupted."""
+"""The command line.
 
+Exit codes: 0 criteria met, 1 missed, 2 bad input or usage or no room for output, 70 a defect, 129, 130 and 143 ended by
+SIGHUP, Ctrl-C and SIGTERM, 141 nobody reads the output any more.
+"""
+
+import io
 import json
+import os
 import sys
 import traceback
 from collections.abc import Iterator
@@ -13,8 +19,10 @@ from typer._click.exceptions import NoArgsIsHelpError, NoSuchOption, UsageError
 from typer.core import TyperGroup
 
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.output import reason
 
 if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
     from typer._click.core import Context
 
     from surefoot.scenarios.log import Log
@@ -59,7 +67,20 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-MISSED, BAD_INPUT, DEFECT, INTERRUPTED = 1, 2, 70, 130
+MISSED, BAD_INPUT, DEFECT, INTERRUPTED, UNREAD = 1, 2, 70, 130, 141
+
+_FARTHEST = 1e9
+
+
+def _finite(value: float | None) -> float | None:
+    """Refuse what is no time of a log."""
+    if value is not None and not abs(value) <= _FARTHEST:
+        raise typer.BadParameter(f"{value} is no time of a log; give seconds, such as 2.5")
+    return value
+
+
+From = Annotated[float | None, typer.Option("--from", metavar="T", help="From this time on [s].", callback=_finite)]
+To = Annotated[float | None, typer.Option("--to", metavar="T", help="Up to this time [s].", callback=_finite)]
 
 Force = Annotated[bool, typer.Option("--force", "-f", help="Replace the file if it exists.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
@@ -169,8 +190,8 @@ def inspect(
     log: Annotated[Path, typer.Argument(help="A log, also a truncated one.")],
     topic: Annotated[str | None, typer.Option(help="Summarise or export one topic instead.")] = None,
     field: Annotated[str | None, typer.Option(help="Only this field of the topic.")] = None,
-    start: Annotated[float | None, typer.Option("--from", help="From this time on [s].")] = None,
-    end: Annotated[float | None, typer.Option("--to", help="Up to this time [s].")] = None,
+    start: From = None,
+    end: To = None,
     export: Annotated[Path | None, typer.Option(help="Write the topic to a .csv, .npz or .parquet file.")] = None,
     force: Force = False,
     as_json: AsJson = False,
@@ -224,8 +245,8 @@ def plot(
     log: Annotated[Path, typer.Argument(help="A log, also a truncated one.")],
     out: Annotated[Path | None, typer.Option(help="PNG, SVG or PDF; figures.png beside the log by default.")] = None,
     what: Annotated[str | None, typer.Option(metavar="NAME", help="One figure instead of the page of all.")] = None,
-    start: Annotated[float | None, typer.Option("--from", metavar="T", help="Begin of the window [s].")] = None,
-    end: Annotated[float | None, typer.Option("--to", metavar="T", help="End of the window [s].")] = None,
+    start: From = None,
+    end: To = None,
     force: Force = False,
 ) -> None:
     """Draw the figures that a walking engineer looks at."""
@@ -292,8 +313,8 @@ def replay(
     html: Annotated[Path | None, typer.Option(help="Write one page that opens offline.")] = None,
     video: Annotated[Path | None, typer.Option(help="Write an mp4 video.")] = None,
     live: Annotated[bool, typer.Option("--live", help="Serve it on this machine, following a growing log.")] = False,
-    start: Annotated[float | None, typer.Option("--from", help="First time [s].")] = None,
-    end: Annotated[float | None, typer.Option("--to", help="Last time [s].")] = None,
+    start: From = None,
+    end: To = None,
     speed: Annotated[float, typer.Option(help="Of the video over that of the run, 0.1 to 10.")] = 1.0,
     camera: Annotated[
         str, typer.Option(help="Of the video: follow, side, front, fixed, or azimuth,elevation,distance [deg, deg, m].")
@@ -364,16 +385,68 @@ def schema() -> None:
     typer.echo(json.dumps(published(), indent=2))
 
 
+class _Stream(io.FileIO):
+    """Standard output or error, whose end ends the program and is no defect: a pipe is closed, a disk is full."""
+
+    ended = False
+
+    def write(self, data: "ReadableBuffer") -> int:
+        """Write, unless there is no use in it any more."""
+        size = memoryview(data).nbytes
+        if self.ended:
+            return size
+        try:
+            return super().write(data) or 0
+        except OSError as error:
+            self.ended = True
+            if isinstance(error, BrokenPipeError):
+                raise SystemExit(UNREAD) from None
+            if self.fileno() == 1:
+                typer.echo(f"standard output: cannot be written, {reason(error)}; give it more room", err=True)
+            raise SystemExit(BAD_INPUT) from None
+
+
+def _streams() -> None:
+    """Set up standard output and error; a name that is no text is shown escaped."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed by whoever has started the program
+            setattr(sys, name, Path(os.devnull).open("w"))  # noqa: SIM115  as long as the program
+        elif stream is getattr(sys, f"__{name}__") and isinstance(stream, io.TextIOWrapper):
+            stream.flush()
+            raw = io.BufferedWriter(_Stream(stream.fileno(), "w", closefd=False))
+            on_screen = name == "stderr" or stream.isatty()
+            safe = io.TextIOWrapper(raw, stream.encoding, "backslashreplace", line_buffering=on_screen)
+            setattr(sys, name, safe)
+
+
 def main() -> None:
     """Run the command line.
 
     An error that the user can mend is one message; a defect of the program is a traceback and an exit code of its own.
     """
+    from surefoot.scenarios.loop import interrupts
+
+    _streams()
+    interrupts.obey_all()
+    try:
+        code = _code()
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    sys.exit(interrupts.exit_code() if code == INTERRUPTED else code)
+
+
+def _code() -> int | str | None:
+    """Exit code of the command."""
     try:
         app(prog_name=app.info.name)  # not how it was started, which is no name that a shell can complete
+    except SystemExit as end:
+        return end.code
     except (ScenarioError, LogError) as error:
         typer.echo(str(error), err=True)
-        sys.exit(BAD_INPUT)
+        return BAD_INPUT
     except Exception:
         traceback.print_exc()
-        sys.exit(DEFECT)
+        return DEFECT
+    return 0

@@ -15,7 +15,7 @@ def contradictions(run: RunView) -> tuple[str, ...]:
     if not run.has("/truth"):
         return ("the log shows no motion: /truth has no messages",)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        return (*_clock(run), *_end(run))
+        return (*_clock(run), *_numbers(run), *_end(run))
 
 
 def _clock(run: RunView) -> Iterator[str]:
@@ -27,6 +27,13 @@ def _clock(run: RunView) -> Iterator[str]:
     for topic in CONTROL_TOPICS:
         if topic in run.log and not np.array_equal(run.log[topic].time_ns, stamps):
             yield f"{topic} has not the ticks of /truth"
+
+
+def _numbers(run: RunView) -> Iterator[str]:
+    """A state that is no number is no fall, and no walk either."""
+    for name in ("com", "com_velocity"):
+        if not np.isfinite(run.field("/truth", name)).all():
+            yield f"/truth {name} has values that are not numbers"
 
 
 def _end(run: RunView) -> Iterator[str]:

@@ -180,7 +180,8 @@ def com_height_range(run: RunView) -> float:
 
 def _middles(run: RunView) -> Array:
     """Middle of both soles at each tick, shape (n, 2) [m]."""
-    return np.asarray(run.soles[:, :, :2].mean(axis=1))
+    left, right = (run.sole(foot)[:, :2].copy() for foot in (0, 1))
+    return np.asarray(0.5 * (left + right))
 
 
 def _heading(run: RunView) -> Array:

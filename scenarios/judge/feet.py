@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.types import GRAVITY, Foot, Footstep
-from surefoot.scenarios.judge.body import corners, rotations
+from surefoot.scenarios.judge.body import corners, headings, rotations
 from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
 from surefoot.scenarios.judge.metric import metric
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
@@ -26,8 +26,9 @@ def landed(run: RunView) -> Array:
     Not ``/footstep.actual``, which is where the controller believed it.
     """
     steps = run.log["/footstep"]
-    ticks, foot = np.minimum(run.rows_at("/truth", steps.time_ns)[0], run.ticks - 1), steps.field("foot")
-    return np.column_stack((run.soles[ticks, foot, :3], run.sole_yaw[ticks, foot]))
+    ticks, left = np.minimum(run.rows_at("/truth", steps.time_ns)[0], run.ticks - 1), steps.field("foot") == 0
+    poses = np.where(left[:, None], run.sole(0)[ticks], run.sole(1)[ticks])
+    return np.column_stack((poses[:, :3], headings(poses[:, 3:])))
 
 
 @metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("planned", "foot")}, body=True, least=0.0)
@@ -55,9 +56,10 @@ def swing_clearance_min(run: RunView) -> float | None:
     """Least height of a swing sole's corner over the ground, but for the first and last quarter of each swing [m]."""
     stance, least = run.field("/reference", "stance"), []
     for foot in range(2):
+        sole = run.sole(foot)
         for start, end in runs_of(run.single_support & (stance == 1 - foot)):
             edge = (end - start) // 4
-            least.append(_clearance(run, run.soles[start + edge : end - edge : _CLEARANCE_TICKS, foot]))
+            least.append(_clearance(run, sole[start + edge : end - edge : _CLEARANCE_TICKS]))
     return min(least, default=None)
 
 
@@ -146,7 +148,7 @@ def stance_slips(run: RunView) -> list[Slip]:
     """
     slips, terrain = [], _terrain(run)
     for stance in stances(run):
-        poses = run.soles[stance.ticks, stance.foot]
+        poses = run.sole(stance.foot)[stance.ticks]
         points = corners(poses, run.constants.foot_length, run.constants.foot_width)
         touching = points[..., 2] - terrain.heights(points[..., :2].reshape(-1, 2)).reshape(-1, 4) < ON_GROUND
         touching = np.column_stack((touching, ~touching.any(axis=1)))
@@ -182,7 +184,7 @@ def stance_tilt_max(run: RunView) -> float | None:
     rolling, terrain = run.field("/reference", "roll") != 0.0, _terrain(run)
     largest = []
     for stance in stances(run):
-        poses = run.soles[stance.ticks, stance.foot]
+        poses = run.sole(stance.foot)[stance.ticks]
         axes = np.einsum("nij,ni->nj", rotations(poses[:, 3:]), terrain.normals(poses[:, :2]))
         axes[rolling[stance.ticks, stance.foot], 0] = 0.0
         largest.append(float(np.arcsin(np.minimum(np.hypot(axes[:, 0], axes[:, 1]), 1.0)).max()))

@@ -8,15 +8,15 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-import yaml
 from pydantic import ValidationError
 
 from surefoot.errors import ParameterError
 from surefoot.scenarios import palette
-from surefoot.scenarios.errors import LogError, Problem, nearest
+from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import unknown
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.source import MAX_BYTES, parse
 from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.agreement import contradictions
 from surefoot.scenarios.judge.digest import Digest, RunView
@@ -218,12 +218,12 @@ def scenario_of(log: Log) -> Scenario:
 def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
     """The scenario of a log, and which of its names nobody knows here."""
     try:
-        keys = yaml.safe_load(log.attachments[SCENARIO_FILE])
-        absent = unknown(keys)
+        source = parse(log.attachments[SCENARIO_FILE][:MAX_BYTES].decode(), SCENARIO_FILE)
+        keys, absent = source.value, unknown(source.value)
         # Without its kind the other keys of the ground mean nothing.
         places = [replace(one, key=one.key[:1]) if one.key[0] == "terrain" else one for one in absent]
         return Scenario.model_validate(without(keys, places)), absent
-    except (KeyError, ValidationError, yaml.YAMLError, ValueError, RecursionError):
+    except (KeyError, TypeError, ValidationError, ScenarioError, ValueError, RecursionError):
         raise LogError(f"{log.path}: holds no readable scenario; its criteria are unknown") from None
 
 

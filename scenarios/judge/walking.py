@@ -94,7 +94,8 @@ def _still(run: RunView) -> Mask:
 
 
 def _lying(run: RunView) -> Mask:
-    height = run.field("/truth", "com")[:, 2] - run.soles[:, :, 2].min(axis=1)
+    lower = np.minimum(*(run.sole(foot)[:, 2].copy() for foot in (0, 1)))
+    height = run.field("/truth", "com")[:, 2] - lower
     tilt, touching = run.field("/truth", "torso_tilt"), run.field("/truth", "nonfoot_contact")
     return np.asarray(lies(height, run.constants.com_height, tilt, touching))
 

@@ -92,6 +92,12 @@ class ChannelData:
         first, last = np.searchsorted(self.time_ns, (start_ns, end_ns + 1))
         return ChannelData(self.topic, self.fields, self._records[first:last], self.joints)
 
+    def joined(self, following: "ChannelData") -> "ChannelData":
+        """These messages and those that follow."""
+        if not len(self) or not len(following):
+            return following if not len(self) else self
+        return ChannelData(self.topic, self.fields, np.concatenate((self._records, following._records)))
+
     def content(self) -> bytes:
         """Bytes of all messages in order, for exact comparison of two runs."""
         return self._records.tobytes()

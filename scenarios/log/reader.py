@@ -1,7 +1,9 @@
 """Reads a log into numpy arrays by channel and field name; also a truncated or damaged one, as far as it goes."""
 
 import json
+import math
 import mmap
+import stat
 import zlib
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -10,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from surefoot.scenarios.errors import LogError, nearest, require
-from surefoot.scenarios.log.encoding import MAGIC, decompress
+from surefoot.scenarios.log.encoding import GREATEST_CHUNK, MAGIC, decompress
 from surefoot.scenarios.log.messages import MESSAGE_BYTES, ChannelData, block_of, content_at, gathered, sound_records
 from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
 from surefoot.scenarios.log.spec import FieldSpec, layout_of, record_dtype
@@ -20,6 +22,9 @@ if TYPE_CHECKING:
 
 RECOVERED = "recovered"
 """Metadata record of a log that was made of a truncated or damaged one: of which, and what was lost."""
+
+GREATEST_RATIO = 100
+"""How many times its size a log may hold; those of standing robots reach ten."""
 
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""
@@ -46,6 +51,10 @@ class Log:
         self.size = len(data)
         self.data = data
         self.contents = contents = scan(data)
+        stated = sum(chunk.size for chunk in contents.chunks)
+        if stated > GREATEST_CHUNK + GREATEST_RATIO * self.size:
+            what = f"{path}: its chunks state {stated >> 20} MB, more than {GREATEST_RATIO} times the file"
+            raise LogError(f"{what}; give a log that `surefoot run` has written")
         self.truncated = contents.truncated
         self.damage = contents.damage
         self._verified: set[int] = set()
@@ -101,8 +110,10 @@ class Log:
         """Messages of a topic from a time on and up to another one [s]; only their part of the file is read.
 
         Raises:
-            LogError: there is no such topic, or its messages are not of a fixed layout.
+            LogError: there is no such topic, its messages are not of a fixed layout, or the times are not finite.
         """
+        if not (math.isfinite(start) and math.isfinite(end)):
+            raise LogError(f"{self.path}: no time from {start} s to {end} s; give finite times")
         first, last = round(start * 1e9), round(end * 1e9)
         chunks = [chunk for chunk in self.contents.chunks if chunk.start_ns <= last and chunk.end_ns >= first]
         return self._read([topic], chunks)[topic].between(first, last)
@@ -120,11 +131,13 @@ class Log:
             LogError: there is no such topic, or its messages are not of a fixed layout.
         """
         group: list[ChunkPlace] = []
+        size = 0
         for chunk in self.contents.chunks:
             group.append(chunk)
-            if chunk.end_ns - group[0].start_ns >= duration * 1e9:
+            size += chunk.size
+            if chunk.end_ns - group[0].start_ns >= duration * 1e9 or size > GREATEST_CHUNK:
                 yield self._read(topics, group, verify=True, loose=False)
-                group = []
+                group, size = [], 0
         yield self._read(topics, group, verify=True)
 
     def fields(self, topic: str) -> tuple[FieldSpec, ...]:
@@ -193,7 +206,7 @@ class Log:
 
     def _data_fault(self) -> str:
         """Why the data as a whole are not those that were written; empty if they are."""
-        end, crc, step = self.contents.data_end, 0, 1 << 24
+        end, crc, step = self.contents.data_end, 0, 1 << 22
         if end is None:
             return f"its end is missing, it can be read up to {self.time_range()[1]:.3f} s"
         if not self.contents.data_crc:
@@ -229,16 +242,19 @@ class Log:
         fields = {topic: self.fields(topic) for topic in topics}
         sizes = {self._ids[topic]: record_dtype(fields[topic]).itemsize for topic in topics}
         blocks: dict[int, list[memoryview | bytes]] = {number: [] for number in sizes}
-        expected = dict.fromkeys(sizes, 0)
+        expected, channels = dict.fromkeys(sizes, 0), self.contents.channels
         for chunk in chunks:
-            numbers = sizes.keys() & chunk.index.keys()
+            numbers = sizes.keys() & chunk.channels
             data = (self._sound(chunk) if verify else self._decompressed(chunk)) if numbers or verify else None
             if data is not None:
                 view = memoryview(data)
                 for number in numbers:
                     count = chunk.count(number)
                     expected[number] += count
-                    if count:
+                    if count * sizes[number] > len(view):
+                        what = f"lists more of {channels[number].topic} than the chunk can hold"
+                        self.damage.append(f"the index at byte {chunk.position} {what}")
+                    elif count:
                         blocks[number].append(block_of(view, chunk, number, sizes[number], self.data))
         for number in sizes.keys() & self.contents.loose.keys() if loose else ():
             entries = np.array(self.contents.loose[number], INDEX_ENTRY)
@@ -284,11 +300,11 @@ class Log:
     def _index_rest(self) -> None:
         """Index chunks that stand without an index, or whose channels are defined only inside them."""
         for chunk in self.contents.chunks:
-            foreign = chunk.index.keys() - self.contents.channels.keys()
-            if not chunk.index or chunk.index_damaged or foreign:
+            foreign = chunk.channels - self.contents.channels.keys()
+            if not chunk.places or chunk.index_damaged or foreign:
                 data = self._decompressed(chunk)
                 if data is not None:
-                    chunk.index = dict(index_chunk(data, self.contents))
+                    chunk.made = index_chunk(data, self.contents)
 
 
 def _joints(metadata: Mapping[str, Mapping[str, str]]) -> tuple[str, ...]:
@@ -309,6 +325,8 @@ def read(path: str | Path) -> Log:
     """
     path = Path(path)
     try:
+        if not stat.S_ISREG(path.stat().st_mode) and not path.is_dir():
+            raise LogError(f"{path}: not an MCAP file but a device or a pipe; give a log file")
         with path.open("rb") as file:
             magic = file.read(len(MAGIC))
             if magic != MAGIC:

@@ -110,6 +110,10 @@ class ChannelSpec:
         }
 
 
+_MOST_FIELDS, _MOST_AXES, _MOST_NUMBERS = 1000, 8, 1 << 17
+"""What a message may hold: a layout that asks for more is damaged, or made to exhaust the memory."""
+
+
 def layout_of(metadata: dict[str, str]) -> tuple[FieldSpec, ...]:
     """Read the fields back from a channel's metadata, as `ChannelSpec.metadata` writes them.
 
@@ -122,11 +126,16 @@ def layout_of(metadata: dict[str, str]) -> tuple[FieldSpec, ...]:
             FieldSpec(str(name), tuple(int(n) for n in shape), *_noted(metadata.get(f"field.{name}", "")), kind=kind)
             for name, kind, shape in rows
         )
-    except (KeyError, TypeError, ValueError, RecursionError):
+    except (KeyError, TypeError, ValueError, OverflowError, RecursionError):
         raise ValueError("no layout") from None
-    sound = all(f.kind in ("double", "int") and all(0 < n < 1 << 20 for n in f.shape) for f in fields)
+    sound = len(fields) <= _MOST_FIELDS and all(
+        f.kind in ("double", "int") and len(f.shape) <= _MOST_AXES and all(0 < n <= _MOST_NUMBERS for n in f.shape)
+        for f in fields
+    )
     names = [f.name for f in fields]
-    if not sound or len(set(names)) < len(names) or not all(name.isidentifier() for name in names):
+    if not sound or sum(f.size for f in fields) > _MOST_NUMBERS or len(set(names)) < len(names):
+        raise ValueError("no sound layout")
+    if not all(name.isidentifier() and not name.startswith("_") for name in names):
         raise ValueError("no sound layout")
     return fields
 

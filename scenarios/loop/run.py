@@ -13,6 +13,7 @@ from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import Verdict, judge
 from surefoot.scenarios.log import AttachedFile, LogWriter, read
+from surefoot.scenarios.loop.interrupts import Interrupts, held_back
 from surefoot.scenarios.loop.skeleton import ClosedLoop, End, OnProgress, Progress, refusing, run_loop
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import (
@@ -41,7 +42,7 @@ class Result:
     Attributes:
         verdict: computed from the log.
         log: path of the log.
-        interrupted: whether the user stopped the run.
+        interrupted: whether a signal, Ctrl-C or another, came while it went on or was judged.
     """
 
     verdict: Verdict
@@ -125,13 +126,14 @@ def run_scenario(
     """
     with refusing():
         walk = resolve(scenario, robot, profile)
-    with _own_folder(out, walk) as folder, one_thread(), open_log(folder / LOG_NAME, walk) as writer:
-        if on_begin is not None:
-            on_begin(writer.path)
-        end = _watched(simulate or _simulate, walk, writer, on_progress)
-    verdict = judge(read(writer.path))
-    verdict.write(folder / VERDICT_NAME)
-    return Result(verdict, writer.path, end.kind == "interrupted")
+    with held_back() as interrupts:
+        with _own_folder(out, walk) as folder, one_thread(), open_log(folder / LOG_NAME, walk) as writer:
+            if on_begin is not None:
+                on_begin(writer.path)
+            end = _watched(simulate or _simulate, walk, writer, on_progress, interrupts)
+        verdict = judge(read(writer.path))
+        verdict.write(folder / VERDICT_NAME)
+    return Result(verdict, writer.path, end.kind == "interrupted" or interrupts.count > 0)
 
 
 @contextmanager
@@ -244,7 +246,9 @@ def _roles(robot: "RobotDescription") -> dict[str, tuple[str, ...]]:
     return {"knees": roles.knees, **legs, "torso": (robot.torso_body,)}
 
 
-def _watched(simulate: Simulate, walk: Walk, writer: LogWriter, on_progress: OnProgress | None) -> End:
+def _watched(
+    simulate: Simulate, walk: Walk, writer: LogWriter, on_progress: OnProgress | None, interrupts: Interrupts
+) -> End:
     """Run the loop and write into the log how it ended, however it ended."""
     last = Progress(0.0, 0.0, "", 0.0)
 
@@ -255,7 +259,8 @@ def _watched(simulate: Simulate, walk: Walk, writer: LogWriter, on_progress: OnP
             on_progress(progress)
 
     try:
-        end = simulate(walk, writer, note)
+        with interrupts.delivered():
+            end = simulate(walk, writer, note)
     except KeyboardInterrupt:
         end = End("interrupted", last.time, "interrupted by the user")
     except LogError:

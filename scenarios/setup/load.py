@@ -13,7 +13,7 @@ from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, Set
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import unusable
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, decoded, parse
+from surefoot.scenarios.file.source import MAX_BYTES, Overrides, Source, apply_overrides, decoded, parse
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
@@ -49,10 +49,10 @@ def attached_scenario(path: str) -> tuple[str, str]:
     """
     try:
         log = read(path)
-        text = _with_pushes(log.attachments[SCENARIO_FILE].decode(), log.metadata)
+        text = _with_pushes(log.attachments[SCENARIO_FILE][: MAX_BYTES + 1].decode(), log.metadata)
     except LogError as error:
         raise ScenarioError([str(error)]) from None
-    except (KeyError, UnicodeDecodeError):
+    except (KeyError, TypeError, ValueError, RecursionError):
         what = f"{path}: carries no readable {SCENARIO_FILE}, so it cannot be run again"
         raise ScenarioError([f"{what}; give a log that `surefoot run` has written"]) from None
     if PARTS_RECORD in log.metadata:
@@ -67,7 +67,7 @@ def _with_pushes(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
     given = [json.loads(record["push"]) for name, record in metadata.items() if name.startswith(PUSH_RECORD)]
     if not given:
         return text
-    keys = yaml.safe_load(text)
+    keys = parse(text, SCENARIO_FILE).value
     return yaml.safe_dump({**keys, "pushes": [*keys.get("pushes", []), *given]}, sort_keys=False)
 
 

@@ -123,7 +123,7 @@ def test_a_damaged_index_is_made_anew_from_its_chunk(run, tmp_path):
     path, log = tmp_path / "flipped.mcap", read(run)
     number = log._ids["/contact"]
     data = bytearray(run.read_bytes())
-    data[log.contents.chunks[1].index[number].start - 4] ^= 1
+    data[log.contents.chunks[1].place(number)[0] - 4] ^= 1
     path.write_bytes(data)
     damaged = read(path)
     assert "message index" in damaged.damage[0]

@@ -1,16 +1,19 @@
 """Windows of logs, their export, and what bounds the memory."""
 
 import csv
+import errno
 import json
 import sys
+from functools import partialmethod
 
 import numpy as np
 import pytest
 
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.columns import HELD_BYTES, Columns
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute, digest
-from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
+from surefoot.scenarios.log import ChannelSpec, FieldSpec, Log, LogWriter, read
 from surefoot.scenarios.log.spec import layout_of
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.record import channels
@@ -56,12 +59,40 @@ def test_windows_together_are_the_whole(log):
 
 
 def test_metrics_of_a_log_in_parts_are_those_of_the_whole(tmp_path, motion, two_steps, robot, monkeypatch):
-    path = run_scenario(two_steps, tmp_path, simulate=motion(), robot=robot).log
+    path = run_scenario(two_steps, tmp_path, simulate=motion(duration=2.2), robot=robot).log
     parts, whole = compute(read(path)), RunView(read(path))
-    monkeypatch.setattr("surefoot.scenarios.log.reader.WINDOW", 1e9)
-    for function, values in digest(read(path)).reduced.items():
-        assert np.allclose(values, function(whole), equal_nan=True)
-    assert compute(read(path)) == parts
+    monkeypatch.setattr(Log, "windows", partialmethod(Log.windows, duration=0.5))
+    for held in (0, HELD_BYTES):
+        monkeypatch.setattr("surefoot.scenarios.judge.columns.HELD_BYTES", held)
+        gathered = digest(read(path))
+        for function in gathered.reduced:
+            assert np.array_equal(gathered.reduced[function], function(whole), equal_nan=True)
+        assert compute(gathered) == parts
+
+
+def test_columns_hold_the_same_in_files_as_in_memory(monkeypatch):
+    held, filed = Columns(), Columns()
+    for n in (3, 0, 2):
+        for columns, limit in ((held, HELD_BYTES), (filed, 0)):
+            monkeypatch.setattr("surefoot.scenarios.judge.columns.HELD_BYTES", limit)
+            columns.add("a", np.arange(4.0 * n).reshape(n, 4)[:, ::2])
+            columns.add("none", np.zeros(0))
+            columns.add("unlike", np.zeros((n, n)))
+    assert list(held) == list(filed) == ["a", "none"]
+    assert np.array_equal(held["a"], filed["a"])
+    assert len(filed["none"]) == 0
+    with pytest.raises(ValueError, match="read-only"):
+        filed["a"][0] = 1.0
+
+
+def test_no_room_for_a_long_log_is_a_sentence(monkeypatch):
+    def full(**_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("surefoot.scenarios.judge.columns.HELD_BYTES", 0)
+    monkeypatch.setattr("surefoot.scenarios.judge.columns.tempfile.TemporaryFile", full)
+    with pytest.raises(LogError, match="no space left on device; set TMPDIR"):
+        Columns().add("a", np.zeros(1))
 
 
 def test_csv_npz_and_columns_agree(log, tmp_path):

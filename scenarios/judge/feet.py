@@ -26,7 +26,10 @@ def landed(run: RunView) -> Array:
     Not ``/footstep.actual``, which is where the controller believed it.
     """
     steps = run.log["/footstep"]
-    ticks, left = np.minimum(run.rows_at("/truth", steps.time_ns)[0], run.ticks - 1), steps.field("foot") == 0
+    ticks, left = (
+        np.minimum(run.rows_at("/truth", steps.time_ns)[0], run.ticks - 1),
+        np.asarray(steps.field("foot")) == 0,
+    )
     poses = np.where(left[:, None], run.sole(0)[ticks], run.sole(1)[ticks])
     return np.column_stack((poses[:, :3], headings(poses[:, 3:])))
 

@@ -81,7 +81,9 @@ CASES = {
     "planner: {profile: paper, control_horizon: 60}": "control_horizon 60 exceeds the horizon of 50 samples; use at",
     "planner: {profile: dcm, control_horizon: 2}": "with profile 'dcm', which optimises no moves of the jerk; leave it",
     "duration: 1.0e-6": "f.yaml:1:11: duration 1e-06 s is shorter than one control tick; use at least 0.002 s",
-    "pushes: [{time: 1, force: [1, 0, 0], body: torzo}]": ":1:44: unknown body; did you mean 'torso'?",
+    "pushes: [{time: 1, force: [1, 0, 0], body: torzo}]": (
+        "f.yaml:1:44: unknown body 'torzo' of humanoid100; did you mean 'torso'?"
+    ),
     "robot_options: {payload_body: x}": "unknown body 'x' of humanoid100; valid are pelvis, torso",
     "pushes: [{duration: 1}]": "f.yaml:1:10: a push without a begin; give time, or step, phase and fraction",
     "pushes: [{time: 1, step: 1}]": "a push with both a time and a point of the gait; give one of them",

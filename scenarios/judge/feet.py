@@ -101,13 +101,13 @@ class Stance:
     ticks: Rows
 
 
-def stances(run: RunView) -> list[Stance]:
-    """Every stance that carried load.
+def stances(run: RunView, until: int | None = None) -> list[Stance]:
+    """Every stance that carried load, up to a tick.
 
     A foot that touches down before its time, in the second half of its swing, stands from then on; a load that it loses
     for longer than a dropout was a graze of the swing.
     """
-    load, planned = loaded(run), run.field("/contact", "planned") != 0
+    load, planned = loaded(run)[:until], run.field("/contact", "planned")[:until] != 0
     gap, found = DROPOUT * run.constants.control_rate, []
     for foot in range(2):
         lift = 0
@@ -127,25 +127,23 @@ class Slip:
 
     Attributes:
         foot: 0 left, 1 right.
-        start: tick at which the stance began.
         tick: tick at which the sole was farthest from where it began.
         distance: horizontal distance of its farthest corner then [m].
     """
 
     foot: int
-    start: int
     tick: int
     distance: float
 
 
-def stance_slips(run: RunView) -> list[Slip]:
-    """The slip of every stance: of those corners of the sole that are on the ground, each from where it came to it.
+def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
+    """The slip of every stance up to a tick.
 
-    So yaw counts, and a foot that rolls over one of its edges does not; a sole on an edge of the ground, with no corner
-    on it, counts by its centre.
+    It is of those corners of the sole that are on the ground, each from where it came to it. So yaw counts, and a foot
+    that rolls over one of its edges does not; a sole with no corner on the ground, as on an edge, counts by its centre.
     """
     slips, terrain = [], _terrain(run)
-    for stance in stances(run):
+    for stance in stances(run, until):
         poses = run.soles[stance.ticks, stance.foot]
         points = corners(poses, run.constants.foot_length, run.constants.foot_width)
         touching = points[..., 2] - terrain.heights(points[..., :2].reshape(-1, 2)).reshape(-1, 4) < ON_GROUND
@@ -154,7 +152,7 @@ def stance_slips(run: RunView) -> list[Slip]:
         begin = points[np.argmax(touching, axis=0), np.arange(5)]
         distance = np.where(touching, np.linalg.norm(points - begin, axis=2), 0.0).max(axis=1)
         farthest = int(np.argmax(distance))
-        slips.append(Slip(stance.foot, int(stance.ticks[0]), int(stance.ticks[farthest]), float(distance[farthest])))
+        slips.append(Slip(stance.foot, int(stance.ticks[farthest]), float(distance[farthest])))
     return slips
 
 

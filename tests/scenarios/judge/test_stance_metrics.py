@@ -38,6 +38,7 @@ class Walk:
         self.planned[SWING, 1] = 0
         self.force = 490.0 * self.planned
         self.roll = np.zeros((TICKS, 2))
+        self.com = np.tile([0.0, 0.0, 0.9], (TICKS, 1))
         self.speed = np.zeros((TICKS, 2))
         self.footstep = [0.3, -0.1, 0.0, 0.0]
         self.boxes = ()
@@ -47,7 +48,7 @@ class Walk:
     def view(self):
         fields = {
             "/truth": {"left_sole": self.left, "right_sole": self.right, "torso_tilt": np.zeros(TICKS),
-                       "nonfoot_contact": np.zeros(TICKS), "com": np.tile([0.0, 0.0, 0.9], (TICKS, 1))},
+                       "nonfoot_contact": np.zeros(TICKS), "com": self.com},
             "/contact": {"planned": self.planned, "normal_force": self.force, "felt": self.force > 20.0},
             "/reference": {"roll": self.roll},
             "/measurement": {"joint_velocity": self.speed},
@@ -159,6 +160,12 @@ def test_sliding_before_the_planned_touchdown_counts(walk):
     slid(walk, 320, 345, 0.0044)
     assert measured(walk)[0] == pytest.approx(0.0044)
     assert foot_slip(walk.view).value == pytest.approx(0.0044)
+
+
+def test_what_slips_after_a_fall_is_no_finding_but_is_measured(walk):
+    walk.left[450:, 0], walk.com[420:, 2] = 0.2, 0.3
+    assert foot_slip(walk.view).value == 0.0
+    assert measured(walk)[0] == pytest.approx(0.2)
 
 
 def test_a_short_dropout_does_not_begin_a_new_stance(walk):

@@ -105,16 +105,18 @@ def stances(run: RunView, until: int | None = None) -> list[Stance]:
     """Every stance that carried load, up to a tick.
 
     A foot that touches down before its time, in the second half of its swing, stands from then on; a load that it loses
-    for longer than a dropout was a graze of the swing.
+    for longer than a dropout, and not as a contact that the controller holds, was a graze of the swing.
     """
     load, planned = loaded(run)[:until], run.field("/contact", "planned")[:until] != 0
+    released = np.cumsum(run.field("/contact", "active")[:until] == 0, axis=0)
     gap, found = DROPOUT * run.constants.control_rate, []
     for foot in range(2):
         lift = 0
         for start, end in runs_of(planned[:, foot]):
             middle = (lift + start + 1) // 2
             ticks = middle + np.flatnonzero(load[middle:end, foot])
-            early = np.flatnonzero((ticks[:-1] < start) & (np.diff(ticks) > gap))
+            lost = (np.diff(ticks) > gap) & (np.diff(released[ticks, foot]) > 0)
+            early = np.flatnonzero((ticks[:-1] < start) & lost)
             ticks, lift = ticks[early[-1] + 1 if len(early) else 0 :], end
             if len(ticks) and ticks[-1] >= start:
                 found.append(Stance(foot, ticks))
@@ -156,7 +158,7 @@ def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
     return slips
 
 
-_STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "normal_force")}
+_STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "active", "normal_force")}
 
 
 @metric(unit="m", shown=(1e3, "mm"), reads=_STANCE_READS, body=True)

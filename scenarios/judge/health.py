@@ -281,7 +281,7 @@ READS: Reads = {
     "/measurement": ("external_force",),
     "/truth": ("com", "com_velocity", "external_force"),  # the force is of the pendulum
     "/estimate": ("com",),
-    "/contact": ("normal_force", "planned", "felt"),
+    "/contact": ("normal_force", "planned", "active", "felt"),
     "/reference": ("stance", "phase_duration"),
     "/wbc": ("fallback",),
     "/timing": (*_PARTS, "tick"),

@@ -106,20 +106,22 @@ class Stance:
     ticks: Rows
 
 
-def stances(run: RunView) -> list[Stance]:
-    """Every stance that carried load.
+def stances(run: RunView, until: int | None = None) -> list[Stance]:
+    """Every stance that carried load, up to a tick.
 
     A foot that touches down before its time, in the second half of its swing, stands from then on; a load that it loses
-    for longer than a dropout was a graze of the swing.
+    for longer than a dropout, and not as a contact that the controller holds, was a graze of the swing.
     """
-    load, planned = loaded(run), run.field("/contact", "planned") != 0
+    load, planned = loaded(run)[:until], run.field("/contact", "planned")[:until] != 0
+    released = np.cumsum(run.field("/contact", "active")[:until] == 0, axis=0)
     gap, found = DROPOUT * run.constants.control_rate, []
     for foot in range(2):
         lift = 0
         for start, end in runs_of(planned[:, foot]):
             middle = (lift + start + 1) // 2
             ticks = middle + np.flatnonzero(load[middle:end, foot])
-            early = np.flatnonzero((ticks[:-1] < start) & (np.diff(ticks) > gap))
+            lost = (np.diff(ticks) > gap) & (np.diff(released[ticks, foot]) > 0)
+            early = np.flatnonzero((ticks[:-1] < start) & lost)
             ticks, lift = ticks[early[-1] + 1 if len(early) else 0 :], end
             if len(ticks) and ticks[-1] >= start:
                 found.append(Stance(foot, ticks))
@@ -132,25 +134,23 @@ class Slip:
 
     Attributes:
         foot: 0 left, 1 right.
-        start: tick at which the stance began.
         tick: tick at which the sole was farthest from where it began.
         distance: horizontal distance of its farthest corner then [m].
     """
 
     foot: int
-    start: int
     tick: int
     distance: float
 
 
-def stance_slips(run: RunView) -> list[Slip]:
-    """The slip of every stance: of those corners of the sole that are on the ground, each from where it came to it.
+def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
+    """The slip of every stance up to a tick.
 
-    So yaw counts, and a foot that rolls over one of its edges does not; a sole on an edge of the ground, with no corner
-    on it, counts by its centre.
+    It is of those corners of the sole that are on the ground, each from where it came to it. So yaw counts, and a foot
+    that rolls over one of its edges does not; a sole with no corner on the ground, as on an edge, counts by its centre.
     """
     slips, terrain = [], _terrain(run)
-    for stance in stances(run):
+    for stance in stances(run, until):
         poses = run.sole(stance.foot)[stance.ticks]
         points = corners(poses, run.constants.foot_length, run.constants.foot_width)
         touching = points[..., 2] - terrain.heights(points[..., :2].reshape(-1, 2)).reshape(-1, 4) < ON_GROUND
@@ -159,11 +159,11 @@ def stance_slips(run: RunView) -> list[Slip]:
         begin = points[np.argmax(touching, axis=0), np.arange(5)]
         distance = np.where(touching, np.linalg.norm(points - begin, axis=2), 0.0).max(axis=1)
         farthest = int(np.argmax(distance))
-        slips.append(Slip(stance.foot, int(stance.ticks[0]), int(stance.ticks[farthest]), float(distance[farthest])))
+        slips.append(Slip(stance.foot, int(stance.ticks[farthest]), float(distance[farthest])))
     return slips
 
 
-_STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "normal_force")}
+_STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "active", "normal_force")}
 
 
 @metric(unit="m", shown=(1e3, "mm"), reads=_STANCE_READS, body=True, least=0.0)

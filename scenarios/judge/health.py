@@ -76,8 +76,7 @@ def forces_match_weight(run: RunView) -> Finding:
 
 def foot_slip(run: RunView) -> Finding:
     """How far a sole moves on the ground [m]."""
-    end = _standing(run)
-    slips = [slip for slip in feet.stance_slips(run) if slip.start < end]
+    slips = feet.stance_slips(run, _standing(run))
     if not slips:
         return judged("foot_slip", False, None, None, "")
     worst = max(slips, key=lambda slip: slip.distance)
@@ -282,7 +281,7 @@ READS: Reads = {
     "/measurement": ("external_force",),
     "/truth": ("com", "com_velocity", "external_force"),  # the force is of the pendulum
     "/estimate": ("com",),
-    "/contact": ("normal_force", "planned", "felt"),
+    "/contact": ("normal_force", "planned", "active", "felt"),
     "/reference": ("stance", "phase_duration"),
     "/wbc": ("fallback",),
     "/timing": (*_PARTS, "tick"),

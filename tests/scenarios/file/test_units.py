@@ -119,7 +119,8 @@ def test_bare_numbers_are_what_they_were(robots):
 
 
 def test_a_time_that_is_possible_and_unlikely_is_a_note(robots):
-    text = "gait: {initial_stand: 500}\npushes: [{time: 1, duration: 100, force: [1, 0, 0]}, {time: 2, duration: 1, force: [1, 0, 0]}]"
+    pushes = "[{time: 1, duration: 100, force: [1, 0, 0]}, {time: 2, duration: 1, force: [1, 0, 0]}]"
+    text = f"gait: {{initial_stand: 500}}\npushes: {pushes}"
     assert notes(Draft(load(robots, text))) == (
         "gait.initial_stand is 500 s; for 500 ms write '500 ms'",
         "pushes.0.duration is 100 s; for 100 ms write '100 ms'",

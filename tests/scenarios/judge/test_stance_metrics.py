@@ -36,8 +36,10 @@ class Walk:
         self.right[350:, 0] = 0.3
         self.planned = np.ones((TICKS, 2), int)
         self.planned[SWING, 1] = 0
+        self.active = self.planned.copy()
         self.force = 490.0 * self.planned
         self.roll = np.zeros((TICKS, 2))
+        self.com = np.tile([0.0, 0.0, 0.9], (TICKS, 1))
         self.speed = np.zeros((TICKS, 2))
         self.footstep = [0.3, -0.1, 0.0, 0.0]
         self.boxes = ()
@@ -47,8 +49,9 @@ class Walk:
     def view(self):
         fields = {
             "/truth": {"left_sole": self.left, "right_sole": self.right, "torso_tilt": np.zeros(TICKS),
-                       "nonfoot_contact": np.zeros(TICKS), "com": np.tile([0.0, 0.0, 0.9], (TICKS, 1))},
-            "/contact": {"planned": self.planned, "normal_force": self.force, "felt": self.force > 20.0},
+                       "nonfoot_contact": np.zeros(TICKS), "com": self.com},
+            "/contact": {"planned": self.planned, "active": self.active, "normal_force": self.force,
+                         "felt": self.force > 20.0},
             "/reference": {"roll": self.roll},
             "/measurement": {"joint_velocity": self.speed},
         }  # fmt: skip
@@ -151,6 +154,7 @@ def test_joint_speeds_over_no_load_speeds(walk):
 def slid(walk, start, end, way):
     """The right foot slides while it is loaded from one tick to another, and rests from then on."""
     walk.right[start:end, 0] = np.linspace(0.3 - way, 0.3, end - start)
+    walk.right[end:, 0] = 0.3
     walk.right[start:, 2] = 0.0
     walk.force[start:, 1] = 490.0
 
@@ -161,6 +165,12 @@ def test_sliding_before_the_planned_touchdown_counts(walk):
     assert foot_slip(walk.view).value == pytest.approx(0.0044)
 
 
+def test_what_slips_after_a_fall_is_no_finding_but_is_measured(walk):
+    walk.left[450:, 0], walk.com[420:, 2] = 0.2, 0.3
+    assert foot_slip(walk.view).value == 0.0
+    assert measured(walk)[0] == pytest.approx(0.2)
+
+
 def test_a_short_dropout_does_not_begin_a_new_stance(walk):
     slid(walk, 320, 345, 0.0044)
     walk.force[325:340, 1] = 0.0
@@ -168,6 +178,15 @@ def test_a_short_dropout_does_not_begin_a_new_stance(walk):
     walk.force[400:420, 1] = 0.0
     walk.right[410:, 1] += 0.003
     assert measured(walk)[0] == pytest.approx(np.hypot(0.0044, 0.003))
+
+
+def test_a_contact_that_is_held_stays_one_however_long_it_is_not_felt(walk):
+    """The controller keeps a foot that landed early where it is, whether or not it feels it."""
+    slid(walk, 280, 345, 0.0044)
+    walk.force[283:346, 1] = 0.0
+    assert measured(walk)[0] == 0.0
+    walk.active[281:, 1] = 1
+    assert measured(walk)[0] == pytest.approx(0.0044)
 
 
 def test_a_graze_in_the_swing_is_no_touchdown(walk):

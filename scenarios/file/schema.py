@@ -13,7 +13,6 @@ from surefoot.scenarios.file.group import (
     DEFAULTS,
     WHOLE,
     ControllerSettings,
-    Finite,
     Group,
     OneOf,
     as_tuple,
@@ -36,14 +35,14 @@ from surefoot.scenarios.file.units import (
 LONGEST_RUN = 86_400.0
 """Bound on the simulated time [s]."""
 
-NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, le=1e9, allow_inf_nan=False)]
 FootSize = Annotated[float, Field(ge=0.01, le=0.5), METRE]
 Angle = Annotated[float, Field(ge=-6.3, le=6.3, allow_inf_nan=False), RADIAN]
 Place = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False), METRE]
-Length = Annotated[Finite, METRE]
-Size = Annotated[Positive, METRE]
-Height = Annotated[NonNegative, METRE]
+Length = Annotated[float, Field(ge=-1e3, le=1e3, allow_inf_nan=False), METRE]
+Size = Annotated[float, Field(gt=0, le=1e3, allow_inf_nan=False), METRE]
+Height = Annotated[float, Field(ge=0, le=1e3, allow_inf_nan=False), METRE]
 Support = Annotated[float, Field(gt=0, le=60, allow_inf_nan=False), SECOND]
 Span = Annotated[float, Field(gt=0, le=LONGEST_RUN, allow_inf_nan=False), SECOND]
 Instant = Annotated[float, Field(ge=0, le=LONGEST_RUN, allow_inf_nan=False), SECOND]
@@ -51,7 +50,7 @@ Speed = Annotated[float, Field(ge=-10, le=10, allow_inf_nan=False)]
 Noise = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000), WHOLE, HERTZ]
-Newtons = Annotated[Finite, NEWTON]
+Newtons = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False), NEWTON]
 Force = Annotated[tuple[Newtons, Newtons, Newtons], BeforeValidator(as_tuple)]
 
 
@@ -236,7 +235,9 @@ class BeliefErrors(Group):
     mass_scale: Annotated[float, Field(ge=0.5, le=2.0, allow_inf_nan=False)] = Field(
         default=1.0, description="believed over true mass [-]"
     )
-    friction: Finite = Field(default=0.0, description="error of the friction coefficient [-]")
+    friction: Annotated[float, Field(ge=-10, le=10, allow_inf_nan=False)] = Field(
+        default=0.0, description="error of the friction coefficient [-]"
+    )
     ground: Annotated[tuple[GroundError, ...], BeforeValidator(as_tuple)] | None = Field(
         default=None, description="boxes on the ground that are not believed in, null: none"
     )

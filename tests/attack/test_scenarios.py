@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import time
+from typing import get_args
 
 import pytest
 from mutations import TEXTS, text_of, trial
@@ -59,6 +60,46 @@ def attack(seeds):
 @pytest.mark.unit
 def test_every_trial_is_a_scenario_or_a_sentence():
     assert set(attack(range(100))) == {"scenario", "refused"}
+
+
+def numbers(group, *path):
+    """The path of every key that takes a number, through groups and the first element of lists."""
+    for name, field in group.model_fields.items():
+        inner = [one for one in (field.annotation, *get_args(field.annotation)) if hasattr(one, "model_fields")]
+        if inner:
+            yield from numbers(inner[0], *path, f"{name}.0" if "tuple" in str(field.annotation) else name)
+        elif "float" in str(field.annotation) or "int" in str(field.annotation):
+            yield ".".join((*path, name))
+
+
+def extremes(values, texts=("{}",)):
+    robots, found = RegisteredRobots(), []
+    for text in texts:
+        for key in numbers(Scenario):
+            for value in values:
+                given = {key: value}
+                found.append(
+                    outcome(lambda text=text, given=given: read_scenario(text, "f.yaml", "f", given, robots), key)
+                )
+    return found
+
+
+@pytest.mark.unit
+def test_every_number_far_beyond_its_range():
+    assert set(extremes((1e300,))) == {"scenario", "refused"}
+
+
+@pytest.mark.long
+def test_every_number_at_its_extremes_on_every_ground():
+    feet = "robot_options: {foot_length: 0.22, foot_width: 0.11}\n"
+    grounds = (
+        feet + "terrain: {kind: stairs}",
+        feet + "terrain: {kind: slope, angle: 0.1}\ngait: {com_height: 0.95}",
+        feet + "terrain: {kind: blocks, riser: 0.02}\ngait: {com_height: 0.95}",
+        "gait: {velocity: [{time: 1, v_x: 0.1}, {time: 5}]}\npushes: [{time: 1}]\nfaults: [{kind: state_nan}]",
+    )
+    values = (-1e300, -1e3, -1, 0, 1e-300, 1e-5, 1, 1e3, 2**31, 1e300)
+    assert set(extremes(values, grounds)) == {"scenario", "refused"}
 
 
 @pytest.mark.long

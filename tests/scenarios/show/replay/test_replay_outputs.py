@@ -89,8 +89,13 @@ def test_a_video_has_every_frame_with_its_clock(surefoot, log_path, tmp_path):
     first, last = (frame.to_ndarray(format="rgb24").astype(float) for frame in (frames[0], frames[-1]))
     assert first.std() > 10
     assert np.abs(first - last).max() > 30
-    clock = np.s_[8:24, 90:150]
-    assert [first[clock].min() < 80 < 200 < first[clock].max(), np.abs(first - last)[clock].max() > 80] == [True, True]
+    window = Window(0.3, 0.6, 15.0)
+    replay = extract(read(log_path), window)
+    caption = Caption(replay, (160, 96), 2.0)
+    for frame, seconds in ((first, replay.time[0]), (last, replay.time[-1])):
+        on_black, on_white = (caption.drawn_on(np.full((96, 160, 3), v, np.uint8), seconds)[..., 0] for v in (0, 255))
+        plate, letters = on_black > 170, on_white < 60
+        assert frame[plate].mean() - frame[letters].mean() > 70
 
 
 def test_a_caption_names_the_run_its_time_and_the_colours(log):

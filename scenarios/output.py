@@ -67,6 +67,11 @@ def reason(error: OSError) -> str:
     return (error.strerror or str(error)).lower()
 
 
+def shown(path: Path | str) -> str:
+    """A path as text; bytes of a name that are no text are escaped."""
+    return str(path).encode("utf-8", "backslashreplace").decode()
+
+
 def _existing(path: Path) -> LogError:
     return LogError(f"{path}: exists already; choose another file, or replace it with --force")
 

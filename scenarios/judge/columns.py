@@ -41,13 +41,8 @@ class Columns:
         Raises:
             LogError: there is no room for the files.
         """
-        kind = (values.shape[1:], values.dtype)
-        if (
-            key in self._unlike
-            or not values.ndim
-            or values.dtype.hasobject
-            or self._kinds.setdefault(key, kind) != kind
-        ):
+        kind, sound = (values.shape[1:], values.dtype), values.ndim > 0 and not values.dtype.hasobject
+        if key in self._unlike or not sound or self._kinds.setdefault(key, kind) != kind:
             self.forget(key)
             return
         self._rows[key] = self._rows.get(key, 0) + len(values)

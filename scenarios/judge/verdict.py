@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from html import escape
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import unknown
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import MAX_BYTES, parse
+from surefoot.scenarios.file.source import decoded, parse
 from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.agreement import contradictions
 from surefoot.scenarios.judge.digest import Digest, RunView
@@ -218,7 +219,7 @@ def scenario_of(log: Log) -> Scenario:
 def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
     """The scenario of a log, and which of its names nobody knows here."""
     try:
-        source = parse(log.attachments[SCENARIO_FILE][:MAX_BYTES].decode(), SCENARIO_FILE)
+        source = parse(decoded(BytesIO(log.attachments[SCENARIO_FILE]), SCENARIO_FILE), SCENARIO_FILE)
         keys, absent = source.value, unknown(source.value)
         # Without its kind the other keys of the ground mean nothing.
         places = [replace(one, key=one.key[:1]) if one.key[0] == "terrain" else one for one in absent]

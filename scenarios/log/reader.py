@@ -6,6 +6,7 @@ import mmap
 import stat
 import zlib
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -153,7 +154,7 @@ class Log:
             right = "read it by its schema with the mcap package"
             raise LogError(f"{self.path}: topic {topic} states no layout of fixed size; {right}") from None
 
-    @property
+    @cached_property
     def numeric(self) -> tuple[str, ...]:
         """Topics whose messages can be read into arrays; the others are of other people's schemas."""
         return tuple(topic for topic in self.topics if self._is_numeric(topic))

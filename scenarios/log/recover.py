@@ -13,7 +13,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.encoding import MAGIC, Summary, encoded
 from surefoot.scenarios.log.reader import RECOVERED, Log, read
 from surefoot.scenarios.log.scan import PREFIX, index_chunk
-from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.output import shown, write_whole
 
 Index = dict[int, NDArray[np.void]]
 
@@ -70,7 +70,7 @@ class _Rewriter:
         for record in contents.metadata:
             if record.name != RECOVERED:
                 self._write(self._summary.add_metadata(record, self._position))
-        origin = Metadata(RECOVERED, {"from": self._log.path.name, "lost": "; ".join(self._log.losses())})
+        origin = Metadata(RECOVERED, {"from": shown(self._log.path.name), "lost": "; ".join(self._log.losses())})
         self._write(self._summary.add_metadata(origin, self._position))
         for attachment in contents.attachments:
             self._attach(attachment)

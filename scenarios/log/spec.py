@@ -122,13 +122,15 @@ def layout_of(metadata: dict[str, str]) -> tuple[FieldSpec, ...]:
     """
     try:
         rows = json.loads(metadata["layout"])
+        if len(rows) > _MOST_FIELDS:
+            raise ValueError("too many fields")
         fields = tuple(
             FieldSpec(str(name), tuple(int(n) for n in shape), *_noted(metadata.get(f"field.{name}", "")), kind=kind)
             for name, kind, shape in rows
         )
     except (KeyError, TypeError, ValueError, OverflowError, RecursionError):
         raise ValueError("no layout") from None
-    sound = len(fields) <= _MOST_FIELDS and all(
+    sound = all(
         f.kind in ("double", "int") and len(f.shape) <= _MOST_AXES and all(0 < n <= _MOST_NUMBERS for n in f.shape)
         for f in fields
     )

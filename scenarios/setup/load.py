@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, Set
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import unusable
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import MAX_BYTES, Overrides, Source, apply_overrides, decoded, parse
+from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, decoded, parse
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
@@ -49,7 +50,7 @@ def attached_scenario(path: str) -> tuple[str, str]:
     """
     try:
         log = read(path)
-        text = _with_pushes(log.attachments[SCENARIO_FILE][: MAX_BYTES + 1].decode(), log.metadata)
+        text = _with_pushes(decoded(BytesIO(log.attachments[SCENARIO_FILE]), f"{path}/{SCENARIO_FILE}"), log.metadata)
     except LogError as error:
         raise ScenarioError([str(error)]) from None
     except (KeyError, TypeError, ValueError, RecursionError):

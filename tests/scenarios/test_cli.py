@@ -1,9 +1,12 @@
 """The command line: exit codes, one message for what a user can mend, JSON alone on standard output."""
 
 import json
+import os
 import re
+import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 import yaml
@@ -15,7 +18,7 @@ from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop import run
+from surefoot.scenarios.loop import interrupts, run
 from surefoot.scenarios.setup import walk
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.load import load
@@ -241,6 +244,10 @@ def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
         (["paper", "--jobs", "0"], "invalid value for '--jobs': Input should be greater than or equal to 1"),
         (["inspect", "/dev/null"], "not an MCAP file"),
         (["inspect", "/"], "a directory"),
+        (["inspect", "/dev/zero"], "not an MCAP file but a device or a pipe"),
+        (["inspect", "x", "--from", "nan"], "nan is no time of a log"),
+        (["plot", "x", "--to", "1e300"], "is no time of a log"),
+        (["replay", "x", "--live", "--to=-inf"], "is no time of a log"),
         (["inspect", "/no/such"], "no such file"),
         (["recover", "/dev/null", "whole.mcap"], "not an MCAP file"),
     ],
@@ -339,6 +346,81 @@ def test_no_file_is_replaced_without_being_told(surefoot, scenario, tmp_path):
     assert surefoot("recover", log, tmp_path / "a.mcap", "--force")[0] == 0
     assert read(tmp_path / "a.mcap").count("/truth") == 2000
     assert not list(tmp_path.glob(".*"))
+
+
+def test_a_pipe_is_no_log_and_does_not_hang(surefoot, tmp_path):
+    os.mkfifo(tmp_path / "pipe.mcap")
+    for command in (["inspect"], ["plot"], ["run"], ["replay", "--live"]):
+        code, _, err = surefoot(*command, tmp_path / "pipe.mcap")
+        assert code == 2
+        assert "a device or a pipe" in err
+
+
+def test_names_that_are_no_text(surefoot, scenario, tmp_path):
+    folder = tmp_path / os.fsdecode(b"\xff")
+    for stream in (sys.stdout, sys.stderr):  # as `main` sets up the true ones
+        stream.reconfigure(errors="backslashreplace")
+    assert surefoot("run", scenario, "--out", folder)[0] == 0
+    log = folder / "two-steps-0" / os.fsdecode(b"\xfe.mcap")
+    log.with_name("log.mcap").rename(log)
+    for command in (
+        ["inspect", log, "--json"],
+        ["recover", log, folder / "whole.mcap"],
+        ["plot", log, "--what", "height"],
+    ):
+        code, _, err = surefoot(*command)
+        assert (code, err.count("Traceback")) == (0, 0)
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGINT, 130)])
+@pytest.mark.parametrize("moment", ["set-up", "loop", "judging"])
+def test_every_signal_ends_a_run_in_order(surefoot, scenario, tmp_path, motion, monkeypatch, number, code, moment):
+    def loop(walk, writer, on_progress):
+        if moment == "set-up":
+            signal.raise_signal(number)
+        end = motion(duration=0.2)(walk, writer, on_progress)
+        if moment == "loop":
+            signal.raise_signal(number)
+        return end
+
+    def judge(log):
+        if moment == "judging":
+            signal.raise_signal(number)
+        return judged(log)
+
+    judged = run.judge
+    monkeypatch.setattr(run, "judge", judge)
+    before = {one: signal.getsignal(one) for one in interrupts.SIGNALS}
+    try:
+        ended, out, err = surefoot("run", scenario, "--out", tmp_path, loop=loop)
+    finally:
+        for one, handler in before.items():
+            signal.signal(one, handler)
+        interrupts._received.clear()
+    assert (ended, err.count("Traceback")) == (code, 0)
+    log = read(tmp_path / "two-steps-0" / "log.mcap")
+    assert not log.truncated
+    assert not log.losses()
+    assert ("interrupted by the user" in out) == (moment != "judging")
+    assert log.path.with_name("verdict.json").exists()
+
+
+@pytest.mark.parametrize(("ended", "code", "said"), [("pipe", 141, ""), ("full", 2, "no space left on device")])
+def test_output_that_nobody_takes_is_no_verdict(ended, code, said):
+    """Exit code 1 would say that criteria were missed."""
+    if ended == "full":
+        with Path("/dev/full").open("w") as full:
+            done = subprocess.run([sys.executable, "-m", "surefoot", "--version"], stdout=full, stderr=subprocess.PIPE)
+    else:
+        child = [sys.executable, "-m", "surefoot", "--version"]
+        piped = subprocess.Popen(child, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        piped.stdout.close()
+        done = subprocess.CompletedProcess(child, piped.wait(), None, piped.stderr.read())
+        piped.stderr.close()
+    assert done.returncode == code
+    assert said in done.stderr.decode()
+    assert "Traceback" not in done.stderr.decode()
+    assert done.stderr.decode() or not said
 
 
 def test_help_needs_no_heavy_package():

@@ -10,6 +10,7 @@ from rich.table import Table
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
 from surefoot.scenarios.show.compare.divergence import ChannelDifference, Point, compare_channels, unreadable
 from surefoot.scenarios.show.compare.settings import (
@@ -170,7 +171,7 @@ def draw(found: Comparison, a: Log, b: Log, out: Path, replace: bool = False) ->
     from surefoot.scenarios.show.figures.style import save
 
     when = None if found.first is None else found.first.time
-    header = f"A: {found.a}\nB: {found.b}\n{found.summary}".replace("$", r"\$")
+    header = f"A: {shown(found.a)}\nB: {shown(found.b)}\n{found.summary}".replace("$", r"\$")
     save(overlay(LogView(a), LogView(b), header, when), out, replace)
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
-from surefoot.scenarios.output import refuse_existing
+from surefoot.scenarios.output import refuse_existing, shown
 from surefoot.scenarios.record.provenance import ABSENT
 from surefoot.scenarios.show.figures import top_view
 from surefoot.scenarios.show.figures.effort import draw_joints, draw_solver, draw_torques
@@ -185,7 +185,7 @@ def _header(view: LogView) -> str:
         scenario, seed, fidelity = (view.constant(name) for name in ("scenario", "seed", "fidelity"))
         name = f"{scenario}, seed {seed}, fidelity {fidelity}"
     except MissingError:
-        name = log.path.name
+        name = shown(log.path.name)
     versions = log.metadata.get("versions", {})
     parts = (("surefoot", "surefoot"), ("git_revision", "revision"), ("mujoco", "mujoco"))
     made = [f"{label} {versions[part][:12]}" for part, label in parts if versions.get(part, ABSENT) not in ("", ABSENT)]

@@ -147,6 +147,10 @@ class _Composer(yaml.SafeLoader):
         self.depth -= 1
         return node
 
+    def resolve(self, kind: Any, value: Any, implicit: Any) -> str:
+        """Give no tag: `_scalar` says what a scalar is, and nobody asks for more."""
+        return ""
+
     def _refusal(self, reason: str) -> yaml.MarkedYAMLError:
         mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
         return yaml.composer.ComposerError(None, None, reason, mark)

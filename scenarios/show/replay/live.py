@@ -74,7 +74,7 @@ class Player:
         self._replay, self._scene, self._last = replay, ViserScene(server, replay), time.monotonic()
         first, last = float(replay.time[0]), float(replay.time[-1])
         gui: Any = server.gui
-        gui.configure_theme(control_layout="fixed")  # beside the picture, not over it
+        gui.main_panel.dock_right()  # beside the picture, not over it
         self._slider = gui.add_slider(
             "time [s]", min=first, max=max(last, first + STEP), step=STEP, initial_value=first
         )

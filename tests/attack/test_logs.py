@@ -154,7 +154,9 @@ def test_runs_that_are_ended_at_any_time(tmp_path, number):
     for trial in range(5):
         out = tmp_path / str(trial)
         run = surefoot_command("run", "stand", "--set", "duration=3", "--out", out, **pipes)
-        time.sleep(rng.uniform(1.0, 5.0))
+        while not out.exists() and run.poll() is None:  # before that Python itself starts, with a traceback on Ctrl-C
+            time.sleep(0.01)
+        time.sleep(rng.uniform(0.0, 3.0))
         run.send_signal(number)
         said, _ = run.communicate(timeout=60)
         assert "Traceback" not in said

@@ -295,4 +295,5 @@ def made_folder(path: Path) -> Path:
 
 def unmade(path: Path, error: OSError) -> LogError:
     """Why a directory is not there."""
-    return LogError(f"{path}: cannot be created, {reason(error)}; choose another directory with --out")
+    why = "not a directory" if isinstance(error, FileExistsError) else reason(error)
+    return LogError(f"{path}: cannot be created, {why}; choose another directory with --out")

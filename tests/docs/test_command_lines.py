@@ -16,7 +16,7 @@ pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[2]
 PAGES = (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md")))
 LINES = [
-    (page.name, re.split(r"  |\s+#", line)[0])
+    (page.name, re.split(r"  |\s+#|\s*\\?\|", line)[0])
     for page in PAGES
     for line in re.findall(r"(?m)(?:^(?:\$ )?|`)(surefoot(?: [^`\n]*)?)(?:$|`)", page.read_text(encoding="utf-8"))
 ]

@@ -15,7 +15,7 @@ from surefoot.scenarios.record.foxglove.views import EventLog
 
 pytestmark = pytest.mark.unit
 
-FLIPS, CUTS = 200, 25
+FLIPS, CUTS = 60, 25
 SLOWEST = 5.0
 """No command may take longer on these short logs, on a busy machine [s]."""
 
@@ -53,7 +53,7 @@ def survives(path, out):
     return answered
 
 
-def test_bits_flipped_at_200_places(run, tmp_path):
+def test_bits_flipped_anywhere(run, tmp_path):
     data, path, out = run.read_bytes(), tmp_path / "flipped.mcap", tmp_path / "out.mcap"
     rng = random.Random(4)
     answered = noticed = 0

@@ -155,6 +155,7 @@ def test_same_is_to_the_bit_unless_a_tolerance_is_given(command, logs, tmp_path)
     assert compare(logs[0], near)[0].first.topic == "/truth"
     codes = [command("compare", logs[0], near, "--exit-code", *more)[0] for more in ((), ("--tolerance", "1e-6"))]
     assert codes == [1, 0]
+    near.unlink()
     altered(log, near, seconds=0.0, end={**log.metadata["end"], "kind": "fell"})
     found, _, _ = compare(logs[0], near)
     assert (found.records, found.agree) == (("end",), False)

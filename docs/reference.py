@@ -1,8 +1,9 @@
-"""Write the tables of docs/scenarios.md and docs/log.md that follow from the code.
+"""Write the tables and numbers of the documentation that follow from the code.
 
     python docs/reference.py
 
-Each table stands between two comment lines, `<!-- table: name -->` and `<!-- end -->`.
+Each table stands between two comment lines, `<!-- table: name -->` and `<!-- end -->`; each number within a line of any
+page between `<!-- value: name -->` and `<!-- end -->`.
 """
 
 import re
@@ -21,8 +22,10 @@ from surefoot.scenarios.file.schema import (
     Scenario,
     VelocitySettings,
 )
+from surefoot.scenarios.file.units import unit_of
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log.spec import ChannelSpec
+from surefoot.scenarios.log.writer import CHUNK_PERIOD_NS
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 
@@ -77,6 +80,22 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
 }
 
 
+VALUES: dict[str, str] = {
+    "chunk": f"{CHUNK_PERIOD_NS / 1e6:g} ms",
+}
+
+
+def pages() -> list[Path]:
+    """Every page that may have such a number."""
+    return [FOLDER.parent / "README.md", *sorted(FOLDER.glob("*.md"))]
+
+
+def with_values(text: str) -> str:
+    """The text of a page with its numbers written anew."""
+    place = r"(<!-- value: (\w+) -->).*?(<!-- end -->)"
+    return re.sub(place, lambda found: f"{found[1]}{VALUES[found[2]]}{found[3]}", text)
+
+
 def updated(text: str, name: str, table: str) -> str:
     """The text of a page with one of its tables written anew."""
     begin, end = f"<!-- table: {name} -->\n", "<!-- end -->"
@@ -84,10 +103,12 @@ def updated(text: str, name: str, table: str) -> str:
 
 
 def main() -> None:
-    """Update all tables."""
+    """Update all tables and numbers."""
     for name, (page, table) in TABLES.items():
         path = FOLDER / page
         path.write_text(updated(path.read_text(encoding="utf-8"), name, table()), encoding="utf-8")
+    for path in pages():
+        path.write_text(with_values(path.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def _key_rows(prefix: str, group: type[BaseModel]) -> list[str]:
@@ -113,7 +134,9 @@ def _group_of(annotation: Any) -> Any:
 
 def _key_row(name: str, field: FieldInfo) -> str:
     default = "required" if field.is_required() else _default(field.get_default(call_default_factory=True))
-    return f"| `{name}` | {default} | {(field.description or '').replace('|', '/')} |"
+    unit = unit_of(field.annotation, field.metadata)
+    meaning = (field.description or "").replace("|", "/") + (f" [{unit}]" if unit else "")
+    return f"| `{name}` | {default} | {meaning} |"
 
 
 def _default(value: Any) -> str:

@@ -22,7 +22,7 @@ class Motor:
 class Actuator:
     """A motor behind a loss-free gear; what the joint sees follows from the gear ratio.
 
-    The peak torque is taken as available up to the no-load speed; friction and torque ripple are not modelled.
+    The peak torque is taken as available at every speed; friction and torque ripple are not modelled.
 
     Attributes:
         motor: the motor.

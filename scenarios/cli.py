@@ -1,29 +1,88 @@
-"""The command line. Exit codes: 0 criteria met, 1 missed, 2 bad input or usage, 70 a defect, 130 interrupted."""
+"""The command line.
 
+Exit codes: 0 criteria met, 1 missed, 2 bad input or usage or no room for output, 70 a defect, 129, 130 and 143 ended by
+SIGHUP, Ctrl-C and SIGTERM, 141 nobody reads the output any more.
+"""
+
+import io
 import json
+import os
 import sys
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer._click.exceptions import NoArgsIsHelpError, NoSuchOption, UsageError
+from typer.core import TyperGroup
 
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.output import reason
 
 if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+    from typer._click.core import Context
+
     from surefoot.scenarios.log import Log
+
+
+@contextmanager
+def _one_sentence() -> Iterator[None]:
+    """Say what is wrong with the words of a command as of any other bad input: what, where, and what would be right."""
+    try:
+        yield
+    except NoArgsIsHelpError:
+        raise
+    except UsageError as error:
+        path = error.ctx.command_path if error.ctx else "surefoot"
+        what = error.format_message().rstrip(".")
+        right = f"`{path} -h` tells what there is"
+        if isinstance(error, NoSuchOption) and path.endswith(" run"):
+            key = error.option_name.lstrip("-").replace("-", "_")
+            right = f"a key of the scenario is given as --set {key}=VALUE" if key in _keys(key) else right
+        raise ScenarioError([f"{path}: {what[:1].lower()}{what[1:]}; {right}"]) from None
+
+
+class _Commands(TyperGroup):
+    """All commands."""
+
+    def parse_args(self, ctx: "Context", args: list[str]) -> list[str]:
+        with _one_sentence():
+            return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: "Context") -> Any:
+        with _one_sentence():
+            return super().invoke(ctx)
+
 
 app = typer.Typer(
     name="surefoot",
+    cls=_Commands,
     help="A humanoid walks in full physics, and its log gives the verdict.",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
 
-MISSED, BAD_INPUT, DEFECT, INTERRUPTED = 1, 2, 70, 130
+MISSED, BAD_INPUT, DEFECT, INTERRUPTED, UNREAD = 1, 2, 70, 130, 141
 
+_FARTHEST = 1e9
+
+
+def _finite(value: float | None) -> float | None:
+    """Refuse what is no time of a log."""
+    if value is not None and not abs(value) <= _FARTHEST:
+        raise typer.BadParameter(f"{value} is no time of a log; give seconds, such as 2.5")
+    return value
+
+
+From = Annotated[float | None, typer.Option("--from", metavar="T", help="From this time on [s].", callback=_finite)]
+To = Annotated[float | None, typer.Option("--to", metavar="T", help="Up to this time [s].", callback=_finite)]
+
+Force = Annotated[bool, typer.Option("--force", "-f", help="Replace the file if it exists.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 
 
@@ -45,50 +104,69 @@ def _surefoot(
     """Take the options that need no command."""
 
 
-@app.command("list")
-def list_() -> None:
-    """List scenarios and robots, one line each."""
+def _scenarios(incomplete: str) -> list[str]:
+    """Catalogue names that begin so; where there is none, shells go on to complete file names."""
     from surefoot.scenarios import catalogue
-    from surefoot.scenarios.setup.robot import RegisteredRobots
 
-    names = catalogue.names()
-    width = max(map(len, names))
-    for name in names:
-        typer.echo(f"scenario  {name:<{width}} {catalogue.summary(name)}")
-    for name in RegisteredRobots().names():
-        typer.echo(f"robot     {name}")
-    for refusal in catalogue.refusals():
+    return [name for name in catalogue.names() if name.startswith(incomplete)]
+
+
+def _keys(incomplete: str) -> list[str]:
+    """Keys of scenarios that begin so."""
+    from surefoot.scenarios.show.listing import keys
+
+    return [key for key, _ in keys() if key.startswith(incomplete)]
+
+
+def _settings(incomplete: str) -> list[str]:
+    """Keys that begin so, each as the beginning of a setting."""
+    return [f"{key}=" for key in _keys(incomplete)]
+
+
+@app.command("list")
+def list_(as_json: AsJson = False) -> None:
+    """List scenarios, robots and parts, one line each."""
+    from surefoot.scenarios.show import listing
+
+    if as_json:
+        typer.echo(json.dumps(listing.to_json(), allow_nan=False))
+    else:
+        typer.echo("\n".join(listing.lines()))
+    for refusal in listing.refusals():
         typer.echo(refusal, err=True)
 
 
 @app.command()
 def run(
-    scenario: Annotated[str, typer.Argument(help="Catalogue name, scenario file, or a log to run again.")],
-    set_: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.")] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed, over that of the scenario.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Directory for the log and the verdict; runs by default.")] = None,
+    scenario: Annotated[
+        str, typer.Argument(help="Catalogue name, scenario file, or a log to run again.", autocompletion=_scenarios)
+    ],
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.", autocompletion=_settings),
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed, over that of the scenario.")] = None,
+    out: Annotated[Path, typer.Option(help="Directory that gets the run's own folder.")] = Path("runs"),
     video: Annotated[Path | None, typer.Option(help="Also render the run to this .mp4 file.")] = None,
     view: Annotated[bool, typer.Option("--view", help="Show the run in a browser while it goes on.")] = False,
+    force: Annotated[bool, typer.Option("--force", "-f", help="Replace the video if it exists.")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a scenario, write its log and judge it."""
     from surefoot.scenarios.loop.run import run_scenario
-    from surefoot.scenarios.record.provenance import LOG_NAME, run_name
     from surefoot.scenarios.setup.load import load as load_scenario
-    from surefoot.scenarios.setup.load import locate, output_folder
+    from surefoot.scenarios.setup.load import locate
     from surefoot.scenarios.show.console import ProgressLine, print_result
     from surefoot.scenarios.show.replay.command import LiveView, check
 
     overrides = [*(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
     loaded = load_scenario(scenario, overrides)
-    name = run_name(loaded.name, loaded.seed)
-    folder = output_folder(scenario, name, out)
     if video or view:
-        check(loaded.fidelity, video=video, view=view)
+        check(loaded.fidelity, video=video, view=view, replace=force)
     with ProgressLine(loaded.name) as progress:
-        live = LiveView(folder / name / LOG_NAME, progress)
+        live = LiveView(progress)
         try:
-            result = run_scenario(loaded, folder, live if view else progress)
+            result = run_scenario(loaded, out, live if view else progress, on_begin=live.begin)
         except SetupError as refusal:
             raise locate(scenario, overrides, refusal) from None
     if as_json:
@@ -102,7 +180,7 @@ def run(
         from surefoot.scenarios.show.replay import command
         from surefoot.scenarios.show.replay.poses import Window
 
-        command.video(result.log, video, Window())
+        command.video(result.log, video, Window(), replace=force)
     live.wait()
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 
@@ -112,9 +190,10 @@ def inspect(
     log: Annotated[Path, typer.Argument(help="A log, also a truncated one.")],
     topic: Annotated[str | None, typer.Option(help="Summarise or export one topic instead.")] = None,
     field: Annotated[str | None, typer.Option(help="Only this field of the topic.")] = None,
-    start: Annotated[float | None, typer.Option("--from", help="From this time on [s].")] = None,
-    end: Annotated[float | None, typer.Option("--to", help="Up to this time [s].")] = None,
+    start: From = None,
+    end: To = None,
     export: Annotated[Path | None, typer.Option(help="Write the topic to a .csv, .npz or .parquet file.")] = None,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Show verdict, metrics, health, topics and rates of a log."""
@@ -124,7 +203,7 @@ def inspect(
 
     opened = read(log)
     if topic is not None:
-        _show_topic(opened, topic, (start, end), field, export, as_json)
+        _show_topic(opened, topic, (start, end), field, export, force, as_json)
         return
     if (field, start, end, export) != (None, None, None, None):
         raise LogError("--field, --from, --to and --export choose from one topic; name it with --topic")
@@ -137,7 +216,13 @@ def inspect(
 
 
 def _show_topic(
-    log: "Log", topic: str, span: tuple[float | None, float | None], field: str | None, file: Path | None, as_json: bool
+    log: "Log",
+    topic: str,
+    span: tuple[float | None, float | None],
+    field: str | None,
+    file: Path | None,
+    force: bool,
+    as_json: bool,
 ) -> None:
     """Summarise a topic, or export it and say where it is."""
     from surefoot.scenarios.judge.inspection import topic_summary
@@ -147,7 +232,7 @@ def _show_topic(
     for loss in log.damage:
         typer.echo(f"not read: {loss}", err=True)
     if file is not None:
-        export(channel, file)
+        export(channel, file, force)
         typer.echo(json.dumps({"file": str(file), "messages": len(channel)}) if as_json else str(file))
     elif as_json:
         typer.echo(json.dumps(topic_summary(channel), allow_nan=False))
@@ -160,13 +245,14 @@ def plot(
     log: Annotated[Path, typer.Argument(help="A log, also a truncated one.")],
     out: Annotated[Path | None, typer.Option(help="PNG, SVG or PDF; figures.png beside the log by default.")] = None,
     what: Annotated[str | None, typer.Option(metavar="NAME", help="One figure instead of the page of all.")] = None,
-    start: Annotated[float | None, typer.Option("--from", metavar="T", help="Begin of the window [s].")] = None,
-    end: Annotated[float | None, typer.Option("--to", metavar="T", help="End of the window [s].")] = None,
+    start: From = None,
+    end: To = None,
+    force: Force = False,
 ) -> None:
     """Draw the figures that a walking engineer looks at."""
     from surefoot.scenarios.show.figures.page import plot as plot_log
 
-    drawn = plot_log(log, out, what, start, end)
+    drawn = plot_log(log, out, what, start, end, force)
     for note in drawn.notes:
         typer.echo(f"note: {note}", err=True)
     typer.echo(str(drawn.path))
@@ -177,31 +263,44 @@ def compare(
     a: Annotated[Path, typer.Argument(metavar="A", help="A log.")],
     b: Annotated[Path, typer.Argument(metavar="B", help="Another log.")],
     out: Annotated[Path | None, typer.Option(help="Draw both over each other: PNG, SVG or PDF.")] = None,
-    tolerance: Annotated[float, typer.Option(help="Relative, and absolute below 1.")] = 1e-6,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Of values that still agree: relative, and absolute below 1; 1e-6 by default.")
+    ] = None,
+    exit_code: Annotated[
+        bool,
+        typer.Option("--exit-code", help="Exit with 1 unless they are the same: to the bit, or within --tolerance."),
+    ] = False,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Show two logs side by side, and where their channels part."""
+    from surefoot.scenarios.output import refuse_existing
+    from surefoot.scenarios.show.compare.compare import TOLERANCE, draw, print_comparison
     from surefoot.scenarios.show.compare.compare import compare as compare_logs
-    from surefoot.scenarios.show.compare.compare import draw, print_comparison
 
-    found, first, second = compare_logs(a, b, tolerance)
     if out is not None:
-        draw(found, first, second, out)
+        refuse_existing(out, force)
+    found, first, second = compare_logs(a, b, TOLERANCE if tolerance is None else tolerance)
+    if out is not None:
+        draw(found, first, second, out, force)
     if as_json:
         typer.echo(json.dumps(found.to_json(), allow_nan=False))
     else:
         print_comparison(found)
+    same = found.identical if tolerance is None else found.agree
+    raise typer.Exit(MISSED if exit_code and not same else 0)
 
 
 @app.command()
 def recover(
     log: Annotated[Path, typer.Argument(help="A truncated or damaged log.")],
     out: Annotated[Path, typer.Argument(help="The whole log to write.")],
+    force: Force = False,
 ) -> None:
     """Make a whole, indexed log of what a truncated one still holds."""
     from surefoot.scenarios.log.recover import recover as recover_log
 
-    recovery = recover_log(log, out)
+    recovery = recover_log(log, out, force)
     for loss in recovery.lost:
         typer.echo(f"lost: {loss}", err=True)
     typer.echo(f"{recovery.messages} messages from {recovery.start:.3f} s to {recovery.end:.3f} s", err=True)
@@ -214,21 +313,29 @@ def replay(
     html: Annotated[Path | None, typer.Option(help="Write one page that opens offline.")] = None,
     video: Annotated[Path | None, typer.Option(help="Write an mp4 video.")] = None,
     live: Annotated[bool, typer.Option("--live", help="Serve it on this machine, following a growing log.")] = False,
-    start: Annotated[float | None, typer.Option("--from", help="First time [s].")] = None,
-    end: Annotated[float | None, typer.Option("--to", help="Last time [s].")] = None,
+    start: From = None,
+    end: To = None,
+    speed: Annotated[float, typer.Option(help="Of the video over that of the run, 0.1 to 10.")] = 1.0,
+    camera: Annotated[
+        str, typer.Option(help="Of the video: follow, side, front, fixed, or azimuth,elevation,distance [deg, deg, m].")
+    ] = "follow",
+    size: Annotated[str, typer.Option(metavar="WxH", help="Of the video [px].")] = "1280x720",
+    force: Force = False,
 ) -> None:
     """Show a log in 3D: as a page, as a video or live."""
     if (html is not None) + (video is not None) + live != 1:
         raise typer.BadParameter("give one of --html FILE, --video FILE and --live")
+    if video is None and (speed, camera, size) != (1.0, "follow", "1280x720"):
+        raise typer.BadParameter("--speed, --camera and --size are of a video; give them with --video FILE")
     from surefoot.scenarios.show.replay import command
     from surefoot.scenarios.show.replay.poses import Window
 
     window = Window(start, end)
     if html is not None:
-        command.html_page(log, html, window)
+        command.html_page(log, html, window, force)
         typer.echo(str(html))
     elif video is not None:
-        command.video(log, video, window)
+        command.video(log, video, window, command.Filming(speed, camera, size), force)
         typer.echo(str(video))
     else:
         command.live(log, window, typer.echo)
@@ -238,14 +345,18 @@ def replay(
 def paper(
     out: Annotated[Path, typer.Option(help="Directory for the page and its runs.")] = Path("runs/paper"),
     jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
+    force: Annotated[bool, typer.Option("--force", "-f", help="Replace the page of an earlier time.")] = False,
 ) -> None:
-    """Run the paper's experiments and write what holds as one HTML page; begun again, it goes on where it stopped."""
+    """Run the paper's experiments; write what holds as an HTML page.
+
+    Begun again, it goes on where it stopped.
+    """
     from surefoot.scenarios.paper.page import cores
     from surefoot.scenarios.paper.page import paper as run_paper
     from surefoot.scenarios.paper.runner import InterruptedRunsError
 
     try:
-        written = run_paper(out, jobs or cores())
+        written = run_paper(out, jobs or cores(), force)
     except InterruptedRunsError:
         typer.echo(f"interrupted; finished runs are kept in {out}, the same command goes on from there", err=True)
         raise typer.Exit(INTERRUPTED) from None
@@ -272,14 +383,19 @@ def check(
     out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/check"),
     junit: Annotated[Path | None, typer.Option(help="Also write JUnit XML to this file.")] = None,
     markdown: Annotated[Path | None, typer.Option(help="Also write a summary for a CI page to this file.")] = None,
+    force: Force = False,
 ) -> None:
     """Run scenarios and compare their metrics with those that were kept."""
     from surefoot.scenarios.check import check as checking
     from surefoot.scenarios.check import report
+    from surefoot.scenarios.output import refuse_existing
     from surefoot.scenarios.paper.page import cores
     from surefoot.scenarios.show.console import plain_console
 
     console = plain_console()
+    for report_file in (junit, markdown):
+        if report_file is not None:
+            refuse_existing(report_file, force)
     chosen = checking.cases(scenarios or (), baselines, set_ or ())
     try:
         found = checking.check(chosen, out, jobs or cores(), lambda one: report.print_checked(one, console))
@@ -287,9 +403,9 @@ def check(
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
     if junit is not None:
-        report.write(junit, report.junit(found))
+        report.write(junit, report.junit(found), force)
     if markdown is not None:
-        report.write(markdown, report.markdown(found).encode())
+        report.write(markdown, report.markdown(found).encode(), force)
     typer.echo(report.summary(found))
     if update:
         for path in checking.update(found):
@@ -299,19 +415,54 @@ def check(
 
 
 @app.command()
-def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.")]) -> None:
-    """Print the commented YAML of a catalogue scenario, to start one's own from."""
-    from surefoot.scenarios import catalogue
+def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocompletion=_scenarios)]) -> None:
+    """Print a scenario's commented YAML, to start one's own from."""
+    from surefoot.scenarios.show.listing import starter
 
-    typer.echo(catalogue.text(scenario)[0], nl=False)
+    typer.echo(starter(scenario), nl=False)
 
 
 @app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors."""
-    from surefoot.scenarios.file.schema import Scenario
+    from surefoot.scenarios.setup.published import published
 
-    typer.echo(json.dumps(Scenario.model_json_schema(), indent=2))
+    typer.echo(json.dumps(published(), indent=2))
+
+
+class _Stream(io.FileIO):
+    """Standard output or error, whose end ends the program and is no defect: a pipe is closed, a disk is full."""
+
+    ended = False
+
+    def write(self, data: "ReadableBuffer") -> int:
+        """Write, unless there is no use in it any more."""
+        size = memoryview(data).nbytes
+        if self.ended:
+            return size
+        try:
+            return super().write(data) or 0
+        except OSError as error:
+            self.ended = True
+            if isinstance(error, BrokenPipeError):
+                raise SystemExit(UNREAD) from None
+            if self.fileno() == 1:
+                typer.echo(f"standard output: cannot be written, {reason(error)}; give it more room", err=True)
+            raise SystemExit(BAD_INPUT) from None
+
+
+def _streams() -> None:
+    """Set up standard output and error; a name that is no text is shown escaped."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed by whoever has started the program
+            setattr(sys, name, Path(os.devnull).open("w"))  # noqa: SIM115  as long as the program
+        elif stream is getattr(sys, f"__{name}__") and isinstance(stream, io.TextIOWrapper):
+            stream.flush()
+            raw = io.BufferedWriter(_Stream(stream.fileno(), "w", closefd=False))
+            on_screen = name == "stderr" or stream.isatty()
+            safe = io.TextIOWrapper(raw, stream.encoding, "backslashreplace", line_buffering=on_screen)
+            setattr(sys, name, safe)
 
 
 def main() -> None:
@@ -319,11 +470,28 @@ def main() -> None:
 
     An error that the user can mend is one message; a defect of the program is a traceback and an exit code of its own.
     """
+    from surefoot.scenarios.loop import interrupts
+
+    _streams()
+    interrupts.obey_all()
     try:
-        app()
+        code = _code()
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    sys.exit(interrupts.exit_code() if code == INTERRUPTED else code)
+
+
+def _code() -> int | str | None:
+    """Exit code of the command."""
+    try:
+        app(prog_name=app.info.name)  # not how it was started, which is no name that a shell can complete
+    except SystemExit as end:
+        return end.code
     except (ScenarioError, LogError) as error:
         typer.echo(str(error), err=True)
-        sys.exit(BAD_INPUT)
+        return BAD_INPUT
     except Exception:
         traceback.print_exc()
-        sys.exit(DEFECT)
+        return DEFECT
+    return 0

@@ -1,8 +1,16 @@
 """Errors that a user can mend, and what is said about them."""
 
 import difflib
-from collections.abc import Iterable
+import importlib
+import json
+import shutil
+import sys
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from shlex import quote
+from types import ModuleType
 
 Key = tuple[str | int, ...]
 """Path of a value in a scenario: keys and list indices."""
@@ -15,28 +23,33 @@ class Problem:
     Attributes:
         key: the value's path in the scenario.
         what: the fault.
-        right: what would be right.
+        right: what would be right, or what says it: of thousands of problems only the first are told.
         at_key: whether the key is at fault rather than its value.
     """
 
     key: Key
     what: str
-    right: str
+    right: str | Callable[[], str]
     at_key: bool = False
 
     def __str__(self) -> str:
-        return f"{self.what}; {self.right}"
+        return f"{self.what}; {self.right if isinstance(self.right, str) else self.right()}"
+
+
+LONGEST_SENTENCE = 2000
+"""Characters of a problem that are told; names and values may be longer than anyone reads."""
 
 
 class ScenarioError(Exception):
     """A scenario that cannot be run.
 
     Attributes:
-        problems: one sentence each, with its place: ``file:line:column: what; what would be right``.
+        problems: one sentence each, with its place: ``file:line:column: what; what would be right``; what a terminal
+            would obey or not show is escaped.
     """
 
     def __init__(self, problems: Iterable[str]) -> None:
-        self.problems = tuple(problems)
+        self.problems = tuple(map(_readable, problems))
         super().__init__("\n".join(self.problems))
 
 
@@ -56,10 +69,60 @@ class LogError(Exception):
     """A log that cannot be written or read; the message says what, where and what would be right."""
 
 
+def _readable(problem: str) -> str:
+    if len(problem) > LONGEST_SENTENCE:
+        problem = f"{problem[: LONGEST_SENTENCE // 2]} ... {problem[-LONGEST_SENTENCE // 2 :]}"
+    return "".join(sign if sign.isprintable() else repr(sign)[1:-1] for sign in problem)
+
+
+class MissingExtraError(LogError):
+    """An output needs a package that is not installed; the message says how to install it."""
+
+
+def require(module: str, extra: str, purpose: str, otherwise: str = "") -> ModuleType:
+    """Import an optional package.
+
+    Args:
+        module: to import.
+        extra: of the distribution that brings it.
+        purpose: what needs it, for the message.
+        otherwise: what one can do without it.
+
+    Raises:
+        MissingExtraError: it is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        right = f"install it with: {install_command(extra)}" + (f", or {otherwise}" if otherwise else "")
+        raise MissingExtraError(f"{purpose} needs the package {module}; {right}") from None
+
+
+def install_command(extra: str) -> str:
+    """What installs an extra of Surefoot where this Surefoot came from: its clone, what pip was given, or an index."""
+    here, clone = Path(sys.executable).parent, Path(__file__).parents[2]
+    pip = "pip" if Path(shutil.which("pip") or "").parent == here else f"{quote(sys.executable)} -m pip"
+    if (clone / "constraints.txt").is_file():
+        folder = Path() if Path.cwd() == clone else clone
+        return f"{pip} install -c {quote(str(folder / 'constraints.txt'))} -e {quote(f'{folder}[{extra}]')}"
+    source = _installed_from()
+    return f"{pip} install {quote(f'surefoot[{extra}] @ {source}' if source else f'surefoot[{extra}]')}"
+
+
+def _installed_from() -> str:
+    """Address of the archive, folder or repository that pip was given; empty when it came from an index."""
+    try:
+        origin = json.loads(distribution("surefoot").read_text("direct_url.json") or "{}")
+    except PackageNotFoundError:
+        return ""
+    repository = origin.get("vcs_info", {}).get("vcs")
+    return f"{repository}+{origin['url']}" if repository else str(origin.get("url", ""))
+
+
 def nearest(name: str, valid: Iterable[str]) -> str:
     """Say which of the valid names was meant, or list them."""
     names = sorted(valid)
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+    close = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.6)
     return f"did you mean '{close[0]}'?" if close else f"valid are {', '.join(names)}"
 
 

@@ -132,8 +132,6 @@ class Simulation:
     def _begin(self) -> None:
         if self._path is None:
             self._writer = NoLog()
-        elif self._path.exists():
-            raise LogError(f"{self._path}: exists already; choose another file, or delete it")
         else:
             self._writer = open_log(self._path, self.walk)
         try:

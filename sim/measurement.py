@@ -14,8 +14,9 @@ class Measurement:
 
     The arrays are buffers of the world, overwritten by its next `measure()`: copy what must live longer.
 
-    Joint state, gyro and true state are those of `time`; torques, accelerometer, wrenches and external force are those
-    of the physics step that ended at `time` (after a reset: those of the torques that it was given).
+    Joint state, gyro and true state are those of `time`; torques, accelerometer and wrenches are those of the physics
+    step that ended at `time` (after a reset: those of the torques that it was given); the external force is the mean
+    since the measurement before, so that a push of any length leaves its whole impulse in the sum.
 
     Attributes:
         time: instant [s].
@@ -28,7 +29,7 @@ class Measurement:
             frame, shape (2, 6) [N, N m].
         q: true configuration in Pinocchio's convention, shape (7 + nj,).
         v: true velocity in Pinocchio's convention, shape (6 + nj,).
-        external_force: sum of the pushes, world frame, shape (3,) [N].
+        external_force: sum of the pushes, mean over the `World.advance` that ended at `time`, world, shape (3,) [N].
         nonfoot_contact: whether anything but the feet touches the terrain.
         self_contact: whether the robot touches itself; a foot's wrench then holds that touch, too.
     """

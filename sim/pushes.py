@@ -37,6 +37,7 @@ class PushSchedule:
 
     Attributes:
         total: sum of the applied forces, world frame, shape (3,) [N].
+        mean: its mean over the last `World.advance`, shape (3,) [N].
         active: bodies and the forces applied to them.
     """
 
@@ -46,7 +47,7 @@ class PushSchedule:
         self._ticks, self._forces = _timeline(self._scheduled, 0)
         self._live, self._first = self._scheduled, (self._ticks, self._forces)
         self._index = 0
-        self.total = np.zeros(3)
+        self.total, self.mean = np.zeros(3), np.zeros(3)
         self.active: list[tuple[int, Array]] = []
 
     @property
@@ -59,6 +60,7 @@ class PushSchedule:
         self._live, (self._ticks, self._forces) = self._scheduled, self._first
         self._index = 0
         self._apply(xfrc_applied)
+        self.mean[:] = 0.0
 
     def step_over(self, xfrc_applied: Array) -> None:
         """Apply the forces that hold from `next_change` on."""

@@ -65,6 +65,7 @@ def render_frames(
     camera: Camera | None = None,
     quality: Quality | None = None,
     marks: Iterable[Iterable[Mark]] | None = None,
+    look_at: Iterable[Array] | None = None,
 ) -> Iterator[Image]:
     """Draw the robot of a world in each configuration.
 
@@ -76,6 +77,7 @@ def render_frames(
         camera: where to look from; a three-quarter view from the front by default.
         quality: how carefully to draw; all that there is by default.
         marks: what to draw beside the world, for each configuration; nothing by default.
+        look_at: what the camera looks at in each configuration, whatever it tracks, shape (3,) each [m].
 
     Yields:
         one picture per configuration, shape (height, width, 3).
@@ -88,7 +90,8 @@ def render_frames(
     context = make_context(width, height)
     try:
         painter = _Painter(model, width, height, camera or Camera(), quality)
-        yield from painter.paint(configurations, repeat(()) if marks is None else marks)
+        beside, targets = repeat(()) if marks is None else marks, repeat(None) if look_at is None else look_at
+        yield from painter.paint(configurations, beside, targets)
     finally:
         context.free()
 
@@ -120,15 +123,17 @@ class _Painter:
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         self._area = mujoco.MjrRect(0, 0, width, height)
 
-    def paint(self, configurations: Iterable[Array], marks: Iterable[Iterable[Mark]]) -> Iterator[Image]:
+    def paint(
+        self, configurations: Iterable[Array], marks: Iterable[Iterable[Mark]], look_at: Iterable[Array | None]
+    ) -> Iterator[Image]:
         """One picture per configuration."""
         rest = np.zeros(self._model.nv)
-        for q, beside in zip(configurations, marks, strict=False):
+        for q, beside, target in zip(configurations, marks, look_at, strict=False):
             pinocchio_to_mujoco(q, rest, self._data.qpos, self._data.qvel)
             mujoco.mj_kinematics(self._model, self._data)
             mujoco.mj_comPos(self._model, self._data)
             mujoco.mj_camlight(self._model, self._data)
-            self._follow()
+            self._follow(target)
             shown = list(beside)
             self._update(self._scene)
             draw(self._scene, shown)
@@ -151,9 +156,11 @@ class _Painter:
         picture[drawn] = (1.0 - SHINE) * picture[drawn] + SHINE * alone[drawn]
         return picture
 
-    def _follow(self) -> None:
+    def _follow(self, wanted: Array | None) -> None:
         target = self._data.qpos[:3]
-        if math.isnan(self._view.lookat[0]):
+        if wanted is not None:
+            self._view.lookat[:] = wanted
+        elif math.isnan(self._view.lookat[0]):
             self._view.lookat[:] = target
         elif self._style.tracking:
             self._view.lookat[:] += SMOOTHING * (target - self._view.lookat)

@@ -60,7 +60,7 @@ class SensorReader:
         self._torque[:] = self._joint_force
         np.subtract(self._qacc_base, self._gravity, out=self._specific_force)
         np.dot(self._specific_force, self._base_rotation, out=self._accelerometer)
-        self._push[:] = pushes.total
+        self._push[:] = pushes.mean
         contact = self._without_pushes(pushes) if pushes.active else self._external
         com = self._com.tolist()
         for wrench, (foot, position, rotation) in zip(self._wrench, self._soles, strict=True):

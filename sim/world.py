@@ -118,12 +118,15 @@ class World:
         np.copyto(self._last_qpos, self._qpos)
         np.copyto(self._last_qvel, self._qvel)
         self._ctrl[:] = torque
-        tick, end = self.tick, self.tick + steps
+        pushes, tick, end = self._pushes, self.tick, self.tick + steps
+        pushes.mean[:] = 0.0
         while tick < end:
-            if tick >= self._pushes.next_change:
-                self._pushes.step_over(self._xfrc)
-            stop = min(end, self._pushes.next_change)
+            if tick >= pushes.next_change:
+                pushes.step_over(self._xfrc)
+            stop = min(end, pushes.next_change)
             mujoco.mj_step(self.model, self.data, stop - tick)
+            if pushes.active:
+                pushes.mean += (stop - tick) / steps * pushes.total
             tick = stop
         if not np.dot(self._qacc, self._qacc) < ACCELERATION_LIMIT**2:
             self._diverge()

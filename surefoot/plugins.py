@@ -19,6 +19,9 @@ from typing import TypeVar, cast
 
 T = TypeVar("T")
 
+OWN_PACKAGE = "surefoot"
+"""The package of what is in no entry point."""
+
 
 class PluginError(ValueError):
     """What a package has registered cannot be used.
@@ -98,6 +101,12 @@ class Registry(Mapping[str, T]):
 
     def __contains__(self, name: object) -> bool:
         return any(name in known for known in (self._own, self._added, self._loaded)) or name in list(self)
+
+    def package(self, name: str) -> str:
+        """Which package brings a name; empty for what was registered by code, both where two bring it."""
+        if name in self._own:
+            return OWN_PACKAGE
+        return "" if name in self._added else " and ".join(map(package_of, self._entries(name)))
 
     def clashes(self) -> dict[str, PluginError]:
         """What to say of each name of surefoot's own under which another package has something too.

@@ -1,21 +1,12 @@
-"""Draw the animation of the documentation from the log of a real run.
+"""A walk as an animation: every third frame of a replay, drawn twice as large as needed."""
 
-    pip install pillow
-    surefoot run walk
-    python docs/images/animate.py runs/walk-0/log.mcap docs/images/walk.gif
-
-It needs off-screen OpenGL (see `sim.gl`). Every third frame of a replay is drawn twice as large as needed.
-"""
-
-import argparse
 from itertools import islice
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from surefoot.scenarios.log import read
+from surefoot.scenarios.log import Log
 from surefoot.scenarios.palette import COM, FEET, FOOTSTEP
 from surefoot.scenarios.show.replay.content import Replay
 from surefoot.scenarios.show.replay.extract import Window, extract
@@ -26,6 +17,7 @@ WIDTH, HEIGHT = 480, 270
 EVERY = 3
 """Frames of the replay per picture."""
 
+WINDOW = Window(4.8, 9.5)
 COLORS = 128
 VIVID = 60
 """Difference between the largest and the smallest channel above which a colour must be in the palette."""
@@ -62,21 +54,11 @@ def palette(images: list[Image.Image]) -> Image.Image:
     return found
 
 
-def main() -> None:
-    """Draw one animation."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("log", type=Path)
-    parser.add_argument("out", type=Path)
-    parser.add_argument("--start", type=float, default=4.8, help="[s]")
-    parser.add_argument("--end", type=float, default=9.5, help="[s]")
-    options = parser.parse_args()
-    replay = extract(read(options.log), Window(options.start, options.end))
+def frames(log: Log) -> tuple[list[Image.Image], int]:
+    """The pictures of the animation in few colours, and how long each is shown [ms]."""
+    replay = extract(log, WINDOW)
     images = pictures(replay)
     colors = palette(images)
-    first, *rest = (image.quantize(palette=colors, dither=Image.Dither.NONE) for image in images)
-    period = round(1000 * EVERY / replay.frame_rate)
-    first.save(options.out, save_all=True, append_images=rest, duration=period, loop=0, optimize=True)
-
-
-if __name__ == "__main__":
-    main()
+    return [image.quantize(palette=colors, dither=Image.Dither.NONE) for image in images], round(
+        1000 * EVERY / replay.frame_rate
+    )

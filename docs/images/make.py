@@ -1,68 +1,122 @@
-"""Draw the pictures of the documentation from logs of real runs.
+"""Draw the pictures of the documentation, from runs that it makes.
 
     pip install pillow
-    surefoot run walk
-    python docs/images/make.py runs/walk-0/log.mcap docs/images/walk.png
+    python docs/images/make.py [NAME]...
 
-It needs off-screen OpenGL (see `sim.gl`). Poses at several times of one walk are drawn by one fixed camera, each twice
-as large as needed, and laid over each other where they differ from the empty ground, the farthest first.
+Names are those of the files, by default all. Pictures of the robot need off-screen OpenGL (see `sim.gl`). The map takes
+some five minutes on two cores, the animation one or two, the others seconds. What else than the log a picture follows
+from, its colours and the way it is drawn, goes into it as a digest, which the tests compare with the code.
 """
 
 import argparse
+import hashlib
+import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
-from surefoot.scenarios.log import Log, read
-from surefoot.scenarios.record.provenance import WORLD_FILE
-from surefoot.sim.render import Camera, render_frames
+FOLDER = Path(__file__).parent
+ROOT = FOLDER.parents[1]
+KEY = "sources"
+SIZE = (1300, 750)
+"""Of the figure, which on the page is as wide as the text. It keeps all colours: few of them make thin curves alike."""
 
-WIDTH, HEIGHT = 1280, 570
-OVERSAMPLING = 2
-FAR_AWAY = 300.0
-"""Where the robot is sent to photograph the ground without it [m]."""
-
-
-def poses(log: Log, times: list[float]) -> list[NDArray[np.float64]]:
-    """Configurations at given times [s]."""
-    truth = log["/truth"]
-    rows = np.clip(np.searchsorted(truth.time, times), 0, len(truth) - 1)
-    return list(truth.field("q")[rows])
+PALETTE = "scenarios/palette.py"
+SOURCES: dict[str, tuple[str, ...]] = {
+    "walk.png": (PALETTE, "docs/images/poses.py"),
+    "walk.gif": (PALETTE, "docs/images/animate.py"),
+    "figures.png": (PALETTE, *(f"scenarios/show/figures/{name}.py" for name in ("motion", "page", "shading", "style"))),
+}
+"""What a picture looks like by; the map's looks are its own, and its content changes with every part of the stack."""
 
 
-def composite(log: Log, times: list[float], camera: Camera) -> Image.Image:
-    """All poses in one picture; the middle one is what the camera looks at."""
-    shown = poses(log, times)
-    middle = shown[len(shown) // 2]
-    gone, view = middle.copy(), np.deg2rad(camera.azimuth)
-    gone[:2] -= FAR_AWAY * np.array([np.cos(view), np.sin(view)])
-    size = (OVERSAMPLING * WIDTH, OVERSAMPLING * HEIGHT)
-    frames = render_frames(log.attachments[WORLD_FILE].decode(), [middle, gone, *shown], *size, camera)
-    _, ground, *images = frames
-    picture = ground.copy()
-    for image in images:
-        differs = np.abs(image.astype(int) - ground.astype(int)).max(axis=2) > 3
-        picture[differs] = image[differs]
-    return Image.fromarray(picture).resize((WIDTH, HEIGHT), Image.Resampling.LANCZOS)
+def digest(name: str) -> str:
+    """Of the sources of a picture."""
+    return hashlib.sha256(b"".join((ROOT / source).read_bytes() for source in SOURCES[name])).hexdigest()[:16]
+
+
+def noted(name: str) -> str:
+    """The digest that a picture was drawn with."""
+    with Image.open(FOLDER / name) as picture:
+        found = picture.info.get("comment", b"").decode() or picture.info.get(KEY, "")
+    return str(found)
+
+
+def save_png(picture: Image.Image, name: str) -> None:
+    """Save a picture with its digest."""
+    info = PngInfo()
+    info.add_text(KEY, digest(name))
+    picture.save(FOLDER / name, optimize=True, pnginfo=info)
+
+
+def walk(log: Path) -> None:
+    """The robot at several moments."""
+    from poses import composite
+
+    from surefoot.scenarios.log import read
+
+    save_png(composite(read(log)), "walk.png")
+
+
+def animation(log: Path) -> None:
+    """A stretch of the walk with its marks."""
+    from animate import frames
+
+    from surefoot.scenarios.log import read
+
+    (first, *rest), period = frames(read(log))
+    name, options = "walk.gif", {"duration": period, "loop": 0, "optimize": True}
+    first.save(FOLDER / name, save_all=True, append_images=rest, comment=digest(name).encode(), **options)
+
+
+def figures(log: Path) -> None:
+    """ZMP, CoM and DCM as `surefoot plot --what balance` draws them."""
+    from surefoot.scenarios.show.figures.page import plot
+
+    drawn = plot(log, log.with_name("balance.png"), what="balance")
+    with Image.open(drawn.path) as picture:
+        save_png(picture.convert("RGB").resize(SIZE, Image.Resampling.LANCZOS), "figures.png")
+
+
+def gait_map(_: Path) -> None:
+    """Where the robot walks."""
+    from gait_map import main as draw_map
+
+    draw_map([])
+
+
+PICTURES: dict[str, tuple[str, Callable[[Path], None]]] = {
+    "walk.png": ("walk", walk),
+    "walk.gif": ("walk", animation),
+    "figures.png": ("diagonal-walk", figures),
+    "gait-map.png": ("", gait_map),
+}
+"""The scenario that a picture shows, if it is one, and what draws it from its log."""
 
 
 def main() -> None:
-    """Draw one picture."""
+    """Draw the pictures that are asked for; each scenario is run once."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("log", type=Path)
-    parser.add_argument("out", type=Path)
-    parser.add_argument(
-        "--times", type=float, nargs="+", default=[3.35, 5.1, 6.85, 8.6, 10.35], help="farthest first [s]"
-    )
-    parser.add_argument("--distance", type=float, default=3.9, help="of the camera [m]")
-    parser.add_argument("--azimuth", type=float, default=114.0, help="of its view [deg]")
-    parser.add_argument("--elevation", type=float, default=-7.0, help="of its view [deg]")
-    options = parser.parse_args()
-    camera = Camera(options.distance, options.azimuth, options.elevation, tracking=False)
-    picture = composite(read(options.log), options.times, camera)
-    picture.save(options.out, optimize=True)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(PICTURES))
+    names = parser.parse_args().names or list(PICTURES)
+    if unknown := set(names) - set(PICTURES):
+        parser.error(f"no picture {', '.join(sorted(unknown))}; there are {', '.join(PICTURES)}")
+    logs: dict[str, Path] = {"": Path()}
+    with tempfile.TemporaryDirectory() as folder:
+        for name in names:
+            scenario, draw = PICTURES[name]
+            logs[scenario] = logs.get(scenario) or run(scenario, Path(folder))
+            draw(logs[scenario])
+            print(FOLDER / name)
+
+
+def run(scenario: str, folder: Path) -> Path:
+    """Run a scenario; its log."""
+    import surefoot
+
+    return surefoot.run(surefoot.load(scenario), out=folder).log
 
 
 if __name__ == "__main__":

@@ -5,11 +5,12 @@ A rear foot that stays flat is what a long step runs out of: with the heel up th
 front foot can carry it.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, sole_rates, sole_rotation
 from surefoot.planner.types import Array, Foot, PhaseKind
 from surefoot.planner.walk.clock import Schedule
 from surefoot.planner.walk.footsteps import FootstepPlan
@@ -50,6 +51,25 @@ class FootRoll:
         span = self.end - self.start
         value, slope, bend = bump((time - self.start) / span)
         return self.angle * value, self.angle * slope / span, self.angle * bend / span**2
+
+    def centre(self, time: float, level: Array, rates: Array) -> tuple[Array, Array]:
+        """Where the sole's centre is and how it moves, with the foot turned about its toe edge.
+
+        Args:
+            time: [s].
+            level: pose of the sole as if it were level, x, y, z [m], yaw, pitch, roll [rad], shape (6,).
+            rates: its rates, shape (6,) [m/s, rad/s].
+
+        Returns:
+            Position, shape (3,) [m], and velocity, shape (3,) [m/s], in the world frame.
+        """
+        pitch, rate, _ = self.evaluate(time)
+        sine, cosine = math.sin(pitch), math.cos(pitch)
+        rotation = sole_rotation(*level[3:].tolist())
+        back = self.toe * rotation @ (1.0 - cosine, 0.0, sine)
+        turning, _ = sole_rates(level[3:], rates[3:], np.zeros(3))
+        rolling = self.toe * rate * rotation @ (sine, 0.0, cosine)
+        return level[:3] + back, rates[:3] + rolling + np.cross(turning, back)
 
 
 def bump(s: float) -> tuple[float, float, float]:

@@ -10,12 +10,21 @@ from collections.abc import Mapping
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from types import ModuleType
+from typing import NamedTuple
 
-from surefoot.plugins import PluginError, Registry
+from surefoot.plugins import OWN_PACKAGE, PluginError, Registry
 from surefoot.scenarios.errors import ScenarioError, nearest
 from surefoot.scenarios.file.source import decoded
 
 _ENDING = ".yaml"
+
+
+class _Other(NamedTuple):
+    """A scenario of another package: what to call it in messages, its file, and the name of the package."""
+
+    place: str
+    file: Traversable
+    package: str
 
 
 def _inside(package: str) -> dict[str, Traversable]:
@@ -41,6 +50,11 @@ def refusals() -> tuple[str, ...]:
     return _others()[1]
 
 
+def package(name: str) -> str:
+    """Which package brings a scenario that there is."""
+    return OWN_PACKAGE if name in OWN else _others()[0][name].package
+
+
 def text(name: str) -> tuple[str, str]:
     """YAML text of a scenario, and what to call it in messages.
 
@@ -50,7 +64,7 @@ def text(name: str) -> tuple[str, str]:
     if name in OWN:
         place, file = f"catalogue/{name}{_ENDING}", OWN[name]
     elif name in (others := _others()[0]):
-        place, file = others[name]
+        place, file, _ = others[name]
     else:
         raise unknown(name, "no such catalogue name")
     with file.open("rb") as opened:
@@ -70,9 +84,9 @@ def unknown(name: str, what: str) -> ScenarioError:
     return ScenarioError([f"{name}: {what}; {nearest(name, names())}", *refusals()])
 
 
-def _others() -> tuple[dict[str, tuple[str, Traversable]], tuple[str, ...]]:
-    """The scenarios of other packages by name, each with its place, and what is not among them and why."""
-    found: dict[str, tuple[str, Traversable]] = {}
+def _others() -> tuple[dict[str, _Other], tuple[str, ...]]:
+    """The scenarios of other packages by name, and what is not among them and why."""
+    found: dict[str, _Other] = {}
     refused: list[str] = []
     for entry in SCENARIOS:
         try:
@@ -88,7 +102,7 @@ def _others() -> tuple[dict[str, tuple[str, Traversable]], tuple[str, ...]]:
             if name in OWN:
                 refused.append(f"{place}: '{name}' is a scenario of surefoot's own; give the file another name")
             elif name in found:
-                refused.append(f"{place}: '{name}' is {found[name][0]} already; give one of them another name")
+                refused.append(f"{place}: '{name}' is {found[name].place} already; give one of them another name")
             else:
-                found[name] = place, file
+                found[name] = _Other(place, file, SCENARIOS.package(entry))
     return found, tuple(refused)

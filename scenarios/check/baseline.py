@@ -1,5 +1,6 @@
 """A baseline: what a scenario's run measured when it was as it should be, in a file that people read and review."""
 
+import contextlib
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -9,11 +10,12 @@ from typing import Any, Literal
 import numpy as np
 import yaml
 
-from surefoot.scenarios.errors import LogError, ScenarioError
+from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.log import Log
+from surefoot.scenarios.output import write_whole
 
 ENDING = ".baseline.yaml"
 
@@ -140,7 +142,7 @@ class Baseline:
     def text(self) -> str:
         """The file: metrics with their units, then the trace."""
         lines = [
-            "# What the run measured when it was as it should be; `surefoot check` compares with it, --update writes it.",
+            "# What the run measured when it was as it should be; `surefoot check` compares, --update writes.",
             f"scenario: {self.scenario}",
             "metrics:",
         ]
@@ -191,11 +193,10 @@ def write_baseline(path: Path, baseline: Baseline) -> None:
     Raises:
         LogError: it cannot be written.
     """
-    try:
+    with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(baseline.text(), encoding="utf-8")
-    except OSError as error:
-        raise LogError(f"{path}: cannot be written, {(error.strerror or str(error)).lower()}") from None
+    with write_whole(path, replace=True) as temporary:
+        temporary.write_text(baseline.text(), encoding="utf-8")
 
 
 def _elements(name: str, before: Any, now: Any) -> Iterator[tuple[str, Value, Value]]:

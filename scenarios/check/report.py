@@ -8,8 +8,8 @@ from rich.console import Console
 
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked
-from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
+from surefoot.scenarios.output import write_whole
 
 _SHOWN_MOVES = 12
 """Moves of a run that are named; the others are counted."""
@@ -87,14 +87,11 @@ def junit(checked: Sequence[Checked]) -> bytes:
     return bytes(Xml.tostring(suite, encoding="utf-8", xml_declaration=True))
 
 
-def write(path: Path, content: bytes) -> None:
+def write(path: Path, content: bytes, replace: bool = False) -> None:
     """Write a report.
 
     Raises:
-        LogError: it cannot be written.
+        LogError: the file exists, and shall not be replaced, or cannot be written.
     """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
-    except OSError as error:
-        raise LogError(f"{path}: cannot be written, {(error.strerror or str(error)).lower()}") from None
+    with write_whole(path, replace) as temporary:
+        temporary.write_bytes(content)

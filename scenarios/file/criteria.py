@@ -32,6 +32,9 @@ class Bound(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _scalar_means_equals(cls, value: Any) -> Any:
+        if isinstance(value, dict) and None in value.values():
+            side = next(name for name, limit in value.items() if limit is None)
+            raise ValueError(f"{side} is null; give its value, or leave it out")
         return {"equals": value} if isinstance(value, bool | int | float | str) else value
 
     @model_validator(mode="after")

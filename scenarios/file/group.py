@@ -1,6 +1,7 @@
 """What groups of scenario keys are made of, names that other packages bring, and the keys wbc.* of the controller."""
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import Field as DataclassField
 from dataclasses import fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any
@@ -19,6 +20,7 @@ from pydantic_core import PydanticCustomError, core_schema
 from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError, Registry
 from surefoot.scenarios.errors import Key, Problem, dotted
+from surefoot.scenarios.file.units import Unit
 from surefoot.wbc.parameters import WbcParameters
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -33,6 +35,14 @@ class Group(BaseModel):
 def as_tuple(value: Any) -> Any:
     """A list as the tuple that an immutable group holds; anything else as it is."""
     return tuple(value) if isinstance(value, list) else value
+
+
+def _whole(value: Any) -> Any:
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+WHOLE = BeforeValidator(_whole)
+"""Takes 5.0 for 5, as JSON Schema does."""
 
 
 class OneOf:
@@ -51,8 +61,9 @@ class OneOf:
         return core_schema.no_info_after_validator_function(self._check, core_schema.str_schema(strict=True))
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        """Describe as a literal would."""
-        return {"enum": list(self._names()), "type": "string"}
+        """Describe as a literal would; what a broken package has registered is not among the names."""
+        names = self._names()
+        return {"enum": _loadable(names) if isinstance(names, Registry) else list(names), "type": "string"}
 
     def _check(self, value: str) -> str:
         if value == self._default or value in (known := list(self._names())):
@@ -61,6 +72,15 @@ class OneOf:
         expected = " or ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)
         expected = expected or "one that an installed package brings, and none does"
         raise PydanticCustomError("literal_error", "{expected}", {"expected": expected})
+
+
+def _loadable(registry: Registry[Any]) -> list[str]:
+    found = []
+    for name in registry:
+        with suppress(PluginError):
+            _ = registry[name]
+            found.append(name)
+    return found
 
 
 def terrain_kinds() -> Registry[Any]:
@@ -172,15 +192,17 @@ def _key(entry: "DataclassField[Any]", value: Any) -> Any:
         return inner | None, Field(default=None, description=f"{entry.name}, null: the controller's own")
     doc, unit = entry.metadata["doc"], entry.metadata.get("unit")
     shown = list(value) if isinstance(value, tuple) else value
-    described = f"{doc}, null: {shown}" + (f" [{unit}]" if unit else "")
-    return _annotation(value) | None, Field(default=None, description=described)
+    key = _annotation(value)
+    annotation = Annotated[key, Unit(unit)] if unit and not isinstance(value, tuple) else key
+    described = f"{doc}, null: {shown}" + (f" [{unit}]" if isinstance(value, tuple) else "")
+    return annotation | None, Field(default=None, description=described)
 
 
 def _annotation(value: Any) -> Any:
     """Type of a key whose default is this value; its range is the controller's to know."""
     if isinstance(value, tuple):
         return Annotated[tuple[(Finite,) * len(value)], BeforeValidator(as_tuple)]  # type: ignore[misc]
-    return int if isinstance(value, int) else str if isinstance(value, str) else Finite
+    return Annotated[int, WHOLE] if isinstance(value, int) else str if isinstance(value, str) else Finite
 
 
 _TASKS = Annotated[tuple[Annotated[str, OneOf("", tasks)], ...], BeforeValidator(as_tuple)]

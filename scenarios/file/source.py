@@ -10,7 +10,7 @@ import yaml
 
 from surefoot.scenarios.errors import Key, Problem, ScenarioError
 
-MAX_BYTES = 1_000_000
+MAX_BYTES = 500_000
 MAX_DEPTH = 20
 MAX_VALUES = 20_000
 _INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]{0,18})")
@@ -139,11 +139,21 @@ class _Composer(yaml.SafeLoader):
     def compose_node(self, parent: Any, index: Any) -> Any:
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
-            raise yaml.composer.ComposerError(None, None, f"nested deeper than {MAX_DEPTH} levels", mark)
+            raise self._refusal(f"nested deeper than {MAX_DEPTH} levels")
+        tag = getattr(self.peek_event(), "tag", None)  # type: ignore[no-untyped-call]
+        if tag is not None:
+            raise self._refusal(f"a tag ('{tag.replace('tag:yaml.org,2002:', '!!')[:40]}'), which scenarios have not")
         node = super().compose_node(parent, index)
         self.depth -= 1
         return node
+
+    def resolve(self, kind: Any, value: Any, implicit: Any) -> str:
+        """Give no tag: `_scalar` says what a scalar is, and nobody asks for more."""
+        return ""
+
+    def _refusal(self, reason: str) -> yaml.MarkedYAMLError:
+        mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+        return yaml.composer.ComposerError(None, None, reason, mark)
 
 
 class _Reader:
@@ -163,7 +173,7 @@ class _Reader:
             return self._mapping(node, key)
         if isinstance(node, yaml.SequenceNode):
             return [self.read(item, (*key, i)) for i, item in enumerate(node.value)]
-        plain = isinstance(node, yaml.ScalarNode) and node.style is None and node.tag != "!"
+        plain = isinstance(node, yaml.ScalarNode) and node.style is None
         return _scalar(node.value) if plain else node.value
 
     def _mapping(self, node: yaml.MappingNode, key: Key) -> dict[str, Any]:
@@ -180,6 +190,9 @@ class _Reader:
                 self._source.problems.append(Problem(path, what, "keep one of them", at_key=True))
                 continue
             self._source.key_places[path] = spot
+            if key_node.value == "<<" and key_node.style is None:
+                self._source.problems.append(Problem(path, "'<<' merges no groups here", "write the keys", at_key=True))
+                continue
             values[key_node.value] = self.read(value_node, path)
         return values
 
@@ -204,7 +217,7 @@ def apply_overrides(source: Source, overrides: Overrides) -> None:
     """
     if isinstance(overrides, Mapping):
         for name, value in overrides.items():
-            _set(source, name, _plain(value))
+            _set(source, str(name), _plain(value, f"--set {name}"))
         return
     for override in overrides:
         name, equals, text = override.partition("=")
@@ -217,19 +230,29 @@ def apply_overrides(source: Source, overrides: Overrides) -> None:
 
 
 def _set(source: Source, name: str, value: Any) -> None:
-    place = f"--set {name}"
+    place = f"--set {name if len(name) <= 100 else name[:97] + '...'}"
     key: Key = tuple(int(part) if part.isdecimal() and len(part) < 6 else part for part in name.split("."))
+    if not name.isprintable():
+        raise ScenarioError([f"{place}: no key is spelt so; use plain text"])
+    if len(key) > MAX_DEPTH:
+        raise ScenarioError([f"{place}: a key of {len(key)} parts; give at most {MAX_DEPTH}"])
     _assign(source.value, key, value, place)
     source.overridden[key] = place
 
 
-def _plain(value: Any) -> Any:
-    """A value as YAML would give it: numpy's numbers and arrays, and tuples, as plain ones."""
+def _plain(value: Any, place: str, depth: int = 0) -> Any:
+    """A value as YAML would give it: numpy's numbers and arrays, and tuples, as plain ones, huge integers as floats."""
+    if depth > MAX_DEPTH:
+        raise ScenarioError([f"{place}: nested deeper than {MAX_DEPTH} levels; give a plainer value"])
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, Mapping):
-        return {key: _plain(inner) for key, inner in value.items()}
-    return [_plain(inner) for inner in value] if isinstance(value, list | tuple) else value
+        return {str(key): _plain(inner, place, depth + 1) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner, place, depth + 1) for inner in value]
+    if isinstance(value, int) and abs(value) >= 10**19:
+        return float(value) if abs(value) < 10**308 else math.inf if value > 0 else -math.inf
+    return value
 
 
 def _assign(group: Any, key: Key, value: Any, place: str) -> None:

@@ -2,7 +2,8 @@
 
 import copy
 import itertools
-from typing import Any
+from functools import partial
+from typing import Any, cast
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -10,6 +11,7 @@ from pydantic_core import ErrorDetails
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.units import meant, unit_of
 
 _EXPECTED = {
     "int_type": "give a whole number",
@@ -24,6 +26,8 @@ _EXPECTED = {
     "too_long": "give fewer elements",
     "too_short": "give more elements",
     "string_pattern_mismatch": "use letters, digits, '.', '_' and '-'",
+    "string_too_long": "use fewer letters",
+    "string_unicode": "use plain text",
 }
 _BOUNDS = {"greater_than": ("gt", "more than"), "greater_than_equal": ("ge", "at least")} | {
     "less_than": ("lt", "less than"),
@@ -59,13 +63,18 @@ def _problem(detail: ErrorDetails, data: Any) -> Problem:
     value, kind, context = detail["input"], detail["type"], detail.get("ctx", {})
     name = dotted(key) or "the file"
     if kind == "extra_forbidden":
-        return Problem(key, f"unknown key '{key[-1]}'", nearest(str(key[-1]), _fields(key[:-1])), at_key=True)
+        names = partial(nearest, str(key[-1]), _group(key[:-1]).model_fields)
+        return Problem(key, f"unknown key '{key[-1]}'", names, at_key=True)
     if kind == "missing":
         missing = detail["loc"][-1]
         return Problem(key, f"{name} lacks element {missing}", f"give '{missing}'")
     if kind in _BOUNDS:
         bound, words = _BOUNDS[kind]
-        return Problem(key, f"{name} is {_short(value)}", f"it must be {words} {context[bound]}")
+        unit = _unit(key)
+        hint = meant(value, unit, abs(context[bound])) if abs(value) > abs(context[bound]) else ""
+        return Problem(key, f"{name} is {_short(value)}", f"it must be {words} {context[bound]} {unit}".rstrip() + hint)
+    if kind == "quantity":
+        return Problem(key, f"{name} is {_short(value)}{context['named']}", context["right"])
     if kind == "literal_error":
         return Problem(key, f"{name} is {_short(value)}", f"it must be {context['expected']}")
     if kind == "value_error":
@@ -88,18 +97,24 @@ def _existing(location: tuple[str | int, ...], data: Any) -> Key:
     return key
 
 
-def _fields(key: Key) -> list[str]:
-    """Valid keys of the group at a path."""
+def _group(key: Key) -> type[BaseModel]:
+    """The group at a path."""
     model: Any = Scenario
     for part in key:
         if isinstance(part, int):
             continue
-        annotation = model.model_fields[part].annotation
-        inner = [a for a in (annotation, *getattr(annotation, "__args__", ())) if _is_model(a)]
-        model = Bound if part == "criteria" else inner[0]
         if part == "criteria":
-            break
-    return list(model.model_fields)
+            return Bound
+        annotation = model.model_fields[part].annotation
+        model = next(a for a in (annotation, *getattr(annotation, "__args__", ())) if _is_model(a))
+    return cast("type[BaseModel]", model)
+
+
+def _unit(key: Key) -> str:
+    """SI unit of a key; empty when it has none."""
+    *group, last = (part for part in key if isinstance(part, str))
+    field = _group(tuple(group)).model_fields.get(last)
+    return unit_of(field.annotation, field.metadata) if field is not None else ""
 
 
 def _is_model(annotation: Any) -> bool:

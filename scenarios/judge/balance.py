@@ -41,7 +41,7 @@ def zmp_inside(run: RunView) -> Mask:
     return np.asarray(run.reduced(zmp_depth) >= -1e-9)
 
 
-@metric(shown=(1e2, "% of the time"), reduces=(zmp_depth,))
+@metric(shown=(1e2, "% of the time"), reduces=(zmp_depth,), least=0.0, most=1.0)
 def zmp_inside_fraction(run: RunView) -> float:
     """Share of ticks at which `zmp_inside` holds."""
     return float(np.mean(zmp_inside(run)))
@@ -64,27 +64,27 @@ def cop_ratios(run: RunView) -> Array:
     return np.asarray(ratios[np.isfinite(ratios)])
 
 
-@metric(shown=(1e2, "% of half the foot"), reads=_COP_READS)
+@metric(shown=(1e2, "% of half the foot"), reads=_COP_READS, least=0.0)
 def cop_ratio_p99(run: RunView) -> float | None:
     """Centre of pressure of the stance foot over its half size in single support: 99th percentile [-]."""
     ratios = cop_ratios(run)
     return float(np.percentile(ratios, 99)) if len(ratios) else None
 
 
-@metric(shown=(1e2, "% of half the foot"), reads=_COP_READS)
+@metric(shown=(1e2, "% of half the foot"), reads=_COP_READS, least=0.0)
 def cop_ratio_max(run: RunView) -> float | None:
     """The same: largest [-]."""
     ratios = cop_ratios(run)
     return float(ratios.max()) if len(ratios) else None
 
 
-@metric(unit="m", shown=(1e3, "mm"), size=2, reads=_ZMP_READS)
+@metric(unit="m", shown=(1e3, "mm"), size=2, reads=_ZMP_READS, least=0.0)
 def zmp_error_rms(run: RunView) -> list[float] | None:
     """Measured ZMP minus the ZMP reference that the footsteps define, RMS, x and y [m]."""
     return rms(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
 
 
-@metric(unit="m", shown=(1e3, "mm"), size=2, reads=_ZMP_READS)
+@metric(unit="m", shown=(1e3, "mm"), size=2, reads=_ZMP_READS, least=0.0)
 def zmp_error_max(run: RunView) -> list[float] | None:
     """Measured ZMP minus the ZMP reference that the footsteps define, largest in size, x and y [m]."""
     error = np.abs(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
@@ -102,7 +102,9 @@ def predicted(run: RunView) -> Array:
     return np.column_stack((com[:, sample], velocity[:, sample, :2], omega[:, sample]))
 
 
-@metric(unit="m", shown=(1e3, "mm"), size=3, reads={"/truth": ("com",), "/plan": ("held",)}, reduces=(predicted,))
+@metric(
+    unit="m", shown=(1e3, "mm"), size=3, reads={"/truth": ("com",), "/plan": ("held",)}, reduces=(predicted,), least=0.0
+)
 def com_error_rms(run: RunView) -> list[float] | None:
     """True CoM minus what the plan of 0.2 s earlier predicted for this instant, RMS, x, y and z [m]."""
     rows, prediction = _predictions(run)
@@ -115,6 +117,7 @@ def com_error_rms(run: RunView) -> list[float] | None:
     size=2,
     reads={"/truth": ("com", "com_velocity"), "/plan": ("held",)},
     reduces=(predicted,),
+    least=0.0,
 )
 def dcm_error_rms(run: RunView) -> list[float] | None:
     """True DCM minus what the plan of 0.2 s earlier predicted, both by the predicted frequency, RMS, x and y [m]."""

@@ -12,7 +12,7 @@ Rows = NDArray[np.intp]
 _SPREAD = ("median", "p99")
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",), "/planner_state": ("com",)})
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",), "/planner_state": ("com",)}, least=0.0)
 def estimation_error_rms(run: RunView) -> float | None:
     """Distance of the CoM that the planner was given from the true one, RMS [m]."""
     rows, given = _given(run)
@@ -21,7 +21,7 @@ def estimation_error_rms(run: RunView) -> float | None:
     return value[0] if value else None
 
 
-@metric(shown=(1e2, "% of the plans"), reads={"/plan": ("infeasible",)})
+@metric(shown=(1e2, "% of the plans"), reads={"/plan": ("infeasible",)}, least=0.0, most=1.0)
 def planner_infeasible_fraction(run: RunView) -> float:
     """Share of plans whose hard constraints had no solution and were softened [-]."""
     return float(np.mean(run.log["/plan"].field("infeasible") != 0))
@@ -32,6 +32,7 @@ def planner_infeasible_fraction(run: RunView) -> float:
     shown=(1e3, "mm"),
     size=2,
     reads={"/truth": ("com", "com_velocity"), "/planner_state": ("com", "com_velocity"), "/reference": ("omega",)},
+    least=0.0,
 )
 def dcm_estimation_error_rms(run: RunView) -> list[float] | None:
     """DCM that the planner was given minus the true one, both by the planned frequency, RMS, x and y [m]."""
@@ -43,7 +44,7 @@ def dcm_estimation_error_rms(run: RunView) -> list[float] | None:
     return rms(position + velocity / omega)
 
 
-@metric(unit="s", shown=(1e3, "ms"), parts=_SPREAD, reads={"/timing": ("planner",)}, repeatable=False)
+@metric(unit="s", shown=(1e3, "ms"), parts=_SPREAD, reads={"/timing": ("planner",)}, repeatable=False, least=0.0)
 def planner_time(run: RunView) -> dict[str, float] | None:
     """Wall-clock time of a plan: median and 99th percentile [s]."""
     spent = run.field("/timing", "planner")
@@ -57,32 +58,33 @@ def planner_time(run: RunView) -> dict[str, float] | None:
     reads={"/timing": ("wbc_build", "wbc_solve")},
     body=True,
     repeatable=False,
+    least=0.0,
 )
 def wbc_time(run: RunView) -> dict[str, float] | None:
     """Wall-clock time to build and solve the whole-body QP: median and 99th percentile [s]."""
     return _spread(run.field("/timing", "wbc_build") + run.field("/timing", "wbc_solve"))
 
 
-@metric(shown=(1.0, "times real time"), reads={"/timing": ("tick",)}, repeatable=False)
+@metric(shown=(1.0, "times real time"), reads={"/timing": ("tick",)}, repeatable=False, least=0.0)
 def real_time_factor(run: RunView) -> float | None:
     """Simulated over wall-clock time of the loop [-]."""
     wall = float(run.field("/timing", "tick").sum()) * 1e-6
     return run.ticks / run.constants.control_rate / wall if wall > 0 else None
 
 
-@metric(reads={"/wbc": ("status", "solver")}, body=True)
+@metric(reads={"/wbc": ("status", "solver")}, body=True, least=0.0)
 def qp_failures(run: RunView) -> int:
     """Ticks at which the whole-body QP's default solver failed."""
     return int(np.count_nonzero((run.field("/wbc", "status") != 0) | (run.field("/wbc", "solver") != 0)))
 
 
-@metric(reads={"/wbc": ("fallback",)}, body=True)
+@metric(reads={"/wbc": ("fallback",)}, body=True, least=0.0)
 def wbc_fallbacks(run: RunView) -> int:
     """Ticks at which no solver succeeded and the fallback torque was used."""
     return int(np.count_nonzero(run.field("/wbc", "fallback")))
 
 
-@metric(unit="B", shown=(1e-6, "MB"), repeatable=False)
+@metric(unit="B", shown=(1e-6, "MB"), repeatable=False, least=0.0)
 def log_bytes(run: RunView) -> int:
     """Size of the log [bytes]."""
     return run.log.size

@@ -1,6 +1,6 @@
 """A log as metrics and health checks see it: gathered in one pass with bounded memory, on common control ticks."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.scenarios.judge.body import headings, knees
-from surefoot.scenarios.log import Log
+from surefoot.scenarios.judge.columns import Columns
+from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.record.provenance import RunConstants
 
 Reads = Mapping[str, tuple[str, ...]]
@@ -24,6 +25,10 @@ HELD: Reads = {
     "/reference": ("phase",),
 }
 """Topics whose times every digest holds, and the fields that `RunView` itself reads."""
+
+
+TIME = "time_ns"
+"""Key of the times of a topic's messages, among those of its fields."""
 
 
 class Channel(Protocol):
@@ -86,13 +91,17 @@ class Window:
 class KeptChannel:
     """Fields of a channel over the whole run; one that was not kept is read from the log when it is asked for."""
 
-    def __init__(self, log: Log, topic: str, times: Sequence[NDArray[np.int64]], fields: Mapping[str, Any]) -> None:
+    def __init__(self, log: Log, topic: str, columns: Columns) -> None:
         self._log, self._topic = log, topic
-        self._fields = fields
-        self.time_ns: NDArray[np.int64] = np.concatenate(times)
+        self._columns = columns
 
     def __len__(self) -> int:
-        return len(self.time_ns)
+        return self._columns.rows((self._topic, TIME))
+
+    @property
+    def time_ns(self) -> NDArray[np.int64]:
+        """Simulated time of each message, shape (n,) [ns]."""
+        return self._columns[self._topic, TIME]
 
     @property
     def time(self) -> NDArray[np.float64]:
@@ -101,8 +110,8 @@ class KeptChannel:
 
     def field(self, name: str) -> NDArray[Any]:
         """Values of one field, shape (n, *field shape)."""
-        kept = self._fields.get(name)
-        return self._log[self._topic].field(name) if kept is None else kept
+        kept = (self._topic, name)
+        return self._columns[kept] if kept in self._columns else self._log[self._topic].field(name)
 
 
 Reduce = Callable[[Source], Mapping[Any, NDArray[Any]]]
@@ -130,31 +139,43 @@ class Digest:
         self.path, self.size, self.metadata = log.path, log.size, log.metadata
         held = _united((HELD, *reads))
         topics = [topic for topic in held if topic in log.numeric]
-        times: dict[str, list[NDArray[np.int64]]] = {topic: [] for topic in topics}
-        fields: dict[tuple[str, str], list[NDArray[Any]]] = {}
-        reduced: dict[Any, list[NDArray[Any]]] = {}
-        for channels in log.windows(topics):
+        kept, self.reduced = Columns(), Columns()
+        for channels in _in_step(log.windows(topics)):
             for topic, channel in channels.items():
-                times[topic].append(channel.time_ns)
+                kept.add((topic, TIME), channel.time_ns)
                 for name in held[topic]:
                     if any(field.name == name for field in channel.fields):
-                        fields.setdefault((topic, name), []).append(channel.field(name))
+                        kept.add((topic, name), channel.field(name))
             for key, values in reduce(Window(log, channels)).items():
-                reduced.setdefault(key, []).append(values)
-        self.reduced = {key: np.concatenate(parts) for key, parts in reduced.items() if _alike(parts)}
-        kept = {key: np.concatenate(parts) for key, parts in fields.items()}
-        for values in (*self.reduced.values(), *kept.values()):
-            values.flags.writeable = False
-        self._channels = {
-            topic: KeptChannel(log, topic, times[topic], {name: a for (of, name), a in kept.items() if of == topic})
-            for topic in topics
-        }
+                self.reduced.add(key, values)
+        self._channels = {topic: KeptChannel(log, topic, kept) for topic in topics}
 
     def __contains__(self, topic: str) -> bool:
         return topic in self._channels
 
     def __getitem__(self, topic: str) -> KeptChannel:
         return self._channels[topic]
+
+
+LAG_NS = 100_000_000
+"""What is put off at most [ns]."""
+
+
+def _in_step(windows: Iterable[dict[str, ChannelData]]) -> Iterator[dict[str, ChannelData]]:
+    """The same windows, each with whole control ticks.
+
+    A chunk ends with a tick whose last messages are in the next one; such a tick is put off until it is whole.
+    """
+    rest: dict[str, ChannelData] = {}
+    for channels in windows:
+        joined = {topic: rest[topic].joined(channel) if rest else channel for topic, channel in channels.items()}
+        clocks = [joined[topic].time_ns for topic in CONTROL_TOPICS if topic in joined and len(joined[topic])]
+        ends = [int(times[-1]) for times in clocks]
+        # No sound channel lags by more than a tick; one that does must not hold up all others.
+        last = max(min(ends), max(ends) - LAG_NS) if ends else np.iinfo(np.int64).max - 1
+        rest = {topic: channel.between(last + 1, np.iinfo(np.int64).max - 1) for topic, channel in joined.items()}
+        yield {topic: channel.between(np.iinfo(np.int64).min, last) for topic, channel in joined.items()}
+    yield rest
 
 
 def _united(reads: Iterable[Reads]) -> dict[str, list[str]]:
@@ -165,11 +186,6 @@ def _united(reads: Iterable[Reads]) -> dict[str, list[str]]:
             fields = found.setdefault(topic, [])
             fields += [name for name in names if name not in fields]
     return found
-
-
-def _alike(parts: Sequence[NDArray[Any]]) -> bool:
-    """Whether arrays can be joined; what cannot is computed from the whole log when it is asked for."""
-    return all(np.ndim(part) > 0 and np.shape(part)[1:] == np.shape(parts[0])[1:] for part in parts)
 
 
 SINGLE_SUPPORT = 2
@@ -203,8 +219,9 @@ class RunView:
 
     def reduced(self, reduce: "Callable[[RunView], Array]") -> Array:
         """What a function makes of each tick or message: out of the digest if it holds that."""
-        kept = self.log.reduced.get(reduce) if isinstance(self.log, Digest) else None
-        return reduce(self) if kept is None else kept
+        if isinstance(self.log, Digest) and reduce in self.log.reduced:
+            return self.log.reduced[reduce]
+        return reduce(self)
 
     @cached_property
     def ticks(self) -> int:
@@ -230,12 +247,16 @@ class RunView:
     @cached_property
     def soles(self) -> Array:
         """True poses of the soles, shape (n, 2, 7), x y z qx qy qz qw."""
-        return np.stack([self.field("/truth", "left_sole"), self.field("/truth", "right_sole")], axis=1)
+        return np.stack([self.sole(0), self.sole(1)], axis=1)
 
-    @cached_property
+    def sole(self, foot: int) -> Array:
+        """True poses of the left or right sole (0, 1), shape (n, 7), x y z qx qy qz qw; takes half the memory."""
+        return self.field("/truth", ("left_sole", "right_sole")[foot])
+
+    @property
     def sole_yaw(self) -> Array:
         """True headings of the soles, shape (n, 2) [rad]."""
-        return headings(self.soles[..., 3:])
+        return np.stack([headings(self.sole(foot)[:, 3:]) for foot in (0, 1)], axis=1)
 
     @cached_property
     def knees(self) -> list[int]:

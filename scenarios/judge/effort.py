@@ -39,10 +39,37 @@ def knee_torque_squared(run: RunView) -> Array:
 @reduction("/measurement")
 def joint_limit_margin(run: RunView) -> Array:
     """Least distance of a joint from its limits at each tick, shape (n,) [rad]."""
+    return np.asarray(_limit_margins(run).min(axis=1))
+
+
+@reduction("/measurement")
+def joint_at_limit(run: RunView) -> Array:
+    """Which joint is nearest to its limits at each tick, index, shape (n,)."""
+    return np.asarray(np.argmin(_limit_margins(run), axis=1).astype(np.uint8))
+
+
+def _limit_margins(run: RunView) -> Array:
     position = run.field("/measurement", "joint_position")
     below = position - np.array(run.constants.position_lower)
     above = np.array(run.constants.position_upper) - position
-    return np.asarray(np.minimum(below, above).min(axis=1))
+    return np.asarray(np.minimum(below, above))
+
+
+@reduction("/measurement")
+def joint_speed_ratio(run: RunView) -> Array:
+    """Largest joint speed over the joint's no-load speed at each tick, shape (n,); NaN in a log without these."""
+    return np.asarray(_speed_ratios(run).max(axis=1))
+
+
+@reduction("/measurement")
+def fastest_joint(run: RunView) -> Array:
+    """Which joint is nearest to its no-load speed at each tick, index, shape (n,)."""
+    return np.asarray(np.argmax(_speed_ratios(run), axis=1).astype(np.uint8))
+
+
+def _speed_ratios(run: RunView) -> Array:
+    speed = np.abs(run.field("/measurement", "joint_velocity"))
+    return np.asarray(speed / np.array(run.constants.velocity_limit or (np.nan,)))
 
 
 @reduction("/measurement")
@@ -58,13 +85,13 @@ def joint_power(run: RunView) -> Array:
     return np.asarray(np.abs(power).sum(axis=1))
 
 
-@metric(shown=(1e2, "% of the limit"), reduces=(torque_ratio,), body=True)
+@metric(shown=(1e2, "% of the limit"), reduces=(torque_ratio,), body=True, least=0.0)
 def torque_ratio_max(run: RunView) -> float:
     """Largest commanded joint torque over its limit [-]."""
     return float(run.reduced(torque_ratio).max())
 
 
-@metric(unit="N m", reads={"/reference": ()}, reduces=(knee_torque_squared,), body=True)
+@metric(unit="N m", reads={"/reference": ()}, reduces=(knee_torque_squared,), body=True, least=0.0)
 def knee_torque_rms(run: RunView) -> float | None:
     """Commanded knee torque, RMS over both knees from the first lift-off to the last touchdown, or the run [N m]."""
     squared = run.reduced(knee_torque_squared)[: run.ticks]
@@ -72,7 +99,7 @@ def knee_torque_rms(run: RunView) -> float | None:
     return value if np.isfinite(value) else None
 
 
-@metric(shown=(1e2, "% of the time"), reduces=(torque_ratio,), body=True)
+@metric(shown=(1e2, "% of the time"), reduces=(torque_ratio,), body=True, least=0.0, most=1.0)
 def torque_at_limit_fraction(run: RunView) -> float:
     """Share of ticks at which some joint's commanded torque is at its limit [-]."""
     return float(np.mean(run.reduced(torque_ratio) >= AT_LIMIT))
@@ -84,6 +111,12 @@ def joint_limit_margin_min(run: RunView) -> float:
     return float(run.reduced(joint_limit_margin).min())
 
 
+@metric(shown=(1e2, "% of no-load speed"), reduces=(joint_speed_ratio,), body=True)
+def joint_speed_ratio_max(run: RunView) -> float:
+    """Largest joint speed over the joint's no-load speed, above 1 where no motor could follow [-]."""
+    return float(run.reduced(joint_speed_ratio).max())
+
+
 @metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads={"/reference": ()}, reduces=(knee_flexion,), body=True)
 def knee_angle_mean(run: RunView) -> float | None:
     """Mean flexion of both knees while walking, or over the whole run when no foot was lifted [rad]."""
@@ -92,7 +125,7 @@ def knee_angle_mean(run: RunView) -> float | None:
     return float(np.mean(run.reduced(knee_flexion)[run.walking if run.walking.stop else slice(None)]))
 
 
-@metric(reads={"/truth": ("com",)}, reduces=(joint_power,), body=True)
+@metric(reads={"/truth": ("com",)}, reduces=(joint_power,), body=True, least=0.0)
 def cost_of_transport(run: RunView) -> float | None:
     """Joint work, absolute, over weight times the CoM's horizontal way from begin to end [-]."""
     com = run.field("/truth", "com")[:, :2]
@@ -103,7 +136,7 @@ def cost_of_transport(run: RunView) -> float | None:
     return work / (run.constants.mass * GRAVITY * way)
 
 
-@metric(unit="m/s", reads={"/truth": ("com",), "/reference": ("phase",)})
+@metric(unit="m/s", reads={"/truth": ("com",), "/reference": ("phase",)}, least=0.0)
 def speed_mean(run: RunView) -> float | None:
     """Horizontal way of the CoM from the first lift-off to the last touchdown over the time it took [m/s]."""
     if not run.walking.stop:
@@ -113,7 +146,7 @@ def speed_mean(run: RunView) -> float | None:
     return float(np.linalg.norm(com[-1] - com[0]) / (time[-1] - time[0])) if len(time) > 1 else None
 
 
-@metric(unit="m", needs=("/truth",), reads={"/footstep": ()})
+@metric(unit="m", needs=("/truth",), reads={"/footstep": ()}, least=0.0)
 def path_length(run: RunView) -> float:
     """Length of the way from one middle of the feet to the next, over all touchdowns [m]."""
     if not run.has("/footstep"):
@@ -139,7 +172,7 @@ def heading_change(run: RunView) -> float:
     return float(heading[-1] - heading[0])
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",)})
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",)}, least=0.0)
 def com_height_range(run: RunView) -> float:
     """Highest minus lowest CoM [m]."""
     return float(np.ptp(run.field("/truth", "com")[:, 2]))
@@ -147,7 +180,8 @@ def com_height_range(run: RunView) -> float:
 
 def _middles(run: RunView) -> Array:
     """Middle of both soles at each tick, shape (n, 2) [m]."""
-    return np.asarray(run.soles[:, :, :2].mean(axis=1))
+    left, right = (run.sole(foot)[:, :2].copy() for foot in (0, 1))
+    return np.asarray(0.5 * (left + right))
 
 
 def _heading(run: RunView) -> Array:

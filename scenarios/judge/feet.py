@@ -1,41 +1,57 @@
 """Metrics of the feet: where they land, how high they swing, how they hold."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import Box, Terrain
-from surefoot.planner.types import Foot, Footstep
-from surefoot.scenarios.judge.body import corners, forward
-from surefoot.scenarios.judge.digest import Array, RunView
+from surefoot.planner.types import GRAVITY, Foot, Footstep
+from surefoot.scenarios.judge.body import corners, headings, rotations
+from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
 from surefoot.scenarios.judge.metric import metric
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
+
+Rows = NDArray[np.intp]
 
 _CLEARANCE_TICKS = 5
 """Every how many control ticks the clearance of a swing is looked at."""
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/footstep": ("planned", "actual")}, body=True)
-def footstep_error_max(run: RunView) -> float | None:
-    """Largest distance of a sole at touchdown from its footstep as last planned [m]."""
+def landed(run: RunView) -> Array:
+    """Where each footstep's sole truly was when it was booked, x y z yaw, shape (k, 4) [m, rad].
+
+    Not ``/footstep.actual``, which is where the controller believed it.
+    """
     steps = run.log["/footstep"]
-    errors = np.linalg.norm(steps.field("actual")[:, :3] - steps.field("planned")[:, :3], axis=1)
-    return float(errors.max())
+    ticks, left = (
+        np.minimum(run.rows_at("/truth", steps.time_ns)[0], run.ticks - 1),
+        np.asarray(steps.field("foot")) == 0,
+    )
+    poses = np.where(left[:, None], run.sole(0)[ticks], run.sole(1)[ticks])
+    return np.column_stack((poses[:, :3], headings(poses[:, 3:])))
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/footstep": ("actual",)})
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("planned", "foot")}, body=True, least=0.0)
+def footstep_error_max(run: RunView) -> float | None:
+    """Largest distance of a sole at touchdown from its footstep as last planned before it [m]."""
+    return float(np.linalg.norm((landed(run) - run.log["/footstep"].field("planned"))[:, :3], axis=1).max())
+
+
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("foot",)})
 def stair_edge_margin_min(run: RunView) -> float | None:
     """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
     terrain = _terrain(run)
     if not terrain.boxes:
         return None
     half_size = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
-    landed = run.log["/footstep"].field("actual")
-    normals = terrain.normals(landed[:, :2])
-    soles = [Footstep(Foot.LEFT, pose[:3], float(pose[3]), up) for pose, up in zip(landed, normals, strict=True)]
+    poses = landed(run)
+    normals = terrain.normals(poses[:, :2])
+    soles = [Footstep(Foot.LEFT, pose[:3], float(pose[3]), up) for pose, up in zip(poses, normals, strict=True)]
     placed = np.array([sole_corners(sole, half_size) for sole in soles])
-    return float(terrain.edge_margins(landed[:, :2], placed).min())
+    return float(terrain.edge_margins(poses[:, :2], placed).min())
 
 
 @metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/reference": ("phase", "stance")}, body=True)
@@ -43,9 +59,10 @@ def swing_clearance_min(run: RunView) -> float | None:
     """Least height of a swing sole's corner over the ground, but for the first and last quarter of each swing [m]."""
     stance, least = run.field("/reference", "stance"), []
     for foot in range(2):
+        sole = run.sole(foot)
         for start, end in runs_of(run.single_support & (stance == 1 - foot)):
             edge = (end - start) // 4
-            least.append(_clearance(run, run.soles[start + edge : end - edge : _CLEARANCE_TICKS, foot]))
+            least.append(_clearance(run, sole[start + edge : end - edge : _CLEARANCE_TICKS]))
     return min(least, default=None)
 
 
@@ -61,47 +78,137 @@ def _terrain(run: RunView) -> Terrain:
     return Terrain(tuple(Box(n[:3], n[3:6], n[6:].reshape(3, 3)) for n in boxes))
 
 
+LOADED = 0.02
+"""Share of the weight from which a foot carries load, what a controller feels as ground [-]."""
+
+DROPOUT = 0.05
+"""How long a foot that has touched down may lose its load again before it counts as back in the air [s]."""
+
+ON_GROUND = 0.005
+"""Height over the ground up to which a corner of a loaded sole is on it [m]."""
+
+
+def loaded(run: RunView) -> Mask:
+    """Whether each foot carries load, by the measured force, shape (n, 2)."""
+    return np.asarray(run.field("/contact", "normal_force") > LOADED * run.constants.mass * GRAVITY)
+
+
+@dataclass(frozen=True, slots=True)
+class Stance:
+    """A foot on the ground, from its first load to the lift-off that was planned.
+
+    Attributes:
+        foot: 0 left, 1 right.
+        ticks: at which it carried load, in order, shape (k,).
+    """
+
+    foot: int
+    ticks: Rows
+
+
+def stances(run: RunView, until: int | None = None) -> list[Stance]:
+    """Every stance that carried load, up to a tick.
+
+    A foot that touches down before its time, in the second half of its swing, stands from then on; a load that it loses
+    for longer than a dropout, and not as a contact that the controller holds, was a graze of the swing.
+    """
+    load, planned = loaded(run)[:until], run.field("/contact", "planned")[:until] != 0
+    released = np.cumsum(run.field("/contact", "active")[:until] == 0, axis=0)
+    gap, found = DROPOUT * run.constants.control_rate, []
+    for foot in range(2):
+        lift = 0
+        for start, end in runs_of(planned[:, foot]):
+            middle = (lift + start + 1) // 2
+            ticks = middle + np.flatnonzero(load[middle:end, foot])
+            lost = (np.diff(ticks) > gap) & (np.diff(released[ticks, foot]) > 0)
+            early = np.flatnonzero((ticks[:-1] < start) & lost)
+            ticks, lift = ticks[early[-1] + 1 if len(early) else 0 :], end
+            if len(ticks) and ticks[-1] >= start:
+                found.append(Stance(foot, ticks))
+    return found
+
+
 @dataclass(frozen=True, slots=True)
 class Slip:
     """How far a sole moved during a stance.
 
     Attributes:
         foot: 0 left, 1 right.
-        start: tick at which the stance began.
         tick: tick at which the sole was farthest from where it began.
-        distance: horizontal distance then [m].
+        distance: horizontal distance of its farthest corner then [m].
     """
 
     foot: int
-    start: int
     tick: int
     distance: float
 
 
-def stance_slips(run: RunView) -> list[Slip]:
-    """The slip of every stance, planned and felt.
+def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
+    """The slip of every stance up to a tick.
 
-    A foot that rolls moves its sole's centre but not its toe edge, so that of the two counts which moved less.
+    It is of those corners of the sole that are on the ground, each from where it came to it. So yaw counts, and a foot
+    that rolls over one of its edges does not; a sole with no corner on the ground, as on an edge, counts by its centre.
     """
-    contact = (run.field("/contact", "planned") != 0) & (run.field("/contact", "felt") != 0)
-    centre, slips = run.soles[..., :2], []
-    toe = centre + 0.5 * run.constants.foot_length * forward(run.soles[..., 3:])
-    for foot in range(2):
-        for start, end in runs_of(contact[:, foot]):
-            moved = [np.linalg.norm(at[start:end, foot] - at[start, foot], axis=1) for at in (centre, toe)]
-            distance = np.minimum(*moved)
-            farthest = int(np.argmax(distance))
-            slips.append(Slip(foot, start, start + farthest, float(distance[farthest])))
+    slips, terrain = [], _terrain(run)
+    for stance in stances(run, until):
+        poses = run.sole(stance.foot)[stance.ticks]
+        points = corners(poses, run.constants.foot_length, run.constants.foot_width)
+        touching = points[..., 2] - terrain.heights(points[..., :2].reshape(-1, 2)).reshape(-1, 4) < ON_GROUND
+        touching = np.column_stack((touching, ~touching.any(axis=1)))
+        points = np.concatenate((points, poses[:, None, :3]), axis=1)[..., :2]
+        begin = points[np.argmax(touching, axis=0), np.arange(5)]
+        distance = np.where(touching, np.linalg.norm(points - begin, axis=2), 0.0).max(axis=1)
+        farthest = int(np.argmax(distance))
+        slips.append(Slip(stance.foot, int(stance.ticks[farthest]), float(distance[farthest])))
     return slips
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/contact": ("planned", "felt")}, body=True)
+_STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "active", "normal_force")}
+
+
+@metric(unit="m", shown=(1e3, "mm"), reads=_STANCE_READS, body=True, least=0.0)
 def foot_slip_max(run: RunView) -> float | None:
-    """Largest horizontal distance of a sole from where its stance began, over all stances [m]."""
+    """Largest horizontal way of a corner of a sole on the ground from where it came to it, over all stances [m]."""
     return max((slip.distance for slip in stance_slips(run)), default=None)
 
 
-@metric(unit="s", needs=("/truth",), reads={**FALL_READS, "/truth": (*FALL_READS["/truth"], "self_contact")}, body=True)
+@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads=_STANCE_READS, body=True, least=0.0)
+def stance_twist_max(run: RunView) -> float | None:
+    """Largest yaw of a loaded stance foot away from its yaw at first load, over all stances [rad]."""
+    yaws = (np.unwrap(run.sole_yaw[stance.ticks, stance.foot]) for stance in stances(run))
+    return max((float(np.abs(yaw - yaw[0]).max()) for yaw in yaws), default=None)
+
+
+@metric(
+    unit="rad", shown=(180.0 / math.pi, "deg"), reads={**_STANCE_READS, "/reference": ("roll",)}, body=True, least=0.0
+)
+def stance_tilt_max(run: RunView) -> float | None:
+    """Largest angle of a loaded stance sole to the ground under it; only sideways while it is planned to roll [rad]."""
+    rolling, terrain = run.field("/reference", "roll") != 0.0, _terrain(run)
+    largest = []
+    for stance in stances(run):
+        poses = run.sole(stance.foot)[stance.ticks]
+        axes = np.einsum("nij,ni->nj", rotations(poses[:, 3:]), terrain.normals(poses[:, :2]))
+        axes[rolling[stance.ticks, stance.foot], 0] = 0.0
+        largest.append(float(np.arcsin(np.minimum(np.hypot(axes[:, 0], axes[:, 1]), 1.0)).max()))
+    return max(largest, default=None)
+
+
+@metric(unit="s", reads=_STANCE_READS, body=True, least=0.0)
+def unplanned_flight_time(run: RunView) -> float:
+    """How long, after the first load, no foot carried load though one was planned in contact [s]."""
+    standing, planned = loaded(run).any(axis=1), (run.field("/contact", "planned") != 0).any(axis=1)
+    flying = np.logical_or.accumulate(standing) & ~standing & planned
+    return float(np.count_nonzero(flying) / run.constants.control_rate)
+
+
+@metric(
+    unit="s",
+    needs=("/truth",),
+    reads={**FALL_READS, "/truth": (*FALL_READS["/truth"], "self_contact")},
+    body=True,
+    least=0.0,
+)
 def self_contact_time(run: RunView) -> float:
     """How long the robot touched itself, before a fall [s]."""
     fallen = fall_time(run)

@@ -9,6 +9,7 @@ import numpy as np
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge import balance, effort, feet, walking
 from surefoot.scenarios.judge.digest import Array, Digest, Reads, RunView
+from surefoot.scenarios.judge.metric import Reduction
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +76,7 @@ def forces_match_weight(run: RunView) -> Finding:
 
 def foot_slip(run: RunView) -> Finding:
     """How far a sole moves on the ground [m]."""
-    end = _standing(run)
-    slips = [slip for slip in feet.stance_slips(run) if slip.start < end]
+    slips = feet.stance_slips(run, _standing(run))
     if not slips:
         return judged("foot_slip", False, None, None, "")
     worst = max(slips, key=lambda slip: slip.distance)
@@ -90,21 +90,19 @@ def foot_slip(run: RunView) -> Finding:
 
 def late_touchdowns(run: RunView) -> Finding:
     """How much longer than planned a single support lasts [s]."""
-    single, rate = run.single_support.copy(), run.constants.control_rate
-    single[_standing(run) :] = False
-    planned = run.field("/reference", "phase_duration")
-    stance = run.field("/reference", "stance")
-    phases = [phase for foot in (0, 1) for phase in walking.runs_of(single & (stance == foot))]
-    late = [(end - start) / rate - float(planned[start]) for start, end in phases if end < len(single)]
+    planned, swings = run.field("/reference", "phase_duration"), walking.swings_ended(run)
+    late = [(end - start) / run.constants.control_rate - float(planned[start]) for start, end in swings]
     if not late:
         return judged("touchdowns", False, None, None, "")
-    worst = int(np.argmax(late))
+    worst, missed = int(np.argmax(late)), walking.touchdowns_missed(run)
     count = sum(value > LATE for value in late)
+    never = f"{missed} of {len(late)} swings end without their foot ever touching the ground; " if missed else ""
     cause = (
-        f"{count} of {len(late)} touchdowns are late, the worst by {1000 * late[worst]:.0f} ms: the ground is lower "
-        "than planned, the swing foot lags behind its reference, or its contact is felt too late"
+        f"{never}{count} of {len(late)} touchdowns are late, the worst by {1000 * late[worst]:.0f} ms: the ground is "
+        "lower than planned, the swing foot lags behind its reference, or its contact is felt too late"
     )
-    return judged("touchdowns", late[worst] > LATE, float(run.time[phases[worst][1]]), late[worst], cause)
+    warn = missed > 0 or late[worst] > LATE
+    return judged("touchdowns", warn, float(run.time[swings[worst][1]]), late[worst], cause)
 
 
 def zmp_at_edge(run: RunView) -> Finding:
@@ -136,6 +134,8 @@ def _push(run: RunView) -> Array:
 
 SATURATED = 0.999
 """Torque over its limit from which a joint is saturated [-]."""
+PAST_STOP = 0.001
+"""How far a soft simulated stop may give way before it is told [rad]."""
 DRIFT = 0.01
 """Error of the estimated CoM that deserves a look [m]."""
 OVERRUNS = 0.01
@@ -154,6 +154,36 @@ def torque_saturation(run: RunView) -> Finding:
         "for more than the motor gives, by an impact, a push, a straight knee or a gain that is too high"
     )
     return judged("torque_limits", bool(saturated.any()), float(run.time[worst]), float(ratio[worst]), cause)
+
+
+def joint_stops(run: RunView) -> Finding:
+    """Least distance of a joint from its stops before a fall, negative past them [rad]."""
+    worst, joint = _joint(run, -run.reduced(effort.joint_limit_margin), effort.joint_at_limit)
+    margin = float(run.reduced(effort.joint_limit_margin)[worst])
+    cause = (
+        f"{joint} is {np.degrees(-margin):.1f} deg past its stop, as only a simulated one allows: the motion asks for "
+        "more than the joint has, or a push or an impact overcame the controller"
+    )
+    return judged("joint_stops", margin < -PAST_STOP, float(run.time[worst]), margin, cause)
+
+
+def joint_speeds(run: RunView) -> Finding:
+    """Largest joint speed over the joint's no-load speed before a fall [-]."""
+    if not run.constants.velocity_limit:
+        return judged("joint_speeds", False, None, None, "")
+    worst, joint = _joint(run, run.reduced(effort.joint_speed_ratio), effort.fastest_joint)
+    ratio = float(run.reduced(effort.joint_speed_ratio)[worst])
+    cause = (
+        f"{joint} turns at {100 * ratio:.0f} % of its no-load speed, where a real motor has no torque left and the "
+        "simulated one has all of it: what comes after is not to be trusted"
+    )
+    return judged("joint_speeds", ratio > 1.0, float(run.time[worst]), ratio, cause)
+
+
+def _joint(run: RunView, value: Array, which: Reduction) -> tuple[int, str]:
+    """The tick before a fall at which a value is greatest, and which joint that is."""
+    worst = int(np.argmax(np.nan_to_num(value[: max(_standing(run), 1)], nan=-np.inf)))
+    return worst, run.constants.joint_names[int(run.reduced(which)[worst])]
 
 
 def estimator_drift(run: RunView) -> Finding:
@@ -213,7 +243,7 @@ def overrun_ticks(run: RunView) -> Finding:
 def not_finite(run: RunView) -> Finding:
     """Ticks with a state, sensor value or torque that is not a number."""
     values = {
-        "/truth": run.field("/truth", "com").sum(axis=1) + run.soles.sum(axis=(1, 2)),
+        "/truth": run.field("/truth", "com").sum(axis=1) + run.sole(0).sum(axis=1) + run.sole(1).sum(axis=1),
         "/measurement": run.reduced(effort.joint_power) + run.reduced(effort.joint_limit_margin),
         "/estimate": run.field("/estimate", "com").sum(axis=1),
         "/torque": run.reduced(effort.torque_ratio),
@@ -238,6 +268,8 @@ _CHECKS: tuple[tuple[tuple[str, ...], Callable[[RunView], Finding]], ...] = (
     (("/truth", "/reference"), late_touchdowns),
     (("/truth", "/contact", "/reference"), zmp_at_edge),
     (("/torque",), torque_saturation),
+    (("/measurement", "/contact", "/reference"), joint_stops),
+    (("/measurement", "/contact", "/reference"), joint_speeds),
     (("/truth", "/estimate"), estimator_drift),
     (("/wbc",), controller_fallbacks),
     (("/plan",), planner_fallbacks),
@@ -249,7 +281,7 @@ READS: Reads = {
     "/measurement": ("external_force",),
     "/truth": ("com", "com_velocity", "external_force"),  # the force is of the pendulum
     "/estimate": ("com",),
-    "/contact": ("normal_force", "planned", "felt"),
+    "/contact": ("normal_force", "planned", "active", "felt"),
     "/reference": ("stance", "phase_duration"),
     "/wbc": ("fallback",),
     "/timing": (*_PARTS, "tick"),
@@ -258,7 +290,8 @@ READS: Reads = {
 """Fields that the checks read, beside those that tell a fall."""
 
 REDUCTIONS = (
-    *(effort.torque_ratio, effort.strained_joint, effort.joint_limit_margin, effort.joint_power),
+    *(effort.torque_ratio, effort.strained_joint, effort.joint_limit_margin, effort.joint_at_limit),
+    *(effort.joint_speed_ratio, effort.fastest_joint, effort.joint_power),
     balance.zmp_depth,
 )
 """Reductions that the checks use."""
@@ -272,7 +305,15 @@ def findings(digest: Digest) -> tuple[Finding, ...]:
     """
     run = RunView(digest)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        return tuple(check(run) for topics, check in _CHECKS if run.has("/truth", *topics))
+        return tuple(_found(check, run) for topics, check in _CHECKS if run.has("/truth", *topics))
+
+
+def _found(check: Callable[[RunView], Finding], run: RunView) -> Finding:
+    """What a check finds, also in values that no run has."""
+    try:
+        return check(run)
+    except (ValueError, IndexError, TypeError) as error:
+        return judged(check.__name__, True, None, None, f"cannot be looked at: {error}")
 
 
 __all__ = ["Finding", "findings"]

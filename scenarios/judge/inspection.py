@@ -9,6 +9,7 @@ from surefoot.scenarios.judge.health import Finding, findings
 from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.judge.verdict import Verdict, judge, scenario_of
 from surefoot.scenarios.log import ChannelData, Log
+from surefoot.scenarios.log.reader import RECOVERED
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +67,6 @@ def inspect(log: Log) -> Inspection:
     """
     gathered = digest(log)
     verdict = judge(log, gathered)
-    log.verify()
     start, end = log.time_range()
     span = max(end - start, 1e-9)
     topics = ((topic, log.count(topic)) for topic in log.topics)
@@ -85,8 +85,8 @@ def inspect(log: Log) -> Inspection:
 
 def _file_findings(log: Log, end: float) -> list[Finding]:
     """What is wrong with the file itself."""
-    causes = list(dict.fromkeys(log.damage))
-    if "recovered" in log.metadata:
+    causes = list(log.losses())
+    if RECOVERED in log.metadata:
         causes.insert(0, "recovered from a truncated or damaged log")
     if log.truncated:
         right = "`surefoot recover` makes it whole"
@@ -97,7 +97,7 @@ def _file_findings(log: Log, end: float) -> list[Finding]:
 
 
 def topic_summary(channel: ChannelData) -> dict[str, dict[str, Any]]:
-    """Summarise every field of a channel: shape, count of values that are not finite, least, mean, greatest."""
+    """Summarise every field of a channel: what it is, how many values are not finite, least, mean and greatest."""
     summary: dict[str, dict[str, Any]] = {}
     for field in channel.fields:
         values = channel.field(field.name).astype(float)
@@ -105,6 +105,9 @@ def topic_summary(channel: ChannelData) -> dict[str, dict[str, Any]]:
         spread = (float(sound.min()), float(sound.mean()), float(sound.max())) if sound.size else (None, None, None)
         summary[field.name] = {
             "shape": list(field.shape),
+            "unit": field.unit,
+            "frame": field.frame,
+            "doc": field.doc,
             "messages": len(values),
             "not_finite": int(values.size - sound.size),
             **dict(zip(("min", "mean", "max"), spread, strict=True)),

@@ -7,14 +7,17 @@ import keyword
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from types import NoneType, UnionType
+from typing import Any, Generic, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from surefoot.errors import ParameterError
 from surefoot.scenarios.judge.digest import Array, Reads, RunView
 
-__all__ = ["RESERVED", "Metric", "Reads", "Reduction", "RunView", "metric", "reduction"]
+__all__ = ["RESERVED", "TRUTH", "Metric", "Reads", "Reduction", "RunView", "metric", "reduction"]
 
 T = TypeVar("T")
+TRUTH = bool.__name__
+"""Kind of a metric that is true or false."""
 RESERVED = (
     "verdict",
     "reasons",
@@ -66,6 +69,8 @@ class Metric(Generic[T]):
         reductions: that the function uses by `RunView.reduced`.
         body: whether it is of joints, sensors and real feet, which a pendulum has not got.
         repeatable: whether two runs of the same scenario give the same value; times on the wall's clock do not.
+        least: value that it never goes below by its nature, so that no bound there checks anything; None for none.
+        most: value that it never exceeds, likewise.
     """
 
     name: str
@@ -80,6 +85,8 @@ class Metric(Generic[T]):
     reductions: tuple[Reduction, ...]
     body: bool
     repeatable: bool
+    least: float | None = None
+    most: float | None = None
 
     def __call__(self, run: RunView) -> T:
         """Its value for a run."""
@@ -94,6 +101,26 @@ class Metric(Generic[T]):
     def bounded(self) -> tuple[str, ...]:
         """Names by which a criterion may bound it: its own, or those of its parts."""
         return tuple(f"{self.name}.{part}" for part in self.parts) or (self.name,)
+
+    @property
+    def kind(self) -> str:
+        """Name of the type of its value, as its function's annotation says; empty where that says nothing."""
+        names = {getattr(kind, "__name__", "Any") for kind in self._kinds} - {NoneType.__name__}
+        return names.pop() if len(names) == 1 and "Any" not in names else ""
+
+    @property
+    def optional(self) -> bool:
+        """Whether its value may be None, as its function's annotation says; without one it may."""
+        return NoneType in self._kinds
+
+    @property
+    def _kinds(self) -> tuple[Any, ...]:
+        """What its function gives; what cannot be told counts as None."""
+        try:
+            given = get_type_hints(self.function).get("return", NoneType)
+        except (NameError, TypeError, AttributeError, SyntaxError):
+            return (NoneType,)
+        return get_args(given) if isinstance(given, UnionType) or get_origin(given) is Union else (given,)
 
     def applies(self, fidelity: str) -> bool:
         """Whether runs of a fidelity have it."""
@@ -135,6 +162,8 @@ def metric(
     reduces: tuple[Reduction, ...] = (),
     body: bool = False,
     repeatable: bool = True,
+    least: float | None = None,
+    most: float | None = None,
 ) -> Callable[[Callable[[RunView], T]], Metric[T]]:
     """Make a function of a run a metric of its name; the first line of its documentation says what it is.
 
@@ -148,6 +177,8 @@ def metric(
         reduces: reductions that it uses.
         body: whether a pendulum has not got it.
         repeatable: whether two runs of the same scenario give the same value.
+        least: value that it never goes below by its nature; a criterion that asks for no more is refused.
+        most: value that it never exceeds, likewise.
 
     Raises:
         ParameterError: these do not make a metric.
@@ -161,7 +192,7 @@ def metric(
         reduced = (topic for one in reduces for topic in one.needs)
         topics = tuple(dict.fromkeys((*fields, *reduced))) if needs is None else needs
         found = Metric(
-            name, function, unit, scale, shown_unit, size, parts, topics, fields, reduces, body, repeatable
+            name, function, unit, scale, shown_unit, size, parts, topics, fields, reduces, body, repeatable, least, most
         )  # fmt: skip
         _check(found)
         return found
@@ -186,6 +217,8 @@ def _check(made: Metric[Any]) -> None:
         raise ParameterError(("parts",), f"{who}: both a size and parts", "give one of them")
     if not all(part.isidentifier() for part in made.parts):
         raise ParameterError(("parts",), f"{who}: parts {made.parts}", "give words")
+    if made.least is not None and made.most is not None and not made.least < made.most:
+        raise ParameterError(("least",), f"{who}: never below {made.least} nor above {made.most}", "give a range")
     if not math.isfinite(made.scale) or made.scale == 0.0:
         raise ParameterError(("shown",), f"{who}: shown times {made.scale}", "give a factor that is not zero")
     _check_topics(who, "needs", made.needs)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import ModuleType
 from typing import Any
 
@@ -68,10 +69,15 @@ def _unknown(name: Any) -> Iterator[Problem]:
         if name not in _usable(str(name).partition(".")[0]).bounded:
             raise KeyError(name)
     except KeyError:
-        names = [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
-        yield Problem(("criteria", name), f"unknown metric '{name}'", nearest(str(name), names), True)
+        yield Problem(("criteria", name), f"unknown metric '{name}'", partial(_meant, str(name)), True)
     except PluginError as error:
         yield Problem(("criteria", name), f"metric {error.what}", error.right, True)
+
+
+def _meant(name: str) -> str:
+    return nearest(
+        name, [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
+    )
 
 
 def _usable(name: str) -> Metric[Any]:
@@ -117,17 +123,21 @@ def measure(log: Log | Digest) -> Measured:
     run = RunView(log if isinstance(log, Digest) else digest(log))
     notes = [f"metric {clash}" for clash in METRICS.clashes().values()]
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        values = {name: _own_value(run, metric) for name, metric in OWN.items()}
+        values = {name: _own_value(run, metric, notes) for name, metric in OWN.items()}
         for name in METRICS:
             if name not in OWN:
                 values[name] = _foreign_value(run, name, notes)
     return Measured(values, tuple(notes))
 
 
-def _own_value(run: RunView, metric: Metric[Any]) -> Any:
+def _own_value(run: RunView, metric: Metric[Any], notes: list[str]) -> Any:
+    """The value of a metric of ours; None where the log lacks a field of it, or has it otherwise than runs do."""
     try:
         return _value(run, metric)
-    except LogError:  # the log of another version lacks a field
+    except LogError:  # the log of another version
+        return None
+    except Exception as error:
+        notes.append(f"metric {metric.name} means nothing for this log, {type(error).__name__}: {error}")
         return None
 
 
@@ -174,7 +184,7 @@ def digest(log: Log) -> Digest:
         LogError: the log does not describe a run.
     """
     constants = RunView(log).constants
-    own = {*health.REDUCTIONS, *(one for metric in OWN.values() for one in metric.reductions)}
+    _check_joints(log, len(constants.joint_names))
     metrics = [metric for metric in map(known, METRICS) if metric is not None]
     wanted = dict.fromkeys((*health.REDUCTIONS, *(one for metric in metrics for one in metric.reductions)))
     failed: set[Reduction] = set()
@@ -185,15 +195,26 @@ def digest(log: Log) -> Digest:
             for reduction in wanted:
                 if reduction not in failed and run.has(*reduction.needs):
                     try:
-                        found[reduction] = reduction(run)
+                        found[reduction] = np.asarray(reduction(run))
                     except Exception:
-                        if reduction in own:
-                            raise
                         failed.add(reduction)  # its metric will say so, computing it anew
         return found
 
     reads: list[Reads] = [health.READS, *(metric.reads for metric in metrics)]
     gathered = Digest(log, reads, reduce)
     for reduction in failed:
-        gathered.reduced.pop(reduction, None)
+        gathered.reduced.forget(reduction)
     return gathered
+
+
+def _check_joints(log: Log, joints: int) -> None:
+    """Refuse a log whose joints are not as many as its run has.
+
+    Raises:
+        LogError: it is such a log.
+    """
+    for topic, name in (("/torque", "command"), ("/measurement", "joint_position")):
+        shapes = [field.shape for field in log.fields(topic) if field.name == name] if topic in log.numeric else []
+        if shapes and shapes != [(joints,)]:
+            what = f"{log.path}: {topic} {name} has not the {joints} joints of its run"
+            raise LogError(f"{what}; give a log that `surefoot run` has written")

@@ -5,22 +5,25 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from html import escape
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import yaml
 from pydantic import ValidationError
 
 from surefoot.errors import ParameterError
 from surefoot.scenarios import palette
-from surefoot.scenarios.errors import LogError, Problem, nearest
+from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import unknown
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.source import decoded, parse
 from surefoot.scenarios.file.translate import without
-from surefoot.scenarios.judge.digest import Digest
-from surefoot.scenarios.judge.metrics import known, measure
+from surefoot.scenarios.judge.agreement import contradictions
+from surefoot.scenarios.judge.digest import Digest, RunView
+from surefoot.scenarios.judge.metrics import digest, known, measure
 from surefoot.scenarios.log import Log
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
@@ -103,6 +106,8 @@ def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
     softened = metrics.get("planner_infeasible_fraction")
     if softened:
         yield f"the planner's hard constraints had no solution in {100 * softened:.1f} % of the plans and were softened"
+    if missed := metrics.get("touchdowns_missed"):
+        yield f"steps whose foot never touched the ground, so that they do not count: {missed}"
     failures, fallbacks = metrics.get("qp_failures"), metrics.get("wbc_fallbacks")
     if fallbacks:
         yield f"the whole-body QP had no solution at {fallbacks} ticks, which used the fallback torque"
@@ -110,6 +115,7 @@ def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
         yield f"the whole-body QP needed its second solver at {failures} ticks"
 
 
+_LOSSES_SAID = 3
 _ACCEPTED_ENDS = ("completed", "fall")
 
 
@@ -175,13 +181,10 @@ class Verdict:
         """Write as a JSON file.
 
         Raises:
-            LogError: it cannot be written.
+            LogError: it exists or cannot be written.
         """
-        try:
-            path.write_text(json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        except OSError as error:
-            path.unlink(missing_ok=True)
-            raise LogError(f"{path}: cannot be written, {(error.strerror or str(error)).lower()}") from None
+        with write_whole(path) as temporary:
+            temporary.write_text(json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def judge(log: Log, gathered: Digest | None = None) -> Verdict:
@@ -194,9 +197,11 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     Raises:
         LogError: the log does not describe a run.
     """
-    measured, (scenario, absent) = measure(gathered or log), _known_part(log)
+    (scenario, absent), gathered = _known_part(log), gathered or digest(log)
+    measured = measure(gathered)
     criteria = asked(scenario.criteria, scenario.fidelity)
-    reasons = (*_unfinished(log), *map(str, absent), *_unacted(log, scenario), *missed(measured.values, criteria))
+    untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(RunView(gathered))
+    reasons = (*untrue, *map(str, absent), *_unacted(log, scenario), *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
     said = (*skipped, *notes(Draft(scenario)), *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
@@ -214,12 +219,12 @@ def scenario_of(log: Log) -> Scenario:
 def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
     """The scenario of a log, and which of its names nobody knows here."""
     try:
-        keys = yaml.safe_load(log.attachments[SCENARIO_FILE])
-        absent = unknown(keys)
+        source = parse(decoded(BytesIO(log.attachments[SCENARIO_FILE]), SCENARIO_FILE), SCENARIO_FILE)
+        keys, absent = source.value, unknown(source.value)
         # Without its kind the other keys of the ground mean nothing.
         places = [replace(one, key=one.key[:1]) if one.key[0] == "terrain" else one for one in absent]
         return Scenario.model_validate(without(keys, places)), absent
-    except (KeyError, ValidationError, yaml.YAMLError, ValueError, RecursionError):
+    except (KeyError, TypeError, ValidationError, ScenarioError, ValueError, RecursionError):
         raise LogError(f"{log.path}: holds no readable scenario; its criteria are unknown") from None
 
 
@@ -235,7 +240,8 @@ def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str
     value = _lookup(metrics, name)
     if bound.equals is not None:
         expected = metrics.get(bound.equals, bound.equals) if isinstance(bound.equals, str) else bound.equals
-        if value is None or value != expected:
+        alike = isinstance(value, bool) == isinstance(expected, bool)  # 1 is not true
+        if value is None or not alike or value != expected:
             fall = f" at {metrics['fall_time']:.3f} s" if name == "fell" and value is True else ""
             yield f"{name} is {_text(value)}{fall}, must be {_text(expected)}"
     if bound.min is None and bound.max is None:
@@ -244,10 +250,14 @@ def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str
         yield f"{name} is not available, so its bound cannot be checked"
         return
     values = value if isinstance(value, list) else [value]
+    sizes = [len(limit) for limit in (bound.min, bound.max) if isinstance(limit, tuple)]
+    if not values or any(size != len(values) for size in sizes):
+        yield f"{name} has {len(values)} elements, and its bound {sizes[0] if sizes else 1}"
+        return
     for index, element in enumerate(values):
         label = name if len(values) == 1 else f"{name}[{index}]"
         low, high = (_element(limit, index) for limit in (bound.min, bound.max))
-        if element is None:
+        if element is None or isinstance(element, bool):
             yield f"{label} is not a number"
         elif low is not None and element < low:
             yield f"{label} is {_text(element)}, bound is at least {_text(low)}"
@@ -275,6 +285,13 @@ def _unacted(log: Log, scenario: Scenario) -> list[str]:
         return [f"when its pushes and faults act cannot be known: {fault}"]
 
 
+def _incomplete(log: Log) -> list[str]:
+    """Say what of the log is missing or damaged, if anything is."""
+    losses = log.losses()
+    more = [f"and {len(losses) - _LOSSES_SAID} more"] if len(losses) > _LOSSES_SAID else []
+    return ["the log is incomplete: " + "; ".join((*losses[:_LOSSES_SAID], *more))] if losses else []
+
+
 def _lookup(metrics: Mapping[str, Any], name: str) -> Any:
     """A metric, or the part of one after a dot."""
     metric, _, part = name.partition(".")
@@ -283,9 +300,7 @@ def _lookup(metrics: Mapping[str, Any], name: str) -> Any:
 
 
 def _element(limit: float | tuple[float, ...] | None, index: int) -> float | None:
-    if isinstance(limit, tuple):
-        return limit[index] if index < len(limit) else None
-    return limit
+    return limit[index] if isinstance(limit, tuple) else limit
 
 
 def _text(value: Any) -> str:

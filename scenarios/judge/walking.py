@@ -25,7 +25,7 @@ def fell(run: RunView) -> bool:
     return fall_time(run) is not None
 
 
-@metric(unit="s", needs=("/truth",), reads=FALL_READS)
+@metric(unit="s", needs=("/truth",), reads=FALL_READS, least=0.0)
 def fall_time(run: RunView) -> float | None:
     """First time at which the robot has fallen [s].
 
@@ -36,21 +36,21 @@ def fall_time(run: RunView) -> float | None:
     return float(run.time[fallen[0]]) if len(fallen) else None
 
 
-@metric(unit="s", reads={"/truth": ()})
+@metric(unit="s", reads={"/truth": ()}, least=0.0)
 def duration(run: RunView) -> float:
     """Simulated time [s]."""
     return float(run.time[-1] - run.time[0]) + 1 / run.constants.control_rate
 
 
-@metric()
+@metric(least=0.0)
 def steps_planned(run: RunView) -> int:
     """Footsteps asked for."""
     return run.constants.steps_planned
 
 
-@metric(needs=("/truth",), reads={**FALL_READS, "/footstep": ()})
+@metric(needs=("/truth",), reads={**FALL_READS, "/footstep": ()}, least=0.0)
 def steps_taken(run: RunView) -> int:
-    """Touchdowns before a fall."""
+    """Footsteps whose foot touched the ground, before a fall."""
     if "/footstep" not in run.log:
         return 0
     end = fall_time(run)
@@ -58,7 +58,21 @@ def steps_taken(run: RunView) -> int:
     return len(times) if end is None else int(np.count_nonzero(times < end))
 
 
-@metric(unit="s", reads=_STILL_READS)
+@metric(reads={**FALL_READS, "/reference": ("omega", "phase", "stance")}, least=0.0)
+def touchdowns_missed(run: RunView) -> int:
+    """Swings that were over before a fall, but whose foot never touched the ground."""
+    return len(swings_ended(run)) - steps_taken(run)
+
+
+def swings_ended(run: RunView) -> list[tuple[int, int]]:
+    """Begin and end of each planned single support that was over before a fall and the end of the log, in ticks."""
+    fall = fall_time(run)
+    end = run.ticks if fall is None else int(np.searchsorted(run.time, fall))
+    single, stance = run.single_support[:end], run.field("/reference", "stance")[:end]
+    return sorted(swing for foot in (0, 1) for swing in runs_of(single & (stance == foot)) if swing[1] < end)
+
+
+@metric(unit="s", reads=_STILL_READS, least=0.0)
 def standing_time_final(run: RunView) -> float:
     """How long the run ends with the CoM still and both feet loaded [s]."""
     moving = np.flatnonzero(~_still(run))
@@ -66,7 +80,7 @@ def standing_time_final(run: RunView) -> float:
     return (run.ticks - int(first)) / run.constants.control_rate
 
 
-@metric(unit="s", reads={**_STILL_READS, "/reference": ()})
+@metric(unit="s", reads={**_STILL_READS, "/reference": ()}, least=0.0)
 def standing_time_between(run: RunView) -> float:
     """Longest time between two steps with the CoM still and both feet loaded, 0 when the walk never stops [s]."""
     return (
@@ -80,7 +94,8 @@ def _still(run: RunView) -> Mask:
 
 
 def _lying(run: RunView) -> Mask:
-    height = run.field("/truth", "com")[:, 2] - run.soles[:, :, 2].min(axis=1)
+    lower = np.minimum(*(run.sole(foot)[:, 2].copy() for foot in (0, 1)))
+    height = run.field("/truth", "com")[:, 2] - lower
     tilt, touching = run.field("/truth", "torso_tilt"), run.field("/truth", "nonfoot_contact")
     return np.asarray(lies(height, run.constants.com_height, tilt, touching))
 

@@ -2,7 +2,7 @@
 
 import struct
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import lz4.frame
 import zstandard
@@ -29,8 +29,8 @@ from surefoot.scenarios.errors import LogError
 _LZ4_LEVEL = -3
 """Twice as fast as the default, for 8 % more bytes of a log."""
 
-_GREATEST_RATIO = 100_000
-"""No sound chunk is compressed more; a damaged size must not exhaust the memory."""
+GREATEST_CHUNK = 1 << 26
+"""No sound chunk holds more; a size that is damaged, or made to hurt, must not exhaust the memory [bytes]."""
 
 
 def compress(data: bytes, method: str) -> bytes:
@@ -51,13 +51,13 @@ def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:
     Raises:
         LogError: the bytes are damaged or the method is unknown.
     """
-    if size > _GREATEST_RATIO * len(data) + 1024:
-        raise LogError("a chunk states more bytes than compression can yield; its bytes are damaged")
+    if size > GREATEST_CHUNK:
+        raise LogError(f"a chunk states {size} bytes, more than the {GREATEST_CHUNK} that one may hold; it is damaged")
     try:
         if method == "lz4":
-            whole = lz4.frame.decompress(data)
+            whole = lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=size + 1)
         elif method == "zstd":
-            whole = zstandard.ZstdDecompressor().decompress(data, max_output_size=size)
+            whole = _unzstd(data, size)
         elif method == "":
             whole = bytes(data)
         else:
@@ -67,6 +67,12 @@ def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:
     if len(whole) != size:
         raise LogError(f"a chunk holds {len(whole)} bytes where it states {size}; its bytes are damaged")
     return bytes(whole)
+
+
+def _unzstd(data: bytes | memoryview, size: int) -> bytes:
+    """At most one byte more than there should be, whatever the frame says of its size."""
+    with zstandard.ZstdDecompressor().stream_reader(data) as reader:
+        return reader.read(size + 1)
 
 
 MAGIC = b"\x89MCAP0\r\n"
@@ -93,7 +99,8 @@ class Summary:
     def __init__(self) -> None:
         self._schemas: list[Schema] = []
         self._channels: list[Channel] = []
-        self._chunks: list[ChunkIndex] = []
+        self._chunks: list[bytes] = []
+        self._times: tuple[int, int] | None = None
         self._attachments: list[AttachmentIndex] = []
         self._metadata: list[MetadataIndex] = []
 
@@ -134,49 +141,50 @@ class Summary:
             message_start_time=chunk.message_start_time,
             uncompressed_size=chunk.uncompressed_size,
         )
-        self._chunks.append(entry)
+        self._chunks.append(encoded(entry))
+        first, last = self._times or (chunk.message_start_time, chunk.message_end_time)
+        self._times = min(first, chunk.message_start_time), max(last, chunk.message_end_time)
 
-    def finish(self, position: int, counts: Mapping[int, int]) -> bytes:
+    def finish(self, position: int, counts: Mapping[int, int], crc: int) -> bytes:
         """Give the end of the file: end of data, summary, footer, magic.
 
         Args:
             position: where it will stand in the file.
             counts: messages by channel.
+            crc: CRC-32 of everything before it.
         """
-        end = encoded(DataEnd(0))
+        end = encoded(DataEnd(crc))
         start = position + len(end)
-        groups: list[tuple[Opcode, Sequence[McapRecord]]] = [
-            (Opcode.SCHEMA, self._schemas),
-            (Opcode.CHANNEL, self._channels),
-            (Opcode.STATISTICS, [self._statistics(counts)]),
+        groups: list[tuple[Opcode, list[bytes]]] = [
+            (Opcode.SCHEMA, [*map(encoded, self._schemas)]),
+            (Opcode.CHANNEL, [*map(encoded, self._channels)]),
+            (Opcode.STATISTICS, [encoded(self._statistics(counts))]),
             (Opcode.CHUNK_INDEX, self._chunks),
-            (Opcode.ATTACHMENT_INDEX, self._attachments),
-            (Opcode.METADATA_INDEX, self._metadata),
+            (Opcode.ATTACHMENT_INDEX, [*map(encoded, self._attachments)]),
+            (Opcode.METADATA_INDEX, [*map(encoded, self._metadata)]),
         ]
         summary, offsets = bytearray(), bytearray()
         for opcode, records in groups:
-            data = b"".join(encoded(record) for record in records)
+            data = b"".join(records)
             if data:
                 offsets += encoded(SummaryOffset(opcode, start + len(summary), len(data)))
                 summary += data
         offset_start = start + len(summary)
         summary += offsets
         footer = encoded(Footer(start, offset_start, 0))
-        crc = zlib.crc32(footer[:-4], zlib.crc32(summary))
-        return b"".join((end, summary, encoded(Footer(start, offset_start, crc)), MAGIC))
+        summary_crc = zlib.crc32(footer[:-4], zlib.crc32(summary))
+        return b"".join((end, summary, encoded(Footer(start, offset_start, summary_crc)), MAGIC))
 
     def _statistics(self, counts: Mapping[int, int]) -> Statistics:
-        def over_chunks(choose: Callable[..., int], name: str) -> int:
-            return choose((getattr(chunk, name) for chunk in self._chunks), default=0)
-
+        start, end = self._times or (0, 0)
         return Statistics(
             attachment_count=len(self._attachments),
             channel_count=len(self._channels),
             channel_message_counts=dict(counts),
             chunk_count=len(self._chunks),
             message_count=sum(counts.values()),
-            message_end_time=over_chunks(max, "message_end_time"),
-            message_start_time=over_chunks(min, "message_start_time"),
+            message_end_time=end,
+            message_start_time=start,
             metadata_count=len(self._metadata),
             schema_count=len(self._schemas),
         )

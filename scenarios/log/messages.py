@@ -61,17 +61,21 @@ class ChannelData:
 
     Attributes:
         topic: the channel's topic.
-        fields: its fields.
+        fields: its fields, each with its unit, frame and meaning.
+        joints: names of the robot's joints, by which columns are called; () when the log does not say.
         time_ns: simulated time of each message, shape (n,) [ns].
     """
 
-    def __init__(self, topic: str, fields: tuple[FieldSpec, ...], records: NDArray[np.void]) -> None:
+    def __init__(
+        self, topic: str, fields: tuple[FieldSpec, ...], records: NDArray[np.void], joints: tuple[str, ...] = ()
+    ) -> None:
         times = records["_log_time"].astype(np.int64)
         if np.any(times[1:] < times[:-1]):
             order = np.argsort(times, kind="stable")
             times, records = times[order], records[order]
         self.topic = topic
         self.fields = fields
+        self.joints = joints
         self.time_ns: NDArray[np.int64] = times
         self._records = records
 
@@ -86,7 +90,13 @@ class ChannelData:
     def between(self, start_ns: int, end_ns: int) -> "ChannelData":
         """The messages from a time on and up to another one [ns]."""
         first, last = np.searchsorted(self.time_ns, (start_ns, end_ns + 1))
-        return ChannelData(self.topic, self.fields, self._records[first:last])
+        return ChannelData(self.topic, self.fields, self._records[first:last], self.joints)
+
+    def joined(self, following: "ChannelData") -> "ChannelData":
+        """These messages and those that follow."""
+        if not len(self) or not len(following):
+            return following if not len(self) else self
+        return ChannelData(self.topic, self.fields, np.concatenate((self._records, following._records)))
 
     def content(self) -> bytes:
         """Bytes of all messages in order, for exact comparison of two runs."""
@@ -102,18 +112,26 @@ class ChannelData:
         return np.array(self._records[name])
 
     def columns(self) -> dict[str, NDArray[Any]]:
-        """Time [s] and every element of every field as ``name_i_j``, each of shape (n,)."""
+        """Time [s] and every element of every field as ``name_i_j`` or ``name.joint``, each of shape (n,)."""
         table: dict[str, NDArray[Any]] = {"time": self.time}
         for field in self.fields:
-            values = self.field(field.name)
-            for place in np.ndindex(field.shape):
-                table["_".join((field.name, *map(str, place)))] = values[(slice(None), *place)]
+            values = np.moveaxis(self.field(field.name), 0, -1)
+            table |= {column.name: values[column.place] for column in field.columns(self.joints)}
+        return table
+
+    def notes(self) -> dict[str, dict[str, str]]:
+        """Unit, frame and meaning (``doc``) of each of the `columns`."""
+        table = {"time": {"unit": "s", "frame": "", "doc": "simulated time"}}
+        for field in self.fields:
+            for column in field.columns(self.joints):
+                table[column.name] = {"unit": column.unit, "frame": field.frame, "doc": field.doc}
         return table
 
     def only(self, name: str) -> "ChannelData":
         """The same messages with one field; errors as of `field`."""
         self._require(name)
-        return ChannelData(self.topic, tuple(field for field in self.fields if field.name == name), self._records)
+        only = tuple(field for field in self.fields if field.name == name)
+        return ChannelData(self.topic, only, self._records, self.joints)
 
     def _require(self, name: str) -> None:
         if all(field.name != name for field in self.fields):

@@ -1,21 +1,31 @@
 """Reads a log into numpy arrays by channel and field name; also a truncated or damaged one, as far as it goes."""
 
+import json
+import math
 import mmap
+import stat
 import zlib
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from surefoot.scenarios.errors import LogError, nearest
-from surefoot.scenarios.log.encoding import MAGIC, decompress
+from surefoot.scenarios.errors import LogError, nearest, require
+from surefoot.scenarios.log.encoding import GREATEST_CHUNK, MAGIC, decompress
 from surefoot.scenarios.log.messages import MESSAGE_BYTES, ChannelData, block_of, content_at, gathered, sound_records
 from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
 from surefoot.scenarios.log.spec import FieldSpec, layout_of, record_dtype
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+RECOVERED = "recovered"
+"""Metadata record of a log that was made of a truncated or damaged one: of which, and what was lost."""
+
+GREATEST_RATIO = 100
+"""How many times its size a log may hold; those of standing robots reach ten."""
 
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""
@@ -30,8 +40,9 @@ class Log:
         metadata: named records of key and value; of equal names the last.
         attachments: contents by name.
         topics: every topic, in order of channel id.
+        joints: names of the robot's joints in order; () when the log does not say.
         truncated: whether the end of the file is missing, as after a killed run.
-        damage: what could not be read, in words; grows as channels are loaded.
+        damage: what could not be read, in words; grows as channels are loaded; `losses` knows all.
         contents: records of the file and their places.
         data: bytes of the file.
     """
@@ -41,14 +52,20 @@ class Log:
         self.size = len(data)
         self.data = data
         self.contents = contents = scan(data)
+        stated = sum(chunk.size for chunk in contents.chunks)
+        if stated > GREATEST_CHUNK + GREATEST_RATIO * self.size:
+            what = f"{path}: its chunks state {stated >> 20} MB, more than {GREATEST_RATIO} times the file"
+            raise LogError(f"{what}; give a log that `surefoot run` has written")
         self.truncated = contents.truncated
         self.damage = contents.damage
         self._verified: set[int] = set()
+        self._unproven: str | None = None
         self._index_rest()
         self.metadata = {record.name: record.metadata for record in contents.metadata}
         self.attachments = {record.name: record.data for record in contents.attachments}
         self._ids = {channel.topic: number for number, channel in sorted(contents.channels.items(), reverse=True)}
         self.topics = tuple(reversed(self._ids))
+        self.joints = _joints(self.metadata)
         self._loaded: dict[str, ChannelData] = {}
 
     def __contains__(self, topic: str) -> bool:
@@ -69,15 +86,16 @@ class Log:
     def frame(self, topic: str) -> "DataFrame":
         """Messages of a topic as a pandas data frame: the index is time [s], the elements of a field are columns.
 
+        Unit, frame and meaning of the columns are in its ``attrs``, as of `ChannelData.notes`.
+
         Raises:
             LogError: there is no such topic, its messages are not of a fixed layout, or pandas is missing.
         """
-        try:
-            from pandas import DataFrame
-        except ImportError:
-            right = f"`pip install pandas`, or use log['{topic}'].field(name)"
-            raise LogError(f"a data frame needs the package pandas; {right}") from None
-        return DataFrame(self[topic].columns()).set_index("time")
+        pandas = require("pandas", "frame", "a data frame", f"use log['{topic}'].field(name)")
+        channel = self[topic]
+        frame: DataFrame = pandas.DataFrame(channel.columns()).set_index("time")
+        frame.attrs.update(channel.notes())
+        return frame
 
     def load(self, *topics: str) -> None:
         """Load topics in one pass through the file.
@@ -93,8 +111,10 @@ class Log:
         """Messages of a topic from a time on and up to another one [s]; only their part of the file is read.
 
         Raises:
-            LogError: there is no such topic, or its messages are not of a fixed layout.
+            LogError: there is no such topic, its messages are not of a fixed layout, or the times are not finite.
         """
+        if not (math.isfinite(start) and math.isfinite(end)):
+            raise LogError(f"{self.path}: no time from {start} s to {end} s; give finite times")
         first, last = round(start * 1e9), round(end * 1e9)
         chunks = [chunk for chunk in self.contents.chunks if chunk.start_ns <= last and chunk.end_ns >= first]
         return self._read([topic], chunks)[topic].between(first, last)
@@ -112,11 +132,13 @@ class Log:
             LogError: there is no such topic, or its messages are not of a fixed layout.
         """
         group: list[ChunkPlace] = []
+        size = 0
         for chunk in self.contents.chunks:
             group.append(chunk)
-            if chunk.end_ns - group[0].start_ns >= duration * 1e9:
+            size += chunk.size
+            if chunk.end_ns - group[0].start_ns >= duration * 1e9 or size > GREATEST_CHUNK:
                 yield self._read(topics, group, verify=True, loose=False)
-                group = []
+                group, size = [], 0
         yield self._read(topics, group, verify=True)
 
     def fields(self, topic: str) -> tuple[FieldSpec, ...]:
@@ -132,7 +154,7 @@ class Log:
             right = "read it by its schema with the mcap package"
             raise LogError(f"{self.path}: topic {topic} states no layout of fixed size; {right}") from None
 
-    @property
+    @cached_property
     def numeric(self) -> tuple[str, ...]:
         """Topics whose messages can be read into arrays; the others are of other people's schemas."""
         return tuple(topic for topic in self.topics if self._is_numeric(topic))
@@ -172,6 +194,29 @@ class Log:
             if chunk.position not in self._verified:
                 self._sound(chunk)
 
+    def losses(self) -> tuple[str, ...]:
+        """Whatever keeps the log from being proven whole, in words, when everything was compared with its checksums.
+
+        A log without its index may be whole: the record that ends its data has the checksum of everything before it.
+        """
+        self.verify()
+        if self._unproven is None:
+            self._unproven = self._data_fault()
+        before = self.metadata.get(RECOVERED, {}).get("lost", "")
+        return tuple(dict.fromkeys(loss for loss in (before, self._unproven, *self.damage) if loss))
+
+    def _data_fault(self) -> str:
+        """Why the data as a whole are not those that were written; empty if they are."""
+        end, crc, step = self.contents.data_end, 0, 1 << 22
+        if end is None:
+            return f"its end is missing, it can be read up to {self.time_range()[1]:.3f} s"
+        if not self.contents.data_crc:
+            return "it has no checksum of its data, by which it could be shown to be whole"
+        for start in range(0, end, step):
+            crc = zlib.crc32(self.data[start : min(start + step, end)], crc)
+            release(self.data, start, start + step)
+        return "" if crc == self.contents.data_crc else "its data do not agree with their checksum"
+
     def sound_chunks(self) -> Iterator[tuple[ChunkPlace, bytes]]:
         """Every chunk that agrees with its checksum, and its decompressed bytes; the others add to `damage`."""
         for chunk in self.contents.chunks:
@@ -198,16 +243,19 @@ class Log:
         fields = {topic: self.fields(topic) for topic in topics}
         sizes = {self._ids[topic]: record_dtype(fields[topic]).itemsize for topic in topics}
         blocks: dict[int, list[memoryview | bytes]] = {number: [] for number in sizes}
-        expected = dict.fromkeys(sizes, 0)
+        expected, channels = dict.fromkeys(sizes, 0), self.contents.channels
         for chunk in chunks:
-            numbers = sizes.keys() & chunk.index.keys()
+            numbers = sizes.keys() & chunk.channels
             data = (self._sound(chunk) if verify else self._decompressed(chunk)) if numbers or verify else None
             if data is not None:
                 view = memoryview(data)
                 for number in numbers:
                     count = chunk.count(number)
                     expected[number] += count
-                    if count:
+                    if count * sizes[number] > len(view):
+                        what = f"lists more of {channels[number].topic} than the chunk can hold"
+                        self.damage.append(f"the index at byte {chunk.position} {what}")
+                    elif count:
                         blocks[number].append(block_of(view, chunk, number, sizes[number], self.data))
         for number in sizes.keys() & self.contents.loose.keys() if loose else ():
             entries = np.array(self.contents.loose[number], INDEX_ENTRY)
@@ -229,7 +277,7 @@ class Log:
         records = sound_records(whole, number, dtype)
         if len(records) < expected:
             self.damage.append(f"{expected - len(records)} messages of {topic} are damaged or not of its layout")
-        return ChannelData(topic, fields, records)
+        return ChannelData(topic, fields, records, self.joints)
 
     def _sound(self, chunk: ChunkPlace) -> bytes | None:
         """Decompressed bytes of a chunk if they agree with its checksum."""
@@ -253,11 +301,21 @@ class Log:
     def _index_rest(self) -> None:
         """Index chunks that stand without an index, or whose channels are defined only inside them."""
         for chunk in self.contents.chunks:
-            foreign = chunk.index.keys() - self.contents.channels.keys()
-            if not chunk.index or chunk.index_damaged or foreign:
+            foreign = chunk.channels - self.contents.channels.keys()
+            if not chunk.places or chunk.index_damaged or foreign:
                 data = self._decompressed(chunk)
                 if data is not None:
-                    chunk.index = dict(index_chunk(data, self.contents))
+                    chunk.made = index_chunk(data, self.contents)
+
+
+def _joints(metadata: Mapping[str, Mapping[str, str]]) -> tuple[str, ...]:
+    """Names of the joints as the constants of the run have them (`record.provenance.RunConstants`)."""
+    try:
+        names = json.loads(metadata["run"]["joint_names"])
+    except (KeyError, ValueError, RecursionError):
+        return ()
+    sound = isinstance(names, list) and all(isinstance(name, str) for name in names) and len(set(names)) == len(names)
+    return tuple(names) if sound else ()
 
 
 def read(path: str | Path) -> Log:
@@ -268,13 +326,16 @@ def read(path: str | Path) -> Log:
     """
     path = Path(path)
     try:
+        if not stat.S_ISREG(path.stat().st_mode) and not path.is_dir():
+            raise LogError(f"{path}: not an MCAP file but a device or a pipe; give a log file")
         with path.open("rb") as file:
             magic = file.read(len(MAGIC))
             if magic != MAGIC:
                 raise LogError(f"{path}: not an MCAP file; give a log that `surefoot run` has written")
             return Log(path, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
     except IsADirectoryError:
-        raise LogError(f"{path}: a directory; give a log file") from None
+        inside = next(iter(sorted(path.glob("*.mcap"))), None)
+        raise LogError(f"{path}: a directory; give {'a log file' if inside is None else inside}") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise LogError(f"{path}: cannot be read, {str(reason).lower()}; give a log file") from None

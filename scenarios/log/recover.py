@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.encoding import MAGIC, Summary, encoded
-from surefoot.scenarios.log.reader import Log, read
+from surefoot.scenarios.log.reader import RECOVERED, Log, read
 from surefoot.scenarios.log.scan import PREFIX, index_chunk
+from surefoot.scenarios.output import shown, write_whole
 
 Index = dict[int, NDArray[np.void]]
 
@@ -34,33 +35,31 @@ class Recovery:
     lost: tuple[str, ...]
 
 
-def recover(source: str | Path, target: str | Path) -> Recovery:
+def recover(source: str | Path, target: str | Path, replace: bool = False) -> Recovery:
     """Write everything sound of a log to a new file, which appears under its name only when it is whole.
 
+    Args:
+        source: a log.
+        target: the file.
+        replace: an existing file.
+
     Raises:
-        LogError: the source is no MCAP file, the target is the source or cannot be written.
+        LogError: the source is no MCAP file, the target is the source, exists or cannot be written.
     """
     log, target = read(source), Path(target)
     if target.exists() and target.samefile(log.path):
         raise LogError(f"{target}: the log that is to be recovered; give another file to write to")
-    temporary = target.with_name(f".{target.name}.new")
-    try:
-        with temporary.open("wb") as file:
-            messages = _Rewriter(log, file).run()
-        temporary.replace(target)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{target}: cannot be written, {reason}; choose another directory") from None
+    with write_whole(target, replace) as temporary, temporary.open("wb") as file:
+        messages = _Rewriter(log, file).run()
     start, end = log.time_range()
-    return Recovery(messages, start, end, tuple(log.damage))
+    return Recovery(messages, start, end, log.losses())
 
 
 class _Rewriter:
     def __init__(self, log: Log, file: BinaryIO) -> None:
         self._log = log
         self._file = file
-        self._position = 0
+        self._position = self._crc = 0
         self._summary = Summary()
         self._counts: dict[int, int] = {}
 
@@ -69,8 +68,9 @@ class _Rewriter:
         chunks = [(place, index_chunk(data, contents)) for place, data in self._log.sound_chunks()]
         self._write(MAGIC + encoded(Header("", "surefoot recover")))
         for record in contents.metadata:
-            self._write(self._summary.add_metadata(record, self._position))
-        origin = Metadata("recovered", {"from": self._log.path.name, "lost": "; ".join(self._log.damage)})
+            if record.name != RECOVERED:
+                self._write(self._summary.add_metadata(record, self._position))
+        origin = Metadata(RECOVERED, {"from": shown(self._log.path.name), "lost": "; ".join(self._log.losses())})
         self._write(self._summary.add_metadata(origin, self._position))
         for attachment in contents.attachments:
             self._attach(attachment)
@@ -86,7 +86,7 @@ class _Rewriter:
             )
             self._chunk(chunk, index)
         self._loose()
-        self._write(self._summary.finish(self._position, self._counts))
+        self._write(self._summary.finish(self._position, self._counts, self._crc))
         return sum(self._counts.values())
 
     def _attach(self, attachment: Attachment) -> None:
@@ -121,3 +121,4 @@ class _Rewriter:
     def _write(self, data: bytes) -> None:
         self._file.write(data)
         self._position += len(data)
+        self._crc = zlib.crc32(data, self._crc)

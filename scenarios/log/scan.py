@@ -2,6 +2,8 @@
 
 import mmap
 import struct
+from array import array
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from io import BytesIO
@@ -20,13 +22,13 @@ Buffer = Any
 """A read-only bytes-like object: bytes or a memory map."""
 
 INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
-Index = slice | NDArray[np.void]
 PREFIX = struct.Struct("<BQ")
 _INDEX_HEAD = struct.Struct("<HI")
 _OFFSET = struct.Struct("<Q")
 _INDEX_RECORD = struct.Struct("<BQHI")
 _RELEASE_BYTES = 1 << 25
 _CHUNK = struct.Struct("<QQQII")
+_CRC = struct.Struct("<I")
 _MESSAGE = struct.Struct("<HIQQ")
 _PRIVATE = 0x80
 _T = TypeVar("_T")
@@ -45,8 +47,9 @@ class ChunkPlace:
         crc: of the uncompressed bytes, 0 for none.
         compression: method.
         data: where its compressed bytes begin and end.
-        index: by channel id, where in the file the times and offsets of its messages stand, or they themselves where
-            the file has no index.
+        places: of its index in the file, in threes: channel id, begin and end of the times and offsets of its messages.
+            A dictionary would make this the greater part of what is held of a long log.
+        made: the index itself by channel id, where the file has none that is sound.
         index_damaged: whether a part of the index could not be read, so that it must be made anew.
     """
 
@@ -58,27 +61,43 @@ class ChunkPlace:
     crc: int
     compression: str
     data: slice
-    index: dict[int, Index] = field(default_factory=dict)
+    places: "array[int]" = field(default_factory=lambda: array("Q"))
+    made: dict[int, NDArray[np.void]] | None = None
     index_damaged: bool = False
+
+    @property
+    def channels(self) -> set[int]:
+        """Ids of the channels that the chunk has messages of, by the index."""
+        return set(self.places[::3] if self.made is None else self.made)
 
     def count(self, channel_id: int) -> int:
         """Messages of a channel."""
-        index = self.index.get(channel_id)
-        if isinstance(index, slice):
-            return int(index.stop - index.start) // INDEX_ENTRY.itemsize
-        return 0 if index is None else len(index)
+        if self.made is not None:
+            return len(self.made.get(channel_id, ()))
+        start, stop = self.place(channel_id)
+        return (stop - start) // INDEX_ENTRY.itemsize
 
     def entries(self, channel_id: int, data: Buffer) -> NDArray[np.void]:
         """Times and offsets of the messages of a channel that it has, out of the file's bytes."""
-        index = self.index[channel_id]
-        return np.frombuffer(data[index], INDEX_ENTRY) if isinstance(index, slice) else index
+        if self.made is not None:
+            return self.made[channel_id]
+        return np.frombuffer(data[slice(*self.place(channel_id))], INDEX_ENTRY)
 
     def extent(self, channel_id: int, data: Buffer) -> tuple[int, int]:
         """Offsets of the first and the last message of a channel that has some, out of the file's bytes."""
-        index = self.index[channel_id]
-        if isinstance(index, slice):
-            return _OFFSET.unpack_from(data, index.start + 8)[0], _OFFSET.unpack_from(data, index.stop - 8)[0]
-        return int(index["offset"][0]), int(index["offset"][-1])
+        if self.made is not None:
+            offsets = self.made[channel_id]["offset"]
+            return int(offsets[0]), int(offsets[-1])
+        start, stop = self.place(channel_id)
+        return _OFFSET.unpack_from(data, start + 8)[0], _OFFSET.unpack_from(data, stop - 8)[0]
+
+    def place(self, channel_id: int) -> tuple[int, int]:
+        """Where the index of a channel begins and ends in the file."""
+        places = self.places
+        for at in range(0, len(places), 3):
+            if places[at] == channel_id:
+                return places[at + 1], places[at + 2]
+        return 0, 0
 
 
 @dataclass(slots=True)
@@ -92,7 +111,10 @@ class Contents:
         loose: index of the messages outside chunks, by channel id.
         metadata: records in file order.
         attachments: in file order.
+        data_end: where the record that ends the data begins; None when it is missing.
+        data_crc: CRC-32 of everything before it by that record, 0 for none.
         truncated: whether the end of the file is missing.
+        known: positions of the chunks by the summary, once it was asked.
         damage: what could not be read, in words.
     """
 
@@ -102,7 +124,10 @@ class Contents:
     loose: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
     metadata: list[Metadata] = field(default_factory=list)
     attachments: list[Attachment] = field(default_factory=list)
+    data_end: int | None = None
+    data_crc: int = 0
     truncated: bool = True
+    known: list[int] | None = None
     damage: list[str] = field(default_factory=list)
 
 
@@ -179,14 +204,14 @@ def _take_indexes(data: Buffer, position: int, contents: Contents) -> int:
         where the first other record begins.
     """
     unpack, size = _INDEX_RECORD.unpack_from, len(data) - _INDEX_RECORD.size
-    index = contents.chunks[-1].index if contents.chunks else {}
+    places = contents.chunks[-1].places if contents.chunks else array("Q")
     while position <= size:
         opcode, length, channel_id, entries = unpack(data, position)
         start = position + _INDEX_RECORD.size
         end = start + entries
         if opcode != Opcode.MESSAGE_INDEX or length != entries + 6 or entries % INDEX_ENTRY.itemsize or end > len(data):
             break
-        index[channel_id] = slice(start, end)
+        places.extend((channel_id, start, end))
         position = end
     return position
 
@@ -201,14 +226,20 @@ _UNREADABLE = (McapError, ValueError, struct.error, OverflowError, MemoryError)
 
 
 def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Contents) -> None:
-    if opcode == Opcode.CHUNK:
+    if contents.data_end is not None:  # a summary, which says nothing that the data have not said
+        if opcode == Opcode.FOOTER:
+            contents.truncated = data[body.stop : body.stop + len(MAGIC)] != MAGIC
+    elif opcode == Opcode.DATA_END:
+        (contents.data_crc,) = _CRC.unpack(data[body])
+        contents.data_end = position
+    elif opcode == Opcode.CHUNK:
         contents.chunks.append(_chunk(data, position, body))
     elif opcode == Opcode.MESSAGE_INDEX and contents.chunks:
         channel_id, length = _INDEX_HEAD.unpack_from(data, body.start)
         if length % INDEX_ENTRY.itemsize or body.start + _INDEX_HEAD.size + length > body.stop:
             raise ValueError("message index of no whole number of entries")
         start = body.start + _INDEX_HEAD.size
-        contents.chunks[-1].index[channel_id] = slice(start, start + length)
+        contents.chunks[-1].places.extend((channel_id, start, start + length))
     elif opcode == Opcode.MESSAGE:
         channel_id, time = _message_header(data, body.start)
         contents.loose.setdefault(channel_id, []).append((time, position))
@@ -218,8 +249,6 @@ def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Conte
         contents.metadata.append(_decode(Metadata.read, data[body]))
     elif opcode == Opcode.ATTACHMENT:
         contents.attachments.append(_decode(Attachment.read, data[body]))
-    elif opcode == Opcode.FOOTER:
-        contents.truncated = data[body.stop : body.stop + len(MAGIC)] != MAGIC
 
 
 def _chunk(data: Buffer, position: int, body: slice) -> ChunkPlace:
@@ -236,7 +265,9 @@ def _chunk(data: Buffer, position: int, body: slice) -> ChunkPlace:
 
 def _resume(data: Buffer, position: int, contents: Contents) -> int:
     """Where to read on after a record that makes no sense: the next chunk that the file's own index knows."""
-    following = next((start for start in _indexed_chunks(data) if start > position), None)
+    if contents.known is None:
+        contents.known = _indexed_chunks(data)
+    following = next(iter(contents.known[bisect_right(contents.known, position) :]), None)
     if following is None:
         if data[-len(MAGIC) :] == MAGIC:
             contents.damage.append(f"nothing can be read from byte {position} on")
@@ -253,7 +284,8 @@ def _indexed_chunks(data: Buffer) -> list[int]:
             return []
         summary = data[_decode(Footer.read, data[footer_at + PREFIX.size :]).summary_start : footer_at]
         indexes = [summary[body] for opcode, _, body in records_in(summary) if opcode == Opcode.CHUNK_INDEX]
-        return sorted(_decode(ChunkIndex.read, index).chunk_start_offset for index in indexes)
+        found = sorted({_decode(ChunkIndex.read, index).chunk_start_offset for index in indexes})
+        return [start for start in found if start < len(data) and data[start] == Opcode.CHUNK]
     except (*_UNREADABLE, IndexError):
         return []
 

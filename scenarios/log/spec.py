@@ -6,10 +6,11 @@ reads or writes a block of them without a loop.
 """
 
 import json
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import prod
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from google.protobuf import descriptor_pb2
@@ -44,6 +45,50 @@ class FieldSpec:
         """Number of elements."""
         return prod(self.shape)
 
+    def columns(self, joints: Sequence[str] = ()) -> Iterator["Column"]:
+        """Every element as a column of a table.
+
+        Args:
+            joints: names of the robot's joints in order; () when they are not known.
+        """
+        units, names = self._element_units(), self._joint_names(joints)
+        for place in np.ndindex(self.shape):
+            name = f"{self.name}.{names[place[0]]}" if names else "_".join((self.name, *map(str, place)))
+            yield Column(name, units[place[-1]] if place else self.unit, place)
+
+    def _element_units(self) -> tuple[str, ...]:
+        """Unit of each element of the last axis: of several, each is of three elements, or of four without a unit."""
+        *first, last = self.unit.split(", ")
+        units = [unit for unit in first for _ in range(4 if unit == "-" else 3)]
+        return (*units, *([last] * (prod(self.shape[-1:]) - len(units))))
+
+    def _joint_names(self, joints: Sequence[str]) -> tuple[str, ...]:
+        """Names of the elements of a vector by joint, perhaps with the base before them; () of any other field."""
+        units = self.unit.split(", ")
+        if not joints or len(self.shape) != 1 or units[-1] not in _JOINT_UNITS:
+            return ()
+        base = _BASE.get(self.shape[0] - len(joints))
+        if base is None or (not base and (len(units) > 1 or self.frame)):
+            return ()
+        return (*base, *joints)
+
+
+class Column(NamedTuple):
+    """An element of a field as a column of a table: its heading, its unit, and its place in the field."""
+
+    name: str
+    unit: str
+    place: tuple[int, ...]
+
+
+_JOINT_UNITS = ("rad", "rad/s", "rad/s^2", "N m")
+_BASE: Mapping[int, tuple[str, ...]] = {
+    0: (),
+    6: tuple(f"base_{kind}_{axis}" for kind in ("linear", "angular") for axis in "xyz"),
+    7: tuple(f"base_{part}" for part in ("x", "y", "z", "qx", "qy", "qz", "qw")),
+}
+"""What goes before the joints in a vector of so many elements more than joints: nothing, a velocity, a pose."""
+
 
 @dataclass(frozen=True, slots=True)
 class ChannelSpec:
@@ -65,22 +110,43 @@ class ChannelSpec:
         }
 
 
+_MOST_FIELDS, _MOST_AXES, _MOST_NUMBERS = 1000, 8, 1 << 17
+"""What a message may hold: a layout that asks for more is damaged, or made to exhaust the memory."""
+
+
 def layout_of(metadata: dict[str, str]) -> tuple[FieldSpec, ...]:
-    """Read the fields back from a channel's metadata.
+    """Read the fields back from a channel's metadata, as `ChannelSpec.metadata` writes them.
 
     Raises:
         ValueError: the metadata give no layout.
     """
     try:
         rows = json.loads(metadata["layout"])
-        fields = tuple(FieldSpec(str(name), tuple(int(n) for n in shape), kind=kind) for name, kind, shape in rows)
-    except (KeyError, TypeError, ValueError, RecursionError):
+        if len(rows) > _MOST_FIELDS:
+            raise ValueError("too many fields")
+        fields = tuple(
+            FieldSpec(str(name), tuple(int(n) for n in shape), *_noted(metadata.get(f"field.{name}", "")), kind=kind)
+            for name, kind, shape in rows
+        )
+    except (KeyError, TypeError, ValueError, OverflowError, RecursionError):
         raise ValueError("no layout") from None
-    sound = all(f.kind in ("double", "int") and all(0 < n < 1 << 20 for n in f.shape) for f in fields)
+    sound = all(
+        f.kind in ("double", "int") and len(f.shape) <= _MOST_AXES and all(0 < n <= _MOST_NUMBERS for n in f.shape)
+        for f in fields
+    )
     names = [f.name for f in fields]
-    if not sound or len(set(names)) < len(names) or not all(name.isidentifier() for name in names):
+    if not sound or sum(f.size for f in fields) > _MOST_NUMBERS or len(set(names)) < len(names):
+        raise ValueError("no sound layout")
+    if not all(name.isidentifier() and not name.startswith("_") for name in names):
         raise ValueError("no sound layout")
     return fields
+
+
+def _noted(note: str) -> tuple[str, str, str]:
+    """Unit, frame and meaning of a field from the note on it; what is no such note is all meaning."""
+    doc, _, rest = note.rpartition("[")
+    unit, closed, frame = rest.partition("]")
+    return (unit, frame.strip(), doc.strip()) if closed else ("-", "", note)
 
 
 PACKAGE = "surefoot"

@@ -1,6 +1,5 @@
 """Writes a log: what the run was first, then a chunk of messages every few hundredths of a simulated second."""
 
-import os
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,41 +13,42 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress, encoded
 from surefoot.scenarios.log.rows import ChannelWriter, Clock, Columns, Derive, MessageWriter, RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec, file_descriptor_set
+from surefoot.scenarios.output import reason
 
 
 class Output:
     """An unbuffered file that keeps only whole records.
 
-    The beginning goes to a temporary name, so that a file that cannot be begun neither appears nor replaces an older
-    log.
+    It never replaces another one, and a file that cannot be begun does not stay.
 
     Attributes:
         path: where the log is.
         position: bytes written.
+        crc: CRC-32 of the bytes written.
     """
 
-    __slots__ = ("_file", "_temporary", "path", "position")
+    __slots__ = ("_file", "crc", "path", "position")
 
     def __init__(self, path: Path, beginning: bytes) -> None:
         """Create the file with its beginning.
 
         Raises:
-            LogError: it cannot be created or the beginning does not fit.
+            LogError: it exists, cannot be created or the beginning does not fit.
         """
         self.path = path
-        self.position = 0
-        temporary = path.with_name(f".{path.name}.{os.getpid()}.new")
+        self.position = self.crc = 0
         try:
-            self._file = temporary.open("wb", buffering=0)
+            self._file = path.open("xb", buffering=0)
+        except FileExistsError:
+            raise LogError(f"{path}: exists already; choose another file, or delete it") from None
         except OSError as error:
-            raise LogError(f"{path}: cannot be created, {_reason(error)}; choose another directory") from None
+            raise LogError(f"{path}: cannot be created, {reason(error)}; choose another directory") from None
         try:
             self._write(beginning)
-            temporary.replace(path)
         except OSError as error:
             self._file.close()
-            temporary.unlink(missing_ok=True)
-            raise LogError(f"{path}: cannot be written, {_reason(error)}; no log was created") from None
+            path.unlink(missing_ok=True)
+            raise LogError(f"{path}: cannot be written, {reason(error)}; no log was created") from None
 
     def write(self, data: bytes) -> None:
         """Append whole records.
@@ -60,7 +60,7 @@ class Output:
             self._write(data)
         except OSError as error:
             kept = self._set_aside()
-            message = f"{self.path}: cannot be written on, {_reason(error)}; what was written is kept in {kept.name}"
+            message = f"{self.path}: cannot be written on, {reason(error)}; what was written is kept in {kept.name}"
             raise LogError(message) from None
 
     @property
@@ -77,18 +77,17 @@ class Output:
         while rest:
             rest = rest[self._file.write(rest) :]
         self.position += len(data)
+        self.crc = zlib.crc32(data, self.crc)
 
     def _set_aside(self) -> Path:
-        """Cut off the record that did not fit and take away the name of a log."""
+        """Cut off the record that did not fit and take away the name of a log, if the other name is free."""
         kept = self.path.with_name(f"{self.path.name}.incomplete")
         self._file.truncate(self.position)
         self._file.close()
+        if kept.exists():
+            return self.path
         self.path.replace(kept)
         return kept
-
-
-def _reason(error: OSError) -> str:
-    return (error.strerror or str(error)).lower()
 
 
 Compression = Literal["lz4", "zstd", ""]
@@ -141,13 +140,13 @@ class LogWriter:
         """Create the file; metadata and attachments are on disk when this returns.
 
         Args:
-            path: file to create; an older log of that name is replaced.
+            path: file to create.
             metadata: named records of key and value.
             attachments: files to carry.
             compression: of the chunks.
 
         Raises:
-            LogError: the file cannot be created or written; nothing of that name is then created or replaced.
+            LogError: the file exists, or cannot be created or written; nothing of that name is then created.
         """
         self.path = path
         self._compression = compression
@@ -239,7 +238,7 @@ class LogWriter:
             return
         self.flush()
         counts = {channel.channel_id: channel.total for channel in self._channels}
-        self._output.write(self._summary.finish(self._output.position, counts))
+        self._output.write(self._summary.finish(self._output.position, counts, self._output.crc))
         self._output.close()
 
     def discard(self) -> None:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from surefoot.planner.geometry import sole_rates, sole_rotation
 from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
-from surefoot.planner.types import CentroidalState, FeetState, PhaseKind
+from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, PlannedFootstep
 from surefoot.scenarios.file.schema import Fault, Rates
 from surefoot.scenarios.loop.sensing import PlannerSensing
 from surefoot.scenarios.record.walk import WalkRecorder
@@ -54,6 +54,8 @@ class Planning:
         self.plan: WalkPlan
         self.sampler: PlanSampler
         self._started = False
+        self._aim: PlannedFootstep | None = None
+        self._landing: PlannedFootstep | None = None
 
     def due(self, tick: int) -> bool:
         """Whether the planner measures at a control tick."""
@@ -78,8 +80,31 @@ class Planning:
         self.sampler = PlanSampler(plan)
         self._started = True
         self._recorder.plan(now_ns, plan)
-        if before is not None and before.phase.kind is PhaseKind.SINGLE and plan.phase.kind is not PhaseKind.SINGLE:
-            self._recorder.touchdown(now_ns, before.footsteps[0], feet)
+        self._book(now_ns, before, feet)
+
+    def _book(self, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
+        """Record a footstep once its swing is over and its foot has touched down, which it may never do.
+
+        What was planned of it is what the last plan before the touchdown said: the planner moves the footstep of a foot
+        that has touched down early to where it stands.
+        """
+        swinging = _swinging(self.plan)
+        if before is not None and (foot := _swinging(before)) is not None and swinging is not foot:
+            self._landing = self._aim
+        landing = self._landing
+        if landing is not None and landing.footstep.foot is swinging:
+            self._landing = None
+        elif landing is not None and feet.contact[landing.footstep.foot]:
+            self._recorder.touchdown(now_ns, landing, feet)
+            self._landing = None
+        if swinging is not None and not self.plan.status.early_touchdown:
+            self._aim = self.plan.footsteps[0]
+
+
+def _swinging(plan: WalkPlan) -> Foot | None:
+    """The foot that swings in a plan's phase."""
+    stance = plan.phase.stance
+    return stance.other if plan.phase.kind is PhaseKind.SINGLE and stance is not None else None
 
 
 def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:

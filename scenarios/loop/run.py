@@ -1,6 +1,7 @@
 """Runs a scenario: the log is written while the loop goes on, and the verdict is then computed from the log file."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +13,9 @@ from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import Verdict, judge
 from surefoot.scenarios.log import AttachedFile, LogWriter, read
+from surefoot.scenarios.loop.interrupts import Interrupts, held_back
 from surefoot.scenarios.loop.skeleton import ClosedLoop, End, OnProgress, Progress, refusing, run_loop
+from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import (
     END_RECORD,
     LOG_NAME,
@@ -21,7 +24,7 @@ from surefoot.scenarios.record.provenance import (
     SCENARIO_FILE,
     VERDICT_NAME,
     RunConstants,
-    run_name,
+    run_folders,
     versions,
 )
 from surefoot.scenarios.setup.load import load as load_scenario
@@ -39,7 +42,7 @@ class Result:
     Attributes:
         verdict: computed from the log.
         log: path of the log.
-        interrupted: whether the user stopped the run.
+        interrupted: whether a signal, Ctrl-C or another, came while it went on or was judged.
     """
 
     verdict: Verdict
@@ -73,7 +76,8 @@ def run(
     Args:
         scenario: a scenario, or what `surefoot.load` takes to find one.
         seed: over that of the scenario.
-        out: directory that gets ``<scenario>-<seed>/log.mcap`` and ``verdict.json``.
+        out: directory that gets a folder of the run's own, ``<scenario>-<seed>`` or, where that is taken,
+            ``<scenario>-<seed>-2`` and so on, with ``log.mcap`` and ``verdict.json``.
         planner: a profile in place of the one that the scenario names.
         parts: of the loop in full physics, in place of surefoot's own.
         robot: a description in place of the robot that the scenario names.
@@ -103,16 +107,18 @@ def run_scenario(
     simulate: Simulate | None = None,
     robot: "RobotDescription | None" = None,
     profile: Profile | None = None,
+    on_begin: Callable[[Path], None] | None = None,
 ) -> Result:
     """Run a scenario and judge it.
 
     Args:
         scenario: what to run.
-        out: directory that gets ``<scenario>-<seed>/log.mcap`` and ``verdict.json``.
+        out: directory that gets the run's own folder.
         on_progress: is told where the run is.
         simulate: the closed loop; that of the scenario's fidelity by default.
         robot: its robot; described from the scenario by default.
         profile: the planner's profile; the one that the scenario names by default.
+        on_begin: is told where the log is, once it is there.
 
     Raises:
         LogError: the log or the verdict cannot be written.
@@ -120,13 +126,37 @@ def run_scenario(
     """
     with refusing():
         walk = resolve(scenario, robot, profile)
-    folder = made_folder(out / run_name(walk.name, walk.seed))
-    with one_thread(), open_log(folder / LOG_NAME, walk) as writer:
-        (folder / VERDICT_NAME).unlink(missing_ok=True)
-        end = _watched(simulate or _simulate, walk, writer, on_progress)
-    verdict = judge(read(folder / LOG_NAME))
-    verdict.write(folder / VERDICT_NAME)
-    return Result(verdict, folder / LOG_NAME, end.kind == "interrupted")
+    with held_back() as interrupts:
+        with _own_folder(out, walk) as folder, one_thread(), open_log(folder / LOG_NAME, walk) as writer:
+            if on_begin is not None:
+                on_begin(writer.path)
+            end = _watched(simulate or _simulate, walk, writer, on_progress, interrupts)
+        verdict = judge(read(writer.path))
+        verdict.write(folder / VERDICT_NAME)
+    return Result(verdict, writer.path, end.kind == "interrupted" or interrupts.count > 0)
+
+
+@contextmanager
+def _own_folder(out: Path, walk: Walk) -> Iterator[Path]:
+    """A folder that no other run has or will have; it is taken away again if the run leaves nothing in it.
+
+    Raises:
+        LogError: it cannot be made.
+    """
+    made_folder(out)
+    for folder in run_folders(out, walk.name, walk.seed):
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise unmade(folder, error) from None
+        break
+    try:
+        yield folder
+    finally:
+        with suppress(OSError):
+            folder.rmdir()
 
 
 def one_thread() -> threadpool_limits:
@@ -198,6 +228,7 @@ def run_constants(walk: Walk) -> RunConstants:
         torque_limit=tuple(float(value) for value in robot.torque_limit),
         position_lower=tuple(float(value) for value in robot.position_lower),
         position_upper=tuple(float(value) for value in robot.position_upper),
+        velocity_limit=tuple(float(value) for value in robot.velocity_limit),
         terrain=walk.terrain_kind,
         plant=walk.pendulum.plant,
         roles=_roles(robot),
@@ -215,7 +246,9 @@ def _roles(robot: "RobotDescription") -> dict[str, tuple[str, ...]]:
     return {"knees": roles.knees, **legs, "torso": (robot.torso_body,)}
 
 
-def _watched(simulate: Simulate, walk: Walk, writer: LogWriter, on_progress: OnProgress | None) -> End:
+def _watched(
+    simulate: Simulate, walk: Walk, writer: LogWriter, on_progress: OnProgress | None, interrupts: Interrupts
+) -> End:
     """Run the loop and write into the log how it ended, however it ended."""
     last = Progress(0.0, 0.0, "", 0.0)
 
@@ -226,7 +259,8 @@ def _watched(simulate: Simulate, walk: Walk, writer: LogWriter, on_progress: OnP
             on_progress(progress)
 
     try:
-        end = simulate(walk, writer, note)
+        with interrupts.delivered():
+            end = simulate(walk, writer, note)
     except KeyboardInterrupt:
         end = End("interrupted", last.time, "interrupted by the user")
     except LogError:
@@ -255,6 +289,11 @@ def made_folder(path: Path) -> Path:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{path}: cannot be created, {reason}; choose another directory with --out") from None
+        raise unmade(path, error) from None
     return path
+
+
+def unmade(path: Path, error: OSError) -> LogError:
+    """Why a directory is not there."""
+    why = "not a directory" if isinstance(error, FileExistsError) else reason(error)
+    return LogError(f"{path}: cannot be created, {why}; choose another directory with --out")

@@ -11,6 +11,7 @@ from pathlib import Path
 import yaml
 
 from surefoot.scenarios.loop.run import made_folder
+from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.paper import studies
 from surefoot.scenarios.paper.claim import Claim, Finding, Verdict
 from surefoot.scenarios.paper.claims import CLAIMS
@@ -31,7 +32,6 @@ from surefoot.scenarios.paper.tables import (
     table_html,
     tag,
 )
-from surefoot.scenarios.show.replay.content import write_whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,33 +212,36 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def paper(out: Path, jobs: int) -> Written:
+def paper(out: Path, jobs: int, replace: bool = False) -> Written:
     """Run what has not been run and write the page.
 
     Args:
         out: directory of the page and, below it, of the runs.
         jobs: how many runs at once.
+        replace: the page and the numbers of an earlier time; runs that were done are taken as they are.
 
     Raises:
-        LogError: the directory or the page cannot be written.
+        LogError: the directory or the page cannot be written, or the page exists.
         InterruptedRunsError: the user stopped it; what was run is kept.
     """
     runs = made_folder(out / RUNS_NAME)
+    for name in (PAGE_NAME, NUMBERS_NAME):
+        refuse_existing(out / name, replace)
     every = experiments()
     with ExperimentBar(len(every)) as bar:
         results = Results(run_all(every, runs, jobs, bar))
-    return write(results, out)
+    return write(results, out, replace)
 
 
-def write(results: Results, out: Path) -> Written:
+def write(results: Results, out: Path, replace: bool = False) -> Written:
     """Write the page and the numbers behind it.
 
     Raises:
-        LogError: they cannot be written.
+        LogError: they exist or cannot be written.
     """
-    with write_whole(out / PAGE_NAME) as temporary:
+    with write_whole(out / PAGE_NAME, replace) as temporary:
         temporary.write_text(page(results), encoding="utf-8")
-    with write_whole(out / NUMBERS_NAME) as temporary:
+    with write_whole(out / NUMBERS_NAME, replace) as temporary:
         temporary.write_text(json.dumps(_numbers(results), indent=1, allow_nan=False) + "\n", encoding="utf-8")
     falls = sum(bool(outcome.metrics.get("fell")) for outcome in results.outcomes)
     failures = tuple(outcome.experiment.folder for outcome in results.failures)

@@ -12,7 +12,7 @@ from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.paper.studies import PROFILES, WORLD_SETTINGS, Experiment, Study, World
-from surefoot.scenarios.record.provenance import END_RECORD, LOG_NAME, SCENARIO_FILE, versions
+from surefoot.scenarios.record.provenance import END_RECORD, LOG_NAME, SCENARIO_FILE, taken_folders, versions
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import scenario_yaml
 
@@ -50,10 +50,9 @@ def execute(experiment: Experiment, folder: Path) -> Outcome:
     """
     try:
         scenario = load_scenario(experiment.base, experiment.overrides)
-        log = folder / experiment.folder / LOG_NAME
-        if not is_done(log, scenario_yaml(scenario)):
-            run_scenario(scenario, folder)
-        return outcome_of(experiment, log)
+        logs = (own / LOG_NAME for own in taken_folders(folder, scenario.name, scenario.seed))
+        done = next((log for log in logs if is_done(log, scenario_yaml(scenario))), None)
+        return outcome_of(experiment, done or run_scenario(scenario, folder).log)
     except (ScenarioError, SetupError, LogError) as refusal:
         return Outcome(experiment, failure=" ".join(str(refusal).split()))
     except Exception as error:
@@ -68,7 +67,7 @@ def is_done(path: Path, scenario: str) -> bool:
     except LogError:
         return False
     ended = log.metadata.get(END_RECORD, {}).get("kind") in ENDED
-    return ended and not log.truncated and same_scenario and _made_by(log) == _relevant(versions())
+    return ended and not log.truncated and same_scenario and not log.losses() and _made_by(log) == _relevant(versions())
 
 
 def outcome_of(experiment: Experiment, path: Path) -> Outcome:

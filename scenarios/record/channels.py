@@ -53,7 +53,7 @@ def measurement(n: Sizes) -> ChannelSpec:
         _real("accelerometer", 3, "m/s^2", "imu", "specific force"),
         _real("wrench_left", 6, "N, N m", "left sole", "contact wrench at the sole centre"),
         _real("wrench_right", 6, "N, N m", "right sole", "contact wrench at the sole centre"),
-        _real("external_force", 3, "N", "world", "sum of pushes"),
+        _real("external_force", 3, "N", "world", "sum of pushes, mean over the tick that ends at the message's time"),
     )
     return ChannelSpec("/measurement", "Measurement", fields, measurement.__doc__ or "")
 
@@ -82,7 +82,7 @@ def point_truth(_: Sizes) -> ChannelSpec:
         _real("com_velocity", 3, "m/s", "world", "CoM velocity"),
         _real("left_sole", 7, "m, -", "world", "pose of the sole centre"),
         _real("right_sole", 7, "m, -", "world", "pose of the sole centre"),
-        _real("external_force", 3, "N", "world", "sum of pushes, mean until the next tick"),
+        _real("external_force", 3, "N", "world", "sum of pushes, mean over the tick that begins at the message's time"),
     )
     return ChannelSpec("/truth", "PointTruth", fields, point_truth.__doc__ or "")
 
@@ -137,8 +137,8 @@ def reference(_: Sizes) -> ChannelSpec:
         _real("dcm", 2, "m", "world", "planned DCM"),
         _scalar("omega", "1/s", "natural frequency of the pendulum"),
         _real("zmp_reference", 2, "m", "world", "ZMP that the footsteps define"),
-        _real("swing_position", 3, "m", "world", "sole centre of the swing foot"),
-        _real("swing_velocity", 3, "m/s", "world", "sole centre of the swing foot"),
+        _real("swing_position", 3, "m", "world", "sole centre of the swing foot, its roll in it"),
+        _real("swing_velocity", 3, "m/s", "world", "sole centre of the swing foot, its roll in it"),
         _int("phase", "0 standing, 1 double support, 2 single support"),
         _int("stance", "stance foot: 0 left, 1 right, -1 both"),
         _int("step", "footsteps completed"),
@@ -146,6 +146,7 @@ def reference(_: Sizes) -> ChannelSpec:
         _scalar("phase_duration", "s", "of the phase"),
         _real("support", (SUPPORT_VERTICES, 2), "m", "world", "planned support polygon; the last vertex pads"),
         _int("support_count", "vertices of the polygon"),
+        _real("roll", 2, "rad", "", "planned pitch about the toe edge, heel up: left, right"),
     )
     return ChannelSpec("/reference", "Reference", fields, reference.__doc__ or "")
 
@@ -181,12 +182,12 @@ def footsteps(_: Sizes) -> ChannelSpec:
 
 
 def footstep(_: Sizes) -> ChannelSpec:
-    """A footstep taken, at its touchdown."""
+    """A footstep taken, when its swing is over and its foot has touched down; none of a foot that never does."""
     fields = (
         _int("index", "1 is the first"),
         _int("foot", "0 left, 1 right"),
-        _real("planned", 4, "m, rad", "world", "x y z yaw as last planned"),
-        _real("actual", 4, "m, rad", "world", "x y z yaw"),
+        _real("planned", 4, "m, rad", "world", "x y z yaw as last planned before it touched down"),
+        _real("actual", 4, "m, rad", "world", "x y z yaw in the state that the planner was given"),
     )
     return ChannelSpec("/footstep", "Footstep", fields, footstep.__doc__ or "")
 

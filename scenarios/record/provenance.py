@@ -1,10 +1,12 @@
 """What a log carries about its run beside the channels: its constants, and the versions of all that it depends on."""
 
 import hashlib
+import itertools
 import json
+import math
 import platform
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -35,9 +37,19 @@ LOG_NAME, VERDICT_NAME = "log.mcap", "verdict.json"
 """Files of a run in its folder."""
 
 
-def run_name(scenario: str, seed: int) -> str:
-    """Name of a run's own folder."""
-    return f"{scenario}-{seed}"
+def run_folders(out: Path, scenario: str, seed: int) -> Iterator[Path]:
+    """Folders that a run may have for its own, in order: the first that nobody has taken."""
+    yield out / f"{scenario}-{seed}"
+    yield from (out / f"{scenario}-{seed}-{number}" for number in itertools.count(2))
+
+
+def taken_folders(out: Path, scenario: str, seed: int) -> Iterator[Path]:
+    """Folders of the runs of a scenario's name and seed that there are."""
+    return itertools.takewhile(Path.exists, run_folders(out, scenario, seed))
+
+
+_GREATEST = 1e6
+"""No mass, size or rate of a run is greater."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +75,7 @@ class RunConstants:
         plant: of fidelity pendulum.
         boxes: the solids on the ground plane, each as centre, half sizes [m] and rotation to the world, row by row.
         roles: names of joints and bodies by role (knees, left_leg, right_leg, torso); a log may lack them.
+        velocity_limit: no-load speed by joint; empty in a log that lacks them [rad/s].
     """
 
     scenario: str
@@ -83,6 +96,7 @@ class RunConstants:
     plant: str = "pendulum"
     boxes: tuple[tuple[float, ...], ...] = ()
     roles: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    velocity_limit: tuple[float, ...] = ()
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""
@@ -101,9 +115,28 @@ class RunConstants:
         """
         try:
             values = {name: json.loads(text) for name, text in records[RECORD].items()}
-            return TypeAdapter(cls).validate_python(values)
-        except (KeyError, TypeError, ValueError, RecursionError):
+            found = TypeAdapter(cls).validate_python(values)
+        except (KeyError, TypeError, ValueError, OverflowError, RecursionError):
             raise LogError(f"{log_name}: does not describe a run; give a log that `surefoot run` has written") from None
+        if wrong := found._impossible():
+            raise LogError(f"{log_name}: its run has an impossible {wrong}; give a log that `surefoot run` has written")
+        return found
+
+    def _impossible(self) -> str:
+        """The first constant that no run can have, with its value; empty if there is none."""
+        sizes = ("mass", "com_height", "foot_length", "foot_width", "control_rate", "sample_time")
+        for name in sizes:
+            if not 0.0 < getattr(self, name) < _GREATEST:
+                return f"{name}, {getattr(self, name)}"
+        if self.steps_planned < 0 or self.fidelity not in ("full", "pendulum"):
+            return f"number of steps or fidelity, {self.steps_planned}, {self.fidelity}"
+        for name in ("torque_limit", "position_lower", "position_upper"):
+            values = getattr(self, name)
+            if len(values) != len(self.joint_names) or any(math.isnan(value) for value in values):
+                return f"{name}, of {len(values)} numbers for {len(self.joint_names)} joints"
+        if any(len(box) != 15 or not all(map(math.isfinite, box)) for box in self.boxes):
+            return "ground"
+        return ""
 
 
 PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "piqp", "numpy", "scipy", "mcap")

@@ -62,7 +62,7 @@ class WalkRecorder:
             *("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_reference"),
             *("swing_position", "swing_velocity", "support"),
         )
-        numbers = ("omega", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
+        numbers = ("omega", "roll", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
         self._reference = writer.rows(((reference, vectors),), ((reference, numbers),))
         self._state = writer.channel(channels.planner_state(sizes))
         self._plan = writer.channel(channels.plan(sizes))
@@ -73,6 +73,7 @@ class WalkRecorder:
         self._timing = writer.rows((), ((timing, parts),))
         self._parts: Callable[[TickTiming], tuple[float, ...]] = attrgetter(*parts)
         self._support = np.zeros((SUPPORT_VERTICES, 2))
+        self._rolls = sizes.nj > 0  # the ideal feet of a point mass stay level
 
     def planner_state(self, time_ns: int, state: PlannerState) -> None:
         """What the planner measured and was given."""
@@ -110,15 +111,20 @@ class WalkRecorder:
         self._footstep.append(time_ns, planned.step, int(foot), _pose(planned.footstep), actual)
 
     def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
-        """The reference of a control tick and the gait's clock."""
-        phase = plan.phase
+        """The reference of a control tick and the gait's clock; the swing foot's sole is where its roll takes it."""
+        phase, roll = plan.phase, plan.roll if self._rolls else None
+        position, velocity = sample.swing[:3], sample.swing_velocity[:3]
+        pitch = 0.0 if roll is None else roll.evaluate(sample.time)[0]
+        if roll is not None and pitch and roll.foot is sample.swing_foot:
+            position, velocity = roll.centre(sample.time, sample.swing, sample.swing_velocity)
+        pitches = (pitch, 0.0) if roll is not None and roll.foot is Foot.LEFT else (0.0, pitch)
         numbers = (
-            sample.omega, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
+            sample.omega, *pitches, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
             phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
         )  # fmt: skip
         self._reference.append(
             time_ns, numbers, sample.com, sample.com_velocity, sample.com_acceleration, sample.zmp, sample.dcm,
-            sample.zmp_reference, sample.swing[:3], sample.swing_velocity[:3], self._support.ravel(),
+            sample.zmp_reference, position, velocity, self._support.ravel(),
         )  # fmt: skip
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:

@@ -9,7 +9,7 @@ from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
 from surefoot.scenarios.file.schema import Gait, Sensing, TerrainSettings
-from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import idle_commands, never_act
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
@@ -26,11 +26,12 @@ from surefoot.scenarios.setup.walk_checks import (
 _SENSED = ("source", "zmp_noise", "com_noise")
 """What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
 
-_AVAILABLE: dict[Key, tuple[Any, ...]] = {
+AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
     ("planner", "step_adaptation"): ("none", "location"),
     **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
 }
+"""Values of the format's keys that this version has; of other keys it has all."""
 
 _PENDULUM_FAULTS = ("planner_freeze", "state_nan")
 
@@ -47,19 +48,12 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
         *_durations(draft),
         *(() if clock else never_act(draft, draft.duration)),
         *(() if commands else idle_commands(draft)),
-        *_criteria(draft),
         *_beliefs(draft),
         *_controller(draft),
         *walk_problems(draft),
         *_robot(draft, robots),
         *_unavailable(draft),
     ]
-
-
-def is_multiple(value: float, unit: float) -> bool:
-    """Whether a time is a whole number of units, to a billionth of a unit per unit."""
-    ratio = value / unit
-    return math.isclose(ratio, round(ratio), rel_tol=1e-9, abs_tol=1e-9)
 
 
 def _rates(draft: Draft) -> Iterator[Problem]:
@@ -76,16 +70,10 @@ def _rates(draft: Draft) -> Iterator[Problem]:
 
 
 def _durations(draft: Draft) -> Iterator[Problem]:
-    sample_time = draft.keys.planner.sample_time
-    for name in ("single_support", "double_support", "initial_stand"):
-        value = getattr(draft.keys.gait, name)
-        if name == "single_support" and swing_too_short(draft):
-            what = f"gait.{name} {value} s is too short for a swing of the foot"
-            yield Problem(("gait", name), what, f"use at least {FEWEST_SWING_SAMPLES * sample_time:g} s")
-        elif not is_multiple(value, sample_time):
-            near = max(1, round(value / sample_time)) * sample_time
-            what = f"gait.{name} {value} s is not a multiple of planner.sample_time {sample_time} s"
-            yield Problem(("gait", name), what, f"use for example {near:.6g} s")
+    if swing_too_short(draft):
+        what = f"gait.single_support {draft.asked.gait.single_support} s is too short for a swing of the foot"
+        right = f"use at least {FEWEST_SWING_SAMPLES * draft.keys.planner.sample_time:g} s"
+        yield Problem(("gait", "single_support"), what, right)
 
 
 def _pushes(draft: Draft) -> Iterator[Problem]:
@@ -99,19 +87,6 @@ def _pushes(draft: Draft) -> Iterator[Problem]:
         elif push.step is not None and push.step > draft.gait.steps:
             what = f"a push in step {push.step} of a gait of {draft.gait.steps} steps"
             yield Problem((*key, "step"), what, f"give a step of at most {draft.gait.steps}")
-
-
-def _criteria(draft: Draft) -> Iterator[Problem]:
-    for name, bound in draft.keys.criteria.items():
-        low, high = bound.min, bound.max
-        if isinstance(low, float) and isinstance(high, float) and low > high:
-            yield Problem(("criteria", name), f"criteria.{name}: min {low} exceeds max {high}", "swap them")
-        metric = known(name)
-        size = metric.size if metric else 1
-        for side, limit in (("min", low), ("max", high)):
-            if isinstance(limit, tuple) and len(limit) != size:
-                what = f"criteria.{name}.{side} has {len(limit)} elements"
-                yield Problem(("criteria", name, side), what, f"give one number, or {size} of them")
 
 
 def _beliefs(draft: Draft) -> Iterator[Problem]:
@@ -152,22 +127,26 @@ def _reach(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
     sideways = (gait.step_width - facts.hip_width) / 2
     if abs(sideways) >= facts.leg_length:
         what = f"gait.step_width {gait.step_width} m is out of reach of the legs"
-        yield Problem(("gait", "step_width"), what, f"use for example {facts.hip_width:.3f} m")
+        hint = meant(gait.step_width, "m", facts.leg_length)
+        yield Problem(("gait", "step_width"), what, f"use for example {facts.hip_width:.3f} m{hint}")
         return
     longest = longest_step(facts.leg_length, gait.com_height - facts.com_above_hip, facts.hip_width, gait.step_width)
     if math.isnan(longest):
         highest = facts.com_above_hip + math.sqrt(facts.leg_length**2 - sideways**2)
         what = f"gait.com_height {gait.com_height} m is out of reach with feet {gait.step_width} m apart"
-        yield Problem(("gait", "com_height"), what, f"use less than {highest:.3f} m")
+        yield Problem(
+            ("gait", "com_height"), what, f"use less than {highest:.3f} m{meant(gait.com_height, 'm', highest)}"
+        )
     elif gait.steps and not draft.commanded and abs(gait.step_length) > longest:
         what = f"gait.step_length {gait.step_length} m is out of reach at com_height {gait.com_height} m"
-        yield Problem(("gait", "step_length"), what, f"use at most {longest:.3f} m, or lower gait.com_height")
+        right = f"use at most {longest:.3f} m, or lower gait.com_height{meant(gait.step_length, 'm', longest)}"
+        yield Problem(("gait", "step_length"), what, right)
 
 
 def _unavailable(draft: Draft) -> list[Problem]:
     """List values that the contract allows and this version has not got."""
     found = []
-    for key, values in _AVAILABLE.items():
+    for key, values in AVAILABLE.items():
         value: Any = draft.keys
         for part in key:
             value = getattr(value, str(part))
@@ -204,7 +183,20 @@ _POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
 
 def notes(draft: Draft) -> tuple[str, ...]:
     """List them, one sentence each."""
-    return (*_without_effect(draft), *_cut_short(draft))
+    return (*draft.moved, *_unlikely(draft), *_without_effect(draft), *_cut_short(draft))
+
+
+_LONG = 60.0
+"""Time from which a stand or a push may have been meant in milliseconds [s]."""
+
+
+def _unlikely(draft: Draft) -> Iterator[str]:
+    """Tell times that are what they say and were perhaps meant in another unit."""
+    times = {f"pushes.{index}.duration": push.duration for index, push in enumerate(draft.keys.pushes)}
+    for name, value in {"gait.initial_stand": draft.keys.gait.initial_stand, **times}.items():
+        hint = meant(value, "s", _LONG)
+        if hint:
+            yield f"{name} is {value:g} s{hint}"
 
 
 def _without_effect(draft: Draft) -> Iterator[str]:

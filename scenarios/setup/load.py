@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -13,23 +14,32 @@ from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, Set
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import unusable
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import Overrides, apply_overrides, decoded, parse
+from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, decoded, parse
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
-from surefoot.scenarios.record.provenance import LOG_NAME, PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
+from surefoot.scenarios.log.encoding import MAGIC
+from surefoot.scenarios.record.provenance import PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check
+from surefoot.scenarios.setup.criteria_checks import criteria_problems
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
+from surefoot.scenarios.setup.terrain import KINDS
 
 LOG_ENDING = ".mcap"
-RUNS, AGAIN = Path("runs"), Path("runs/again")
-"""Where runs go by default, and where the repetition of one goes that lies there."""
+MOST_TOLD = 20
+"""Problems of a scenario that are told at once."""
 
 
 def is_log(reference: str) -> bool:
-    """Whether a reference to a scenario is the path of a log."""
-    return reference.endswith(LOG_ENDING)
+    """Whether a reference to a scenario is the path of a log, by its ending or by how the file begins."""
+    if reference.endswith(LOG_ENDING):
+        return True
+    try:
+        with Path(reference).open("rb") as file:
+            return file.read(len(MAGIC)) == MAGIC
+    except (OSError, ValueError):
+        return False
 
 
 def attached_scenario(path: str) -> tuple[str, str]:
@@ -40,10 +50,10 @@ def attached_scenario(path: str) -> tuple[str, str]:
     """
     try:
         log = read(path)
-        text = _with_pushes(log.attachments[SCENARIO_FILE].decode(), log.metadata)
+        text = _with_pushes(decoded(BytesIO(log.attachments[SCENARIO_FILE]), f"{path}/{SCENARIO_FILE}"), log.metadata)
     except LogError as error:
         raise ScenarioError([str(error)]) from None
-    except (KeyError, UnicodeDecodeError):
+    except (KeyError, TypeError, ValueError, RecursionError):
         what = f"{path}: carries no readable {SCENARIO_FILE}, so it cannot be run again"
         raise ScenarioError([f"{what}; give a log that `surefoot run` has written"]) from None
     if PARTS_RECORD in log.metadata:
@@ -58,28 +68,8 @@ def _with_pushes(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
     given = [json.loads(record["push"]) for name, record in metadata.items() if name.startswith(PUSH_RECORD)]
     if not given:
         return text
-    keys = yaml.safe_load(text)
+    keys = parse(text, SCENARIO_FILE).value
     return yaml.safe_dump({**keys, "pushes": [*keys.get("pushes", []), *given]}, sort_keys=False)
-
-
-def output_folder(reference: str, name: str, chosen: Path | None) -> Path:
-    """Where a run goes; never over the log that it repeats.
-
-    Args:
-        reference: scenario or log.
-        name: of the run's own folder.
-        chosen: by the user; None for the default.
-
-    Raises:
-        ScenarioError: the user chose the folder in which the log would be replaced.
-    """
-    out = RUNS if chosen is None else chosen
-    target = out / name / LOG_NAME
-    if not is_log(reference) or not target.exists() or not target.samefile(reference):
-        return out
-    if chosen is not None:
-        raise ScenarioError([f"--out {chosen}: the run would replace {reference}; choose another directory"])
-    return AGAIN
 
 
 def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None = None) -> Scenario:
@@ -128,27 +118,37 @@ def read_scenario(text: str, name: str, stem: str, overrides: Overrides, robots:
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
+    scenario = KINDS[scenario.terrain.kind].completed(scenario)
     draft = Draft(scenario)
-    semantic = check(draft, robots)
+    semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *check(draft, robots)]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:
-        raise ScenarioError(source.describe(problem) for problem in sorted(problems, key=source.spot))
+        raise ScenarioError(_told(source, problems))
     if "fell" not in scenario.criteria:
         criteria = {"fell": Bound(equals=False), **scenario.criteria}
         scenario = scenario.model_copy(update={"criteria": criteria})
     return scenario
 
 
+def _told(source: Source, problems: list[Problem]) -> list[str]:
+    """The first problems with their places, in the order of the file, and how many more there are."""
+    told = [source.describe(problem) for problem in sorted(problems, key=source.spot)[:MOST_TOLD]]
+    rest = len(problems) - len(told)
+    return [*told, f"{source.name}: {rest} problems more; mend these first"] if rest else told
+
+
 def _text(reference: str) -> tuple[str, str, str]:
     """Text, name for messages, and stem of a scenario."""
     if reference in catalogue.OWN:
         return *catalogue.text(reference), reference
-    if is_log(reference):
-        return *attached_scenario(reference), Path(reference).stem
     path = Path(reference)
     try:
         if not path.is_file() and reference in catalogue.names():
             return *catalogue.text(reference), reference
+        if path.exists() and not path.is_file() and not path.is_dir():
+            raise ScenarioError([f"{reference}: a pipe or a device; give a regular file, or a catalogue name"])
+        if is_log(reference):
+            return *attached_scenario(reference), path.stem
         with path.open("rb") as file:
             return decoded(file, reference), reference, path.stem
     except IsADirectoryError:

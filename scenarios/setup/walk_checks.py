@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 from surefoot.errors import ParameterError
 from surefoot.planner.ground.terrain import flat
@@ -154,16 +155,12 @@ def commanded_step_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem
 
 
 def _times(draft: Draft) -> Iterator[Problem]:
-    sample_time, commands = draft.keys.planner.sample_time, draft.keys.gait.velocity
-    for index, command in enumerate(commands):
-        count = command.time / sample_time
-        what = f"gait.velocity.{index}.time {command.time} s"
-        if index and command.time <= commands[index - 1].time:
-            what = f"{what} does not come after the command before it"
-            yield Problem((*_VELOCITY, index, "time"), what, f"use more than {commands[index - 1].time} s")
-        elif not math.isclose(count, round(count), rel_tol=1e-9, abs_tol=1e-9):
-            what = f"{what} is not a multiple of planner.sample_time {sample_time} s"
-            yield Problem((*_VELOCITY, index, "time"), what, f"use for example {round(count) * sample_time:.6g} s")
+    commands = draft.keys.gait.velocity
+    for index, (before, command) in enumerate(pairwise(commands), start=1):
+        if command.time <= before.time:
+            asked = draft.asked.gait.velocity[index].time
+            what = f"gait.velocity.{index}.time {asked} s does not come after the command before it"
+            yield Problem((*_VELOCITY, index, "time"), what, f"use more than {before.time} s")
     if commands and not twist_of(commands[-1]).is_zero:
         what = "the last velocity command does not stop"
         yield Problem((*_VELOCITY, len(commands) - 1), what, "end gait.velocity with the time at which to stand alone")

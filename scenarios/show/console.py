@@ -1,8 +1,8 @@
 """What a person sees: a progress line on standard error, tables on standard output, numbers in engineers' units."""
 
 import csv
+import importlib
 import io
-import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -16,17 +16,18 @@ from rich.progress import Progress as RichProgress
 from rich.table import Table
 from rich.text import Text
 
-from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.judge.health import Finding
 from surefoot.scenarios.judge.inspection import Inspection
 from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text, shown_unit, value_text
 from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.loop.skeleton import Progress
+from surefoot.scenarios.output import refuse_existing, write_whole
 
 _REFRESH = 0.1
 
-WIDTH = 200
-"""Columns of tables that go into a file or another program: as many as any of them needs."""
+WIDTH = 10_000
+"""Columns that a table may have: as many as it needs. A narrow terminal wraps a line; it never loses what it says."""
 
 
 class ProgressLine:
@@ -94,11 +95,11 @@ def _health_lines(health: Sequence[Finding]) -> list[str]:
 
 def print_topic(topic: str, fields: Mapping[str, Mapping[str, Any]]) -> None:
     """Print the summary of a topic's fields."""
-    table = plain_table(topic, "shape", "messages", "not finite", "min", "mean", "max")
+    table = plain_table(topic, "shape", "unit", "messages", "not finite", "min", "mean", "max")
     for name, row in fields.items():
         shape = "x".join(str(n) for n in row["shape"]) or "scalar"
         spread = [number(row[key]) for key in ("min", "mean", "max")]
-        table.add_row(name, shape, str(row["messages"]), str(row["not_finite"]), *spread)
+        table.add_row(name, shape, row["unit"], str(row["messages"]), str(row["not_finite"]), *spread)
     plain_console().print(table)
 
 
@@ -145,8 +146,11 @@ def plain_table(*columns: str) -> Table:
 
 
 def plain_console() -> Console:
-    """Standard output; lines are never wrapped, so that paths and names can be copied, nor tables cut in a file."""
-    return Console(soft_wrap=True, markup=False, highlight=False, width=None if sys.stdout.isatty() else WIDTH)
+    """Standard output; lines are never wrapped, so that paths and names can be copied, nor tables cut.
+
+    The height is given too: without it a dumb terminal, as of many CI services, has 80 columns whatever the width.
+    """
+    return Console(soft_wrap=True, markup=False, highlight=False, width=WIDTH, height=25)
 
 
 _ROWS_AT_ONCE = 4096
@@ -163,8 +167,10 @@ def selected(log: Log, topic: str, start: float | None, end: float | None, field
         field: the field; None for all.
 
     Raises:
-        LogError: there is no such topic or field, its messages are not of a fixed layout, or no message is left.
+        LogError: there is no such topic or field, its messages are not of a fixed layout, or none is in the window.
     """
+    if start is not None and end is not None and start > end:
+        raise LogError(f"--from {start:g} is after --to {end:g}; give the earlier time as --from")
     first, last = log.time_range()
     channel = log.window(topic, first if start is None else start, last if end is None else end)
     if not len(channel):
@@ -172,27 +178,29 @@ def selected(log: Log, topic: str, start: float | None, end: float | None, field
     return channel if field is None else channel.only(field)
 
 
-def export(channel: ChannelData, path: Path) -> None:
-    """Write a channel to a file; time [s] is the first column, an array's elements are columns ``name_i_j``.
+def export(channel: ChannelData, path: Path, replace: bool = False) -> None:
+    """Write a channel to a file; time is the first column, the others are those of `ChannelData.columns`.
+
+    CSV has units in its headings, parquet has unit, frame and meaning as metadata of the columns.
 
     Raises:
-        LogError: the ending is unknown, the file cannot be written, or pyarrow is needed and missing.
+        LogError: the ending is unknown, the file exists or cannot be written, or pyarrow is needed and missing.
     """
     writers: Mapping[str, Callable[[ChannelData], bytes]] = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}
     write = writers.get(path.suffix.lower())
     if write is None:
         raise LogError(f"{path}: unknown kind of file '{path.suffix}'; end its name in {', '.join(writers)}")
-    try:
-        path.write_bytes(write(channel))
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{path}: cannot be written, {reason}; choose another directory") from None
+    refuse_existing(path, replace)
+    data = write(channel)
+    with write_whole(path, replace) as temporary:
+        temporary.write_bytes(data)
 
 
 def _csv(channel: ChannelData) -> bytes:
     table, text = channel.columns(), io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(table)
+    units = {name: note["unit"] for name, note in channel.notes().items()}
+    writer.writerow(name if units[name] in ("", "-") else f"{name} [{units[name]}]" for name in table)
     for first in range(0, len(channel), _ROWS_AT_ONCE):
         writer.writerows(
             zip(*(column[first : first + _ROWS_AT_ONCE].tolist() for column in table.values()), strict=True)
@@ -208,11 +216,9 @@ def _npz(channel: ChannelData) -> bytes:
 
 
 def _parquet(channel: ChannelData) -> bytes:
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise LogError("parquet needs the package pyarrow; `pip install pyarrow`, or export to .csv or .npz") from None
-    data = io.BytesIO()
-    pyarrow.parquet.write_table(pyarrow.table(channel.columns()), data)
+    pyarrow = require("pyarrow", "parquet", "parquet", "export to .csv or .npz")
+    parquet = importlib.import_module("pyarrow.parquet")
+    table, notes, data = pyarrow.table(channel.columns()), channel.notes(), io.BytesIO()
+    fields = [column.with_metadata(notes[column.name]) for column in table.schema]
+    parquet.write_table(table.cast(pyarrow.schema(fields)), data)
     return data.getvalue()

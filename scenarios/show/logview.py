@@ -13,7 +13,7 @@ from surefoot.scenarios.record.provenance import RECORD
 Array = NDArray[np.float64]
 
 DRAWN = (
-    *("/truth", "/measurement", "/contact", "/reference", "/plan"),
+    *("/truth", "/measurement", "/estimate", "/contact", "/reference", "/plan"),
     *("/footsteps", "/footstep", "/wbc", "/torque", "/timing"),
 )
 """Topics that the figures draw."""
@@ -102,6 +102,33 @@ class LogView:
         """A scalar field interpolated to given times, shape (n,); errors as of `field`."""
         return np.asarray(np.interp(times, self.time(topic), self.field(topic, name)))
 
+    def from_stance(self, times: Array, points: Array) -> Array:
+        """Points of the ground plane seen from the stance foot, so that a walk of any length can be read.
+
+        In double support it is still the foot that bore alone before; in a stand it is the middle of both.
+
+        Args:
+            times: of the points, shape (n,) [s].
+            points: in the world, shape (n, 2) [m].
+
+        Returns:
+            forward and to the left of the planned sole's centre, NaN where the stance foot has just changed, so that
+            curves break there, shape (n, 2) [m].
+
+        Raises:
+            MissingError: the log does not tell where the feet stand.
+        """
+        clock, planned = self.time("/reference"), self.time("/footsteps")
+        foot = _last_alone(self.field("/reference", "stance"))[_at_or_before(clock, times)]
+        rows = _at_or_before(planned, times)
+        left, right = (self.field("/footsteps", f"current_{name}", 4)[rows] for name in ("left", "right"))
+        pose = np.select([foot[:, None] == 0, foot[:, None] == 1], [left, right], (left + right) / 2)
+        sine, cosine = np.sin(pose[:, 3]), np.cos(pose[:, 3])
+        x, y = (points - pose[:, :2]).T
+        seen = np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
+        seen[1:][np.diff(foot) != 0] = np.nan
+        return seen
+
     def _channel(self, topic: str) -> ChannelData:
         channel = self._channels.get(topic)
         if channel is None:
@@ -114,6 +141,20 @@ class LogView:
         if not len(rows):
             raise MissingError(f"{topic} in this window")
         return rows
+
+
+def _at_or_before(clock: Array, times: Array) -> NDArray[np.intp]:
+    """Row of a clock that holds at each time, shape (n,)."""
+    return np.asarray(np.maximum(np.searchsorted(clock, times + 1e-9, side="right") - 1, 0))
+
+
+def _last_alone(stance: Array) -> Array:
+    """The stance foot, in double support the one before, at first the one to come; -1 without any, shape (n,)."""
+    rows = np.where(stance >= 0, np.arange(len(stance)), -1)
+    if not (stance >= 0).any():
+        return np.full(len(stance), -1.0)
+    rows = np.maximum.accumulate(rows)
+    return np.asarray(stance[np.where(rows >= 0, rows, int(np.argmax(stance >= 0)))])
 
 
 def _window(start: float | None, end: float | None) -> str:

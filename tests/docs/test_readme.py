@@ -1,11 +1,13 @@
 """The Python of the README does what it says."""
 
+import importlib.util
 import re
 from pathlib import Path
 
 import pytest
 
-TEXT = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[2]
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def block(heading):
@@ -25,6 +27,29 @@ def test_from_python_runs_as_it_stands(tmp_path, monkeypatch, capsys):
     assert not sim.fell
     assert abs(com[-1] - tick.com).max() > 1e-6, "the push has left no trace"
     assert capsys.readouterr().out.splitlines()[-1].startswith("walked <Tick")
+
+
+@pytest.fixture(scope="module")
+def readme():
+    spec = importlib.util.spec_from_file_location("readme", ROOT / "docs" / "readme.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.physics
+def test_the_sample_is_what_a_run_prints(readme):
+    assert readme.sample() in TEXT, "run python docs/readme.py"
+
+
+@pytest.mark.unit
+def test_only_the_wall_clock_is_left_out_of_the_sample(readme):
+    shown = re.search(r"(?s)<!-- sample: diagonal-walk -->\n```\n(.*?)```", TEXT)[1]
+    run = shown.replace("3 to 5 ", "4.21   ")
+    assert run != shown
+    assert readme.without_clock(run) == shown
+    assert readme.updated(TEXT, run) == TEXT.replace(shown, run)
+    assert "3 to 5 times real time" in TEXT, "the range of the sample is that of the text"
 
 
 @pytest.mark.unit

@@ -2,6 +2,7 @@
 
 import importlib.util
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ import yaml
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import RegisteredRobots
 
@@ -31,6 +33,25 @@ def test_tables_are_up_to_date(reference, name):
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
     assert text == reference.updated(text, name, table()), "run python docs/reference.py"
     assert table() in text
+
+
+def test_numbers_that_follow_from_the_code_are_up_to_date(reference):
+    texts = {page.name: page.read_text(encoding="utf-8") for page in reference.pages()}
+    assert sum(text.count("<!-- value: chunk -->90 ms<!-- end -->") for text in texts.values()) == 3
+    for name, text in texts.items():
+        assert text == reference.with_values(text), f"{name}: run python docs/reference.py"
+
+
+def test_a_killed_run_loses_no_more_than_the_pages_say(reference, tmp_path):
+    """Chunks are as far apart as the number that the pages give, and a tick at most."""
+    spec, period = ChannelSpec("/x", "X", (FieldSpec("a"),)), float(reference.VALUES["chunk"].removesuffix(" ms"))
+    with LogWriter(tmp_path / "log.mcap", {}) as writer:
+        channel = writer.channel(spec)
+        for tick in range(200):
+            channel.append(tick * 2_000_000, 0.0)
+    starts = [chunk.start_ns / 1e6 for chunk in read(tmp_path / "log.mcap").contents.chunks]
+    assert len(starts) == 5
+    assert all(period <= b - a <= period + 2.0 for a, b in pairwise(starts))
 
 
 def test_every_key_of_the_table_is_one_and_takes_its_default(reference):

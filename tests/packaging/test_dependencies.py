@@ -1,17 +1,20 @@
 """What the package needs of others: declared, pinned, free of the GPL, and told if missing."""
 
 import re
+import shlex
 import subprocess
 import sys
 import tomllib
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from surefoot.scenarios.show.replay.content import MissingExtraError, require
+from surefoot.scenarios import errors
+from surefoot.scenarios.errors import MissingExtraError, install_command, require
 
 pytestmark = pytest.mark.unit
 
@@ -107,6 +110,40 @@ def test_every_module_can_be_imported_without_the_extras():
 @pytest.mark.parametrize(("module", "extra"), [("av", "video"), ("viser", "replay")])
 def test_a_missing_extra_says_how_to_install_it(module, extra, monkeypatch):
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(MissingExtraError, match=rf"a film needs the package {module}.*'surefoot\[{extra}\]'"):
+    with pytest.raises(MissingExtraError, match=rf"a film needs the package {module}.*\[{extra}\]'"):
         require(module, extra, "a film")
     assert extra in PROJECT["optional-dependencies"]
+
+
+def installed(monkeypatch, tmp_path, origin):
+    """Have Surefoot installed below `tmp_path`, as pip says it was."""
+    monkeypatch.setattr(errors, "__file__", str(tmp_path / "surefoot" / "scenarios" / "errors.py"))
+    monkeypatch.setattr(errors, "distribution", lambda name: SimpleNamespace(read_text=lambda file: origin))
+
+
+@pytest.mark.parametrize(
+    ("origin", "named"),
+    [
+        (None, "'surefoot[video]'"),
+        ('{"url": "file:///home/me/walks", "dir_info": {}}', "'surefoot[video] @ file:///home/me/walks'"),
+        ('{"url": "file:///d/surefoot-0.1.0-py3.whl"}', "'surefoot[video] @ file:///d/surefoot-0.1.0-py3.whl'"),
+        ('{"url": "https://x.org/s", "vcs_info": {"vcs": "git"}}', "'surefoot[video] @ git+https://x.org/s'"),
+    ],
+)
+def test_the_install_command_is_of_where_it_came_from(monkeypatch, tmp_path, origin, named):
+    installed(monkeypatch, tmp_path, origin)
+    command = install_command("video")
+    assert command.endswith(f"pip install {named}")
+    requirement = Requirement(shlex.split(command)[-1])
+    assert (requirement.name, requirement.extras) == ("surefoot", {"video"})
+
+
+def test_the_install_command_of_a_clone_is_that_of_the_readme(monkeypatch, tmp_path):
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    monkeypatch.setattr(errors.shutil, "which", lambda name: str(Path(sys.executable).with_name(name)))
+    monkeypatch.chdir(ROOT)
+    assert install_command("replay,video") in readme
+    monkeypatch.chdir(tmp_path)
+    assert install_command("video") == f"pip install -c {ROOT}/constraints.txt -e '{ROOT}[video]'"
+    monkeypatch.setattr(errors.shutil, "which", lambda name: "/usr/bin/pip")
+    assert install_command("video").startswith(f"{sys.executable} -m pip install -c ")

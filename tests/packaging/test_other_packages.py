@@ -1,6 +1,7 @@
 """What another package brings: found by its entry point alone, and as good as our own."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -21,7 +22,26 @@ def ran(site, *arguments):
 @pytest.mark.unit
 def test_a_robot_is_listed_beside_ours(disguised):
     listed = disguised.run("list").stdout.splitlines()
-    assert listed[-2:] == ["robot     humanoid100", "robot     disguised"]
+    robots = [line.split() for line in listed if line.startswith("robot ")]
+    assert robots == [["robot", "humanoid100"], ["robot", "disguised", "[disguised]"]]
+
+
+@pytest.mark.unit
+def test_all_that_a_package_brings_is_listed_with_its_name_and_not_imported(documented, at_hand):
+    documented.register("surefoot.profiles", bang="my_package.nowhere:X", paper="my_package.laws:PROFILE")
+    code, out, err = at_hand("list", sites=[documented])
+    brought = [line.split() for line in out.splitlines() if line.endswith("[my-package]")]
+    assert {(kind, name) for kind, name, *_ in brought} == {
+        *(("scenario", "two-slow-steps"), ("robot", "heavy"), ("terrain", "ditch"), ("estimator", "low-base")),
+        *(("profile", "spring"), ("profile", "calm"), ("profile", "bang"), ("task", "look-aside")),
+        *(("metric", "com_sway"), ("metric", "torque_norm_rms")),
+    }
+    assert (code, err.count("\n")) == (0, 1)
+    assert "'paper' of package my-package in surefoot.profiles has the name of one of surefoot's own" in err
+    assert not {"my_package.laws", "my_package.metrics"} & set(sys.modules)
+    found = json.loads(at_hand("list", "--json").out)
+    assert {"name": "spring", "package": "my-package", "doc": ""} in found["profile"]
+    assert {entry["package"] for entry in found["metric"]} == {"surefoot", "my-package"}
 
 
 @pytest.mark.physics

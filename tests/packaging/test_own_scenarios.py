@@ -1,6 +1,7 @@
 """Scenarios of another package: listed, shown and run by name, read with the limits of a user's file."""
 
 import pytest
+import yaml
 
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import ScenarioError
@@ -39,9 +40,11 @@ def test_they_are_listed_after_ours_shown_and_loaded(brought, at_hand):
     answer = at_hand("list")
     rows = [line for line in answer.out.splitlines() if line.startswith("scenario")]
     assert (answer.code, answer.err) == (0, "")
-    assert rows[-1].split(maxsplit=2) == ["scenario", "slow", "A slow walk."]
+    assert rows[-1].split(maxsplit=2) == ["scenario", "slow", "A slow walk. [others]"]
     assert len(rows) == len(catalogue.OWN) + 1
-    assert at_hand("show", "slow").out == SLOW
+    shown = at_hand("show", "slow").out
+    assert shown.startswith(SLOW.splitlines()[0])
+    assert yaml.safe_load(shown) == yaml.safe_load(SLOW)
     assert (load("slow").name, load("slow").gait.steps) == ("slow", 2)
 
 

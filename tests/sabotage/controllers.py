@@ -1,4 +1,4 @@
-"""Five whole-body controllers that a careless change could have made, each worse in a way that a user would call bad."""
+"""Five whole-body controllers that a careless change could have made, each worse in a way a user would call bad."""
 
 from collections import deque
 from dataclasses import replace
@@ -41,7 +41,7 @@ class LongStep(WholeBodyController):
 
     def update(self, reference, sensing, fail_solvers=False):
         if reference.swing_foot == 0:
-            reference = replace(reference, swing_position=reference.swing_position + (0.01, 0.0, 0.0))
+            reference = replace(reference, swing_position=reference.swing_position + np.array([0.01, 0.0, 0.0]))
         return super().update(reference, sensing, fail_solvers)
 
 

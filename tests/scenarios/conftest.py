@@ -1,7 +1,7 @@
 """A robot, robots and a closed loop that need neither engine: the log is filled with motion of known metrics."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
@@ -53,14 +53,17 @@ class Motion:
     pause: float = 0.0
     fall_at: float = np.inf
     stop_at: float = np.inf
-    end: End = field(default_factory=lambda: End("completed", 4.0))
+    end: End | None = None
     raises: BaseException | None = None
 
     def __call__(self, walk: Any, writer: LogWriter, on_progress: Callable[[Progress], None]) -> End:
         _Loop(self, writer).run(on_progress)
         if self.raises is not None:
             raise self.raises
-        return self.end
+        if self.end is not None:
+            return self.end
+        fell = self.fall_at < self.duration
+        return End("fall", self.fall_at, "the robot fell") if fell else End("completed", self.duration)
 
 
 class _Loop:
@@ -81,7 +84,9 @@ class _Loop:
             if time in (1.0, 1.5):
                 error = 0.006 if time == 1.0 else 0.002
                 index = int(time * 2) - 1
-                self.out["footstep"].append(tick * 10**9 // motion.rate, index, 0, np.zeros(4), [error, 0, 0, 0])
+                sole = np.array([self.com(time)[0], 0.125, 0.0, 0.0])
+                ns = tick * 10**9 // motion.rate
+                self.out["footstep"].append(ns, index, 0, sole - (error, 0.0, 0.0, 0.0), sole)
 
     def com(self, time: Any) -> Any:
         moved = self.motion.speed * (np.clip(time, 0.5, 1.5) - 0.5)
@@ -111,11 +116,11 @@ class _Loop:
         out["truth"].append(ns, np.zeros(11), np.zeros(10), com, velocity, zero3, *soles, 0.01, 0, 0)
         out["estimate"].append(ns, com + np.array([0.001, 0, 0]), velocity, com[:2], zero3, zero6)
         zmp = np.array([*(center + offset), 0.0])
-        out["contact"].append(ns, zmp, [490, 490], loaded, loaded, loaded, cop, cop)
+        out["contact"].append(ns, zmp, 490.0 * np.array(loaded), loaded, loaded, loaded, cop, cop)
         out["reference"].append(
             ns,
             *(com, velocity, zero3, center, com[:2], 3.13, center, zero3, zero3),
-            *(2 if single else 0, stance, 0, 0.0, 0.5, support, 4),
+            *(2 if single else 0, stance, 0, 0.0, 0.5, support, 4, np.zeros(2)),
         )
         out["wbc"].append(ns, 0, 0, 5, 0, 1e-9, 1e-9, np.zeros(10), zero6, zero6, np.zeros(18))
         out["torque"].append(ns, np.array([30.0, -40.0, 5.0, 0.0]), 0.4)
@@ -150,6 +155,7 @@ def robot() -> SimpleNamespace:
         roles=SimpleNamespace(knees=JOINTS[1::2], left_leg=JOINTS[:2], right_leg=JOINTS[2:]),
         torso_body="torso",
         torque_limit=np.full(4, 100.0),
+        velocity_limit=np.full(4, 10.0),
         position_lower=np.full(4, -0.6),
         position_upper=np.full(4, 2.0),
     )

@@ -46,6 +46,21 @@ def test_a_stepped_walk_is_the_walk_that_run_makes(fidelity, tmp_path):
     assert surefoot.judge(surefoot.read(tmp_path / "stepped.mcap")).metrics["duration"] == pytest.approx(0.6)
 
 
+@pytest.mark.parametrize(("fidelity", "topic"), [("full", "/measurement"), ("pendulum", "/truth")])
+def test_the_logged_forces_add_up_to_the_impulse_of_pushes_shorter_than_a_tick(fidelity, topic, tmp_path):
+    """3 N s in 1 ms that begins within a tick of 4 ms, and 5.5 ms given on the way."""
+    push = {"time": 0.0511, "duration": 0.001, "force": (3000.0, 0.0, 0.0)}
+    rates = {"rates.control": 250, "duration": 0.15}
+    scenario = surefoot.load("walk", {**BRIEF, **rates, "fidelity": fidelity, "pushes": [push]})
+    with surefoot.Simulation(scenario, log=tmp_path / "pushed.mcap") as sim:
+        while not sim.done:
+            if sim.time == 0.1:
+                sim.push((0.0, 40.0, 0.0), duration=0.0055)
+            sim.step()
+    force = surefoot.read(tmp_path / "pushed.mcap")[topic].field("external_force")
+    np.testing.assert_allclose(force.sum(axis=0) / 250, [3.0, 0.22, 0.0], rtol=1e-9)
+
+
 @pytest.mark.parametrize("fidelity", ["full", "pendulum"])
 def test_a_push_from_outside_acts_and_is_logged_as_a_scheduled_one(fidelity, tmp_path):
     scenario = surefoot.load("walk", {**BRIEF, "fidelity": fidelity})

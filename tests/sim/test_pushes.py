@@ -62,6 +62,22 @@ def test_measurement_reports_the_force_of_the_last_step() -> None:
     assert seen == [0.0, 0.0, 75.0, 75.0, 0.0, 0.0]
 
 
+@pytest.mark.parametrize("control_steps", [1, 2, 7])
+@pytest.mark.parametrize(("time", "duration"), [(0.0, 0.01), (0.0005, 0.0004), (0.0103, 0.0042), (0.0017, 0.0013)])
+def test_the_measured_forces_add_up_to_the_impulse(control_steps: int, time: float, duration: float) -> None:
+    """Of pushes shorter than a tick, too, and of one that comes on the way; `measure` may be asked twice."""
+    world, total = _floating((Push(time, duration, FORCE, "torso"),)), np.zeros(3)
+    while world.tick < 40:
+        if world.tick == 14:
+            world.push(Push(0.0145, 0.0006, FORCE, "left_foot"))
+        world.advance(np.zeros(25), control_steps)
+        world.measure()
+        total += world.measure().external_force * control_steps / 1000
+    np.testing.assert_allclose(total, FORCE * (duration + 0.0006), rtol=1e-9)
+    world.reset(np.array(world.measure().q))
+    assert not world.measure().external_force.any()
+
+
 @pytest.mark.parametrize("body", ["torso", "left_foot"])
 def test_a_push_in_the_air_is_no_contact(body: str) -> None:
     world = _floating((Push(0.0, 1.0, FORCE, body), Push(0.0, 1.0, FORCE, body)))

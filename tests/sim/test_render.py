@@ -42,6 +42,8 @@ def test_pictures_show_the_robot_and_follow_it() -> None:
     assert not ((gone[..., 0] > 150) & (gone[..., 2] < 80)).any()
     (tracked,) = render_frames(world.mjcf(), [away], 160, 120, Camera(azimuth=90), DRAFT)
     assert ((tracked[..., 0] > 150) & (tracked[..., 2] < 80)).sum() == pytest.approx(orange.sum(), rel=0.2)
+    (aimed,) = render_frames(world.mjcf(), [away], 160, 120, Camera(azimuth=90), DRAFT, look_at=[q[:3]])
+    assert not ((aimed[..., 0] > 150) & (aimed[..., 2] < 80)).any()
 
 
 def test_marks_are_drawn_where_they_are() -> None:

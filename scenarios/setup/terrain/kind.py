@@ -11,6 +11,8 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array
 from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
 from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.robot import RobotFacts
 
 if TYPE_CHECKING:
@@ -39,6 +41,10 @@ class TerrainKind:
 
     name: str
     keys: tuple[str, ...] = ()
+
+    def completed(self, keys: Scenario) -> Scenario:
+        """The scenario with keys that it leaves open and that follow from this ground."""
+        return keys
 
     def build(self, draft: "Draft") -> Terrain:
         """The ground as the planner believes it to be."""
@@ -70,7 +76,8 @@ def climb_problems(draft: "Draft", facts: RobotFacts, risers: int = 1) -> Iterat
     highest = (hips - FOLDED * facts.leg_length) / risers
     if riser > highest:
         what = f"terrain.riser {riser} m is out of reach of legs {facts.leg_length:.3f} m long"
-        yield Problem(("terrain", "riser"), what, f"use at most {highest:.3f} m")
+        most = max(highest, 0.0)
+        yield Problem(("terrain", "riser"), what, f"use at most {most:.3f} m{meant(riser, 'm', most)}")
 
 
 def planned_soles(draft: "Draft", facts: RobotFacts) -> tuple[FootstepPlan, Array]:

@@ -11,6 +11,7 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.robot import RobotFacts
 from surefoot.scenarios.setup.terrain.kind import PLATFORM, TerrainKind, planned_soles, way
 
@@ -50,7 +51,8 @@ def steepness(draft: "Draft") -> Iterator[Problem]:
     elif terrain.kind == "blocks" and terrain.angle < 0.0:
         yield Problem(key, f"terrain.angle {terrain.angle} rad is no half range", "use at least 0 rad")
     elif tilt > STEEPEST:
-        yield Problem(key, f"terrain.angle {terrain.angle} rad is too steep", f"use at most {STEEPEST} rad")
+        right = f"use at most {STEEPEST} rad{meant(terrain.angle, 'rad', STEEPEST)}"
+        yield Problem(key, f"terrain.angle {terrain.angle} rad is too steep", right)
     elif math.tan(tilt) >= terrain.friction:
         what = f"terrain.angle {terrain.angle} rad is steeper than terrain.friction {terrain.friction} holds"
         yield Problem(key, what, f"use less than {math.atan(terrain.friction):.3f} rad, or more friction")

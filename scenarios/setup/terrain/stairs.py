@@ -1,5 +1,6 @@
 """Stairs: one foot per tread from where the walk starts, and soles that stand on their treads."""
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -7,7 +8,9 @@ import numpy as np
 
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Terrain
+from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.robot import RobotFacts
 from surefoot.scenarios.setup.terrain.kind import PLATFORM, TerrainKind, climb_problems, planned_soles, way
 
@@ -29,6 +32,12 @@ class StairsKind(TerrainKind):
 
     name = "stairs"
     keys = ("riser", "tread", "count", "direction", "start", "landing", "height_noise")
+
+    def completed(self, keys: Scenario) -> Scenario:
+        """A step is as long as a tread is deep, unless the scenario gives its length."""
+        if "step_length" in keys.gait.model_fields_set:
+            return keys
+        return keys.model_copy(update={"gait": keys.gait.model_copy(update={"step_length": keys.terrain.tread})})
 
     def build(self, draft: "Draft") -> Terrain:
         """See `TerrainKind`."""
@@ -83,13 +92,45 @@ def _edges(draft: "Draft", facts: RobotFacts) -> Iterator[Problem]:
     plan, corners = planned_soles(draft, facts)
     margins = draft.terrain.edge_margins(plan.position[:, :2], corners)
     beyond = np.flatnonzero(margins < -1e-9)
-    if not len(beyond):
-        return
-    over = -float(margins[beyond[0]])
-    if beyond[0] < 2:
-        what = f"the feet would start {over:.3f} m over the edge of the first stair"
-        yield Problem(("terrain", "start"), what, f"use at least {0.5 * facts.foot_length:.3f} m")
-        return
-    what = f"footstep {beyond[0] - 1} would stand {over:.3f} m over the edge of its tread"
-    right = "give gait.step_length the depth of terrain.tread, and a tread longer than the foot"
-    yield Problem(("terrain", "tread"), what, right)
+    if len(beyond):
+        yield _over_edge(draft, facts, plan, int(beyond[0]), -float(margins[beyond[0]]))
+    else:
+        yield from _leaps(draft, plan)
+
+
+def _over_edge(draft: "Draft", facts: RobotFacts, plan: FootstepPlan, row: int, over: float) -> Problem:
+    terrain, gait = draft.keys.terrain, draft.keys.gait
+    fit = f"give gait.step_length the depth of terrain.tread, {terrain.tread:g} m"
+    if row < 2:
+        what, least = f"the feet would start {over:.3f} m over the edge of the first stair", 0.5 * facts.foot_length
+        if terrain.start is None:
+            return Problem(("gait", "step_length"), what, f"{fit}, or terrain.start at least {least:.3f} m")
+        return Problem(("terrain", "start"), what, f"use at least {least:.3f} m")
+    what = f"footstep {row - 1} would stand {over:.3f} m over the edge of its tread"
+    if _beyond_climb(draft, plan, row) and terrain.landing is not None:
+        steps = max(1, math.floor(terrain.landing / terrain.tread))
+        sizes = " or ".join(f"{number * terrain.tread:g} m" for number in (steps, steps + 1))
+        return Problem(("terrain", "landing"), f"{what}, with terrain.landing {terrain.landing:g} m", f"use {sizes}")
+    if gait.turn and not draft.commanded:
+        return Problem(("gait", "turn"), f"{what}, as the walk turns", "use 0 on stairs")
+    return Problem(("terrain", "tread"), what, f"{fit}, and a tread longer than the foot")
+
+
+def _beyond_climb(draft: "Draft", plan: FootstepPlan, row: int) -> bool:
+    """Whether a row of the footsteps lies beyond the last riser of the way up, or is the one that steps over it."""
+    if draft.keys.terrain.direction != "up_down":
+        return False
+    stairs, yaw = stairs_of(draft), draft.keys.start.yaw
+    way = (plan.position[row, :2] - draft.origin) @ (math.cos(yaw), math.sin(yaw))
+    return bool(way > stairs.start + (stairs.count - 1) * stairs.tread)
+
+
+def _leaps(draft: "Draft", plan: FootstepPlan) -> Iterator[Problem]:
+    """Tell the first step that takes more than one riser."""
+    riser = draft.keys.terrain.riser
+    risers = np.round(np.abs(np.diff(plan.position[:, 2])) / riser)
+    rows = np.flatnonzero(risers > 1.5)
+    if len(rows):
+        what = f"footstep {rows[0]} would take {risers[rows[0]]:g} risers of {riser:g} m at once"
+        right = f"give gait.step_length the depth of terrain.tread, {draft.keys.terrain.tread:g} m"
+        yield Problem(("gait", "footsteps" if draft.commanded else "step_length"), what, right)

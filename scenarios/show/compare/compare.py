@@ -10,12 +10,14 @@ from rich.table import Table
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
 from surefoot.scenarios.show.compare.divergence import ChannelDifference, Point, compare_channels, unreadable
 from surefoot.scenarios.show.compare.settings import (
     Difference,
     file_differences,
     metric_pairs,
+    record_differences,
     setting_differences,
     version_differences,
 )
@@ -36,11 +38,13 @@ class Comparison:
         versions: that differ.
         settings: of the scenarios that differ.
         files: attached files that differ.
+        records: metadata records that differ, other than the versions.
         metrics: of both logs, all of them.
         channels: common to both, in the order in which they part.
         only_a: topics in the first log alone.
         only_b: topics in the second log alone.
-        notes: what could not be read or compared, in words.
+        notes: what could not be judged, in words.
+        unread: what could not be read or compared, in words.
     """
 
     a: str
@@ -49,17 +53,29 @@ class Comparison:
     versions: tuple[Difference, ...]
     settings: tuple[Difference, ...]
     files: tuple[str, ...]
+    records: tuple[str, ...]
     metrics: tuple[Difference, ...]
     channels: tuple[ChannelDifference, ...]
     only_a: tuple[str, ...]
     only_b: tuple[str, ...]
     notes: tuple[str, ...]
+    unread: tuple[str, ...]
 
     @property
     def identical(self) -> bool:
         """Whether both hold the same run to the last bit, apart from what the wall clock wrote."""
-        apart = (self.settings, self.files, self.only_a, self.only_b)
-        return bool(self.channels) and not any(apart) and all(channel.same for channel in self.channels)
+        return self.agree and all(channel.same for channel in self.channels)
+
+    @property
+    def agree(self) -> bool:
+        """Whether both hold the same run, with values within the tolerance; not when something could not be read."""
+        return (
+            not (self._described_apart or self.unread) and bool(self.channels) and all(c.agrees for c in self.channels)
+        )
+
+    @property
+    def _described_apart(self) -> bool:
+        return any((self.settings, self.files, self.records, self.only_a, self.only_b))
 
     @property
     def first(self) -> ChannelDifference | None:
@@ -75,7 +91,7 @@ class Comparison:
             return f"first divergence: {describe(self.first)}"
         if not self.channels:
             return "no channel in common, so nothing can be compared tick by tick"
-        if all(channel.same for channel in self.channels):
+        if self._described_apart and all(channel.same for channel in self.channels):
             return "every common channel is identical; what describes the runs is not"
         return "identical as far as both logs reach"
 
@@ -91,11 +107,12 @@ class Comparison:
             "versions": [asdict(one) for one in self.versions],
             "settings": [_plain(asdict(one)) for one in self.settings],
             "files": list(self.files),
+            "records": list(self.records),
             "metrics": {one.name: {"a": one.a, "b": one.b, "difference": one.delta} for one in self.metrics},
             "channels": [{**_plain(asdict(one)), "same": one.same} for one in self.channels],
             "only_a": list(self.only_a),
             "only_b": list(self.only_b),
-            "notes": list(self.notes),
+            "notes": [*self.notes, *self.unread],
         }
 
 
@@ -126,16 +143,18 @@ def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[C
         versions=version_differences(a, b),
         settings=setting_differences(a, b),
         files=file_differences(a, b),
+        records=record_differences(a, b),
         metrics=metrics,
         channels=compare_channels(a, b, tolerance),
         only_a=tuple(topic for topic in topics_a if topic not in b),
         only_b=tuple(topic for topic in topics_b if topic not in a),
-        notes=(*notes, *_damage("A", a, common), *_damage("B", b, common)),
+        notes=notes,
+        unread=(*_damage("A", a, common), *_damage("B", b, common)),
     )
     return found, a, b
 
 
-def draw(found: Comparison, a: Log, b: Log, out: Path) -> None:
+def draw(found: Comparison, a: Log, b: Log, out: Path, replace: bool = False) -> None:
     """Draw both runs over each other.
 
     Args:
@@ -143,16 +162,17 @@ def draw(found: Comparison, a: Log, b: Log, out: Path) -> None:
         a: first log.
         b: second log.
         out: file to write, PNG, SVG or PDF by its ending.
+        replace: an existing file.
 
     Raises:
-        LogError: there is nothing to draw, or the file cannot be written.
+        LogError: there is nothing to draw, or the file exists or cannot be written.
     """
     from surefoot.scenarios.show.figures.overlay import overlay
     from surefoot.scenarios.show.figures.style import save
 
     when = None if found.first is None else found.first.time
-    header = f"A: {found.a}\nB: {found.b}\n{found.summary}".replace("$", r"\$")
-    save(overlay(LogView(a), LogView(b), header, when), out)
+    header = f"A: {shown(found.a)}\nB: {shown(found.b)}\n{found.summary}".replace("$", r"\$")
+    save(overlay(LogView(a), LogView(b), header, when), out, replace)
 
 
 def describe(channel: ChannelDifference) -> str:
@@ -191,22 +211,19 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
-_WIDTH = 110
-"""Columns that the widest line needs; a narrower terminal wraps it rather than losing what it says."""
-
-
 def print_comparison(found: Comparison) -> None:
     """Print what is the same and what is not, the answer first."""
     console = plain_console()
-    console.width = max(console.width, _WIDTH)
     console.print(found.summary)
     console.print(f"A: {found.a}\nB: {found.b}")
-    for note in found.notes:
+    for note in (*found.notes, *found.unread):
         console.print(f"note: {note}")
     for title, differences in (("version", found.versions), ("setting", found.settings)):
         console.print(_settings(title, differences) if differences else f"{title}s: the same")
     if found.files:
         console.print(f"attached files that differ: {', '.join(found.files)}")
+    if found.records:
+        console.print(f"metadata records that differ: {', '.join(found.records)}")
     console.print(_metrics(found.metrics))
     console.print(_channels(found.channels, found.tolerance))
     for name, topics in (("A", found.only_a), ("B", found.only_b)):

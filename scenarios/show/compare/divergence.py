@@ -60,7 +60,12 @@ class ChannelDifference:
     @property
     def same(self) -> bool:
         """Whether the channels are the same to the last bit."""
-        parted = (self.exact, self.only_one)
+        return self.agrees and self.exact is None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether they have the same messages, whose values are within the tolerance."""
+        parted = (self.tolerated, self.only_one)
         return parted == (None, None) and not self.layout and self.messages[0] == self.messages[1]
 
     @property

@@ -10,6 +10,9 @@ from surefoot.scenarios.judge.metrics import measure
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE
 
+VERSIONS_RECORD = "versions"
+"""Metadata record of what made a log, by which two runs may differ and still be the same."""
+
 _AXES = ("x", "y", "z")
 
 
@@ -36,7 +39,7 @@ class Difference:
 
 def version_differences(a: Log, b: Log) -> tuple[Difference, ...]:
     """Versions that are not the same."""
-    return _differences(*(dict(log.metadata.get("versions", {})) for log in (a, b)))
+    return _differences(*(dict(log.metadata.get(VERSIONS_RECORD, {})) for log in (a, b)))
 
 
 def setting_differences(a: Log, b: Log) -> tuple[Difference, ...]:
@@ -48,6 +51,12 @@ def file_differences(a: Log, b: Log) -> tuple[str, ...]:
     """Attached files other than the scenario that are not the same in both."""
     names = sorted((a.attachments.keys() | b.attachments.keys()) - {SCENARIO_FILE})
     return tuple(name for name in names if a.attachments.get(name) != b.attachments.get(name))
+
+
+def record_differences(a: Log, b: Log) -> tuple[str, ...]:
+    """Metadata records other than the versions that are not the same: constants, pushes, how the run ended."""
+    names = sorted((a.metadata.keys() | b.metadata.keys()) - {VERSIONS_RECORD})
+    return tuple(name for name in names if a.metadata.get(name) != b.metadata.get(name))
 
 
 def metric_pairs(a: Log, b: Log) -> tuple[tuple[Difference, ...], tuple[str, ...]]:

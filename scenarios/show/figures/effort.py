@@ -1,6 +1,7 @@
 """Figures of effort: joint torques against their limits, solvers and computing time."""
 
 import re
+from collections.abc import Callable
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,6 +14,8 @@ from surefoot.scenarios.show.figures.style import CYCLE, Area, curve, legend, or
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 TORQUES_TITLE = "Joint torques in percent of their limits"
+ANGLES_TITLE = "Joint angles in percent of half their range"
+SPEEDS_TITLE = "Joint speeds in percent of their limits"
 _MOST = 6
 """Joints of a group drawn one by one; a larger group is drawn by its largest ratio."""
 
@@ -20,15 +23,32 @@ _MOST = 6
 _PLATE = {"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 1.0}
 
 
+Percent = Callable[[LogView], tuple[tuple[str, ...], NDArray[np.float64]]]
+
+
 def draw_torques(area: Area, view: LogView, background: Background) -> None:
     """Draw torque over limit, signed, in three groups of joints on one scale."""
-    axes = time_axes(area, view, TORQUES_TITLE, (1.0, 1.0, 1.0))
+    _draw_groups(area, view, background, TORQUES_TITLE, "/torque", _torques)
+
+
+def draw_joints(area: Area, view: LogView, background: Background) -> None:
+    """Draw angles within their range, beside them speeds over their limits."""
+    angles, speeds = area.subfigures(1, 2, squeeze=False)[0]
+    _draw_groups(angles, view, background, ANGLES_TITLE, "/measurement", _angles)
+    _draw_groups(speeds, view, background, SPEEDS_TITLE, "/measurement", _speeds)
+
+
+def _draw_groups(
+    area: Area, view: LogView, background: Background, title: str, topic: str, percent_of: Percent
+) -> None:
+    """Draw percent of a limit, signed, in three groups of joints on one scale."""
+    axes = time_axes(area, view, title, (1.0, 1.0, 1.0))
     background.shade(axes)
     for one, name in zip(axes, ("left leg", "right leg", "upper body"), strict=True):
         one.set_ylabel(f"{name} [%]")
         with or_say(one):
-            names, percent = _percent(view)
-            _group(one, view.time("/torque"), percent, groups(names, _roles(view))[name])
+            names, percent = percent_of(view)
+            _group(one, view.time(topic), percent, groups(names, _roles(view))[name])
             one.set_ylim(*_limits(percent))
             for limit in (-100.0, 100.0):
                 one.axhline(limit, color=BLACK, linewidth=0.9, linestyle="--")
@@ -58,14 +78,43 @@ def _roles(view: LogView) -> Roles:
     return roles if isinstance(roles, dict) else {}
 
 
-def _percent(view: LogView) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+def _torques(view: LogView) -> tuple[tuple[str, ...], NDArray[np.float64]]:
     torque = view.field("/torque", "command", -1)
-    names, limit = (view.constant(name) for name in ("joint_names", "torque_limit"))
-    sound = isinstance(names, list) and isinstance(limit, list) and len(names) == len(limit) == torque.shape[1]
-    if not sound or not all(isinstance(value, int | float) for value in limit):
-        raise MissingError("a torque limit for each joint")
+    names, limit = _by_joint(view, "torque_limit", "a torque limit for each joint")
+    return names, _over(torque, limit)
+
+
+def _angles(view: LogView) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """0 in the middle of the range, ±100 at its ends."""
+    angle = view.field("/measurement", "joint_position", -1)
+    names, lower = _by_joint(view, "position_lower", "a range for each joint")
+    _, upper = _by_joint(view, "position_upper", "a range for each joint")
+    return names, _over(angle, (upper - lower) / 2, (upper + lower) / 2)
+
+
+def _speeds(view: LogView) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    speed = view.field("/measurement", "joint_velocity", -1)
+    names, limit = _by_joint(view, "velocity_limit", "a speed limit for each joint")
+    return names, _over(speed, limit)
+
+
+def _by_joint(view: LogView, constant: str, what: str) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """Names of the joints and a constant of each, shape (nj,)."""
+    names, values = view.constant("joint_names"), view.constant(constant)
+    sound = isinstance(names, list) and isinstance(values, list) and len(names) == len(values)
+    if not sound or not all(isinstance(value, int | float) for value in values):
+        raise MissingError(what)
+    return tuple(map(str, names)), np.array(values, float)
+
+
+def _over(
+    values: NDArray[np.float64], half: NDArray[np.float64], middle: NDArray[np.float64] | float = 0.0
+) -> NDArray[np.float64]:
+    """Distance from the middle in percent of what is allowed, shape (n, nj)."""
+    if values.shape[1:] != half.shape:
+        raise MissingError("a limit for each joint")
     with np.errstate(divide="ignore", invalid="ignore"):
-        return tuple(map(str, names)), 100.0 * torque / np.array(limit, float)
+        return np.asarray(100.0 * (values - middle) / half)
 
 
 def _group(
@@ -74,15 +123,14 @@ def _group(
     percent: NDArray[np.float64],
     members: dict[str, list[int]],
 ) -> None:
-    """Draw each label's largest torque, and say which is the largest of all."""
+    """Draw each label's joint, of several the largest size, and say which is the largest of all."""
     if not members:
         raise MissingError("such joints")
     peaks = {}
     for number, (label, joints) in enumerate(members.items()):
         chosen = np.nan_to_num(percent[:, joints])
-        largest = np.argmax(np.abs(chosen), axis=1)
         color = GREY if len(joints) > 1 else CYCLE[number % len(CYCLE)]
-        values = chosen[np.arange(len(chosen)), largest]
+        values = np.abs(chosen).max(axis=1) if len(joints) > 1 else chosen[:, 0]
         peaks[label] = float(np.abs(values).max())
         curve(axes, time, values, label, color, linewidth=0.9)
     worst = max(peaks, key=lambda label: peaks[label])

@@ -1,5 +1,7 @@
 """Figures of the motion: ZMP, CoM and DCM with their references, the CoM's height, and the feet."""
 
+from itertools import pairwise
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
@@ -35,33 +37,73 @@ from surefoot.scenarios.show.logview import LogView, MissingError
 
 Array = NDArray[np.float64]
 
-BALANCE_TITLE = "Balance: ZMP, CoM and DCM with their references"
+BALANCE_TITLE = "Balance seen from the stance foot: ZMP, CoM and DCM with their references"
+
+STRIP, MOST_STRIPS = 12.0, 6
+"""Seconds that one strip of the balance shows legibly, and strips after which they become longer."""
+
+
+def strips(view: LogView) -> tuple[tuple[float, float], ...]:
+    """Begin and end of equally long stretches of time that are drawn below each other [s]."""
+    count = int(np.clip(np.ceil((view.end - view.start) / STRIP - 1e-9), 1, MOST_STRIPS))
+    bounds = np.linspace(view.start, view.end, count + 1).tolist()
+    return tuple(pairwise(bounds))
 
 
 def draw_balance(area: Area, view: LogView, background: Background) -> None:
-    """Draw position and error along x, then along y."""
-    axes = time_axes(area, view, BALANCE_TITLE, (3.0, 1.1, 3.0, 1.1))
+    """Draw positions, in strips of a few seconds each, then errors over all the time."""
+    stretches = strips(view)
+    parts = area.subfigures(len(stretches) + 1, 1, squeeze=False, height_ratios=[*[2.6] * len(stretches), 2.0])[:, 0]
+    for number, (part, stretch) in enumerate(zip(parts[:-1], stretches, strict=True)):
+        axes = time_axes(part, view, BALANCE_TITLE if number == 0 else "", (1.0, 1.0), stretch)
+        background.shade(axes)
+        for axis, one in enumerate(axes):
+            one.set_ylabel(f"{_directions(view)[axis]} [m]")
+            with or_say(one):
+                _support(one, view, axis)
+                _positions(one, view, axis)
+        if number == 0:
+            support = Patch(facecolor=SUPPORT, edgecolor=GREY, alpha=0.3, label="planned support, bounds")
+            legend(axes[0], 7, [support])
+    _draw_errors(parts[-1], view, background)
+
+
+def _draw_errors(area: Area, view: LogView, background: Background) -> None:
+    axes = time_axes(area, view, "", (1.0, 1.0))
     background.shade(axes)
-    for axis, name in enumerate("xy"):
-        position, error = axes[2 * axis : 2 * axis + 2]
-        position.set_ylabel(f"{name} [m]")
-        error.set_ylabel(f"{name} error [mm]")
-        with or_say(position):
-            _support(position, view, axis)
-            _positions(position, view, axis)
-        with or_say(error):
-            _errors(error, view, axis)
-    support = Patch(facecolor=SUPPORT, edgecolor=GREY, alpha=0.3, label="planned support, bounds")
-    legend(axes[0], 7, [support])
-    legend(axes[1], 3)
+    for axis, one in enumerate(axes):
+        one.set_ylabel(f"{_directions(view)[axis]}\nerror [mm]")
+        with or_say(one):
+            _errors(one, view, axis)
+    legend(axes[0], 3)
+
+
+def _directions(view: LogView) -> tuple[str, str]:
+    """Names of the two directions: those of the stance foot, or the world's where a log does not tell of feet."""
+    try:
+        view.from_stance(np.zeros(1), np.zeros((1, 2)))
+    except MissingError:
+        return "x", "y"
+    return "forward", "left"
+
+
+def seen(view: LogView, times: Array, points: Array) -> Array:
+    """Points from the stance foot, in the world where the log does not tell of feet, shape (n, 2) [m]."""
+    try:
+        return view.from_stance(times, points)
+    except MissingError:
+        return points
 
 
 def support_bounds(view: LogView, axis: int) -> tuple[Array, Array, Array]:
-    """Bounds of the planned support along an axis where they change: time [s], least, greatest [m], shape (k,)."""
-    vertices = view.field("/reference", "support", SUPPORT_VERTICES, 2)[..., axis]
-    low, high = vertices.min(axis=1), vertices.max(axis=1)
+    """Bounds of the planned support in a direction where they change: time [s], least, greatest [m], shape (k,)."""
+    clock, vertices = view.time("/reference"), view.field("/reference", "support", SUPPORT_VERTICES, 2)
+    corners = np.stack([seen(view, clock, vertices[:, k])[:, axis] for k in range(SUPPORT_VERTICES)], axis=1)
+    first = np.flatnonzero(np.isnan(corners[:-1]).any(axis=1))  # of a new stance foot, where curves break; steps do not
+    corners[first] = corners[first + 1]
+    low, high = corners.min(axis=1), corners.max(axis=1)
     rows = steps(low, high)
-    return view.time("/reference")[rows], low[rows], high[rows]
+    return clock[rows], low[rows], high[rows]
 
 
 def true_dcm(view: LogView) -> Array:
@@ -78,32 +120,39 @@ def _support(axes: Axes, view: LogView, axis: int) -> None:
 
 
 def _positions(axes: Axes, view: LogView, axis: int) -> None:
-    clock = view.time("/reference")
-    curve(axes, view.time("/contact"), view.field("/contact", "zmp", 3)[:, axis], "ZMP measured", ZMP)
-    curve(axes, view.time("/truth"), view.field("/truth", "com", 3)[:, axis], "CoM true", COM, linewidth=1.5)
-    curve(axes, view.time("/truth"), true_dcm(view)[:, axis], "DCM true", DCM, linewidth=1.5)
-    zmp = view.field("/reference", "zmp_reference", 2)[:, axis]
-    reference_curve(axes, clock, zmp, "ZMP reference (footsteps)", ZMP_PLANNED)
-    for name, size, color in (("com", 3, COM_PLANNED), ("dcm", 2, DCM_PLANNED)):
-        values = view.field("/reference", name, size)[:, axis]
-        reference_curve(axes, clock, values, f"{name.upper().replace('COM', 'CoM')} reference", color)
+    felt, body, clock = (view.time(topic) for topic in ("/contact", "/truth", "/reference"))
+    measured = (
+        ("ZMP measured", ZMP, felt, view.field("/contact", "zmp", 3), 1.1),
+        ("CoM true", COM, body, view.field("/truth", "com", 3), 1.5),
+        ("DCM true", DCM, body, true_dcm(view), 1.5),
+    )
+    for label, color, time, values, width in measured:
+        curve(axes, time, seen(view, time, values[:, :2])[:, axis], label, color, linewidth=width)
+    for name, size, label, color in _REFERENCES:
+        values = seen(view, clock, view.field("/reference", name, size)[:, :2])[:, axis]
+        reference_curve(axes, clock, values, label, color)
 
 
 def _errors(axes: Axes, view: LogView, axis: int) -> None:
-    references = {name: view.field("/reference", name, size)[:, axis] for name, size in _REFERENCES}
     clock, body, felt = (view.time(topic) for topic in ("/reference", "/truth", "/contact"))
+    zmp, com, dcm = (view.field("/reference", name, size)[:, :2] for name, size, *_ in _REFERENCES)
     curves = (
-        ("ZMP", ZMP, felt, view.field("/contact", "zmp", 3)[:, axis], references["zmp_reference"]),
-        ("DCM", DCM, body, true_dcm(view)[:, axis], references["dcm"]),
-        ("CoM", COM, body, view.field("/truth", "com", 3)[:, axis], references["com"]),
+        ("ZMP", ZMP, felt, view.field("/contact", "zmp", 3)[:, :2], zmp),
+        ("DCM", DCM, body, true_dcm(view), dcm),
+        ("CoM", COM, body, view.field("/truth", "com", 3)[:, :2], com),
     )
     axes.axhline(0.0, color=GREY, linewidth=0.6)
     for name, color, time, values, reference in curves:
-        error = 1e3 * (values - np.interp(time, clock, reference))
+        wanted = np.column_stack([np.interp(time, clock, along) for along in reference.T])
+        error = 1e3 * (seen(view, time, values) - seen(view, time, wanted))[:, axis]
         curve(axes, time, error, f"{name} minus its reference", color, linewidth=0.9)
 
 
-_REFERENCES = (("zmp_reference", 2), ("dcm", 2), ("com", 3))
+_REFERENCES = (
+    ("zmp_reference", 2, "ZMP reference (footsteps)", ZMP_PLANNED),
+    ("com", 3, "CoM reference", COM_PLANNED),
+    ("dcm", 2, "DCM reference", DCM_PLANNED),
+)
 
 
 HEIGHT_TITLE = "CoM height and planned jerk"

@@ -10,11 +10,13 @@ from matplotlib.figure import Figure
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.output import refuse_existing, shown
 from surefoot.scenarios.record.provenance import ABSENT
 from surefoot.scenarios.show.figures import top_view
-from surefoot.scenarios.show.figures.effort import draw_solver, draw_torques
-from surefoot.scenarios.show.figures.motion import draw_balance, draw_feet, draw_height
+from surefoot.scenarios.show.figures.effort import draw_joints, draw_solver, draw_torques
+from surefoot.scenarios.show.figures.motion import draw_balance, draw_feet, draw_height, strips
 from surefoot.scenarios.show.figures.shading import Background, background
+from surefoot.scenarios.show.figures.soles import draw_grip, draw_soles
 from surefoot.scenarios.show.figures.style import Area, canvas, format_of, in_style, save
 from surefoot.scenarios.show.logview import LogView, MissingError
 
@@ -32,19 +34,28 @@ class Family:
         draw: how.
         size: width and height when it stands alone [in].
         over_time: whether its axes are of time, with what happened behind them.
+        longer: height of each strip more that a long run needs [in].
     """
 
     draw: Draw
     size: tuple[float, float]
     over_time: bool = True
+    longer: float = 0.0
+
+    def more(self, view: LogView) -> float:
+        """Height beyond that of a short run [in]."""
+        return self.longer * (len(strips(view)) - 1)
 
 
 FIGURES: dict[str, Family] = {
-    "balance": Family(draw_balance, (_A3, 6.0)),
+    "balance": Family(draw_balance, (_A3, 6.0), longer=2.7),
     "top-view": Family(top_view.draw, (_A3, 5.5), over_time=False),
     "height": Family(draw_height, (_A4, 4.5)),
     "feet": Family(draw_feet, (_A4, 4.5)),
+    "soles": Family(draw_soles, (_A4, 4.0), over_time=False),
+    "grip": Family(draw_grip, (_A4, 4.5)),
     "torques": Family(draw_torques, (_A4, 6.0)),
+    "joints": Family(draw_joints, (_A3, 6.0)),
     "solver": Family(draw_solver, (_A3, 4.5)),
 }
 """The families of figures by name."""
@@ -62,13 +73,17 @@ _COMPACT = (
     Row(5.1, ("balance",)),
     Row(3.6, ("top-view", "height")),
     Row(3.9, ("feet", "torques")),
+    Row(3.3, ("soles", "grip")),
+    Row(3.9, ("joints",)),
     Row(3.3, ("solver",)),
 )
 _WIDE = (
-    Row(4.5, ("balance",)),
-    Row(2.0, ("top-view",)),
+    Row(4.8, ("balance",)),
+    Row(0.9, ("top-view",)),
     Row(3.1, ("height", "feet")),
-    Row(3.1, ("torques",)),
+    Row(3.3, ("soles", "grip")),
+    Row(3.3, ("torques",)),
+    Row(3.9, ("joints",)),
     Row(3.1, ("solver",)),
 )
 
@@ -76,7 +91,9 @@ _WIDE = (
 def page(view: LogView, header: str) -> Figure:
     """Draw all figures on one page, A3 wide."""
     rows = _WIDE if top_view.is_wide(view) else _COMPACT
-    heights = [_HEADER, *(row.height for row in rows)]
+    heights = [_HEADER, *(row.height + max(FIGURES[name].more(view) for name in row.names) for row in rows)]
+    if rows is _WIDE:
+        heights[2] += top_view.height(view, _A3)
     with in_style():
         figure, areas = canvas(_A3, heights)
         behind = background(view)
@@ -97,7 +114,7 @@ def single(view: LogView, header: str, name: str) -> Figure:
         raise LogError(f"--what {name}: no such figure; {nearest(name, FIGURES)}")
     with in_style():
         width, tall = FIGURES[name].size
-        figure, (top, area) = canvas(width, (_HEADER, tall))
+        figure, (top, area) = canvas(width, (_HEADER, tall + FIGURES[name].more(view)))
         behind = background(view) if FIGURES[name].over_time else Background((), (), None)
         _head(top, header, behind, 9.0)
         FIGURES[name].draw(area, view, behind)
@@ -134,6 +151,7 @@ def plot(
     what: str | None = None,
     start: float | None = None,
     end: float | None = None,
+    replace: bool = False,
 ) -> Drawn:
     """Draw the figures of a log.
 
@@ -144,16 +162,19 @@ def plot(
         what: one figure by name, all on one page by default.
         start: of the window [s].
         end: of the window [s].
+        replace: an existing file.
 
     Raises:
-        LogError: the log cannot be read, the window is empty, there is no such figure or the file cannot be written.
+        LogError: the log cannot be read, the window is empty, there is no such figure, or the file exists or cannot be
+            written.
     """
     out = out or log_path.parent / (f"{what}.png" if what else PAGE_NAME)
     format_of(out)
+    refuse_existing(out, replace)
     log = read(log_path)
     view = LogView(log, start, end)
     figure = page(view, _header(view)) if what is None else single(view, _header(view), what)
-    save(figure, out)
+    save(figure, out, replace)
     return Drawn(out, _notes(log))
 
 
@@ -164,7 +185,7 @@ def _header(view: LogView) -> str:
         scenario, seed, fidelity = (view.constant(name) for name in ("scenario", "seed", "fidelity"))
         name = f"{scenario}, seed {seed}, fidelity {fidelity}"
     except MissingError:
-        name = log.path.name
+        name = shown(log.path.name)
     versions = log.metadata.get("versions", {})
     parts = (("surefoot", "surefoot"), ("git_revision", "revision"), ("mujoco", "mujoco"))
     made = [f"{label} {versions[part][:12]}" for part, label in parts if versions.get(part, ABSENT) not in ("", ABSENT)]

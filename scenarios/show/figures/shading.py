@@ -20,6 +20,9 @@ _SINGLE_GREY, _DOUBLE_GREY = "#E4E4E4", "#F4F4F4"
 _MOST = 400
 """Phases and pushes beyond this many are not drawn: a minute of walking shows them, an hour is grey anyway."""
 
+_MOST_NAMED = 80
+"""More phases than these leave no room for the name of each stance foot."""
+
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
@@ -53,8 +56,10 @@ class Background:
     def shade(self, axes: Iterable[Axes]) -> None:
         """Draw it behind all axes; the first of them also names the stance feet."""
         for number, one in enumerate(axes):
-            for stretch in self.phases:
-                self._shade_phase(one, stretch, named=number == 0)
+            start, end = one.get_xlim()
+            seen = [phase for phase in self.phases if phase.end > start and phase.start < end]
+            for stretch in seen:
+                self._shade_phase(one, stretch, named=number == 0 and len(seen) <= _MOST_NAMED)
             for push in self.pushes:
                 one.axvspan(push.start, push.end, color=PUSH, alpha=0.35, linewidth=0)
             if self.fall is not None:
@@ -84,7 +89,9 @@ class Background:
         if named and single and stance in (0, 1):
             middle, name = (stretch.start + stretch.end) / 2, FOOT_NAMES[stance][0].upper()
             place = axes.get_xaxis_transform()
-            axes.text(middle, 0.985, name, transform=place, ha="center", va="top", fontsize=6.5, color="#6E6E6E")
+            axes.text(
+                middle, 0.985, name, transform=place, ha="center", va="top", fontsize=6.5, color="#6E6E6E", clip_on=True
+            )
 
 
 def background(view: LogView) -> Background:

@@ -15,6 +15,7 @@ from matplotlib.typing import RcKeyType
 from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Color
 from surefoot.scenarios.show.logview import LogView, MissingError
 
@@ -70,20 +71,25 @@ def canvas(width: float, heights: Sequence[float]) -> tuple[Figure, list[SubFigu
     return figure, list(rows[:, 0])
 
 
-def time_axes(area: Area, view: LogView, title: str, heights: tuple[float, ...]) -> list[Axes]:
+def time_axes(
+    area: Area, view: LogView, title: str, heights: tuple[float, ...], stretch: tuple[float, float] | None = None
+) -> list[Axes]:
     """Axes below each other over one axis of time.
 
     Args:
         area: to fill.
         view: gives the window.
-        title: of the family.
+        title: of the family; none if empty.
         heights: relative heights of the axes, top first.
+        stretch: of time to show, the whole window by default [s].
     """
     rows = area.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=list(heights))
     axes: list[Axes] = list(rows[:, 0])
-    heading(area, title)
-    margin = 1e-3 if view.end <= view.start else 0.0
-    axes[-1].set_xlim(view.start - margin, view.end + margin)
+    if title:
+        heading(area, title)
+    start, end = stretch or (view.start, view.end)
+    margin = 1e-3 if end <= start else 0.0
+    axes[-1].set_xlim(start - margin, end + margin)
     axes[-1].set_xlabel("time [s]")
     area.align_ylabels(axes)
     return axes
@@ -154,20 +160,17 @@ def format_of(out: Path) -> str:
     return ending
 
 
-def save(figure: Figure, out: Path) -> None:
+def save(figure: Figure, out: Path, replace: bool = False) -> None:
     """Write a figure.
 
     Raises:
-        LogError: the ending is none of a figure, or the file cannot be written.
+        LogError: the ending is none of a figure, or the file exists or cannot be written.
     """
     kind, drawn = format_of(out), BytesIO()
     with in_style():
         figure.savefig(drawn, format=kind, dpi=_DPI, metadata=_UNDATED[kind])
-    try:
-        out.write_bytes(drawn.getvalue())
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{out}: cannot be written, {reason}; choose another file with --out") from None
+    with write_whole(out, replace) as temporary:
+        temporary.write_bytes(drawn.getvalue())
 
 
 BUCKETS = 800

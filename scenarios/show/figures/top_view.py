@@ -1,5 +1,6 @@
 """The walk from above: footprints, support polygons, paths of ZMP and CoM, with equal axes."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -27,20 +28,51 @@ _MOST_POLYGONS = 200
 
 
 def draw(area: Area, view: LogView, background: Background) -> None:
-    """Draw everything on the ground plane."""
+    """Draw everything on the ground plane; a long strip of it in rows below each other."""
     del background  # there is no time in this figure
-    axes = area.subplots()
+    rows = _rows(view)
+    axes: list[Axes] = list(area.subplots(max(len(rows), 1), 1, squeeze=False)[:, 0])
     heading(area, TITLE)
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
-    axes.set_aspect("equal", adjustable="datalim")
-    drawn = [_supports(axes, view), _footprints(axes, view), _paths(axes, view)]
-    handles = [handle for part in drawn for handle in part]
-    if not handles:
-        with or_say(axes):
-            raise MissingError("/truth, /contact, /reference")
-    axes.margins(0.04)
-    legend(axes, 4, handles)
+    stretches: list[tuple[float, float] | None] = [*rows] or [None]
+    for one, stretch in zip(axes, stretches, strict=True):
+        one.set_ylabel("y [m]")
+        drawn = [_supports(one, view), _footprints(one, view), _paths(one, view)]
+        handles = [handle for part in drawn for handle in part]
+        if not handles:
+            with or_say(one):
+                raise MissingError("/truth, /contact, /reference")
+        one.margins(0.04)
+        one.set_aspect("equal", adjustable="box" if stretch else "datalim")
+        if stretch:
+            one.set_xlim(stretch)
+        if one is axes[0]:
+            legend(one, 7 if stretch else 4, handles)
+    axes[-1].set_xlabel("x [m]")
+
+
+ROW, MOST_ROWS = 5.0, 6
+"""Metres that a row of a strip shows legibly, and rows after which they become longer."""
+
+
+def _rows(view: LogView) -> list[tuple[float, float]]:
+    """Stretches of x that are drawn below each other [m]; none of a walk that is no strip."""
+    if not is_wide(view):
+        return []
+    x = view.field("/truth", "com", 3)[:, 0]
+    first, last = float(np.nanmin(x)) - 0.3, float(np.nanmax(x)) + 0.3
+    count = int(np.clip(np.ceil((last - first) / ROW), 1, MOST_ROWS))
+    bounds = np.linspace(first, last, count + 1).tolist()
+    return list(pairwise(bounds))
+
+
+def height(view: LogView, width: float) -> float:
+    """Of the rows of a strip, drawn in a width, all [in]."""
+    rows = _rows(view)
+    if not rows:
+        return 0.0
+    y = view.field("/truth", "com", 3)[:, 1]
+    inches_per_metre = 0.93 * width / (rows[0][1] - rows[0][0])
+    return len(rows) * (inches_per_metre * (float(np.nanmax(y) - np.nanmin(y)) + 0.35) + 0.2)
 
 
 def is_wide(view: LogView) -> bool:
@@ -77,7 +109,7 @@ def _footprints(axes: Axes, view: LogView) -> list[Artist]:
         (corners,) = level_corners(pose[None], length, width)
         axes.fill(*corners.T, facecolor=FEET[foot], edgecolor=FEET[foot], alpha=0.55, linewidth=0.8, zorder=2)
         below: dict[str, Any] = {"textcoords": "offset points", "ha": "right", "va": "top"}
-        axes.annotate(label, corners[2], (-2, -2), fontsize=6.5, zorder=5, **below)
+        axes.annotate(label, corners[2], (-2, -2), fontsize=6.5, zorder=5, annotation_clip=True, **below)
     for _, pose, _ in [*_touchdowns(view, "planned"), *_ahead(view)]:
         (corners,) = level_corners(pose[None], length, width)
         axes.fill(*corners.T, facecolor="none", edgecolor=FOOTSTEP, linestyle="--", linewidth=0.9, zorder=3)

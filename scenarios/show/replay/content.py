@@ -1,18 +1,11 @@
 """What a replay shows, independent of what shows it: surfaces on bodies, marks that move, footprints that stay."""
 
-import contextlib
-import importlib
-import os
-from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
-from types import ModuleType
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.palette import Color
 
 Array = NDArray[np.float64]
@@ -84,6 +77,10 @@ class Footprint:
     since: float
 
 
+SWAY = 1.0
+"""Over how long a camera that follows the robot takes the mean of where it is [s]."""
+
+
 @dataclass(frozen=True, slots=True)
 class Replay:
     """A stretch of a run at an even frame rate.
@@ -117,52 +114,17 @@ class Replay:
     def __len__(self) -> int:
         return len(self.time)
 
+    def legend(self) -> dict[str, Color]:
+        """Colours of the marks that are ever shown, by name."""
+        found: dict[str, Color] = {}
+        for track in self.tracks:
+            name = track.layer if track.layer != "Contact forces" else f"Force, {track.name}"
+            if np.isfinite(track.vertices).all(axis=(1, 2)).any():
+                found.setdefault(name, track.color)
+        return found
 
-class MissingExtraError(LogError):
-    """An output needs a package that is not installed; the message says how to install it."""
-
-
-def require(module: str, extra: str, purpose: str) -> ModuleType:
-    """Import an optional package.
-
-    Args:
-        module: to import.
-        extra: of the distribution that brings it.
-        purpose: what needs it, for the message.
-
-    Raises:
-        MissingExtraError: it is not installed.
-    """
-    try:
-        return importlib.import_module(module)
-    except ImportError:
-        install = f"pip install 'surefoot[{extra}]'"
-        raise MissingExtraError(f"{purpose} needs the package {module}; install it with: {install}") from None
-
-
-@contextlib.contextmanager
-def write_whole(path: Path) -> Iterator[Path]:
-    """A temporary file beside the wanted one, which it replaces when the context ends well.
-
-    Args:
-        path: the wanted file.
-
-    Yields:
-        path of the temporary file, which exists and can be written.
-
-    Raises:
-        LogError: the file cannot be written.
-    """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.new")
-    try:
-        if path.is_dir():
-            raise IsADirectoryError(0, "is a directory")
-        temporary.touch()
-        yield temporary
-        temporary.replace(path)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise LogError(f"{path}: cannot be written, {reason}; choose another file") from None
-    finally:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
+    def followed(self) -> Array:
+        """What a camera that follows the robot looks at: the base without the sway of its steps, shape (n, 3) [m]."""
+        base, half = self.body_position[:, 1], round(SWAY * self.frame_rate / 2)
+        padded = np.pad(base, ((half, half), (0, 0)), mode="edge")
+        return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0).mean(axis=-1))

@@ -68,17 +68,19 @@ def _first(path: Path, window: Window) -> Replay:
 
 
 class Player:
-    """Timeline, play, speed and follow, and the scene that they move."""
+    """Timeline, play, speed, what follows what, and the scene that they move."""
 
     def __init__(self, server: "viser.ViserServer", replay: Replay) -> None:
         self._replay, self._scene, self._last = replay, ViserScene(server, replay), time.monotonic()
         first, last = float(replay.time[0]), float(replay.time[-1])
         gui: Any = server.gui
+        gui.main_panel.dock_right()  # beside the picture, not over it
         self._slider = gui.add_slider(
             "time [s]", min=first, max=max(last, first + STEP), step=STEP, initial_value=first
         )
         self._playing = gui.add_checkbox("play", initial_value=True)
         self._following = gui.add_checkbox("follow the run", initial_value=False, hint="show the end of a growing log")
+        self._camera = gui.add_checkbox("camera follows the robot", initial_value=True)
         self._speed = gui.add_dropdown("speed", options=SPEEDS, initial_value="1x")
         self._now = first
         self._slider.on_update(self._sought)
@@ -110,4 +112,4 @@ class Player:
         if self._playing.value or self._following.value:
             self._slider.value = round(self._now, 3)
         frame = int(np.clip(np.searchsorted(times, self._now + 1e-9, side="right") - 1, 0, len(times) - 1))
-        self._scene.show(frame)
+        self._scene.show(frame, follow=self._camera.value)

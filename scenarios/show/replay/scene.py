@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from surefoot.scenarios.errors import require
 from surefoot.scenarios.palette import Color
-from surefoot.scenarios.show.replay.content import Array, Footprint, Replay, Track, require
+from surefoot.scenarios.show.replay.content import Array, Footprint, Replay, Track
 
 if TYPE_CHECKING:
     import viser
@@ -76,20 +77,23 @@ def rgb(color: Color) -> tuple[int, int, int]:
     return red, green, blue
 
 
+GROUND = "/Ground"
+"""The node of the ground."""
+
 LOCALHOST = "127.0.0.1"
 """A replay is for this machine alone."""
 
 PORT = 8080
 """The first to try; viser takes the next free one."""
 
-STEP_BACK = np.array([1.6, -1.9, 0.35])
-"""From what the camera looks at to where it stands at first, for a robot that stays in place [m]."""
+STEP_BACK = np.array([1.7, -2.0, 0.35])
+"""From what the camera looks at to where it stands at first [m]."""
 
-WIDER, WIDEST = 0.2, 1.6
-"""Share by which the camera steps back for each metre that the robot walks [1/m], and the largest factor."""
-
-LOOK_AT_HEIGHT = 0.7
+LOOK_AT_HEIGHT = 0.75
 """Of what the camera looks at, over the ground [m]."""
+
+GROUND_DEPTH = np.array([0.0, 0.0, -0.002])
+"""Where the ground is drawn, so that it does not fight with what lies on it [m]."""
 
 
 @contextlib.contextmanager
@@ -109,23 +113,21 @@ def serving() -> "Iterator[viser.ViserServer]":
             server.stop()
 
 
-def set_stage(server: "viser.ViserServer", replay: Replay) -> None:
-    """Set camera, light and ground."""
-    scene, base = server.scene, replay.body_position[:, 1]
+def set_stage(server: "viser.ViserServer", replay: Replay) -> Any:
+    """Set camera and light; gives the node of the ground."""
+    scene, look_at = server.scene, replay.followed()[0].copy()
     scene.set_up_direction("+z")
     scene.world_axes.visible = False
     scene.configure_default_lights(cast_shadow=True)
-    middle = (base.min(axis=0) + base.max(axis=0)) / 2
-    middle[2] = replay.footprints[0].corners[0, 2] if replay.footprints else 0.0
-    middle[2] += LOOK_AT_HEIGHT
-    walked = float(np.linalg.norm(np.ptp(base[:, :2], axis=0)))
-    server.initial_camera.look_at = middle
-    server.initial_camera.position = middle + STEP_BACK * min(1.0 + WIDER * walked, WIDEST)
+    look_at[2] = replay.footprints[0].corners[0, 2] if replay.footprints else 0.0
+    look_at[2] += LOOK_AT_HEIGHT
+    server.initial_camera.look_at = look_at
+    server.initial_camera.position = look_at + STEP_BACK
     server.initial_camera.fov = np.deg2rad(45.0)
-    scene.add_grid(
-        "/Ground", infinite_grid=True, cell_size=0.1, section_size=1.0, fade_distance=25.0,
+    return scene.add_grid(
+        GROUND, infinite_grid=True, cell_size=0.1, section_size=1.0, fade_distance=25.0,
         cell_color=(214, 218, 223), section_color=(165, 172, 180), plane_color=(238, 240, 242), plane_opacity=1.0,
-        shadow_opacity=0.25, position=(0.0, 0.0, -0.002),
+        shadow_opacity=0.25, position=GROUND_DEPTH,
     )  # fmt: skip
 
 
@@ -138,13 +140,16 @@ _QUADRANGLE = np.array([[0, 1, 2], [0, 2, 3]])
 class ViserScene:
     """Nodes for everything in a replay; `show` moves them to a frame.
 
+    The robot is followed by moving the world below a camera that stays, since the camera belongs to the user, who turns
+    and zooms it meanwhile.
+
     Attributes:
         layers: nodes that hide all that is below them, by name.
     """
 
     def __init__(self, server: "viser.ViserServer", replay: Replay) -> None:
         self._scene = server.scene
-        set_stage(server, replay)
+        self._ground, self._origin = set_stage(server, replay), replay.followed()[0]
         self.layers: dict[str, Any] = {}
         self._bodies = tuple(self._add_bodies(replay))
         for name in (*(track.layer for track in replay.tracks), "Taken footprints", "Paths"):
@@ -156,7 +161,7 @@ class ViserScene:
 
     def replace(self, replay: Replay) -> None:
         """Show another stretch of the same run, in which it may have gone on."""
-        self._replay = replay
+        self._replay, self._shift = replay, self._origin - replay.followed()
         for index, footprint in enumerate(replay.footprints[len(self._footprints) :], start=len(self._footprints)):
             self._footprints.append(self._add_footprint(index, footprint))
         for track in replay.tracks:
@@ -165,9 +170,19 @@ class ViserScene:
                 lines = np.stack([path[:-1], path[1:]], axis=1)
                 self._scene.add_line_segments(f"/Paths/{track.layer}", lines, rgb(track.color), thickness=0.004)
 
-    def show(self, frame: int) -> None:
-        """Move everything to a frame."""
+    @property
+    def moving_layers(self) -> tuple[str, ...]:
+        """Names of the nodes that move when the robot is followed."""
+        return (GROUND, *(f"/{name}" for name in self.layers))
+
+    def show(self, frame: int, follow: bool = True) -> None:
+        """Move everything to a frame; without following, the world stays where it is."""
         replay = self._replay
+        if follow:
+            shift = self._shift[frame]
+            self._ground.position = GROUND_DEPTH + shift
+            for layer in self.layers.values():
+                layer.position = shift
         for body, node in self._bodies:
             node.position, node.wxyz = replay.body_position[frame, body], replay.body_quaternion[frame, body]
         for mark, track in zip(self._marks, replay.tracks, strict=True):

@@ -1,15 +1,20 @@
-"""A frame of a replay as marks for MuJoCo's pictures."""
+"""A replay as a video: marks for MuJoCo's pictures, cameras, and the encoding."""
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from surefoot.scenarios.errors import LogError, MissingExtraError, require
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.palette import Color
-from surefoot.scenarios.show.replay.content import Array, MissingExtraError, Replay, Track, require, write_whole
+from surefoot.scenarios.show.replay.caption import Caption
+from surefoot.scenarios.show.replay.content import Array, Replay, Track
+from surefoot.scenarios.show.replay.poses import Window
 from surefoot.sim.gl import RenderingUnavailableError
 from surefoot.sim.marks import Mark
 from surefoot.sim.render import Camera, Image, Quality, render_frames
@@ -51,47 +56,139 @@ def _outline(color: Color, size: float, vertices: Array) -> Iterator[Mark]:
             yield Mark("line", color, size, ends)
 
 
-WIDTH, HEIGHT = 1280, 720
+FRAME_RATE = 30.0
+"""Of every video [Hz]."""
 
 CAMERA = Camera(distance=2.7, azimuth=130.0, elevation=-12.0)
 QUALITY = Quality(reflections=False)
 
+CAMERAS = {
+    "follow": CAMERA,
+    "side": Camera(distance=2.7, azimuth=90.0, elevation=-5.0),
+    "front": Camera(distance=2.7, azimuth=180.0, elevation=-8.0),
+    "fixed": Camera(distance=2.7, azimuth=130.0, elevation=-15.0, tracking=False),
+}
+"""Cameras by name. A fixed one looks at the middle of the way, from so far that the robot is in sight all along it."""
+
+WIDER = 0.75
+"""By how much a fixed camera steps back for each metre of the way [-]."""
+
+SLOWEST, FASTEST = 0.1, 10.0
+SMALLEST, LARGEST = 64, 3840
+
 CODEC = {"crf": "20", "preset": "veryfast"}
 """Constant quality that shows no artefacts, at a speed that does not matter beside the drawing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Film:
+    """How a video is made.
+
+    Attributes:
+        speed: of the video over that of the run.
+        camera: name of a camera, or azimuth, elevation [deg] and distance [m] of one that follows.
+        size: width and height, both even, since H.264 halves them for the colours [px].
+    """
+
+    speed: float = 1.0
+    camera: str = "follow"
+    size: tuple[int, int] = (1280, 720)
+
+    @classmethod
+    def of(cls, speed: float, camera: str, size: str) -> "Film":
+        """Read what was asked for on a command line.
+
+        Raises:
+            LogError: it is no speed, camera or size.
+        """
+        if not SLOWEST <= speed <= FASTEST:
+            raise LogError(f"--speed {speed:g}: give a number from {SLOWEST:g} to {FASTEST:g}, 1 for that of the run")
+        width, cross, height = size.partition("x")
+        if not (cross and width.isdecimal() and height.isdecimal()):
+            raise LogError(f"--size {size}: give width and height in pixels, such as 1280x720")
+        if any(side % 2 or not SMALLEST <= side <= LARGEST for side in (int(width), int(height))):
+            raise LogError(f"--size {size}: give even numbers from {SMALLEST} to {LARGEST}, such as 1280x720")
+        film = cls(speed, camera, (int(width), int(height)))
+        film.view()
+        return film
+
+    def view(self) -> Camera:
+        """The camera.
+
+        Raises:
+            LogError: there is none of that name, and it is no direction either.
+        """
+        if self.camera in CAMERAS:
+            return CAMERAS[self.camera]
+        try:
+            azimuth, elevation, distance = (float(number) for number in self.camera.split(","))
+        except ValueError:
+            known = f"choose {', '.join(CAMERAS)}, or azimuth,elevation,distance such as 130,-12,2.7"
+            raise LogError(f"--camera {self.camera}: {known}") from None
+        if not (abs(azimuth) <= 360.0 and abs(elevation) < 90.0 and 0.3 <= distance <= 100.0):
+            raise LogError(
+                f"--camera {self.camera}: azimuth goes from -360 to 360 and elevation from -89 to 89 degrees, "
+                "distance from 0.3 to 100 m"
+            )
+        return Camera(distance, azimuth, elevation)
+
+    def window(self, window: Window) -> Window:
+        """The window with as many frames per simulated second as the speed needs."""
+        return replace(window, frame_rate=FRAME_RATE / self.speed)
+
 
 OnFrame = Callable[[int], None]
 
 
-def write_video(replay: Replay, path: Path, on_frame: OnFrame | None = None) -> None:
-    """Write an mp4 file that plays at the speed of the run.
+def write_video(
+    replay: Replay, path: Path, on_frame: OnFrame | None = None, film: Film | None = None, replace: bool = False
+) -> None:
+    """Write an mp4 file.
 
     Args:
-        replay: what to show; its frame rate is that of the video.
+        replay: what to show, in a window of the film.
         path: of the file.
         on_frame: is told the number of each frame that is done.
+        film: how; at the speed of the run, following, by default.
+        replace: an existing file.
 
     Raises:
         MissingExtraError: PyAV or an off-screen OpenGL is not installed.
-        LogError: the file cannot be written.
+        LogError: the file exists or cannot be written.
     """
     av = require("av", "video", "video")
-    with write_whole(path) as temporary:
+    film = film or Film()
+    with write_whole(path, replace) as temporary:
         try:
-            encode(av, _pictures(replay), temporary, replay.frame_rate, on_frame or (lambda _: None))
+            encode(av, _pictures(replay, film), temporary, film.size, on_frame or (lambda _: None))
         except RenderingUnavailableError as error:
             raise MissingExtraError(str(error)) from None
 
 
-def _pictures(replay: Replay) -> Iterable[Image]:
+def _pictures(replay: Replay, film: Film) -> Iterator[Image]:
     marks = (marks_of(replay, frame) for frame in range(len(replay)))
-    return render_frames(replay.mjcf, replay.configuration, WIDTH, HEIGHT, CAMERA, QUALITY, marks)
+    camera, look_at = stand(replay, film.view())
+    caption = Caption(replay, film.size, film.speed)
+    drawn = render_frames(replay.mjcf, replay.configuration, *film.size, camera, QUALITY, marks, look_at)
+    for time, picture in zip(replay.time.tolist(), drawn, strict=True):
+        yield caption.drawn_on(picture, time)
 
 
-def encode(av: Any, pictures: Iterable[Image], path: Path, frame_rate: float, on_frame: OnFrame) -> None:
+def stand(replay: Replay, camera: Camera) -> tuple[Camera, Array]:
+    """A camera, at a distance from which it sees what it shall, and what it looks at by frame, shape (n, 3) [m]."""
+    followed = replay.followed()
+    if camera.tracking:
+        return camera, followed
+    middle = (followed.min(axis=0) + followed.max(axis=0)) / 2
+    way = float(np.linalg.norm(np.ptp(followed, axis=0)))
+    return replace(camera, distance=camera.distance + WIDER * way), np.broadcast_to(middle, followed.shape)
+
+
+def encode(av: Any, pictures: Iterable[Image], path: Path, size: tuple[int, int], on_frame: OnFrame) -> None:
     """Encode pictures of one size, shape (height, width, 3), as H.264 in an mp4 file; `av` is PyAV."""
     with av.open(str(path), "w", format="mp4", options={"movflags": "+faststart"}) as container:
-        stream = container.add_stream("libx264", rate=Fraction(frame_rate).limit_denominator(1000), options=CODEC)
-        stream.width, stream.height, stream.pix_fmt = WIDTH, HEIGHT, "yuv420p"
+        stream = container.add_stream("libx264", rate=Fraction(FRAME_RATE), options=CODEC)
+        (stream.width, stream.height), stream.pix_fmt = size, "yuv420p"
         for number, picture in enumerate(pictures, start=1):
             container.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
             on_frame(number)

@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from surefoot.planner.geometry import sole_rotation
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.plan import PlanSampler
@@ -39,6 +41,19 @@ def test_rates_of_a_roll_are_its_derivatives():
         before, now, after = (roll.evaluate(time + d) for d in (-h, 0.0, h))
         assert now[1] == pytest.approx((after[0] - before[0]) / (2 * h), rel=1e-5)
         assert now[2] == pytest.approx((after[1] - before[1]) / (2 * h), rel=1e-5)
+
+
+def test_the_centre_of_a_rolled_sole_keeps_the_toe_edge_where_it_was():
+    """Its velocity is the derivative of its way, and a foot turned about its toe edge by hand has it there."""
+    roll, h = FootRoll(Foot.LEFT, 1.0, 1.3, 0.5, 0.11), 1e-5
+    level, rates = np.array([0.3, 0.1, 0.02, 0.7, 0.1, -0.05]), np.array([1.0, 0.2, 0.5, 0.3, -0.4, 0.2])
+    before, now, after = (roll.centre(1.2 + d, level + d * rates, rates) for d in (-h, 0.0, h))
+    np.testing.assert_allclose(now[1], (after[0] - before[0]) / (2 * h), atol=1e-8)
+    flat, angle = sole_rotation(*level[3:]), roll.evaluate(1.2)[0]
+    turned = flat @ Rotation.from_euler("y", angle).as_matrix()
+    edge = level[:3] + 0.11 * flat[:, 0]
+    np.testing.assert_allclose(now[0] + 0.11 * turned[:, 0], edge, atol=1e-12)
+    assert now[0][2] > level[2] + 0.03
 
 
 def test_a_roll_begins_in_double_support_and_ends_before_touchdown(walk):

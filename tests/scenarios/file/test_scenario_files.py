@@ -65,7 +65,6 @@ CASES = {
     "rates: {control: 300}": "does not divide rates.physics 1000 Hz; use a divisor of 1000 Hz",
     "rates: {control: 40}": "rates.planner 50 Hz does not divide rates.control 40 Hz",
     "planner: {sample_time: 0.01}": "f.yaml:1:24: planner.sample_time 0.01 s is not the period of rates.planner 50 Hz",
-    "gait: {double_support: 0.51}": "f.yaml:1:24: gait.double_support 0.51 s is not a multiple of planner.sample_time",
     "robot: humanoid10": "f.yaml:1:8: unknown robot 'humanoid10'; did you mean 'humanoid100'?",
     "gait: {step_length: 0.9}": "f.yaml:1:21: gait.step_length 0.9 m is out of reach at com_height 1.0 m; use at",
     "gait: {com_height: 1.2}": "f.yaml:1:20: gait.com_height 1.2 m is out of reach",
@@ -82,7 +81,9 @@ CASES = {
     "planner: {profile: paper, control_horizon: 60}": "control_horizon 60 exceeds the horizon of 50 samples; use at",
     "planner: {profile: dcm, control_horizon: 2}": "with profile 'dcm', which optimises no moves of the jerk; leave it",
     "duration: 1.0e-6": "f.yaml:1:11: duration 1e-06 s is shorter than one control tick; use at least 0.002 s",
-    "pushes: [{time: 1, force: [1, 0, 0], body: torzo}]": "f.yaml:1:44: unknown body 'torzo' of humanoid100; did you mean 'torso'?",
+    "pushes: [{time: 1, force: [1, 0, 0], body: torzo}]": (
+        "f.yaml:1:44: unknown body 'torzo' of humanoid100; did you mean 'torso'?"
+    ),
     "robot_options: {payload_body: x}": "unknown body 'x' of humanoid100; valid are pelvis, torso",
     "pushes: [{duration: 1}]": "f.yaml:1:10: a push without a begin; give time, or step, phase and fraction",
     "pushes: [{time: 1, step: 1}]": "a push with both a time and a point of the gait; give one of them",

@@ -51,6 +51,7 @@ def test_a_sound_walk_has_no_warning(health):
     assert {name for name, finding in found.items() if finding.status != "ok"} == set()
     assert set(found) == {
         *("finite_values", "contact_forces", "foot_slip", "touchdowns", "zmp_margin", "torque_limits"),
+        *("joint_stops", "joint_speeds"),
         *("estimator", "controller_solver", "planner_solver", "overruns"),
     }
     assert all(finding.cause == "" for finding in found.values())
@@ -64,6 +65,12 @@ FAULTS = {
     "touchdowns": ({("/reference", 13): lambda t, d: 0.5 - 0.1 * (t >= 1)}, 0.1, "late, the worst by 100 ms"),
     "zmp_margin": ({("/contact", 0): lambda t, z: z + np.array([0.2 * (t > 3), 0, 0])}, 0.25, "the plan asks for it"),
     "torque_limits": ({("/torque", 0): lambda t, u: u + np.array([0, 0, 95.0 * (t == 2), 0])}, 1.0, "right_hip is at"),
+    "joint_stops": (
+        {("/measurement", 0): lambda t, q: q - np.array([0, 0, 0, 0.2 * (t == 2)])}, -0.1, "right_knee is 5.7 deg past",
+    ),
+    "joint_speeds": (
+        {("/measurement", 1): lambda t, v: v + np.array([0, 12.0 * (t == 2), 0, 0])}, 1.25, "left_knee turns at 125 %",
+    ),
     "estimator": ({("/estimate", 0): lambda t, c: c + np.array([0.02 * t, 0, 0])}, 0.08, "the base drifts"),
     "controller_solver": ({("/wbc", 3): lambda t, f: float(t in (2, 3))}, 2.0, "no solution in 2 ticks"),
     "planner_solver": ({("/plan", 8): lambda t, f: float(t == 2)}, 1.0, "1 plans were held"),

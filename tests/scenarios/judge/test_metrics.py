@@ -4,17 +4,20 @@ import numpy as np
 import pytest
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.metrics import OWN, compute
+from surefoot.scenarios.judge.digest import RunView
+from surefoot.scenarios.judge.metrics import OWN, compute, digest
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.loop.run import run_scenario
 
 pytestmark = pytest.mark.unit
 
 NAMES = (
-    "fell fall_time duration steps_planned steps_taken standing_time_final standing_time_between zmp_inside_fraction "
+    "fell fall_time duration steps_planned steps_taken touchdowns_missed standing_time_final "
+    "standing_time_between zmp_inside_fraction "
     "zmp_excursion_max cop_ratio_p99 cop_ratio_max zmp_error_rms zmp_error_max com_error_rms dcm_error_rms "
-    "footstep_error_max stair_edge_margin_min swing_clearance_min foot_slip_max self_contact_time torque_ratio_max "
-    "knee_torque_rms torque_at_limit_fraction joint_limit_margin_min knee_angle_mean cost_of_transport speed_mean "
+    "footstep_error_max stair_edge_margin_min swing_clearance_min foot_slip_max stance_twist_max stance_tilt_max "
+    "unplanned_flight_time self_contact_time torque_ratio_max knee_torque_rms torque_at_limit_fraction "
+    "joint_limit_margin_min joint_speed_ratio_max knee_angle_mean cost_of_transport speed_mean "
     "path_length displacement heading_change com_height_range estimation_error_rms planner_infeasible_fraction "
     "dcm_estimation_error_rms planner_time wbc_time real_time_factor qp_failures wbc_fallbacks log_bytes"
 )
@@ -149,6 +152,18 @@ def test_nan_is_never_a_number_of_the_verdict(metrics, motion):
 def test_an_empty_run_has_no_metrics_but_its_size(metrics, motion):
     found = metrics(motion(stop_at=0.0))
     assert {name for name, value in found.items() if value is not None} == {"steps_planned", "log_bytes"}
+
+
+def test_windows_of_a_long_log_lose_no_tick_and_shift_none(tmp_path, robot, two_steps, motion):
+    """Chunks end within a tick, with some of its messages in the next one; what is gathered is as of the whole log."""
+    log = read(run_scenario(two_steps, tmp_path, None, motion(duration=9.0, zmp_offset=(0.003, 0.0)), robot).log)
+    gathered, whole = digest(log), RunView(log)
+    sizes = [[len(part[topic]) for topic in ("/measurement", "/truth", "/timing")] for part in log.windows(log.numeric)]
+    assert len(sizes) > 2
+    assert any(len(set(row)) > 1 for row in sizes)
+    assert len(gathered.reduced)
+    for reduction in gathered.reduced:
+        np.testing.assert_array_equal(gathered.reduced[reduction], reduction(whole), reduction.function.__name__)
 
 
 def test_a_log_of_something_else(tmp_path):

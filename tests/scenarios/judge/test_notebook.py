@@ -64,5 +64,5 @@ def test_a_frame_has_a_column_for_every_element(result):
 
 def test_a_frame_needs_pandas(result, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(LogError, match=r"`pip install pandas`, or use log\['/truth'\]\.field\(name\)"):
+    with pytest.raises(LogError, match=r"install .*\[frame\]', or use log\['/truth'\]\.field\(name\)"):
         read(result.log).frame("/truth")

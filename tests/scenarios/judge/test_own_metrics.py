@@ -143,7 +143,7 @@ def test_its_fields_and_reductions_are_gathered_while_the_log_is_read(brought, t
         (lambda run: "much", "gave 'much', which is not what it says it gives"),
     ],
 )
-@pytest.mark.parametrize("bound", ["{min: 0}", "{equals: true}", "{equals: fall_time}"])
+@pytest.mark.parametrize("bound", ["{min: 0}", "{equals: true}", "{equals: steps_planned}"])
 def test_one_that_fails_is_a_note_and_its_criterion_a_reason(brought, verdict, function, note, bound):
     brought(made(function, reads={"/truth": ("com",)}))
     found = verdict(grip=bound)

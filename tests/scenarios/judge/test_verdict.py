@@ -1,13 +1,16 @@
 """Criteria against metrics, and runs that did not come to their end."""
 
 import json
+from contextlib import suppress
 
 import pytest
 
+from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import judge, missed
 from surefoot.scenarios.log import read
+from surefoot.scenarios.log.recover import recover
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.loop.skeleton import End
 
@@ -80,3 +83,56 @@ def test_a_truncated_log_is_no_pass(tmp_path, robot, motion):
     assert not verdict.passed
     assert "the run was cut off; its log ends at" in verdict.reasons[0]
     json.dumps(verdict.to_json(), allow_nan=False)
+
+
+def test_a_fall_in_damaged_chunks_is_no_pass_nor_after_recovery(tmp_path, robot, motion):
+    scenario = Scenario(name="any", gait={"steps": 2}, criteria={"fell": False})
+    path = run_scenario(scenario, tmp_path, None, motion(duration=1.6, fall_at=1.4), robot).log
+    log, data = read(path), bytearray(path.read_bytes())
+    for chunk in log.contents.chunks:
+        if chunk.end_ns >= 1.4e9:
+            data[chunk.data.start + 100] ^= 1
+    path.write_bytes(data)
+    recover(path, tmp_path / "once.mcap")
+    recover(tmp_path / "once.mcap", tmp_path / "twice.mcap")
+    for damaged in (path, tmp_path / "once.mcap", tmp_path / "twice.mcap"):
+        verdict = judge(read(damaged))
+        assert verdict["fell"] is False
+        assert not verdict.passed
+        assert verdict.reasons[0].startswith("the log is incomplete: ")
+
+
+def test_a_log_without_its_index_is_whole_and_judged(tmp_path, robot, motion, two_steps):
+    path = run_scenario(two_steps, tmp_path, None, motion(), robot).log
+    passed, end = judge(read(path)), read(path).contents.data_end
+    path.write_bytes(path.read_bytes()[: end + 100])
+    recover(path, tmp_path / "whole.mcap")
+    for log in (read(path), read(tmp_path / "whole.mcap")):
+        assert judge(log).reasons == ()
+        assert {**judge(log).metrics, "log_bytes": 0} == {**passed.metrics, "log_bytes": 0}
+
+
+def test_a_log_with_edited_records_is_no_pass(tmp_path, robot, motion, two_steps):
+    path = run_scenario(two_steps, tmp_path, None, motion(), robot).log
+    data = path.read_bytes()
+    for before, after in {b"kind": b"mind", b"com_height": b"com_weight", b"steps: 2": b"steps: 3"}.items():
+        path.write_bytes(data.replace(before, after))
+        assert path.read_bytes() != data
+        with suppress(LogError):
+            assert not judge(read(path)).passed
+
+
+@pytest.mark.parametrize(
+    ("end", "fall_at", "reason"),
+    [
+        (End("completed", 0.4), 0.2, "was completed, and its data show a fall at 0.200 s"),
+        (End("completed", 9.0), 99.0, "was completed at 9.000 s, and its data end at 0.400 s"),
+        (End("fall", 0.2), 99.0, "fell at 0.200 s, and its data show no fall"),
+        (End("fall", 0.1), 0.2, "fell at 0.100 s, and its data show a fall at 0.200 s"),
+    ],
+)
+def test_the_record_of_the_end_and_the_data_must_agree(tmp_path, robot, motion, end, fall_at, reason):
+    criteria = {"duration": {"min": 0.1}, "fell": {"equals": fall_at < 1.0}}
+    verdict = judged(tmp_path, robot, motion(duration=0.4, fall_at=fall_at, end=end), criteria=criteria)
+    assert not verdict.passed
+    assert verdict.reasons[0].endswith(reason)

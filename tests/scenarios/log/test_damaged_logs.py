@@ -15,7 +15,7 @@ from surefoot.scenarios.record.foxglove.views import EventLog
 
 pytestmark = pytest.mark.unit
 
-FLIPS, CUTS = 200, 25
+FLIPS, CUTS = 60, 25
 SLOWEST = 5.0
 """No command may take longer on these short logs, on a busy machine [s]."""
 
@@ -33,8 +33,8 @@ def run(motion, robot, two_steps, tmp_path):
 def commands(path, out):
     return (
         ["inspect", str(path), "--json"],
-        ["inspect", str(path), "--topic", "/truth", "--from", "0.1", "--export", str(out.with_suffix(".csv"))],
-        ["recover", str(path), str(out)],
+        ["inspect", str(path), "--topic", "/truth", "--from", "0.1", "--export", str(out.with_suffix(".csv")), "-f"],
+        ["recover", str(path), str(out), "--force"],
     )
 
 
@@ -53,7 +53,7 @@ def survives(path, out):
     return answered
 
 
-def test_bits_flipped_at_200_places(run, tmp_path):
+def test_bits_flipped_anywhere(run, tmp_path):
     data, path, out = run.read_bytes(), tmp_path / "flipped.mcap", tmp_path / "out.mcap"
     rng = random.Random(4)
     answered = noticed = 0
@@ -64,10 +64,9 @@ def test_bits_flipped_at_200_places(run, tmp_path):
         answered += survives(path, out)
         log = read(path) if damaged[:8] == data[:8] else None
         if log is not None:
-            log.verify()
-            noticed += bool(log.damage)
+            noticed += bool(log.losses())
     assert answered > 2.5 * FLIPS
-    assert noticed > 0.3 * FLIPS
+    assert noticed > 0.75 * FLIPS  # the others are in the summary, out of which nothing is read
 
 
 def test_cut_at_random_places(run, tmp_path):
@@ -124,7 +123,7 @@ def test_a_damaged_index_is_made_anew_from_its_chunk(run, tmp_path):
     path, log = tmp_path / "flipped.mcap", read(run)
     number = log._ids["/contact"]
     data = bytearray(run.read_bytes())
-    data[log.contents.chunks[1].index[number].start - 4] ^= 1
+    data[log.contents.chunks[1].place(number)[0] - 4] ^= 1
     path.write_bytes(data)
     damaged = read(path)
     assert "message index" in damaged.damage[0]

@@ -1,16 +1,22 @@
 """Windows of logs, their export, and what bounds the memory."""
 
 import csv
+import errno
+import json
 import sys
+from functools import partialmethod
 
 import numpy as np
 import pytest
 
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.columns import HELD_BYTES, Columns
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute, digest
-from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
+from surefoot.scenarios.log import ChannelSpec, FieldSpec, Log, LogWriter, read
+from surefoot.scenarios.log.spec import layout_of
 from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.record import channels
 from surefoot.scenarios.show.console import export, selected
 
 pytestmark = pytest.mark.unit
@@ -53,12 +59,40 @@ def test_windows_together_are_the_whole(log):
 
 
 def test_metrics_of_a_log_in_parts_are_those_of_the_whole(tmp_path, motion, two_steps, robot, monkeypatch):
-    path = run_scenario(two_steps, tmp_path, simulate=motion(), robot=robot).log
+    path = run_scenario(two_steps, tmp_path, simulate=motion(duration=2.2), robot=robot).log
     parts, whole = compute(read(path)), RunView(read(path))
-    monkeypatch.setattr("surefoot.scenarios.log.reader.WINDOW", 1e9)
-    for function, values in digest(read(path)).reduced.items():
-        assert np.allclose(values, function(whole), equal_nan=True)
-    assert compute(read(path)) == parts
+    monkeypatch.setattr(Log, "windows", partialmethod(Log.windows, duration=0.5))
+    for held in (0, HELD_BYTES):
+        monkeypatch.setattr("surefoot.scenarios.judge.columns.HELD_BYTES", held)
+        gathered = digest(read(path))
+        for function in gathered.reduced:
+            assert np.array_equal(gathered.reduced[function], function(whole), equal_nan=True)
+        assert compute(gathered) == parts
+
+
+def test_columns_hold_the_same_in_files_as_in_memory(monkeypatch):
+    held, filed = Columns(), Columns()
+    for n in (3, 0, 2):
+        for columns, limit in ((held, HELD_BYTES), (filed, 0)):
+            monkeypatch.setattr("surefoot.scenarios.judge.columns.HELD_BYTES", limit)
+            columns.add("a", np.arange(4.0 * n).reshape(n, 4)[:, ::2])
+            columns.add("none", np.zeros(0))
+            columns.add("unlike", np.zeros((n, n)))
+    assert list(held) == list(filed) == ["a", "none"]
+    assert np.array_equal(held["a"], filed["a"])
+    assert len(filed["none"]) == 0
+    with pytest.raises(ValueError, match="read-only"):
+        filed["a"][0] = 1.0
+
+
+def test_no_room_for_a_long_log_is_a_sentence(monkeypatch):
+    def full(**_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("surefoot.scenarios.judge.columns.HELD_BYTES", 0)
+    monkeypatch.setattr("surefoot.scenarios.judge.columns.tempfile.TemporaryFile", full)
+    with pytest.raises(LogError, match="no space left on device; set TMPDIR"):
+        Columns().add("a", np.zeros(1))
 
 
 def test_csv_npz_and_columns_agree(log, tmp_path):
@@ -66,7 +100,7 @@ def test_csv_npz_and_columns_agree(log, tmp_path):
     export(part, tmp_path / "x.csv")
     with (tmp_path / "x.csv").open(newline="") as file:
         rows = list(csv.reader(file))
-    assert rows[0] == ["time", "a", *(f"b_{i}_{j}" for i in range(2) for j in range(3)), "n"]
+    assert rows[0] == ["time [s]", "a", *(f"b_{i}_{j}" for i in range(2) for j in range(3)), "n"]
     assert np.array_equal(np.array(rows[1:], float), np.column_stack(list(part.columns().values())))
     export(part, tmp_path / "x.npz")
     with np.load(tmp_path / "x.npz") as data:
@@ -74,16 +108,81 @@ def test_csv_npz_and_columns_agree(log, tmp_path):
         assert np.array_equal(data["time"], part.time)
 
 
+ROBOT = (
+    FieldSpec("q", (9,), "m, -, rad", "world", "configuration"),
+    FieldSpec("v", (8,), "m/s, rad/s", "base", "velocity"),
+    FieldSpec("command", (2,), "N m", "", "commanded [at the output]"),
+    FieldSpec("cop", (2,), "m", "left sole"),
+    FieldSpec("wrench", (6,), "N, N m", "left sole"),
+    FieldSpec("step", (2, 4), "m, rad", "world", "x y z yaw"),
+    FieldSpec("stance", kind="int"),
+)
+JOINTS = ("left_knee", "right_knee")
+
+
+@pytest.fixture(scope="module")
+def moved(tmp_path_factory):
+    """The log of a robot with two joints."""
+    path = tmp_path_factory.mktemp("robot") / "log.mcap"
+    with LogWriter(path, {"run": {"joint_names": json.dumps(JOINTS)}}) as writer:
+        writer.channel(ChannelSpec("/r", "R", ROBOT)).append(0, *(np.ones(field.shape) for field in ROBOT[:-1]), 1)
+    return read(path)
+
+
+def test_a_field_that_is_read_has_its_unit_frame_and_meaning(moved):
+    assert moved["/r"].fields == moved.fields("/r") == ROBOT
+    sizes = channels.Sizes(nj=25, nq=32, nv=31, horizon=80)
+    made = [make(sizes) for make in (channels.measurement, channels.truth, channels.contact, channels.plan)]
+    assert all(layout_of(spec.metadata()) == spec.fields for spec in made)
+    assert layout_of({"layout": '[["a", "double", []]]', "field.a": "no note"}) == (FieldSpec("a", doc="no note"),)
+
+
+def test_columns_are_called_by_their_joints_and_have_the_unit_of_their_element(moved):
+    units = {name: note["unit"] for name, note in moved["/r"].notes().items()}
+    assert list(units) == list(moved["/r"].columns())
+    assert [units[f"q.{name}"] for name in ("base_z", "base_qx", "left_knee")] == ["m", "-", "rad"]
+    assert [units[f"v.base_{name}"] for name in ("linear_z", "angular_x")] == ["m/s", "rad/s"]
+    assert units["command.right_knee"] == "N m"
+    assert [units[f"wrench_{i}"] for i in (2, 3)] == ["N", "N m"]
+    assert [units[f"step_1_{i}"] for i in (2, 3)] == ["m", "rad"]
+    assert {"cop_0", "cop_1", "stance"} < set(units), "as many as joints, and not by joint"
+
+
+def test_exports_keep_units(moved, tmp_path):
+    export(moved["/r"].only("command"), tmp_path / "r.csv")
+    head = (tmp_path / "r.csv").read_text().splitlines()[0]
+    assert head == "time [s],command.left_knee [N m],command.right_knee [N m]"
+    parquet = pytest.importorskip("pyarrow.parquet")
+    export(moved["/r"], tmp_path / "r.parquet")
+    field = parquet.read_schema(tmp_path / "r.parquet").field("command.left_knee")
+    assert field.metadata == {b"unit": b"N m", b"frame": b"", b"doc": b"commanded [at the output]"}
+
+
+def test_a_frame_keeps_units(moved):
+    pytest.importorskip("pandas")
+    frame = moved.frame("/r")
+    assert frame.attrs["q.base_x"] == {"unit": "m", "frame": "world", "doc": "configuration"}
+    assert frame["command.left_knee"].iloc[0] == 1.0
+
+
+@pytest.mark.parametrize("names", ["[1, 2]", '["a", "a"]', '"ab"', "{", "[" * 100_000])
+def test_a_log_with_no_sound_joint_names_has_numbered_columns(tmp_path, names):
+    path = tmp_path / "log.mcap"
+    with LogWriter(path, {"run": {"joint_names": names}}) as writer:
+        writer.channel(ChannelSpec("/r", "R", ROBOT[2:3])).append(0, np.ones(2))
+    assert list(read(path)["/r"].columns()) == ["time", "command_0", "command_1"]
+
+
 def test_one_field_alone(log, tmp_path):
     export(selected(log, "/x", None, None, "n"), tmp_path / "n.csv")
-    assert (tmp_path / "n.csv").read_text().splitlines()[:2] == ["time,n", "0.0,0"]
+    assert (tmp_path / "n.csv").read_text().splitlines()[:2] == ["time [s],n", "0.0,0"]
     with pytest.raises(LogError, match="no field 'm'"):
         selected(log, "/x", None, None, "m")
 
 
 def test_parquet_needs_pyarrow(log, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(LogError, match="pip install pyarrow"):
+    with pytest.raises(LogError, match=r"package pyarrow; install it with: .*\[parquet\]', or export to .csv"):
         export(selected(log, "/x", None, None, None), tmp_path / "x.parquet")
 
 

@@ -144,14 +144,19 @@ def test_an_unwritable_place_gives_one_error_and_no_file(tmp_path):
     assert [entry.name for entry in tmp_path.iterdir()] == ["file"]
 
 
-def test_a_full_disk_at_the_beginning_leaves_the_older_log(tmp_path):
+def test_no_log_replaces_another_one(tmp_path):
     path = tmp_path / "log.mcap"
     LogWriter(path, {"run": {"seed": "old"}}).close()
+    with pytest.raises(LogError, match="exists already"):
+        LogWriter(path, {})
+    assert read(path).metadata == {"run": {"seed": "old"}}
+
+
+def test_a_full_disk_at_the_beginning_leaves_no_log(tmp_path):
     big = AttachedFile("robot.xml", "application/xml", bytes(100_000))
     with full_disk_at(50_000), pytest.raises(LogError, match="no log was created"):
-        LogWriter(path, {}, [big])
-    assert read(path).metadata == {"run": {"seed": "old"}}
-    assert [entry.name for entry in tmp_path.iterdir()] == ["log.mcap"]
+        LogWriter(tmp_path / "log.mcap", {}, [big])
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_full_disk_on_the_way_keeps_what_was_written_under_another_name(tmp_path):

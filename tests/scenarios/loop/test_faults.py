@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+import surefoot
 from surefoot.scenarios.log import read
+from surefoot.scenarios.loop.planning import RunFault
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 
@@ -66,8 +68,16 @@ def test_not_a_number_ends_the_run_with_the_last_two_seconds_in_the_log(run):
     assert np.isfinite(truth.field("v")[last]).all()
 
 
-def test_a_diverging_simulation_ends_the_run_with_its_reason(run):
-    verdict, log = run("diagonal-walk", "pushes=[{time: 2.5, force: [1.0e+15, 0, 0]}]")
+def test_a_diverging_simulation_ends_the_run_with_its_reason(tmp_path):
+    """By a force that no scenario may ask for."""
+    scenario, path = surefoot.load("diagonal-walk"), tmp_path / "log.mcap"
+    with pytest.raises(RunFault, match="simulation diverged"), surefoot.Simulation(scenario, log=path) as sim:
+        while not sim.done:
+            if sim.time == 2.5:
+                sim.push((1e15, 0.0, 0.0), duration=0.1)
+            sim.step()
+    log = read(path)
+    verdict = surefoot.judge(log)
     assert "simulation diverged after t = 2.5000 s: the acceleration is not finite" in verdict.reasons[0]
     truth = log["/truth"]
     assert truth.time[-1] == pytest.approx(2.5)

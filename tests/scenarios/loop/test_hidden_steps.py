@@ -2,6 +2,7 @@
 
 import pytest
 
+from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 
@@ -25,10 +26,14 @@ def hidden_step(height, start, end):
     ],
 )
 def test_a_hidden_step_is_felt_and_walked_over(scenario, overrides, step, tmp_path):
-    metrics = run_scenario(load_scenario(scenario, [*overrides, hidden_step(*step)]), tmp_path).verdict.metrics
+    result = run_scenario(load_scenario(scenario, [*overrides, hidden_step(*step)]), tmp_path)
+    metrics, footsteps = result.verdict.metrics, read(result.log)["/footstep"]
     assert not metrics["fell"]
     assert metrics["steps_taken"] == metrics["steps_planned"]
     assert metrics["standing_time_final"] >= 1.0
+    # What was planned knows nothing of the step, though the planner went on from where the foot was felt.
+    assert footsteps.field("planned")[0, 2] == 0.0
+    assert metrics["footstep_error_max"] >= 0.95 * step[0]
 
 
 def test_a_step_of_ten_centimetres_cannot_be_hidden(tmp_path):

@@ -45,9 +45,22 @@ def test_metrics_without_a_meaning_are_null_and_the_others_are_not(plain):
 
 
 def test_a_criterion_of_the_body_alone_is_noted_not_missed(walk):
-    verdict = walk("criteria={knee_angle_mean: {max: 0.1}, wbc_time.p99: {max: 1}}").verdict
+    verdict = walk("criteria={fell: false, knee_angle_mean: {max: 0.1}, wbc_time.p99: {max: 1}}").verdict
     assert verdict.passed
     assert [note.split()[1] for note in verdict.notes] == ["knee_angle_mean", "wbc_time.p99"]
+
+
+def test_durations_off_the_planners_grid_are_walked_at_the_nearest_and_said(walk, plain):
+    near = walk("gait.single_support=0.803", "gait.initial_stand=0.195")
+    notes = [note for note in near.verdict.notes if "is walked as" in note]
+    grid = "the nearest multiple of planner.sample_time 0.02 s"
+    assert notes == [
+        f"gait.single_support 0.803 s is walked as 0.8 s, {grid}",
+        f"gait.initial_stand 0.195 s is walked as 0.2 s, {grid}",
+    ]
+    log, same = read(near.log), read(plain.log)
+    np.testing.assert_array_equal(log["/truth"].field("com"), same["/truth"].field("com"))
+    assert b"single_support: 0.803" in log.attachments["scenario.yaml"]
 
 
 def test_the_mass_obeys_the_pendulum_and_its_zmp_the_soles(plain):
@@ -112,3 +125,12 @@ def test_impulses_are_exact_whatever_the_rate():
     for rate in (50, 333, 500, 1000):
         impulse = sum(mean_force(push, tick / rate, 1 / rate) / rate for tick in range(rate))
         np.testing.assert_allclose(impulse, 0.0077 * push[0].force, atol=1e-12)
+
+
+def test_the_logged_swing_of_ideal_feet_is_where_they_are_though_they_cannot_roll(walk):
+    log = read(walk("gait.heel_off=0.5").log)
+    stance, swing = log["/reference"].field("stance"), log["/reference"].field("swing_position")
+    for foot, name in enumerate(("left_sole", "right_sole")):
+        error = (swing - log["/truth"].field(name)[:, :3])[stance == 1 - foot]
+        assert np.abs(error).max() < 1e-3
+    assert not log["/reference"].field("roll").any()

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from variations import SOUND_ON_STEPS
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import read
@@ -94,4 +95,4 @@ def test_blocks_are_walked(tmp_path):
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "override"), [(name, v) for name, many in NEIGHBOURS.items() for v in many], ids=str)
 def test_neighbours_walk(tmp_path, name, override):
-    assert run_scenario(load_scenario(name, (override,)), tmp_path).verdict.reasons == ()
+    assert run_scenario(load_scenario(name, (override, SOUND_ON_STEPS)), tmp_path).verdict.reasons == ()

@@ -1,6 +1,7 @@
 """What a run leaves on disk, however it ends."""
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 import yaml
@@ -56,14 +57,36 @@ def test_a_defect_is_raised_after_the_log_was_closed(tmp_path, robot, motion, tw
 def test_a_scenario_that_the_loop_refuses_leaves_no_log(tmp_path, robot, motion, two_steps):
     with pytest.raises(ScenarioError):
         run_scenario(two_steps, tmp_path, None, motion(raises=ScenarioError(["planner.horizon is too short"])), robot)
-    assert list((tmp_path / "two-steps-0").iterdir()) == []
+    assert list(tmp_path.iterdir()) == []
 
 
-def test_no_stale_verdict_beside_a_new_log(tmp_path, robot, motion, two_steps):
-    run_scenario(two_steps, tmp_path, None, motion(), robot)
+def test_no_run_touches_another_one(tmp_path, robot, motion, two_steps):
+    """The second begins while the first goes on, as in another process, and the first still judges its own log."""
+
+    def first(walk, writer, on_progress):
+        end = motion()(walk, writer, on_progress)
+        others.append(run_scenario(two_steps, tmp_path, None, motion(fall_at=1.0), robot))
+        return end
+
+    others = []
+    result = run_scenario(two_steps, tmp_path, None, first, robot)
+    assert result.log == tmp_path / "two-steps-0" / "log.mcap"
+    assert others[0].log == tmp_path / "two-steps-0-2" / "log.mcap"
+    assert result.verdict.passed
+    assert not others[0].verdict.passed
+    assert json.loads(result.log.with_name("verdict.json").read_text())["verdict"] == "pass"
     with pytest.raises(ZeroDivisionError):
         run_scenario(two_steps, tmp_path, None, motion(raises=ZeroDivisionError()), robot)
-    assert not (tmp_path / "two-steps-0" / "verdict.json").exists()
+    assert not (tmp_path / "two-steps-0-3" / "verdict.json").exists()
+
+
+def test_of_many_at_once_each_has_a_folder_of_its_own(tmp_path, robot, motion, two_steps):
+    def some(_):
+        return [run_scenario(two_steps, tmp_path, None, motion(duration=0.02), robot).log for _ in range(5)]
+
+    with ThreadPoolExecutor(4) as pool:
+        logs = [log for found in pool.map(some, range(4)) for log in found]
+    assert len(set(logs)) == len(logs) == 20
 
 
 def test_a_place_that_is_no_directory(tmp_path, robot, motion, two_steps):

@@ -3,6 +3,7 @@
 from itertools import product
 
 import pytest
+from variations import SOUND_ON_STEPS
 
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
@@ -11,7 +12,7 @@ HUMAN = ("robot_options.foot_length=0.22", "robot_options.foot_width=0.11")
 
 
 def reasons(tmp_path, name, *overrides):
-    return run_scenario(load_scenario(name, overrides), tmp_path).verdict.reasons
+    return run_scenario(load_scenario(name, (*overrides, SOUND_ON_STEPS)), tmp_path).verdict.reasons
 
 
 def metrics(tmp_path, *overrides):

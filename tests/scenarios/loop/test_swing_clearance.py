@@ -21,7 +21,7 @@ def _run(height: np.ndarray, pitch: float = 0.0, boxes: tuple = (), x: float = 0
     return SimpleNamespace(
         constants=SimpleNamespace(foot_length=LENGTH, foot_width=WIDTH, boxes=boxes),
         single_support=np.ones(TICKS, dtype=bool),
-        soles=soles,
+        sole=lambda foot: soles[:, foot],
         field=lambda topic, name: np.ones(TICKS),
     )
 

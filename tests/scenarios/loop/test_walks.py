@@ -1,7 +1,7 @@
 """Walks in full physics: the catalogue, and variations of one walk with nothing else changed."""
 
 import pytest
-from variations import COMMANDED, COMMANDS, SCENARIO, VARIATIONS
+from variations import COMMANDED, COMMANDS, SCENARIO, SOUND, VARIATIONS
 
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.loop.run import run_scenario
@@ -10,10 +10,6 @@ from surefoot.scenarios.setup.load import load as load_scenario
 EVERY_CHANGE = [variation for variation in VARIATIONS if variation.every_change and variation.overrides]
 ON_DEMAND = [variation for variation in VARIATIONS if not variation.every_change]
 LONG_SCENARIOS = ("walk-turn", "walk-curve", "walk-backward", "slope", "blocks", "stairs-tall")
-SOUND = "criteria={fell: false, steps_taken: steps_planned, standing_time_final: {min: 1}, cop_ratio_p99: {max: 1},\
- footstep_error_max: {max: 0.01}, foot_slip_max: {max: 0.01}, self_contact_time: {max: 0}, wbc_fallbacks: {max: 0},\
- torque_at_limit_fraction: {max: 0.01}}"
-"""What any walk must meet, wherever its command leads."""
 
 
 def verdict(tmp_path, name, overrides=()):

@@ -61,3 +61,59 @@ def test_risers_out_of_reach_are_refused():
     for riser, message in (("0", "makes no stairs"), ("0.5", "out of reach of legs")):
         with pytest.raises(ScenarioError, match=message):
             load_scenario("stair-climbing", [f"terrain.riser={riser}"])
+
+
+FLIGHT = "robot_options: {foot_length: 0.22, foot_width: 0.11}\nterrain: {kind: stairs, riser: 0.15, tread: 0.28%s}\n%s"
+SMALL_FEET = "terrain: {kind: stairs, riser: %s, tread: 0.14}\ngait: {step_length: 0.28}"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "terrain: {kind: stairs, riser: 0.6}",
+            "terrain.riser 0.6 m is out of reach of legs 0.920 m long; use at most 0.426",
+        ),
+        (
+            "terrain: {kind: stairs, riser: 15}",
+            "out of reach of legs 0.920 m long; use at most 0.426 m; for 15 cm write",
+        ),
+        (
+            SMALL_FEET % 0.1,
+            "footstep 2 would take 2 risers of 0.1 m at once; give gait.step_length the depth of terrain.tread",
+        ),
+        (
+            SMALL_FEET % 0.25,
+            "footstep 2 would take 2 risers of 0.25 m at once; give gait.step_length the depth of terrain.",
+        ),
+        (
+            FLIGHT % ("", "gait: {step_length: 0.2}"),
+            "of the first stair; give gait.step_length the depth of terrain.tread",
+        ),
+        (FLIGHT % (", start: 0.05", ""), "would start 0.060 m over the edge of the first stair; use at least 0.110 m"),
+        (
+            FLIGHT % (", direction: up_down, count: 2, landing: 0.5", "gait: {steps: 8}"),
+            "with terrain.landing 0.5 m; use 0.2",
+        ),
+        (FLIGHT % (", direction: up_down, count: 2, landing: 0.7", "gait: {steps: 8}"), "use 0.56 m or 0.84 m"),
+        (FLIGHT % ("", "gait: {turn: 0.2}"), "over the edge of its tread, as the walk turns; use 0 on stairs"),
+    ],
+)
+def test_what_does_not_fit_on_stairs_names_the_key_that_would_mend_it(robots, text, message):
+    with pytest.raises(ScenarioError) as refusal:
+        read_scenario(text, "f.yaml", "f", (), robots)
+    assert len(refusal.value.problems) == 1
+    assert message in refusal.value.problems[0]
+
+
+@pytest.mark.parametrize("landing", [0.28, 0.56, 0.84])
+def test_a_landing_of_whole_steps_fits(robots, landing):
+    text = FLIGHT % (f", direction: up_down, count: 2, landing: {landing}", "gait: {steps: 8}")
+    assert read_scenario(text, "f.yaml", "f", (), robots).terrain.landing == landing
+
+
+def test_on_stairs_a_step_is_as_long_as_a_tread_unless_it_is_given(robots):
+    assert read_scenario(FLIGHT % ("", ""), "f", "f", (), robots).gait.step_length == 0.28
+    given = read_scenario("terrain: {kind: stairs, tread: 0.2}\ngait: {step_length: 0.21}", "f", "f", (), robots)
+    assert given.gait.step_length == 0.21
+    assert read_scenario("terrain: {tread: 0.28}", "f", "f", (), robots).gait.step_length == 0.2

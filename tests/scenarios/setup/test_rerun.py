@@ -1,13 +1,10 @@
 """A log alone can be run again, and is never replaced by its repetition."""
 
-from pathlib import Path
-
 import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.setup.load import AGAIN, RUNS, output_folder
 from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.unit
@@ -58,13 +55,8 @@ def test_a_truncated_log_runs_again(log, tmp_path, original):
     assert load_scenario(str(cut)) == original
 
 
-def test_the_repeated_log_stays(log, original, monkeypatch):
-    runs = log.parent.parent
-    assert output_folder(str(log), "diagonal-walk-3", None) == RUNS
-    with pytest.raises(ScenarioError, match=r"the run would replace .*; choose another directory"):
-        output_folder(str(log), "diagonal-walk-3", runs)
-    assert output_folder(str(log), "diagonal-walk-4", runs) == runs
-    assert output_folder("diagonal-walk", "diagonal-walk-3", runs) == runs
-    monkeypatch.setattr("surefoot.scenarios.setup.load.RUNS", runs)
-    assert output_folder(str(log), "diagonal-walk-3", None) == AGAIN
-    assert Path("runs") in AGAIN.parents
+def test_the_repeated_log_stays(log, original):
+    before = log.read_bytes()
+    again = run_scenario(load_scenario(str(log)), log.parent.parent).log
+    assert again.parent.name == f"{log.parent.name}-2"
+    assert log.read_bytes() == before

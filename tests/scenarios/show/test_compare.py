@@ -9,6 +9,7 @@ from mcap.writer import Writer
 
 from surefoot.scenarios import cli
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log import AttachedFile, ChannelSpec, LogWriter, read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.show.compare.compare import compare
@@ -68,7 +69,7 @@ def test_a_truncated_log_is_compared_as_far_as_it_goes(logs, tmp_path):
     cut.write_bytes(data[: len(data) * 2 // 3])
     found, _, _ = compare(logs[0], cut)
     assert found.summary == "identical as far as both logs reach"
-    assert found.notes[0].startswith("B is truncated: it can be read up to")
+    assert found.unread[0].startswith("B is truncated: it can be read up to")
 
 
 def test_other_fidelities_have_other_channels(logs, tmp_path, robot, motion, two_steps):
@@ -92,7 +93,7 @@ def test_foreign_logs_have_nothing_in_common_or_are_refused(logs, tmp_path):
     found, _, _ = compare(logs[0], foreign)
     assert found.only_b == ("/json",)
     assert "no channel in common" in found.summary
-    assert "/truth of B has no layout of fixed size: not compared" in found.notes
+    assert "/truth of B has no layout of fixed size: not compared" in found.unread
     with pytest.raises(LogError, match="holds no messages to draw"):
         plot(foreign, tmp_path / "x.png")
 
@@ -127,6 +128,47 @@ def test_the_command_answers_first_and_draws(command, logs, tmp_path):
     assert (tmp_path / "both.svg").read_bytes().startswith(b"<?xml")
 
 
+@pytest.mark.parametrize(
+    ("other", "tolerance", "code"), [(0, (), 0), (2, (), 0), (1, (), 1), (1, ("--tolerance", "1"), 1)]
+)
+def test_the_exit_code_tells_whether_they_are_the_same(command, logs, other, tolerance, code):
+    assert command("compare", logs[0], logs[other], "--exit-code", *tolerance)[0] == code
+    assert command("compare", logs[0], logs[other], *tolerance)[0] == 0
+
+
+def altered(log, path, seconds=1e-9, **records):
+    """A copy of a log whose CoM is a little higher, and with other metadata records."""
+    with LogWriter(path, {name: records.get(name, record) for name, record in log.metadata.items()}) as writer:
+        for name, data in log.attachments.items():
+            writer.attach(AttachedFile(name, "text/plain", data))
+        for topic in log.numeric:
+            data, fields = log[topic], log.fields(topic)
+            channel = writer.channel(ChannelSpec(topic, topic[1:].title(), fields))
+            for row, time in enumerate(data.time_ns.tolist()):
+                values = [data.field(field.name)[row] for field in fields]
+                channel.append(time, *(value + seconds * (topic == "/truth") for value in values))
+
+
+def test_same_is_to_the_bit_unless_a_tolerance_is_given(command, logs, tmp_path):
+    log, near = read(logs[0]), tmp_path / "near.mcap"
+    altered(log, near)
+    assert compare(logs[0], near)[0].first.topic == "/truth"
+    codes = [command("compare", logs[0], near, "--exit-code", *more)[0] for more in ((), ("--tolerance", "1e-6"))]
+    assert codes == [1, 0]
+    near.unlink()
+    altered(log, near, seconds=0.0, end={**log.metadata["end"], "kind": "fell"})
+    found, _, _ = compare(logs[0], near)
+    assert (found.records, found.agree) == (("end",), False)
+    assert "end" in command("compare", logs[0], near)[1].split("metadata records that differ: ")[1]
+
+
+def test_what_cannot_be_read_is_never_the_same(command, logs, tmp_path):
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(logs[0].read_bytes()[:-3000])
+    code, out, _ = command("compare", cut, cut, "--exit-code")
+    assert (code, out.splitlines()[0]) == (1, "identical as far as both logs reach")
+
+
 def test_json_is_one_object(command, logs):
     code, out, err = command("compare", *logs[:2], "--json")
     found = json.loads(out)
@@ -146,11 +188,11 @@ def test_json_is_one_object(command, logs):
         (["compare", "{log}", "{log}", "--tolerance", "-1"], "not a tolerance"),
         (["compare", "{log}", "{log}", "--tolerance", "nan"], "not a tolerance"),
         (["compare", "{log}", "{log}", "--out", "x.txt"], "end the file's name with one of them"),
-        (["compare", "{log}"], "Missing argument"),
+        (["compare", "{log}"], "missing argument"),
         (["plot", "{log}", "--what", "torque"], "did you mean 'torques'?"),
         (["plot", "{log}", "--from", "99"], "holds nothing from 99 s on"),
         (["plot", "/"], "a directory"),
-        (["plot"], "Missing argument"),
+        (["plot"], "missing argument"),
     ],
 )
 def test_bad_input_is_one_message_and_2(command, logs, arguments, message):

@@ -41,8 +41,11 @@ def test_lengths_are_in_millimetres():
     assert all(shown_unit(name) == "mm" for name in OWN if name.endswith("error_rms") or name.startswith("foot"))
 
 
-def test_a_table_that_goes_into_a_file_is_not_cut(capsys):
-    table = plain_table("metric", "value")
-    table.add_row("m" * 60, "v" * 60)
+@pytest.mark.parametrize("place", [{}, {"COLUMNS": "80"}, {"FORCE_COLOR": "1", "TERM": "dumb"}])
+def test_no_table_is_cut_wherever_it_goes(capsys, monkeypatch, place):
+    for name, value in place.items():
+        monkeypatch.setenv(name, value)
+    table = plain_table("metric", "value", "note")
+    table.add_row("m" * 60, "v" * 300, "n" * 60)
     plain_console().print(table)
-    assert f"{'m' * 60} {'v' * 60}" in " ".join(capsys.readouterr().out.split())
+    assert f"{'m' * 60} {'v' * 300} {'n' * 60}" in " ".join(capsys.readouterr().out.split())

@@ -35,7 +35,8 @@ class Process:
 def test_the_first_progress_opens_one_replay_of_the_log_until_ctrl_c(monkeypatch, tmp_path):
     monkeypatch.setattr(beside.subprocess, "Popen", Process)
     Process.started, told = [], []
-    live = beside.LiveView(tmp_path / "log.mcap", told.append)
+    live = beside.LiveView(told.append)
+    live.begin(tmp_path / "log.mcap")
     live.wait()
     for time in (0.1, 0.2):
         live(Progress(time, 1.0, "standing", 1.0))

@@ -1,23 +1,28 @@
 """Page, video and live view of one log; what is missing is said in one sentence."""
 
 import importlib
+import json
 import re
 import sys
 import time
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from surefoot.scenarios import cli
+from surefoot.scenarios import cli, errors, palette
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
-from surefoot.scenarios.show.replay import content as extras
-from surefoot.scenarios.show.replay import video
-from surefoot.scenarios.show.replay.content import write_whole
+from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.show.replay.caption import Caption
 from surefoot.scenarios.show.replay.extract import extract
+from surefoot.scenarios.show.replay.page import Chart, Curve, column
 from surefoot.scenarios.show.replay.poses import Window
-from surefoot.scenarios.show.replay.video import marks_of
+from surefoot.scenarios.show.replay.scene import rgb
+from surefoot.scenarios.show.replay.video import CAMERAS, Film, marks_of, stand
 from surefoot.sim import gl
+from surefoot.sim.render import Camera
 
 pytestmark = pytest.mark.unit
 
@@ -47,25 +52,108 @@ def test_a_page_is_whole_and_alone(surefoot, log_path, tmp_path):
     assert "__VISER_EMBED_DATA__" in text
     assert not re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"']?(?:https?:)?//", text)
     assert [file.name for file in tmp_path.iterdir()] == ["walk.html"]
+    data = json.loads(re.findall(r"<script id=surefoot-data type=application/json>(.*?)</script>", text)[0])
+    assert data["layers"][:2] == ["/Ground", "/Robot"]
+    forward, left, force = data["charts"]
+    assert [chart["label"][-3:] for chart in (forward, left, force)] == ["[m]", "[m]", "[N]"]
+    assert [curve["name"] for curve in force["curves"]] == ["left foot", "right foot"]
+    assert {curve["name"] for curve in left["curves"]} >= {"ZMP", "CoM", "DCM", "ZMP planned"}
+    assert all(len(curve["values"]) == len(data["time"]) for chart in data["charts"] for curve in chart["curves"])
+    zmp = next(curve["values"] for curve in forward["curves"] if curve["name"] == "ZMP")
+    assert zmp[10] == pytest.approx(data["time"][10], abs=2e-3)  # the stance foot stands at the origin
+    assert zmp[-1] is None
 
 
-def test_a_video_has_every_frame(surefoot, log_path, tmp_path, monkeypatch):
+def test_a_page_with_a_hostile_name_stays_one_script(log):
+    curve = Curve("</script>$x", palette.COM, False, np.zeros(1))
+    text = column(replace(extract(log, Window(end=0.0)), title="<b>"), ("/a",), [Chart("[m]", 1, (curve,))])
+    assert text.count("</script>") == 2
+    assert "&lt;b&gt;" in text
+    assert "$x" in text
+
+
+def test_a_video_has_every_frame_with_its_clock(surefoot, log_path, tmp_path):
     av = pytest.importorskip("av")
-    monkeypatch.setattr(video, "WIDTH", 160)
-    monkeypatch.setattr(video, "HEIGHT", 96)
     path = tmp_path / "walk.mp4"
-    code, out, err = surefoot("replay", log_path, "--video", path, "--from", 0.3, "--to", 0.6)
+    code, out, err = surefoot(
+        "replay", log_path, "--video", path, "--from", 0.3, "--to", 0.6, "--size", "160x96", "--speed", 2
+    )
     if "no off-screen OpenGL" in err:
         pytest.skip(err)
     assert (code, out) == (0, f"{path}\n")
     with av.open(str(path)) as container:
         frames = list(container.decode(video=0))
         assert container.streams.video[0].average_rate == 30
-    assert len(frames) == 10
+    assert len(frames) == 5
     assert (frames[0].width, frames[0].height) == (160, 96)
     first, last = (frame.to_ndarray(format="rgb24").astype(float) for frame in (frames[0], frames[-1]))
     assert first.std() > 10
     assert np.abs(first - last).max() > 30
+    window = Window(0.3, 0.6, 15.0)
+    replay = extract(read(log_path), window)
+    caption = Caption(replay, (160, 96), 2.0)
+    for frame, seconds in ((first, replay.time[0]), (last, replay.time[-1])):
+        on_black, on_white = (caption.drawn_on(np.full((96, 160, 3), v, np.uint8), seconds)[..., 0] for v in (0, 255))
+        plate, letters = on_black > 170, on_white < 60
+        assert frame[plate].mean() - frame[letters].mean() > 70
+
+
+def test_a_caption_names_the_run_its_time_and_the_colours(log):
+    replay = extract(log)
+    caption = Caption(replay, (640, 360), 0.5)
+    early, late = (caption.drawn_on(np.zeros((360, 640, 3), np.uint8), time) for time in (1.0, 2.0))
+    rows, columns = np.nonzero((early != late).any(axis=2))
+    assert 0 < rows.min() < rows.max() < 40
+    assert columns.min() > 480
+    assert early[:40, :200].any()
+    below = early[300:].reshape(-1, 3).astype(int)
+    assert next(iter(replay.legend())) == "CoM"
+    for color in replay.legend().values():
+        assert np.abs(below - np.array(rgb(color))).max(axis=1).min() < 30
+    assert not early[100:300].any()
+
+
+def test_a_fixed_camera_sees_the_whole_way_and_another_goes_along(log):
+    replay = extract(log)
+    base = np.column_stack([np.linspace(0, 10, 300), np.zeros(300), np.ones(300)])
+    walk = replace(replay, time=np.arange(300) / 30, body_position=np.repeat(base[:, None], 2, axis=1))
+    camera, look_at = stand(walk, CAMERAS["fixed"])
+    assert look_at == pytest.approx(np.tile([5.0, 0.0, 1.0], (300, 1)), abs=0.1)
+    assert camera.distance > 5.0
+    camera, look_at = stand(walk, CAMERAS["side"])
+    assert (camera, look_at[150]) == (CAMERAS["side"], pytest.approx(base[150]))
+
+
+def test_a_film_is_what_was_asked_for():
+    film = Film.of(0.5, "90,-5,3", "640x360")
+    assert (film.size, film.view()) == ((640, 360), Camera(3.0, 90.0, -5.0))
+    assert film.window(Window(1.0, 2.0)) == Window(1.0, 2.0, 60.0)
+    assert Film().view() == CAMERAS["follow"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((0.0, "follow", "640x360"), "--speed 0: give a number from 0.1 to 10"),
+        ((float("nan"), "follow", "640x360"), "--speed nan: give a number"),
+        ((1.0, "sid", "640x360"), "--camera sid: choose follow, side, front, fixed, or azimuth,elevation,distance"),
+        ((1.0, "1,2", "640x360"), "--camera 1,2: choose"),
+        ((1.0, "0,-95,3", "640x360"), "elevation from -89 to 89 degrees"),
+        ((1.0, "0,nan,3", "640x360"), "elevation from -89 to 89 degrees"),
+        ((1.0, "follow", "640"), "--size 640: give width and height in pixels"),
+        ((1.0, "follow", "641x360"), "--size 641x360: give even numbers from 64 to 3840"),
+        ((1.0, "follow", "640x99999"), "give even numbers"),
+    ],
+)
+def test_no_such_film(arguments, message):
+    with pytest.raises(LogError, match=re.escape(message)):
+        Film.of(*arguments)
+
+
+def test_options_of_a_video_belong_to_a_video(surefoot, log_path, tmp_path):
+    code, out, err = surefoot("replay", log_path, "--html", tmp_path / "x.html", "--speed", 2)
+    assert (code, out) == (2, "")
+    assert "are of a video; give them with --video FILE" in err
 
 
 def test_marks_are_what_a_frame_shows(log):
@@ -81,15 +169,15 @@ def test_marks_are_what_a_frame_shows(log):
 @pytest.mark.parametrize(
     ("option", "module", "message"),
     [
-        ("--html", "viser", "needs the package viser; install it with: pip install 'surefoot[replay]'"),
-        ("--video", "av", "needs the package av; install it with: pip install 'surefoot[video]'"),
+        ("--html", "viser", "needs the package viser; install it with: "),
+        ("--video", "av", "needs the package av; install it with: "),
     ],
 )
 def test_a_missing_extra_is_named(surefoot, log_path, tmp_path, monkeypatch, option, module, message):
     def absent(name):
         raise ImportError(name) if name == module else AssertionError(name)
 
-    monkeypatch.setattr(extras.importlib, "import_module", absent)
+    monkeypatch.setattr(errors, "importlib", SimpleNamespace(import_module=absent))
     code, out, err = surefoot("replay", log_path, option, tmp_path / "out")
     assert (code, out) == (2, "")
     assert message in err
@@ -134,8 +222,11 @@ def test_a_foreign_file_is_no_log(surefoot, tmp_path):
 def test_a_failure_leaves_the_older_file(tmp_path):
     path = tmp_path / "out"
     path.write_text("older")
-    with pytest.raises(RuntimeError), write_whole(path) as temporary:
-        temporary.write_text("half")
+    for place in (path, tmp_path / "new"):
+        with pytest.raises(RuntimeError), write_whole(place, replace=True) as temporary:
+            temporary.write_text("half")
+            raise RuntimeError
+    with pytest.raises(RuntimeError), write_whole(tmp_path / "new"):
         raise RuntimeError
     assert path.read_text() == "older"
     assert list(tmp_path.iterdir()) == [path]
@@ -158,12 +249,29 @@ def test_a_live_view_plays_and_follows_a_growing_log(log_path, tmp_path):
         frame = np.searchsorted(part.time, server_time(server), side="right") - 1
         assert 0.1 < server_time(server) < 0.3
         assert pelvis.position == pytest.approx(part.body_position[frame, part.body_names.index("pelvis")])
+        robot = server.scene.get_handle_by_name("/Robot")
+        assert part.followed()[frame] + robot.position == pytest.approx(part.followed()[0])
+        camera = next(h for h in handles(server) if h.label == "camera follows the robot")
+        camera.value, stays = False, robot.position
         player.replace(whole)
         following = next(h for h in handles(server) if h.label == "follow the run")
         following.value = True
         player.advance(begin + 0.3)
         assert server_time(server) == pytest.approx(whole.time[-1], abs=1e-3)
         assert pelvis.position == pytest.approx(whole.body_position[-1, whole.body_names.index("pelvis")])
+        assert robot.position == pytest.approx(stays)
+
+
+def test_a_camera_follows_the_walk_and_not_its_sway(log):
+    replay = extract(log)
+    time = np.arange(0, 10, 1 / 30)
+    base = np.column_stack([0.5 * time, 0.03 * np.sin(2 * np.pi * time), 1.0 + 0.1 * time])
+    position = np.repeat(base[:, None], 2, axis=1)
+    followed = replace(replay, time=time, body_position=position).followed()
+    inside = slice(20, -20)
+    assert followed[inside, 0] == pytest.approx(base[inside, 0])
+    assert followed[inside, 2] == pytest.approx(base[inside, 2])
+    assert np.abs(followed[inside, 1]).max() < 0.003
 
 
 def handles(server):

@@ -1,0 +1,83 @@
+"""Ctrl-C, and the signals by which others end a program: none of them may leave a log half closed."""
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, *((signal.SIGHUP,) if hasattr(signal, "SIGHUP") else ()))
+
+_PATIENCE = 3
+"""How many signals are held back before one is obeyed wherever the program is."""
+
+_received: list[int] = []
+
+
+class Interrupted(KeyboardInterrupt):
+    """A signal has come; of a type of its own, since Python takes a bare KeyboardInterrupt for Ctrl-C as it ends."""
+
+
+def exit_code() -> int:
+    """Of a program that a signal has ended, as shells count: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP."""
+    return 128 + (_received[-1] if _received else signal.SIGINT)
+
+
+def obey_all() -> None:
+    """Have every one of the signals end the program as Ctrl-C does, unless it is ignored, as under ``nohup``."""
+    for number in SIGNALS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _obey)
+
+
+def _obey(number: int, _: FrameType | None) -> None:
+    _received.append(number)
+    raise Interrupted
+
+
+class Interrupts:
+    """Signals that are held back but where `delivered` lets them through.
+
+    Attributes:
+        count: how many there were.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._open = False
+
+    @contextmanager
+    def delivered(self) -> Iterator[None]:
+        """Raise `Interrupted` in this context, at once for what was held back."""
+        self._open = True
+        try:
+            if self.count:
+                raise Interrupted
+            yield
+        finally:
+            self._open = False
+
+    def note(self, number: int, _: FrameType | None) -> None:
+        """Handle a signal."""
+        self.count += 1
+        _received.append(number)
+        if self._open or self.count > _PATIENCE:
+            raise Interrupted
+
+
+@contextmanager
+def held_back() -> Iterator[Interrupts]:
+    """Hold the signals back; outside the main thread, where none arrives, nothing is done."""
+    interrupts = Interrupts()
+    if threading.current_thread() is not threading.main_thread():
+        yield interrupts
+        return
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    try:
+        for number, handler in before.items():
+            if handler is not signal.SIG_IGN:
+                signal.signal(number, interrupts.note)
+        yield interrupts
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)

@@ -1,0 +1,113 @@
+"""Checks of criteria: each must be able to fail, on a value that the run will have."""
+
+from collections.abc import Iterator, Mapping
+from itertools import islice
+from typing import Any
+
+from surefoot.scenarios.errors import Problem, nearest
+from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.judge.metric import TRUTH, Metric
+from surefoot.scenarios.judge.metrics import METRICS, known
+
+
+def criteria_problems(criteria: Mapping[str, Bound], fidelity: str) -> list[Problem]:
+    """List criteria that check nothing, one fault each; names that are no metrics are for others to say.
+
+    Args:
+        criteria: as the user gave them.
+        fidelity: of the run.
+    """
+    found = [(name, bound, known(name)) for name, bound in criteria.items()]
+    metrics = [metric for _, _, metric in found if metric is not None]
+    problems = [
+        problem for name, bound, metric in found if metric for problem in islice(_faults(name, bound, metric), 1)
+    ]
+    if metrics and not any(metric.applies(fidelity) for metric in metrics):
+        what = f"none of these criteria can be measured on a {fidelity}, so nothing would be checked"
+        problems.append(Problem(("criteria",), what, "use fidelity full, or bound a metric that it has"))
+    return problems
+
+
+def comparable(name: str, metric: Metric[Any]) -> tuple[str, ...]:
+    """Names of the metrics that a metric may be required to equal: of its kind, and one of the two always there.
+
+    Args:
+        name: of the metric, or of a part of it.
+        metric: itself.
+    """
+    if name != metric.name or metric.size > 1:
+        return ()
+    others = ((other, known(other)) for other in METRICS if other != name)
+    return tuple(other for other, found in others if found is not None and _alike(metric, found))
+
+
+def _alike(metric: Metric[Any], other: Metric[Any]) -> bool:
+    kinds = [(one.unit, one.size, one.parts) for one in (metric, other)]
+    same = metric.kind == other.kind or not (metric.kind and other.kind)
+    return same and kinds[0] == kinds[1] and not (metric.optional and other.optional)
+
+
+def _faults(name: str, bound: Bound, metric: Metric[Any]) -> Iterator[Problem]:
+    sides = [(side, limit) for side, limit in (("min", bound.min), ("max", bound.max)) if limit is not None]
+    if metric.kind == TRUTH and sides:
+        what = f"criteria.{name} bounds what is true or false"
+        yield Problem(("criteria", name), what, f"write '{name}: false' or '{name}: true'")
+    if bound.equals is not None:
+        yield from _unequal(name, bound.equals, metric)
+    for side, limit in sides:
+        if isinstance(limit, tuple) and len(limit) != metric.size:
+            what = f"criteria.{name}.{side} has {len(limit)} elements"
+            right = f"give one number, or {metric.size} of them" if metric.size > 1 else "give one number"
+            yield Problem(("criteria", name, side), what, right)
+    for low, high in zip(_each(bound.min, metric), _each(bound.max, metric), strict=True):
+        if low is not None and high is not None and low > high:
+            yield Problem(("criteria", name), f"criteria.{name}: min {low} exceeds max {high}", "swap them")
+    yield from _met_by_all(name, bound, metric)
+
+
+def _unequal(name: str, value: bool | float | str, metric: Metric[Any]) -> Iterator[Problem]:
+    key = ("criteria", name)
+    if metric.size > 1:
+        yield Problem(key, f"criteria.{name} has {metric.size} elements, which equal no one value", "give min and max")
+    elif isinstance(value, str):
+        other = known(value)
+        if value == name:
+            yield Problem(key, f"criteria.{name} compares the metric with itself", "give another metric, or a bound")
+        elif other is None or value != other.name or name != metric.name or not _alike(metric, other):
+            names = comparable(name, metric)
+            right = nearest(value, names) if names else "give a bound"
+            right = right if metric.kind != TRUTH else f"write '{name}: false' or '{name}: true'"
+            yield Problem(key, f"criteria.{name} cannot be compared with '{value}'", right)
+    elif metric.kind and isinstance(value, bool) != (metric.kind == TRUTH):
+        kind, right = (
+            ("true or false", f"{name}: false") if metric.kind == TRUTH else ("a number", f"{name}: {{max: 1}}")
+        )
+        yield Problem(key, f"criteria.{name} is {kind}, never {_word(value)}", f"write for example '{right}'")
+
+
+def _met_by_all(name: str, bound: Bound, metric: Metric[Any]) -> Iterator[Problem]:
+    """Tell a criterion that any value of the metric meets by its nature."""
+    if bound.equals is not None:
+        return
+    low = all(
+        limit is None or (metric.least is not None and limit <= metric.least) for limit in _each(bound.min, metric)
+    )
+    high = all(
+        limit is None or (metric.most is not None and limit >= metric.most) for limit in _each(bound.max, metric)
+    )
+    if low and high:
+        span = [f"at least {metric.least:g}"] if metric.least is not None else []
+        span += [f"at most {metric.most:g}"] if metric.most is not None else []
+        what = f"criteria.{name} checks nothing, since the metric is always {' and '.join(span)}"
+        yield Problem(("criteria", name), what, "give a bound that a run can miss")
+
+
+def _each(limit: float | tuple[float, ...] | None, metric: Metric[Any]) -> tuple[float | None, ...]:
+    """A limit for each element of a metric."""
+    if isinstance(limit, tuple):
+        return limit if len(limit) == metric.size else (None,) * metric.size
+    return (limit,) * metric.size
+
+
+def _word(value: float) -> str:
+    return str(value).lower() if isinstance(value, bool) else f"{value:g}"

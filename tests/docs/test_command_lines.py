@@ -1,0 +1,58 @@
+"""Every command line on the pages can be given: its command, its options and its keys are there."""
+
+import re
+import shlex
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+import typer
+
+from surefoot.scenarios.cli import app
+from surefoot.scenarios.show.listing import keys
+
+pytestmark = pytest.mark.unit
+
+ROOT = Path(__file__).parents[2]
+PAGES = (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md")))
+LINES = [
+    (page.name, re.split(r"  |\s+#|\s*\\?\|", line)[0])
+    for page in PAGES
+    for line in re.findall(r"(?m)(?:^(?:\$ )?|`)(surefoot(?: [^`\n]*)?)(?:$|`)", page.read_text(encoding="utf-8"))
+]
+COMMANDS = typer.main.get_command(app)
+
+
+def options(command):
+    return {name for parameter in command.params for name in parameter.opts} | {"-h", "--help"}
+
+
+def faults(line):
+    """What of a command line is not there."""
+    _, *words = shlex.split(line)
+    command = COMMANDS if not words or words[0].startswith("-") else COMMANDS.commands.get(words[0])
+    if command is None:
+        return [words[0]]
+    given = [word for text in words for word in re.findall(r"^-[\w-]+", text.strip("()[]"))]
+    known = {re.sub(r"\.\d+", "", key) for key, _ in keys()}
+    settings = [text.partition("=")[0] for before, text in pairwise(words) if before == "--set"]
+    return [word for word in given if word not in options(command)] + [key for key in settings if key not in known]
+
+
+@pytest.mark.parametrize(("page", "line"), sorted(set(LINES)))
+def test_a_command_line_can_be_given(page, line):
+    assert faults(line) == []
+
+
+def test_what_is_not_there_is_found():
+    assert len(LINES) > 50
+    assert faults("surefoot sweep x") == ["sweep"]
+    assert faults("surefoot compare A B --exit-cod") == ["--exit-cod"]
+    assert faults("surefoot run walk --set gait.stride=3 --seed 3") == ["gait.stride"]
+
+
+def test_keys_that_the_pages_set_are_there():
+    known = dict(keys())
+    for page in PAGES:
+        for key in re.findall(r"--set [\"']?([a-z_.]+)=", page.read_text(encoding="utf-8")):
+            assert key in known, f"{page.name}: {key}"

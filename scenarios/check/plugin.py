@@ -1,7 +1,7 @@
 """The pytest plugin: a file ``*.scenario.yaml`` in a folder of tests is a test.
 
 The scenario is run; the test passes when it meets its criteria and, where ``baselines/<name>.baseline.yaml`` lies
-beside it, is no worse than that. The log of a test that fails is kept in ``runs/pytest`` below pytest's root. Nothing of
+beside it, is no worse than that. The log of a failure is kept in ``runs/pytest`` below the root of pytest. Nothing of
 Surefoot is imported before such a file is met.
 """
 

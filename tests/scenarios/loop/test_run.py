@@ -53,8 +53,14 @@ def test_a_signal_that_a_compiled_part_takes_for_a_wrong_argument_is_a_signal(tm
     result = run_scenario(two_steps, tmp_path, None, simulate, robot)
     assert result.interrupted
     assert read(result.log).metadata["end"]["kind"] == "interrupted"
+
+
+def test_a_defect_of_a_part_is_no_signal(tmp_path, robot, two_steps):
+    def broken(*_):
+        raise TypeError("incompatible function arguments")
+
     with pytest.raises(TypeError):
-        run_scenario(two_steps, tmp_path, None, lambda *_: [][""], robot)
+        run_scenario(two_steps, tmp_path, None, broken, robot)
 
 
 def test_interrupted_by_the_user_the_log_is_whole(tmp_path, robot, motion, two_steps):

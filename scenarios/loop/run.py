@@ -261,16 +261,15 @@ def _watched(
     try:
         with interrupts.delivered():
             end = simulate(walk, writer, note)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Exception) as error:
+        # A signal that comes while a compiled part converts an argument is told by that part as a wrong argument.
+        if interrupts.count == 0 and not isinstance(error, KeyboardInterrupt):
+            if isinstance(error, ScenarioError | SetupError):
+                writer.discard()
+            elif not isinstance(error, LogError):
+                write_end(writer, End("fault", last.time, f"internal error, {type(error).__name__}: {error}"))
+            raise
         end = End("interrupted", last.time, "interrupted by the user")
-    except LogError:
-        raise
-    except (ScenarioError, SetupError):
-        writer.discard()
-        raise
-    except Exception as error:
-        write_end(writer, End("fault", last.time, f"internal error, {type(error).__name__}: {error}"))
-        raise
     write_end(writer, end)
     return end
 

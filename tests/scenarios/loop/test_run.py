@@ -1,6 +1,7 @@
 """What a run leaves on disk, however it ends."""
 
 import json
+import signal
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -37,6 +38,29 @@ def test_the_same_run_gives_the_same_log(tmp_path, robot, motion, two_steps):
     assert logs[0].read_bytes() == logs[1].read_bytes()
     first, second = (read(log) for log in logs)
     assert all(first[topic].content() == second[topic].content() for topic in first.topics)
+
+
+def test_a_signal_that_a_compiled_part_takes_for_a_wrong_argument_is_a_signal(tmp_path, robot, motion, two_steps):
+    whole = motion(duration=0.5)
+
+    def simulate(walk, writer, on_progress):
+        whole(walk, writer, on_progress)
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt:
+            raise TypeError("incompatible function arguments") from None
+
+    result = run_scenario(two_steps, tmp_path, None, simulate, robot)
+    assert result.interrupted
+    assert read(result.log).metadata["end"]["kind"] == "interrupted"
+
+
+def test_a_defect_of_a_part_is_no_signal(tmp_path, robot, two_steps):
+    def broken(*_):
+        raise TypeError("incompatible function arguments")
+
+    with pytest.raises(TypeError):
+        run_scenario(two_steps, tmp_path, None, broken, robot)
 
 
 def test_interrupted_by_the_user_the_log_is_whole(tmp_path, robot, motion, two_steps):

@@ -385,7 +385,7 @@ def check(
     markdown: Annotated[Path | None, typer.Option(help="Also write a summary for a CI page to this file.")] = None,
     force: Force = False,
 ) -> None:
-    """Run scenarios and compare their metrics with those that were kept."""
+    """Hold scenarios against their baselines."""
     from surefoot.scenarios.check import check as checking
     from surefoot.scenarios.check import report
     from surefoot.scenarios.output import refuse_existing

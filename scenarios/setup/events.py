@@ -1,6 +1,7 @@
 """What is to happen to a walk while it goes on: its pushes, faults and commands in time, and which never act."""
 
 import math
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,9 @@ from surefoot.scenarios.file.schema import Fault, Rates, VelocitySettings
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import gait_of, push_time, timeline_of, twist_of, uncommanded
 from surefoot.sim.pushes import physics_window
+
+MOST_IDLE = 20
+"""Commands that never act of which a scenario is told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,12 +93,18 @@ def idle_commands(draft: Draft) -> Iterator[Problem]:
         return velocity_bouts(timeline_of(chosen), plain)
 
     try:
-        walked = bouts(commands)
+        walked, walk, found = bouts(commands), draft.gait, 0
+        times = [command.time for command in commands]
+        # One in force as a foot lifts off acts; of the others few do, and each costs a look at the whole walk.
+        used = {bisect_right(times, walk.lift_off(step) + 1e-6) - 1 for step in range(1, walk.steps + 1)}
         for index, command in enumerate(commands[:-1]):
+            if index in used or found == MOST_IDLE:
+                continue
             before = twist_of(commands[index - 1]) if index else twist_of(VelocitySettings(time=0.0))
             if twist_of(command) != before and bouts([*commands[:index], *commands[index + 1 :]]) == walked:
                 until = commands[index + 1].time
                 what = f"gait.velocity.{index} is over at {until:g} s, before any foot lifts off by it, and never acts"
                 yield Problem(("gait", "velocity", index), what, "let it hold for a step, or leave it out")
+                found += 1
     except ParameterError:  # told by the checks of the walk
         return

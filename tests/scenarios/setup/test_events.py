@@ -4,6 +4,7 @@ import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup import events
 from surefoot.scenarios.setup.events import FaultWindow
 from surefoot.scenarios.setup.load import load
 
@@ -72,6 +73,15 @@ def test_a_command_that_is_over_before_a_foot_lifts_off_is_refused():
     (problem,) = refused.value.problems
     assert "gait.velocity.1 is over at 2.02 s, before any foot lifts off by it, and never acts" in problem
     load("stop-and-go", ["criteria={fell: false}", keys.replace("2.02", "3.0")])
+
+
+def test_many_commands_are_looked_at_once(monkeypatch):
+    """Each that is in force as a foot lifts off acts, and is not tried by a walk without it."""
+    looks, real = [], events.velocity_bouts
+    monkeypatch.setattr(events, "velocity_bouts", lambda *given: looks.append(1) or real(*given))
+    moves = ", ".join(f"{{time: {1.32 * i:.2f}, v_x: {0.1 + 0.1 * (i % 2):.1f}}}" for i in range(60))
+    load("stop-and-go", ["criteria={fell: false}", f"gait.velocity=[{moves}, {{time: 80}}]"])
+    assert len(looks) == 2  # and one without the command that only begins the walk
 
 
 def test_a_push_after_a_fall_is_no_pass(tmp_path):

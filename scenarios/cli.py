@@ -4,62 +4,24 @@ Exit codes: 0 criteria met, 1 missed, 2 bad input or usage or no room for output
 SIGHUP, Ctrl-C and SIGTERM, 141 nobody reads the output any more.
 """
 
-import io
 import json
-import os
 import sys
 import traceback
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer._click.exceptions import NoArgsIsHelpError, NoSuchOption, UsageError
-from typer.core import TyperGroup
 
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
-from surefoot.scenarios.output import reason
+from surefoot.scenarios.terminal import BAD_INPUT, Commands, keys_from, set_up_streams
 
 if TYPE_CHECKING:
-    from _typeshed import ReadableBuffer
-    from typer._click.core import Context
-
     from surefoot.scenarios.log import Log
-
-
-@contextmanager
-def _one_sentence() -> Iterator[None]:
-    """Say what is wrong with the words of a command as of any other bad input: what, where, and what would be right."""
-    try:
-        yield
-    except NoArgsIsHelpError:
-        raise
-    except UsageError as error:
-        path = error.ctx.command_path if error.ctx else "surefoot"
-        what = error.format_message().rstrip(".")
-        right = f"`{path} -h` tells what there is"
-        if isinstance(error, NoSuchOption) and path.endswith(" run"):
-            key = error.option_name.lstrip("-").replace("-", "_")
-            right = f"a key of the scenario is given as --set {key}=VALUE" if key in _keys(key) else right
-        raise ScenarioError([f"{path}: {what[:1].lower()}{what[1:]}; {right}"]) from None
-
-
-class _Commands(TyperGroup):
-    """All commands."""
-
-    def parse_args(self, ctx: "Context", args: list[str]) -> list[str]:
-        with _one_sentence():
-            return super().parse_args(ctx, args)
-
-    def invoke(self, ctx: "Context") -> Any:
-        with _one_sentence():
-            return super().invoke(ctx)
 
 
 app = typer.Typer(
     name="surefoot",
-    cls=_Commands,
+    cls=Commands,
     help="A humanoid walks in full physics, and its log gives the verdict.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -67,7 +29,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-MISSED, BAD_INPUT, DEFECT, INTERRUPTED, UNREAD = 1, 2, 70, 130, 141
+MISSED, DEFECT, INTERRUPTED = 1, 70, 130
 
 _FARTHEST = 1e9
 
@@ -111,16 +73,9 @@ def _scenarios(incomplete: str) -> list[str]:
     return [name for name in catalogue.names() if name.startswith(incomplete)]
 
 
-def _keys(incomplete: str) -> list[str]:
-    """Keys of scenarios that begin so."""
-    from surefoot.scenarios.show.listing import keys
-
-    return [key for key, _ in keys() if key.startswith(incomplete)]
-
-
 def _settings(incomplete: str) -> list[str]:
     """Keys that begin so, each as the beginning of a setting."""
-    return [f"{key}=" for key in _keys(incomplete)]
+    return [f"{key}=" for key in keys_from(incomplete)]
 
 
 @app.command("list")
@@ -430,41 +385,6 @@ def schema() -> None:
     typer.echo(json.dumps(published(), indent=2))
 
 
-class _Stream(io.FileIO):
-    """Standard output or error, whose end ends the program and is no defect: a pipe is closed, a disk is full."""
-
-    ended = False
-
-    def write(self, data: "ReadableBuffer") -> int:
-        """Write, unless there is no use in it any more."""
-        size = memoryview(data).nbytes
-        if self.ended:
-            return size
-        try:
-            return super().write(data) or 0
-        except OSError as error:
-            self.ended = True
-            if isinstance(error, BrokenPipeError):
-                raise SystemExit(UNREAD) from None
-            if self.fileno() == 1:
-                typer.echo(f"standard output: cannot be written, {reason(error)}; give it more room", err=True)
-            raise SystemExit(BAD_INPUT) from None
-
-
-def _streams() -> None:
-    """Set up standard output and error; a name that is no text is shown escaped."""
-    for name in ("stdout", "stderr"):
-        stream = getattr(sys, name)
-        if stream is None:  # closed by whoever has started the program
-            setattr(sys, name, Path(os.devnull).open("w"))  # noqa: SIM115  as long as the program
-        elif stream is getattr(sys, f"__{name}__") and isinstance(stream, io.TextIOWrapper):
-            stream.flush()
-            raw = io.BufferedWriter(_Stream(stream.fileno(), "w", closefd=False))
-            on_screen = name == "stderr" or stream.isatty()
-            safe = io.TextIOWrapper(raw, stream.encoding, "backslashreplace", line_buffering=on_screen)
-            setattr(sys, name, safe)
-
-
 def main() -> None:
     """Run the command line.
 
@@ -472,7 +392,7 @@ def main() -> None:
     """
     from surefoot.scenarios.loop import interrupts
 
-    _streams()
+    set_up_streams()
     interrupts.obey_all()
     try:
         code = _code()

@@ -52,6 +52,7 @@ NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000), WHOLE, HERTZ]
 Newtons = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False), NEWTON]
 Force = Annotated[tuple[Newtons, Newtons, Newtons], BeforeValidator(as_tuple)]
+Impulse = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False), Unit("N·s/kg")]
 
 
 class RobotSettings(Group):
@@ -255,7 +256,14 @@ class PushSettings(Group):
         default=None, description="elapsed share of the phase [-]"
     )
     duration: Span = Field(default=0.1, description="how long the force acts")
-    force: Force = Field(default=(0.0, 0.0, 0.0), description="force in the world frame")
+    force: Force | None = Field(default=None, description="force in the world frame; or give impulse")
+    impulse: Impulse | None = Field(
+        default=None,
+        description="impulse per kilogram of the robot as simulated, with all that it carries",
+    )
+    direction: Angle | None = Field(
+        default=None, description="where the impulse points on the ground, from the world's x axis to the left, null: 0"
+    )
     body: str | None = Field(default=None, description="body it acts on, at its centre of mass; null: the torso")
 
 

@@ -87,6 +87,12 @@ def _pushes(draft: Draft) -> Iterator[Problem]:
         elif push.step is not None and push.step > draft.gait.steps:
             what = f"a push in step {push.step} of a gait of {draft.gait.steps} steps"
             yield Problem((*key, "step"), what, f"give a step of at most {draft.gait.steps}")
+        if push.impulse is not None and push.force is not None:
+            yield Problem((*key, "impulse"), "a push with both a force and an impulse", "give one of them")
+        elif push.impulse is None and push.direction is not None:
+            yield Problem(
+                (*key, "direction"), "a direction of a push without an impulse", "give impulse, or force alone"
+            )
 
 
 def _beliefs(draft: Draft) -> Iterator[Problem]:
@@ -163,7 +169,7 @@ def _without_body(draft: Draft) -> Iterator[Problem]:
             what = f"fault {fault.kind!r} needs joints, which fidelity pendulum has not got"
             yield Problem(("faults", index, "kind"), what, f"use fidelity full, or {' or '.join(_PENDULUM_FAULTS)}")
     for index, push in enumerate(draft.keys.pushes):
-        if push.force[2] != 0.0:
+        if push.force is not None and push.force[2] != 0.0:
             what = "a vertical push on a pendulum, whose height is prescribed"
             yield Problem(("pushes", index, "force"), what, "use fidelity full, or [x, y, 0]")
 

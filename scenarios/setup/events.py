@@ -67,8 +67,9 @@ def never_act(draft: Draft, end: float) -> Iterator[Problem]:
         elif stop <= start:
             what = f"{name}.duration {push.duration:g} s rounds to nothing on a clock of {rates.physics} Hz"
             yield Problem((*key, "duration"), what, "give it at least 1e-6 s")
-        elif not any(push.force):
-            yield Problem((*key, "force"), f"{name}.force is zero, which pushes nothing", "give a force, or no push")
+        elif not (push.impulse or any(push.force or ())):
+            given = "force" if push.impulse is None else "impulse"
+            yield Problem((*key, given), f"{name}.{given} is zero, which pushes nothing", "give more, or no push")
     for index, fault in enumerate(draft.keys.faults):
         key, name = ("faults", index), f"faults.{index}"
         first = FaultWindow.of(fault, rates.control).first_act(rates)

@@ -1,5 +1,6 @@
 """A scenario resolved: what it means, computed once, in the terms of the layers below; nobody there sees a scenario."""
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,10 +13,10 @@ from surefoot.planner.parameters import LegInertia, PlannerParameters
 from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
-from surefoot.planner.types import FeetState
+from surefoot.planner.types import Array, FeetState
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.scenarios.file.group import controller_parameters
-from surefoot.scenarios.file.schema import Fault, PendulumSettings, Rates, Scenario, Sensing, Start
+from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import push_time
 from surefoot.scenarios.setup.robot import describe, true_robot
@@ -145,6 +146,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
     near, far = draft.parameters.reach_width
     region = draft.region(sole, robot.shank_spacing)
     apart = max(near, robot.sole_width + 0.5 * region.gap)
+    true_mass = float(robot.mass) / keys.errors.mass_scale
     return Walk(
         name=keys.name,
         text=scenario_yaml(keys),
@@ -155,7 +157,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         rates=keys.rates,
         robot=robot,
         true_robot=true_robot(keys.errors, robot) if keys.fidelity == "full" else robot,
-        true_mass=float(robot.mass) / keys.errors.mass_scale,
+        true_mass=true_mass,
         true_com_height=keys.gait.com_height - keys.errors.com_height,
         height_error=keys.errors.com_height,
         friction=max(keys.terrain.friction + keys.errors.friction, LEAST_BELIEVED_FRICTION),
@@ -175,7 +177,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         tasks=keys.wbc.tasks if keys.wbc is not None else (),
         sensing=keys.sensing,
         filter=_filter(draft),
-        pushes=_pushes(draft, robot),
+        pushes=_pushes(draft, robot, true_mass),
         faults=keys.faults,
         pendulum=keys.pendulum,
     )
@@ -188,12 +190,20 @@ def _filter(draft: Draft) -> str:
     return draft.keys.planner.filter or ("kalman" if noisy else "none")
 
 
-def _pushes(draft: Draft, robot: "RobotDescription") -> tuple[Push, ...]:
-    """The pushes with their times and bodies; one without a body acts on the torso."""
+def _pushes(draft: Draft, robot: "RobotDescription", mass: float) -> tuple[Push, ...]:
+    """The pushes with their times and bodies, on a robot of this true mass [kg]; without a body, on the torso."""
     return tuple(
-        Push(push_time(draft.gait, push), push.duration, np.array(push.force), push.body or robot.torso_body)
+        Push(push_time(draft.gait, push), push.duration, _force(push, mass), push.body or robot.torso_body)
         for push in draft.keys.pushes
     )
+
+
+def _force(push: PushSettings, mass: float) -> Array:
+    """Force of a push, given directly or by its impulse per mass, shape (3,) [N]."""
+    if push.impulse is None:
+        return np.array(push.force or np.zeros(3))
+    size, direction = mass * push.impulse / push.duration, push.direction or 0.0
+    return size * np.array([math.cos(direction), math.sin(direction), 0.0])
 
 
 def scenario_yaml(scenario: Scenario) -> str:

@@ -88,6 +88,13 @@ CASES = {
     "pushes: [{duration: 1}]": "f.yaml:1:10: a push without a begin; give time, or step, phase and fraction",
     "pushes: [{time: 1, step: 1}]": "a push with both a time and a point of the gait; give one of them",
     "pushes: [{step: 9, phase: single}]": "a push in step 9 of a gait of 5 steps; give a step of at most 5",
+    "pushes: [{time: 1, force: [1, 2, 0], impulse: 0.1}]": (
+        "f.yaml:1:47: a push with both a force and an impulse; give one of them"
+    ),
+    "pushes: [{time: 1, force: [1, 2, 0], direction: 1}]": (
+        "f.yaml:1:49: a direction of a push without an impulse; give impulse, or force alone"
+    ),
+    "pushes: [{time: 1, impulse: -1}]": "pushes.0.impulse",
     "pushes: [{time: 1, force: [1, 2]}]": "f.yaml:1:27: pushes.0.force lacks element 2; give '2'",
     "criteria: {cop_ratio_p9: {max: 1}}": "unknown metric 'cop_ratio_p9'; did you mean 'cop_ratio_p99'?",
     "criteria: {fell: {}}": "criteria.fell: a criterion without a bound; give min, max or equals",

@@ -27,6 +27,7 @@ SHORT = ("fidelity=pendulum", "gait.steps=2", "criteria={fell: false}")
             "rounds to nothing on a clock of 1000 Hz",
         ),
         (["pushes=[{time: 1}]"], "pushes", "pushes.0.force is zero"),
+        (["pushes=[{time: 1, impulse: 0}]"], "pushes", "pushes.0.impulse is zero"),
         (
             ["duration=1", "pushes=[{step: 2, phase: single, force: [1, 0, 0]}]"],
             "pushes",

@@ -306,9 +306,9 @@ def paper(
 
     Begun again, it goes on where it stopped.
     """
-    from surefoot.scenarios.paper.page import cores
     from surefoot.scenarios.paper.page import paper as run_paper
     from surefoot.scenarios.paper.runner import InterruptedRunsError
+    from surefoot.scenarios.sweep.sweep import cores
 
     try:
         written = run_paper(out, jobs or cores(), force)
@@ -322,6 +322,57 @@ def paper(
     typer.echo(f"claims: {verdicts}")
     typer.echo(str(written.page))
     raise typer.Exit(MISSED if written.failures else 0)
+
+
+def _campaigns(incomplete: str) -> list[str]:
+    """Campaigns that begin so."""
+    from surefoot.scenarios.sweep.spec import shipped
+
+    return [name for name in shipped() if name.startswith(incomplete)]
+
+
+@app.command()
+def sweep(
+    spec: Annotated[
+        str, typer.Argument(help="A campaign's name, or its specification, a YAML file.", autocompletion=_campaigns)
+    ],
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Fix a key, even one that varies.", autocompletion=_settings),
+    ] = None,
+    seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this dask scheduler instead.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run a campaign: a grid, random samples or thresholds, over any key.
+
+    Begun again, it goes on where it stopped.
+    """
+    from surefoot.scenarios.sweep.engine import InterruptedRunsError
+    from surefoot.scenarios.sweep.spec import read_campaign
+    from surefoot.scenarios.sweep.sweep import cores
+    from surefoot.scenarios.sweep.sweep import sweep as run_sweep
+
+    if jobs is not None and cluster is not None:
+        raise typer.BadParameter("--jobs is of this machine; give it without --cluster")
+    campaign = read_campaign(spec, set_ or (), seeds)
+    folder = out or Path("runs") / campaign.spec.name
+    try:
+        swept = run_sweep(campaign, folder, jobs or cores(), cluster)
+    except InterruptedRunsError:
+        typer.echo(f"interrupted; finished runs are kept in {folder}, the same command goes on from there", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    for text in swept.notes():
+        typer.echo(text, err=True)
+    if as_json:
+        typer.echo(json.dumps(swept.to_json(), allow_nan=False))
+    else:
+        typer.echo("\n".join(swept.lines()))
+    raise typer.Exit(0 if swept.complete and swept.ran else MISSED)
 
 
 @app.command()
@@ -344,8 +395,8 @@ def check(
     from surefoot.scenarios.check import check as checking
     from surefoot.scenarios.check import report
     from surefoot.scenarios.output import refuse_existing
-    from surefoot.scenarios.paper.page import cores
     from surefoot.scenarios.show.console import plain_console
+    from surefoot.scenarios.sweep.sweep import cores
 
     console = plain_console()
     for report_file in (junit, markdown):

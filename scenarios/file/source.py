@@ -122,7 +122,7 @@ def parse(text: str, name: str) -> Source:
     return source
 
 
-def _scalar(text: str) -> Any:
+def plain_scalar(text: str) -> Any:
     """Plain scalar of the YAML 1.2 core schema (so 1e-3 is a number and `no` a word)."""
     if text in _WORDS:
         return _WORDS[text]
@@ -148,7 +148,7 @@ class _Composer(yaml.SafeLoader):
         return node
 
     def resolve(self, kind: Any, value: Any, implicit: Any) -> str:
-        """Give no tag: `_scalar` says what a scalar is, and nobody asks for more."""
+        """Give no tag: `plain_scalar` says what a scalar is, and nobody asks for more."""
         return ""
 
     def _refusal(self, reason: str) -> yaml.MarkedYAMLError:
@@ -174,7 +174,7 @@ class _Reader:
         if isinstance(node, yaml.SequenceNode):
             return [self.read(item, (*key, i)) for i, item in enumerate(node.value)]
         plain = isinstance(node, yaml.ScalarNode) and node.style is None
-        return _scalar(node.value) if plain else node.value
+        return plain_scalar(node.value) if plain else node.value
 
     def _mapping(self, node: yaml.MappingNode, key: Key) -> dict[str, Any]:
         values: dict[str, Any] = {}

@@ -3,7 +3,7 @@
 import copy
 import itertools
 from functools import partial
-from typing import Any, cast
+from typing import Any, cast, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -35,11 +35,17 @@ _BOUNDS = {"greater_than": ("gt", "more than"), "greater_than_equal": ("ge", "at
 }
 
 
-def problems_of(error: ValidationError, data: Any) -> list[Problem]:
-    """Say each validation error once, at the deepest path that exists in the data."""
+def problems_of(error: ValidationError, data: Any, root: type[BaseModel] = Scenario) -> list[Problem]:
+    """Say each validation error once, at the deepest path that exists in the data.
+
+    Args:
+        error: of the root's validation.
+        data: that was validated.
+        root: group of all keys.
+    """
     found: dict[Key, Problem] = {}
     for detail in error.errors(include_url=False):
-        problem = _problem(detail, data)
+        problem = _problem(detail, data, root)
         found.setdefault(problem.key, problem)
     return list(found.values())
 
@@ -58,19 +64,19 @@ def without(data: Any, problems: list[Problem]) -> Any:
     return rest
 
 
-def _problem(detail: ErrorDetails, data: Any) -> Problem:
+def _problem(detail: ErrorDetails, data: Any, root: type[BaseModel]) -> Problem:
     key = _existing(detail["loc"], data)
     value, kind, context = detail["input"], detail["type"], detail.get("ctx", {})
     name = dotted(key) or "the file"
     if kind == "extra_forbidden":
-        names = partial(nearest, str(key[-1]), _group(key[:-1]).model_fields)
+        names = partial(nearest, str(key[-1]), _group(root, key[:-1]).model_fields)
         return Problem(key, f"unknown key '{key[-1]}'", names, at_key=True)
     if kind == "missing":
         missing = detail["loc"][-1]
         return Problem(key, f"{name} lacks element {missing}", f"give '{missing}'")
     if kind in _BOUNDS:
         bound, words = _BOUNDS[kind]
-        unit = _unit(key)
+        unit = _unit(root, key)
         hint = meant(value, unit, abs(context[bound])) if abs(value) > abs(context[bound]) else ""
         return Problem(key, f"{name} is {_short(value)}", f"it must be {words} {context[bound]} {unit}".rstrip() + hint)
     if kind == "quantity":
@@ -97,23 +103,26 @@ def _existing(location: tuple[str | int, ...], data: Any) -> Key:
     return key
 
 
-def _group(key: Key) -> type[BaseModel]:
-    """The group at a path."""
-    model: Any = Scenario
-    for part in key:
+def _group(root: type[BaseModel], key: Key) -> type[BaseModel]:
+    """The group at a path; below a field of groups by name stands a name."""
+    model: Any = root
+    parts = iter(key)
+    for part in parts:
         if isinstance(part, int):
             continue
         if part == "criteria":
             return Bound
         annotation = model.model_fields[part].annotation
+        if get_origin(annotation) is dict:
+            next(parts, None)
         model = next(a for a in (annotation, *getattr(annotation, "__args__", ())) if _is_model(a))
     return cast("type[BaseModel]", model)
 
 
-def _unit(key: Key) -> str:
+def _unit(root: type[BaseModel], key: Key) -> str:
     """SI unit of a key; empty when it has none."""
     *group, last = (part for part in key if isinstance(part, str))
-    field = _group(tuple(group)).model_fields.get(last)
+    field = _group(root, tuple(group)).model_fields.get(last)
     return unit_of(field.annotation, field.metadata) if field is not None else ""
 
 

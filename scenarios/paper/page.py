@@ -1,7 +1,6 @@
 """The page, and the command that writes it."""
 
 import json
-import os
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -205,11 +204,6 @@ class Written:
     falls: int
     failures: tuple[str, ...]
     verdicts: dict[Verdict, int]
-
-
-def cores() -> int:
-    """How many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def paper(out: Path, jobs: int, replace: bool = False) -> Written:

@@ -8,8 +8,10 @@ import platform
 import subprocess
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from types import MappingProxyType
 
 from pydantic import TypeAdapter
 
@@ -141,7 +143,7 @@ class RunConstants:
 
 PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "piqp", "numpy", "scipy", "mcap")
 CODE = ("planner", "wbc", "sim", "models", "scenarios")
-READERS = ("scenarios/paper", "scenarios/show")
+READERS = ("scenarios/check", "scenarios/paper", "scenarios/show", "scenarios/sweep")
 """Folders of the code, and those in it that only read logs: no run depends on them."""
 
 ABSENT = "not installed"
@@ -149,14 +151,21 @@ ABSENT = "not installed"
 
 
 def versions() -> dict[str, str]:
-    """Versions of all that a result may depend on, by name."""
-    return {
-        **{name: _version(name) for name in PACKAGES},
-        "python": platform.python_version(),
-        "machine": f"{platform.system()} {platform.machine()}",
-        "git_revision": _git_revision(),
-        "source_digest": source_digest(Path(__file__).parents[2]),
-    }
+    """Versions of all that a result may depend on, by name, and the revision they are known by."""
+    return {**relevant_versions(), "git_revision": _git_revision()}
+
+
+@cache
+def relevant_versions() -> Mapping[str, str]:
+    """Versions of all that a result depends on: not the revision, which changes with a text too.
+
+    Asked once: what has been loaded stays the same however long the process goes on.
+    """
+    found = {name: _version(name) for name in PACKAGES}
+    found["python"] = platform.python_version()
+    found["machine"] = f"{platform.system()} {platform.machine()}"
+    found["source_digest"] = source_digest(Path(__file__).parents[2])
+    return MappingProxyType(found)
 
 
 def source_digest(root: Path) -> str:
@@ -181,6 +190,7 @@ def _version(package: str) -> str:
         return ABSENT
 
 
+@cache
 def _git_revision() -> str:
     """Commit of the source tree, with ``-dirty`` when it was changed; empty when it is not under git."""
     here = Path(__file__)

@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 from pydantic import ValidationError
@@ -29,6 +29,14 @@ from surefoot.scenarios.setup.terrain import KINDS
 LOG_ENDING = ".mcap"
 MOST_TOLD = 20
 """Problems of a scenario that are told at once."""
+
+
+class Written(NamedTuple):
+    """A scenario as it is written: its text, what to call it in messages, and its name where it gives none."""
+
+    text: str
+    place: str
+    stem: str
 
 
 def is_log(reference: str) -> bool:
@@ -72,6 +80,36 @@ def _with_pushes(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
     return yaml.safe_dump({**keys, "pushes": [*keys.get("pushes", []), *given]}, sort_keys=False)
 
 
+def written(reference: str) -> Written:
+    """The text of a scenario.
+
+    Args:
+        reference: as of `load`.
+
+    Raises:
+        ScenarioError: it cannot be found or read.
+    """
+    if reference in catalogue.OWN:
+        return Written(*catalogue.text(reference), reference)
+    path = Path(reference)
+    try:
+        if not path.is_file() and reference in catalogue.names():
+            return Written(*catalogue.text(reference), reference)
+        if path.exists() and not path.is_file() and not path.is_dir():
+            raise ScenarioError([f"{reference}: a pipe or a device; give a regular file, or a catalogue name"])
+        if is_log(reference):
+            return Written(*attached_scenario(reference), path.stem)
+        with path.open("rb") as file:
+            return Written(decoded(file, reference), reference, path.stem)
+    except IsADirectoryError:
+        raise ScenarioError([f"{reference}: a directory; give a scenario file or a catalogue name"]) from None
+    except FileNotFoundError:
+        raise catalogue.unknown(reference, "no such scenario file or catalogue name") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ScenarioError([f"{reference}: cannot be read, {reason}; give a readable scenario file"]) from None
+
+
 def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None = None) -> Scenario:
     """Load a scenario.
 
@@ -88,8 +126,7 @@ def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None
     Raises:
         ScenarioError: it cannot be found, read or run; lists every fault with its place.
     """
-    text, name, stem = _text(str(reference))
-    return read_scenario(text, name, stem, overrides, robots or RegisteredRobots())
+    return read_scenario(written(str(reference)), overrides, robots)
 
 
 def locate(reference: str, overrides: Overrides, refusal: SetupError) -> ScenarioError:
@@ -100,21 +137,14 @@ def locate(reference: str, overrides: Overrides, refusal: SetupError) -> Scenari
         overrides: ``key=value``.
         refusal: of a part of the stack.
     """
-    text, name, _ = _text(reference)
-    source = parse(text, name)
-    apply_overrides(source, overrides)
+    source = _source(written(reference), overrides)
     return ScenarioError([source.describe(refusal.problem)])
 
 
-def read_scenario(text: str, name: str, stem: str, overrides: Overrides, robots: Robots) -> Scenario:
-    """Check a scenario's text; arguments and errors as of `load`, with `name` used in messages."""
-    source = parse(text, name)
-    if source.value is None:
-        raise ScenarioError([f"{name}:1:1: the file is empty; give at least 'name: {stem}'"])
-    if not isinstance(source.value, dict):
-        raise ScenarioError([f"{name}:1:1: a scenario is a group of keys; write 'key: value' lines"])
-    apply_overrides(source, overrides)
-    source.value.setdefault("name", stem)
+def read_scenario(written: Written, overrides: Overrides, robots: Robots | None = None) -> Scenario:
+    """Check a scenario's text; other arguments and errors as of `load`."""
+    robots = robots or RegisteredRobots()
+    source = _source(written, overrides)
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
@@ -130,34 +160,37 @@ def read_scenario(text: str, name: str, stem: str, overrides: Overrides, robots:
     return scenario
 
 
+def key_problems(written: Written, overrides: Overrides) -> list[Problem]:
+    """List what is wrong with single keys of a scenario, whatever the others say.
+
+    Raises:
+        ScenarioError: it is no scenario, or an override leads nowhere.
+    """
+    return _validated(_source(written, overrides).value)[1]
+
+
+def _source(written: Written, overrides: Overrides) -> Source:
+    """The values of a scenario's text with what is set over them.
+
+    Raises:
+        ScenarioError: it is no group of keys, or an override leads nowhere.
+    """
+    name = written.place
+    source = parse(written.text, name)
+    if source.value is None:
+        raise ScenarioError([f"{name}:1:1: the file is empty; give at least 'name: {written.stem}'"])
+    if not isinstance(source.value, dict):
+        raise ScenarioError([f"{name}:1:1: a scenario is a group of keys; write 'key: value' lines"])
+    apply_overrides(source, overrides)
+    source.value.setdefault("name", written.stem)
+    return source
+
+
 def _told(source: Source, problems: list[Problem]) -> list[str]:
     """The first problems with their places, in the order of the file, and how many more there are."""
     told = [source.describe(problem) for problem in sorted(problems, key=source.spot)[:MOST_TOLD]]
     rest = len(problems) - len(told)
     return [*told, f"{source.name}: {rest} problems more; mend these first"] if rest else told
-
-
-def _text(reference: str) -> tuple[str, str, str]:
-    """Text, name for messages, and stem of a scenario."""
-    if reference in catalogue.OWN:
-        return *catalogue.text(reference), reference
-    path = Path(reference)
-    try:
-        if not path.is_file() and reference in catalogue.names():
-            return *catalogue.text(reference), reference
-        if path.exists() and not path.is_file() and not path.is_dir():
-            raise ScenarioError([f"{reference}: a pipe or a device; give a regular file, or a catalogue name"])
-        if is_log(reference):
-            return *attached_scenario(reference), path.stem
-        with path.open("rb") as file:
-            return decoded(file, reference), reference, path.stem
-    except IsADirectoryError:
-        raise ScenarioError([f"{reference}: a directory; give a scenario file or a catalogue name"]) from None
-    except FileNotFoundError:
-        raise catalogue.unknown(reference, "no such scenario file or catalogue name") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise ScenarioError([f"{reference}: cannot be read, {reason}; give a readable scenario file"]) from None
 
 
 def _validated(data: Any) -> tuple[Scenario, list[Problem]]:

@@ -1,0 +1,311 @@
+"""Runs the cells of a campaign, several at once, writes every result down, and goes on where it was stopped."""
+
+import queue
+import shutil
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from multiprocessing import get_context, parent_process
+from os import _exit
+from pathlib import Path
+from typing import Literal, Protocol
+
+from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.loop.run import made_folder, run_scenario
+from surefoot.scenarios.record.provenance import LOG_NAME
+from surefoot.scenarios.setup.load import read_scenario
+from surefoot.scenarios.sweep.journal import LOGS, Journal, made_by
+from surefoot.scenarios.sweep.points import Point, Record, Search, Threshold
+
+TRIES = 2
+"""How often a run is begun whose process dies."""
+
+
+class InterruptedRunsError(Exception):
+    """The user stopped the campaign; what was done is kept."""
+
+
+class Searched(Protocol):
+    """Runs that are made one after another: a cell of a campaign, or a single run."""
+
+    def search(self) -> Search:
+        """Its runs."""
+        ...
+
+
+class Worker(Protocol):
+    """Makes one run at a time."""
+
+    def __call__(self, point: Point) -> Record:
+        """Make a run, bring its log to where it is kept, and say what became of it."""
+        ...
+
+    def close(self) -> None:
+        """Let it end; what it does not do any more is lost."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Single:
+    """A run that stands for itself."""
+
+    point: Point
+
+    def search(self) -> Search:
+        """See `Searched`."""
+        yield self.point
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a cell.
+
+    Attributes:
+        cell: that was run.
+        runs: its runs in order, with what became of each.
+        threshold: what its search found, if it was one.
+        complete: whether every run that belongs to it has a result.
+    """
+
+    cell: Searched
+    runs: tuple[tuple[Point, Record], ...]
+    threshold: Threshold | None = None
+    complete: bool = True
+
+
+def perform(point: Point, scratch: Path, kept: Path, keep_all: bool) -> Record:
+    """Make a run.
+
+    Args:
+        point: what to run.
+        scratch: directory of runs under way.
+        kept: directory of the logs that are kept.
+        keep_all: whether that of a run that passes is one of them.
+
+    Returns:
+        what became of it; its log is relative to the directory of `kept`.
+    """
+    begin, own = time.perf_counter(), scratch / point.id
+    record = Record(point.id, "broken", made_by=made_by())
+    try:
+        shutil.rmtree(own, ignore_errors=True)
+        result = run_scenario(read_scenario(point.base, point.settings), made_folder(own))
+        verdict = result.verdict
+        record = replace(
+            record, status="pass" if verdict.passed else "fail", reasons=verdict.reasons, metrics=verdict.metrics
+        )
+        if result.interrupted:
+            record = replace(record, status="broken", reasons=("the run was interrupted",))
+        elif keep_all or not verdict.passed:
+            shutil.rmtree(kept / point.name, ignore_errors=True)
+            result.log.parent.rename(made_folder(kept) / point.name)
+            record = replace(record, log=f"{kept.name}/{point.name}/{LOG_NAME}")
+    except (ScenarioError, SetupError) as refusal:
+        record = replace(record, status="refused", reasons=(" ".join(str(refusal).split()),))
+    except LogError as error:
+        record = replace(record, status="broken", reasons=(" ".join(str(error).split()),))
+    except Exception as error:
+        record = replace(record, status="broken", reasons=(f"internal error, {type(error).__name__}: {error}",))
+    finally:
+        shutil.rmtree(own, ignore_errors=True)
+    return replace(record, wall_time=time.perf_counter() - begin)
+
+
+class LocalWorker:
+    """A process of its own, which stays for run after run and is replaced when it dies.
+
+    Args:
+        folder: the campaign's directory.
+        scratch: of runs under way.
+        keep_all: whether the logs of all runs are kept.
+        make: makes an executor with one worker.
+    """
+
+    def __init__(self, folder: Path, scratch: Path, keep_all: bool, make: Callable[[], Executor] | None = None) -> None:
+        self._folder, self._scratch, self._keep_all = folder, scratch, keep_all
+        self._make = make or process
+        self._executor = self._make()
+        self._executor.submit(int)  # begins its process now, while interrupts are ignored, which it inherits
+
+    def __call__(self, point: Point) -> Record:
+        """See `Worker`."""
+        for _ in range(TRIES):
+            try:
+                run = self._executor.submit(perform, point, self._scratch, self._folder / LOGS, self._keep_all)
+                return run.result()
+            except BrokenProcessPool:
+                self._executor.shutdown()
+                self._executor = self._make()
+        return Record(point.id, "broken", ("its process ended unexpectedly, as when memory runs out",))
+
+    def close(self) -> None:
+        """See `Worker`."""
+        for one in list((getattr(self._executor, "_processes", None) or {}).values()):
+            one.terminate()
+        self._executor.shutdown(wait=False, cancel_futures=True)
+
+
+def local_workers(journal: Journal, jobs: int, keep_all: bool) -> list[Worker]:
+    """Processes on this machine."""
+    with interrupts_ignored():
+        return [LocalWorker(journal.folder, journal.scratch, keep_all) for _ in range(jobs)]
+
+
+def process() -> Executor:
+    """An executor of one process, which leaves Ctrl-C to its parent and does not outlive it."""
+    return ProcessPoolExecutor(1, get_context("spawn"), initializer=_set_up)
+
+
+def _set_up() -> None:
+    """Leave signals to the parent, and end with it: one that is killed cannot say so."""
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        _exit(1)
+
+
+def run_cells(
+    cells: Iterable[Searched],
+    journal: Journal,
+    workers: Sequence[Worker],
+    on_run: Callable[[Record], None] = lambda _: None,
+    on_cell: Callable[[], None] = lambda: None,
+) -> None:
+    """Run what has no result yet; one that fails does not stop the others.
+
+    Args:
+        cells: to run; taken as workers get free.
+        journal: gets every result.
+        workers: that make the runs.
+        on_run: is told each new result.
+        on_cell: is told that a cell is done.
+
+    Raises:
+        InterruptedRunsError: Ctrl-C; runs under way were brought to their end first, unless it came twice.
+        LogError: a result could not be written down.
+    """
+    told: queue.SimpleQueue[_News] = queue.SimpleQueue()
+    stop = threading.Event()
+    shared = (_Shared(cells), journal, told, stop)
+    slots = [threading.Thread(target=_slot, args=(worker, *shared), daemon=True) for worker in workers]
+    running = len(slots)
+    try:
+        for slot in slots:
+            slot.start()
+        while running:
+            news = told.get()
+            if isinstance(news, Exception):
+                raise news
+            if isinstance(news, Record):
+                on_run(news)
+            elif news == "cell":
+                on_cell()
+            else:
+                running -= 1
+    except KeyboardInterrupt:
+        stop.set()
+        with suppress(KeyboardInterrupt):
+            for slot in slots:
+                slot.join()
+        raise InterruptedRunsError from None
+    finally:
+        stop.set()
+        with interrupts_ignored():
+            for worker in workers:
+                worker.close()
+
+
+_News = Record | Exception | Literal["cell", "end"]
+"""What a slot tells: a result, what went wrong, that a cell is done, that it has nothing more to do."""
+
+
+class _Shared:
+    """An iterator for several threads."""
+
+    def __init__(self, items: Iterable[Searched]) -> None:
+        self._items, self._lock = iter(items), threading.Lock()
+
+    def __iter__(self) -> Iterator[Searched]:
+        return self
+
+    def __next__(self) -> Searched:
+        with self._lock:
+            return next(self._items)
+
+
+def _slot(
+    worker: Worker,
+    cells: Iterator[Searched],
+    journal: Journal,
+    told: "queue.SimpleQueue[_News]",
+    stop: threading.Event,
+) -> None:
+    """Take one cell after the other, and have what has no result run."""
+    try:
+        for cell in cells:
+            for point, known in _asked(cell, journal):
+                if known is None:
+                    if stop.is_set():
+                        return
+                    record = worker(point)
+                    journal.add(record)
+                    told.put(record)
+            told.put("cell")
+    except Exception as error:
+        told.put(error)
+    finally:
+        told.put("end")
+
+
+def _asked(cell: Searched, journal: Journal) -> Iterator[tuple[Point, Record | None]]:
+    """Each run that a cell asks for, with its result where it is known; the journal has it when the next is asked."""
+    search = cell.search()
+    with suppress(StopIteration):
+        point = next(search)
+        while True:
+            yield point, journal.get(point.id)
+            record = journal.said(point.id)
+            if record is None or record.status == "broken":
+                return
+            point = search.send(record)
+
+
+def outcome_of(cell: Searched, journal: Journal) -> Outcome:
+    """What became of a cell, by the results that are there."""
+    runs: list[tuple[Point, Record]] = []
+    search = cell.search()
+    try:
+        point = next(search)
+        while (record := journal.said(point.id)) is not None:
+            runs.append((point, record))
+            point = search.send(record)
+    except StopIteration as end:
+        whole = all(record.status != "broken" for _, record in runs)
+        return Outcome(cell, tuple(runs), end.value if whole else None, whole)
+    return Outcome(cell, tuple(runs), complete=False)
+
+
+@contextmanager
+def interrupts_ignored() -> Iterator[None]:
+    """Ignore Ctrl-C for a moment; only the main thread can."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

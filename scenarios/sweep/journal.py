@@ -1,0 +1,136 @@
+"""What a campaign's directory holds: every result as soon as it is there, and the logs that are kept."""
+
+import contextlib
+import fcntl
+import hashlib
+import json
+import os
+import shutil
+import threading
+from dataclasses import asdict
+from pathlib import Path
+from typing import Self
+
+from pydantic import TypeAdapter
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.loop.run import made_folder
+from surefoot.scenarios.output import reason
+from surefoot.scenarios.record.provenance import relevant_versions
+from surefoot.scenarios.sweep.points import Record
+
+JOURNAL, LOGS, SCRATCH = "runs.jsonl", "logs", ".running"
+
+_RECORD = TypeAdapter(Record)
+
+
+class Journal:
+    """The results of a campaign, one line each, of which a killed process loses none that was told.
+
+    Results of other versions or another code than those that run now are passed over, and made anew. So is one whose
+    log is gone or cut.
+
+    Args:
+        folder: the campaign's directory, made where it is missing; held until `close`, so that of two processes only
+            one works in it.
+        keep_all: whether the log of every run is to be there.
+
+    Attributes:
+        folder: the directory.
+        stale: how many results were passed over.
+
+    Raises:
+        LogError: it cannot be written, holds something else, or another process works in it.
+    """
+
+    def __init__(self, folder: Path, keep_all: bool = False) -> None:
+        self.folder = made_folder(folder)
+        self.made_by = made_by()
+        self.stale = 0
+        self._records: dict[str, Record] = {}
+        self._broken: dict[str, Record] = {}
+        self._writing = threading.Lock()
+        path = folder / JOURNAL
+        if not path.exists() and any(folder.iterdir()):
+            raise LogError(f"{folder}: holds something else than a campaign; choose an empty directory with --out")
+        try:
+            self._file = path.open("ab+")
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise LogError(f"{folder}: another process works on this campaign; choose another with --out") from None
+        except OSError as error:
+            raise LogError(f"{path}: cannot be written, {reason(error)}; choose another with --out") from None
+        self._read(keep_all)
+        shutil.rmtree(self.scratch, ignore_errors=True)
+
+    @property
+    def scratch(self) -> Path:
+        """Directory of runs under way, emptied at the start: what lies there then was killed."""
+        return self.folder / SCRATCH
+
+    def get(self, point_id: str) -> Record | None:
+        """The result of a run; None when there is none, or it was broken."""
+        return self._records.get(point_id)
+
+    def said(self, point_id: str) -> Record | None:
+        """The result of a run, also a broken one of this time."""
+        return self._records.get(point_id) or self._broken.get(point_id)
+
+    def add(self, record: Record) -> None:
+        """Write a result down; a broken one is only remembered, so that it is tried again at the next start.
+
+        Raises:
+            LogError: it cannot be written.
+        """
+        if record.status == "broken":
+            self._broken[record.id] = record
+            return
+        line = json.dumps(asdict(record), allow_nan=False).encode() + b"\n"
+        with self._writing:
+            try:
+                self._file.write(line)
+                self._file.flush()
+            except OSError as error:
+                raise LogError(f"{self._file.name}: cannot be written on, {reason(error)}; make room") from None
+            self._records[record.id] = record
+
+    def close(self) -> None:
+        """Leave the directory to others."""
+        shutil.rmtree(self.scratch, ignore_errors=True)
+        self._file.close()
+
+    def _read(self, keep_all: bool) -> None:
+        """Take over what is there, and cut off a line that was not finished."""
+        self._file.seek(0)
+        whole = 0
+        for line in self._file:
+            if not line.endswith(b"\n"):
+                break
+            whole += len(line)
+            with contextlib.suppress(ValueError):
+                record = _RECORD.validate_json(line)
+                if record.made_by == self.made_by and self._has_log(record, keep_all):
+                    self._records[record.id] = record
+                else:
+                    self._records.pop(record.id, None)
+                    self.stale += 1
+        self._file.seek(whole)
+        self._file.truncate()
+        os.fsync(self._file.fileno())
+
+    def _has_log(self, record: Record, keep_all: bool) -> bool:
+        if not record.log:
+            return not keep_all or record.status == "refused"
+        path = self.folder / record.log
+        return path.is_file() and path.stat().st_size == record.metrics.get("log_bytes")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def made_by() -> str:
+    """Digest of all that a result depends on but its scenario: two results of the same may stand in one table."""
+    return hashlib.sha256(json.dumps(dict(relevant_versions()), sort_keys=True).encode()).hexdigest()[:16]

@@ -1,0 +1,351 @@
+"""The specification of a campaign: what is fixed, varied, drawn and searched for, and what of it cannot be."""
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple, Self
+
+from pydantic import Field, ValidationError, model_validator
+
+from surefoot.scenarios.errors import Key, Problem, ScenarioError, nearest
+from surefoot.scenarios.file.group import WHOLE, Finite, Group
+from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar
+from surefoot.scenarios.file.translate import problems_of
+from surefoot.scenarios.setup.load import Written, key_problems, written
+
+ENDING = ".yaml"
+MOST_RUNS = 1_000_000
+SCENARIO, SEARCH = "scenario", "bisect."
+"""Keys that are no scenario's and may vary as any other: which scenario, and the range of the search."""
+
+
+class Draw(Group):
+    """A distribution of which a value is drawn for each seed."""
+
+    uniform: Annotated[list[Finite], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="least and greatest value"
+    )
+    normal: Annotated[list[Finite], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="mean and standard deviation"
+    )
+    choice: Annotated[list[Any], Field(min_length=1)] | None = Field(default=None, description="one of these")
+
+    @model_validator(mode="after")
+    def _one_that_can_be(self) -> Self:
+        if sum(one is not None for one in (self.uniform, self.normal, self.choice)) != 1:
+            raise ValueError("needs one distribution; give uniform: [a, b], normal: [mean, sd] or choice: [...]")
+        if self.uniform is not None and self.uniform[0] > self.uniform[1]:
+            raise ValueError(f"uniform from {self.uniform[0]:g} to {self.uniform[1]:g} is empty; give the least first")
+        if self.normal is not None and self.normal[1] < 0.0:
+            raise ValueError(f"normal has a standard deviation of {self.normal[1]:g}; give 0 or more")
+        return self
+
+
+class Bisect(Group):
+    """The search for the value of a key from which on runs fail."""
+
+    key: str = Field(description="of the scenario")
+    low: Finite = Field(description="one end of the range")
+    high: Finite = Field(description="the other")
+    tolerance: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = Field(
+        default=None, description="how well the threshold shall be known; the range is halved"
+    )
+    ratio: Annotated[float, Field(gt=1, le=1000, allow_inf_nan=False)] | None = Field(
+        default=None, description="of a rung over the one below it; the ladder is climbed as long as every seed passes"
+    )
+
+    @model_validator(mode="after")
+    def _a_range(self) -> Self:
+        if (self.tolerance is None) == (self.ratio is None):
+            raise ValueError("needs tolerance, to halve the range, or ratio, to climb it; give one of them")
+        if self.low >= self.high:
+            raise ValueError(f"the range from {self.low:g} to {self.high:g} is empty; give low below high")
+        if self.ratio is not None and self.low <= 0.0:
+            raise ValueError(f"low is {self.low:g}, from which no ratio leads upwards; give more than 0")
+        return self
+
+    @property
+    def rungs(self) -> tuple[float, ...]:
+        """Values of a ladder, the highest not above the range."""
+        assert self.ratio is not None
+        count = 1 + math.floor(math.log(self.high / self.low) / math.log(self.ratio) + 1e-9)
+        return tuple(self.low * self.ratio**k for k in range(count))
+
+
+Axis = Annotated[list[Any], Field(min_length=1)] | Annotated[dict[str, dict[str, Any]], Field(min_length=1)]
+
+
+class Spec(Group):
+    """A campaign as it is written."""
+
+    name: str = Field(default="sweep", min_length=1, max_length=100, pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")
+    about: str = Field(default="", description="what it is for, in a sentence or two")
+    scenario: str = Field(default="", description="catalogue name or file, sought beside the specification first")
+    set: dict[str, Any] = Field(default={}, description="values of keys in every run")
+    grid: dict[str, Axis] = Field(
+        default={},
+        description="every combination: by key a list of values, or by a name of one's own named groups of settings",
+    )
+    first: dict[str, Annotated[list[Any], Field(min_length=1)]] = Field(
+        default={}, max_length=1, description="values of a key of which the first is taken that is not refused"
+    )
+    sample: dict[str, Draw] = Field(default={}, description="values drawn anew for each seed")
+    bisect: Bisect | None = Field(default=None, description="a threshold instead of single runs")
+    seeds: Annotated[int, Field(ge=1, le=MOST_RUNS), WHOLE] = Field(default=1, description="runs 0, 1, ... of each")
+    seed: Annotated[int, Field(ge=0, lt=2**32), WHOLE] = Field(default=0, description="of what is drawn")
+    keep: Literal["failing", "all"] = Field(default="failing", description="of which runs the logs are kept")
+
+    @model_validator(mode="after")
+    def _one_search(self) -> Self:
+        if self.first and self.bisect is not None:
+            raise ValueError("has both first and bisect; a campaign searches one key")
+        return self
+
+
+class Setting(NamedTuple):
+    """A value of an axis: what stands in the table, and what it sets."""
+
+    label: Any
+    keys: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Campaign:
+    """A specification that can be run.
+
+    Attributes:
+        spec: as written, with what was set from outside.
+        place: what to call its file in messages.
+        axes: of the grid, by name.
+        bases: the scenarios that it names, by reference.
+    """
+
+    spec: Spec
+    place: str
+    axes: Mapping[str, tuple[Setting, ...]]
+    bases: Mapping[str, Written]
+
+    @property
+    def cells(self) -> int:
+        """Number of runs, or of thresholds that are sought."""
+        combinations = math.prod(len(axis) for axis in self.axes.values())
+        return combinations * (1 if self.spec.bisect else self.spec.seeds)
+
+    def bisect(self, keys: Mapping[str, Any]) -> Bisect | None:
+        """The search of a combination, whose range may be its own.
+
+        Raises:
+            ValidationError: it cannot be.
+        """
+        own = {key.removeprefix(SEARCH): value for key, value in keys.items() if key.startswith(SEARCH)}
+        bisect = self.spec.bisect
+        return bisect if bisect is None or not own else Bisect.model_validate({**bisect.model_dump(), **own})
+
+    def combinations(self) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+        """Labels and settings of every combination of the grid, the last axis fastest."""
+        for chosen in itertools.product(*self.axes.values()):
+            labels = {name: one.label for name, one in zip(self.axes, chosen, strict=True)}
+            keys = dict(self.spec.set)
+            for one in chosen:
+                keys |= one.keys
+            yield labels, keys
+
+
+def shipped() -> dict[str, Path]:
+    """The campaigns that come with Surefoot, by name."""
+    folder = Path(str(files(__package__))) / "campaigns"
+    return {path.name.removesuffix(ENDING): path for path in sorted(folder.glob(f"*{ENDING}"))}
+
+
+def read_campaign(reference: str, overrides: Sequence[str] = (), seeds: int | None = None) -> Campaign:
+    """Read and check a specification.
+
+    Args:
+        reference: name of a shipped campaign, or a file.
+        overrides: ``key=value``: values of scenario keys in every run, over those that the specification sets or
+            varies; of an axis with named settings, the name of the one to keep.
+        seeds: over those of the specification.
+
+    Raises:
+        ScenarioError: it cannot be read or run; lists every fault with its place.
+    """
+    text, place = _text(reference)
+    source = parse(text, place)
+    spec = _validated(source, Path(place).name.removesuffix(ENDING))
+    spec = _overridden(spec, overrides)
+    if seeds is not None:
+        spec = spec.model_copy(update={"seeds": seeds})
+    campaign = Campaign(spec, place, {name: _settings(name, axis) for name, axis in spec.grid.items()}, {})
+    campaign = replace(campaign, bases=_bases(campaign, source))
+    problems = [*_twice(campaign), *_faults(campaign)]
+    if problems:
+        raise ScenarioError(dict.fromkeys(source.describe(problem) for problem in problems))
+    if campaign.cells * (spec.seeds if spec.bisect else 1) > MOST_RUNS:
+        raise ScenarioError([f"{place}: {campaign.cells} cells, of {spec.seeds} seeds; give at most {MOST_RUNS} runs"])
+    return campaign
+
+
+def _text(reference: str) -> tuple[str, str]:
+    """Text of a specification, and what to call it in messages."""
+    own = shipped()
+    path = Path(reference)
+    if not path.is_file() and reference in own:
+        return own[reference].read_text(encoding="utf-8"), f"campaigns/{reference}{ENDING}"
+    try:
+        with path.open("rb") as file:
+            return decoded(file, reference), reference
+    except FileNotFoundError:
+        raise ScenarioError([f"{reference}: no such specification or campaign; {nearest(reference, own)}"]) from None
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise ScenarioError([f"{reference}: cannot be read, {why}; give a specification of a campaign"]) from None
+
+
+def _validated(source: Source, stem: str) -> Spec:
+    if not isinstance(source.value, dict):
+        raise ScenarioError([f"{source.name}:1:1: a campaign is a group of keys; give at least 'scenario: walk'"])
+    source.value.setdefault("name", stem)
+    try:
+        spec = Spec.model_validate(source.value)
+        problems = source.problems
+    except ValidationError as error:
+        problems = [*source.problems, *problems_of(error, source.value, Spec)]
+    if problems:
+        raise ScenarioError(source.describe(problem) for problem in sorted(problems, key=source.spot))
+    return spec
+
+
+def _overridden(spec: Spec, overrides: Sequence[str]) -> Spec:
+    """The specification with keys fixed from outside, wherever it has them."""
+    fixed, grid = dict(spec.set), dict(spec.grid)
+    for override in overrides:
+        name, equals, text = override.partition("=")
+        name = name.strip()
+        if not equals or not name:
+            raise ScenarioError([f"--set {override}: not a setting; write --set key=value"])
+        value, axis = parse(text, f"--set {name}").value, grid.get(name)
+        if isinstance(axis, dict):
+            if text not in axis:
+                raise ScenarioError([f"--set {name}={text}: the grid has no such setting; {nearest(text, axis)}"])
+            grid[name] = {text: axis[text]}
+        elif axis is not None:
+            grid[name] = [value]
+        else:
+            fixed[name] = value
+    taken = {name: value for name, value in fixed.items() if name not in spec.set or value != spec.set[name]}
+    update = {
+        "set": fixed,
+        "grid": grid,
+        "sample": {name: draw for name, draw in spec.sample.items() if name not in taken},
+        "first": {name: values for name, values in spec.first.items() if name not in taken},
+    }
+    return spec.model_copy(update=update)
+
+
+def _settings(name: str, axis: list[Any] | dict[str, dict[str, Any]]) -> tuple[Setting, ...]:
+    if isinstance(axis, list):
+        return tuple(Setting(value, {name: value}) for value in axis)
+    return tuple(Setting(plain_scalar(label), keys) for label, keys in axis.items())
+
+
+def _bases(campaign: Campaign, source: Source) -> dict[str, Written]:
+    """The scenarios that are named."""
+    found: dict[str, Written] = {}
+    for _, keys in campaign.combinations():
+        reference = str(keys.get(SCENARIO, campaign.spec.scenario))
+        if not reference:
+            problem = Problem((), "names no scenario", "give 'scenario: walk', or vary it in the grid")
+            raise ScenarioError([source.describe(problem)])
+        if reference not in found:
+            beside = Path(campaign.place).parent / reference
+            found[reference] = written(str(beside) if beside.is_file() else reference)
+    return found
+
+
+def _twice(campaign: Campaign) -> Iterator[Problem]:
+    """Tell keys that are varied in two ways, one of which would be lost."""
+    spec, seen = campaign.spec, dict.fromkeys(("seed",), "seeds")
+    varied = [("sample", tuple(spec.sample)), ("first", tuple(spec.first))]
+    varied += [("grid", tuple({key for setting in axis for key in setting.keys})) for axis in campaign.axes.values()]
+    varied += [("bisect", (spec.bisect.key,))] if spec.bisect else []
+    for group, keys in varied:
+        for key in keys:
+            if key in seen:
+                yield Problem((group, key), f"{key} is varied by {seen[key]} too", "vary a key once")
+            seen[key] = group
+
+
+def _faults(campaign: Campaign) -> Iterator[Problem]:
+    """List what is wrong with keys or values alone; what several together cannot be is told by the run itself."""
+    labels_and_keys = list(itertools.islice(campaign.combinations(), MOST_RUNS))
+    if not labels_and_keys:
+        return
+    base = labels_and_keys[0][1]
+    plain = base | _ends(campaign.spec, 0)
+    yield from _of_point(campaign, plain, {key: ("set", key) for key in campaign.spec.set} | _searched(campaign.spec))
+    for name, axis in campaign.axes.items():
+        named = isinstance(campaign.spec.grid[name], dict)
+        for index, setting in enumerate(axis):
+            others = [one for _, one in labels_and_keys if setting.keys.items() <= one.items()][:1]
+            at: Key = ("grid", name, str(setting.label)) if named else ("grid", name, index)
+            places = {key: (*at, key) if named else at for key in setting.keys}
+            yield from _of_point(campaign, (others[0] if others else plain) | _ends(campaign.spec, 0), places)
+    yield from _of_point(campaign, base | _ends(campaign.spec, -1), _searched(campaign.spec))
+    for key, values in campaign.spec.first.items():
+        for index, value in enumerate(values):
+            yield from _of_point(campaign, plain | {key: value}, {key: ("first", key, index)})
+    for key, draw in campaign.spec.sample.items():
+        for index, value in enumerate(draw.choice or ()):
+            yield from _of_point(campaign, plain | {key: value}, {key: ("sample", key, "choice", index)})
+
+
+def _ends(spec: Spec, which: int) -> dict[str, Any]:
+    """Values at one end of everything that is drawn or searched, the first (0) or the last (-1)."""
+    ends: dict[str, Any] = {key: values[which] for key, values in spec.first.items()}
+    for key, draw in spec.sample.items():
+        ends[key] = (draw.uniform or draw.choice or (draw.normal or [])[:1])[which]
+    if spec.bisect is not None:
+        ends[spec.bisect.key] = (spec.bisect.low, spec.bisect.high)[which]
+    return ends
+
+
+def _searched(spec: Spec) -> dict[str, Key]:
+    """Where the keys that are drawn or searched stand."""
+    places: dict[str, Key] = {key: ("sample", key) for key in spec.sample}
+    places |= {key: ("first", key) for key in spec.first}
+    if spec.bisect is not None:
+        places[spec.bisect.key] = ("bisect", "key")
+    return places
+
+
+def _of_point(campaign: Campaign, keys: Mapping[str, Any], places: Mapping[str, Key]) -> Iterator[Problem]:
+    """Faults of a run's keys that stand at one of these places."""
+    try:
+        campaign.bisect(keys)
+    except ValidationError as error:
+        for problem in problems_of(error, keys, Bisect):
+            yield from (replace(problem, key=place) for key, place in places.items() if key.startswith(SEARCH))
+    keys = {key: value for key, value in keys.items() if not key.startswith(SEARCH)}
+    base = campaign.bases[str(keys.pop(SCENARIO, campaign.spec.scenario))]
+    try:
+        problems = key_problems(base, keys)
+    except ScenarioError as error:
+        for message in error.problems:
+            name, _, rest = message.removeprefix("--set ").partition(": ")
+            what, _, right = rest.partition("; ")
+            yield Problem(places.get(name, ()), f"{name}: {what}", right)
+        return
+    for problem in problems:
+        at = next((place for key, place in places.items() if _concerns(key, problem.key)), None)
+        if at is not None:
+            yield replace(problem, key=at, at_key=False)
+
+
+def _concerns(setting: str, key: Key) -> bool:
+    """Whether a problem's key is what a setting sets, or a part of it, or the other way round."""
+    path = tuple(setting.split("."))
+    found = tuple(map(str, key))
+    return path[: len(found)] == found or found[: len(path)] == path

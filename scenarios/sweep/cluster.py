@@ -1,15 +1,17 @@
 """The runs of a campaign on the machines of a dask.distributed cluster."""
 
+import asyncio
 import tempfile
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NamedTuple
 
 from surefoot.scenarios.errors import ScenarioError, require
 from surefoot.scenarios.loop.run import made_folder
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.sweep.engine import Worker, perform
-from surefoot.scenarios.sweep.journal import LOGS, Journal, made_by
+from surefoot.scenarios.sweep.journal import LOGS, made_by
 from surefoot.scenarios.sweep.points import Point, Record
 
 PATIENCE = 10.0
@@ -67,12 +69,12 @@ class ClusterWorker:
         self._client.close()
 
 
-def cluster_workers(address: str, journal: Journal, keep_all: bool) -> list[Worker]:
+def cluster_workers(address: str, folder: Path, keep_all: bool) -> list[Worker]:
     """One worker for each thread of a cluster.
 
     Args:
         address: of its scheduler, such as ``tcp://127.0.0.1:8786``.
-        journal: of the campaign.
+        folder: the campaign's directory on this machine.
         keep_all: whether the logs of all runs are kept.
 
     Raises:
@@ -81,11 +83,12 @@ def cluster_workers(address: str, journal: Journal, keep_all: bool) -> list[Work
     """
     distributed = require("distributed", "cluster", "--cluster", "run on this machine with --jobs")
     try:
-        client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:
+        asyncio.run(asyncio.wait_for(_knock(distributed, address), PATIENCE))
+    except Exception as error:  # whatever answers there may be no scheduler at all
         why = " ".join(str(error).split()) or type(error).__name__
         right = "give the address of a running dask scheduler, such as tcp://127.0.0.1:8786"
         raise ScenarioError([f"--cluster {address}: cannot be reached, {why[:200]}; {right}"]) from None
+    client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
     try:
         threads = client.nthreads()
         if not threads:
@@ -95,7 +98,13 @@ def cluster_workers(address: str, journal: Journal, keep_all: bool) -> list[Work
     except BaseException:
         client.close()
         raise
-    return [ClusterWorker(client, journal.folder, keep_all) for _ in range(sum(threads.values()))]
+    return [ClusterWorker(client, folder, keep_all) for _ in range(sum(threads.values()))]
+
+
+async def _knock(distributed: ModuleType, address: str) -> None:
+    """Shake hands with a scheduler and leave: a client that fails to connect would take its time to end."""
+    connection = await distributed.comm.connect(address, timeout=0.5 * PATIENCE)
+    await connection.close()
 
 
 def _check_versions(address: str, client: Any) -> None:

@@ -19,7 +19,7 @@ from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.loop.run import made_folder, run_scenario
 from surefoot.scenarios.record.provenance import LOG_NAME
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.sweep.journal import LOGS, Journal, made_by
+from surefoot.scenarios.sweep.journal import LOGS, SCRATCH, Journal, made_by
 from surefoot.scenarios.sweep.points import Point, Record, Search, Threshold
 
 TRIES = 2
@@ -122,13 +122,12 @@ class LocalWorker:
 
     Args:
         folder: the campaign's directory.
-        scratch: of runs under way.
         keep_all: whether the logs of all runs are kept.
         make: makes an executor with one worker.
     """
 
-    def __init__(self, folder: Path, scratch: Path, keep_all: bool, make: Callable[[], Executor] | None = None) -> None:
-        self._folder, self._scratch, self._keep_all = folder, scratch, keep_all
+    def __init__(self, folder: Path, keep_all: bool, make: Callable[[], Executor] | None = None) -> None:
+        self._folder, self._keep_all = folder, keep_all
         self._make = make or process
         self._executor = self._make()
         self._executor.submit(int)  # begins its process now, while interrupts are ignored, which it inherits
@@ -137,8 +136,8 @@ class LocalWorker:
         """See `Worker`."""
         for _ in range(TRIES):
             try:
-                run = self._executor.submit(perform, point, self._scratch, self._folder / LOGS, self._keep_all)
-                return run.result()
+                places = self._folder / SCRATCH, self._folder / LOGS
+                return self._executor.submit(perform, point, *places, self._keep_all).result()
             except BrokenProcessPool:
                 self._executor.shutdown()
                 self._executor = self._make()
@@ -151,10 +150,10 @@ class LocalWorker:
         self._executor.shutdown(wait=False, cancel_futures=True)
 
 
-def local_workers(journal: Journal, jobs: int, keep_all: bool) -> list[Worker]:
-    """Processes on this machine."""
+def local_workers(folder: Path, jobs: int, keep_all: bool) -> list[Worker]:
+    """Processes on this machine; arguments as of `LocalWorker`."""
     with interrupts_ignored():
-        return [LocalWorker(journal.folder, journal.scratch, keep_all) for _ in range(jobs)]
+        return [LocalWorker(folder, keep_all) for _ in range(jobs)]
 
 
 def process() -> Executor:

@@ -61,12 +61,7 @@ class Journal:
         except OSError as error:
             raise LogError(f"{path}: cannot be written, {reason(error)}; choose another with --out") from None
         self._read(keep_all)
-        shutil.rmtree(self.scratch, ignore_errors=True)
-
-    @property
-    def scratch(self) -> Path:
-        """Directory of runs under way, emptied at the start: what lies there then was killed."""
-        return self.folder / SCRATCH
+        shutil.rmtree(self.folder / SCRATCH, ignore_errors=True)  # of runs that were killed
 
     def get(self, point_id: str) -> Record | None:
         """The result of a run; None when there is none, or it was broken."""
@@ -96,7 +91,7 @@ class Journal:
 
     def close(self) -> None:
         """Leave the directory to others."""
-        shutil.rmtree(self.scratch, ignore_errors=True)
+        shutil.rmtree(self.folder / SCRATCH, ignore_errors=True)
         self._file.close()
 
     def _read(self, keep_all: bool) -> None:

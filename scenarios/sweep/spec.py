@@ -180,7 +180,7 @@ def read_campaign(reference: str, overrides: Sequence[str] = (), seeds: int | No
         spec = spec.model_copy(update={"seeds": seeds})
     campaign = Campaign(spec, place, {name: _settings(name, axis) for name, axis in spec.grid.items()}, {})
     campaign = replace(campaign, bases=_bases(campaign, source))
-    problems = [*_twice(campaign), *_faults(campaign)]
+    problems = list(_twice(campaign)) or list(_faults(campaign))
     if problems:
         raise ScenarioError(dict.fromkeys(source.describe(problem) for problem in problems))
     if campaign.cells * (spec.seeds if spec.bisect else 1) > MOST_RUNS:
@@ -327,7 +327,8 @@ def _of_point(campaign: Campaign, keys: Mapping[str, Any], places: Mapping[str, 
         campaign.bisect(keys)
     except ValidationError as error:
         for problem in problems_of(error, keys, Bisect):
-            yield from (replace(problem, key=place) for key, place in places.items() if key.startswith(SEARCH))
+            what = problem.what.removeprefix("the file: ")
+            yield from (replace(problem, key=at, what=what) for key, at in places.items() if key.startswith(SEARCH))
     keys = {key: value for key, value in keys.items() if not key.startswith(SEARCH)}
     base = campaign.bases[str(keys.pop(SCENARIO, campaign.spec.scenario))]
     try:
@@ -336,7 +337,8 @@ def _of_point(campaign: Campaign, keys: Mapping[str, Any], places: Mapping[str, 
         for message in error.problems:
             name, _, rest = message.removeprefix("--set ").partition(": ")
             what, _, right = rest.partition("; ")
-            yield Problem(places.get(name, ()), f"{name}: {what}", right)
+            if name in places:
+                yield Problem(places[name], f"{name}: {what}", right)
         return
     for problem in problems:
         at = next((place for key, place in places.items() if _concerns(key, problem.key)), None)

@@ -149,22 +149,22 @@ def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) 
         ScenarioError: the cluster cannot be reached or used.
         InterruptedRunsError: the user stopped it; what was done is kept.
     """
-    keep_all = campaign.spec.keep == "all"
+    keep_all, every = campaign.spec.keep == "all", tuple(cells(campaign))
+    workers = _workers(out, jobs, cluster, keep_all)
     with Journal(out, keep_all) as journal:
-        every = tuple(cells(campaign))
         with CampaignBar(len(every), "searches" if campaign.spec.bisect else "runs") as bar:
-            run_cells(every, journal, _workers(journal, jobs, cluster, keep_all), bar.run, bar.cell)
+            run_cells(every, journal, workers, bar.run, bar.cell)
         swept = Swept(campaign, out, tuple(outcome_of(cell, journal) for cell in every), journal.stale)
         write(swept)
     return swept
 
 
-def _workers(journal: Journal, jobs: int, cluster: str | None, keep_all: bool) -> Sequence[Worker]:
+def _workers(out: Path, jobs: int, cluster: str | None, keep_all: bool) -> Sequence[Worker]:
     if cluster is None:
-        return local_workers(journal, jobs, keep_all)
+        return local_workers(out, jobs, keep_all)
     from surefoot.scenarios.sweep.cluster import cluster_workers
 
-    return cluster_workers(cluster, journal, keep_all)
+    return cluster_workers(cluster, out, keep_all)
 
 
 def write(swept: Swept) -> None:

@@ -295,18 +295,18 @@ def _faults(campaign: Campaign) -> Iterator[Problem]:
             yield from _of_point(campaign, (others[0] if others else plain) | _ends(campaign.spec, 0), places)
     yield from _of_point(campaign, base | _ends(campaign.spec, -1), _searched(campaign.spec))
     for key, values in campaign.spec.first.items():
-        for index, value in enumerate(values):
+        for index, value in enumerate(values[1:], start=1):
             yield from _of_point(campaign, plain | {key: value}, {key: ("first", key, index)})
     for key, draw in campaign.spec.sample.items():
-        for index, value in enumerate(draw.choice or ()):
+        for index, value in enumerate((draw.choice or ())[1:], start=1):
             yield from _of_point(campaign, plain | {key: value}, {key: ("sample", key, "choice", index)})
 
 
 def _ends(spec: Spec, which: int) -> dict[str, Any]:
-    """Values at one end of everything that is drawn or searched, the first (0) or the last (-1)."""
-    ends: dict[str, Any] = {key: values[which] for key, values in spec.first.items()}
+    """Values at one end of every range that is drawn from or searched, lower (0) or upper (-1); else the first."""
+    ends: dict[str, Any] = {key: values[0] for key, values in spec.first.items()}
     for key, draw in spec.sample.items():
-        ends[key] = (draw.uniform or draw.choice or (draw.normal or [])[:1])[which]
+        ends[key] = draw.uniform[which] if draw.uniform else (draw.choice or draw.normal or [])[0]
     if spec.bisect is not None:
         ends[spec.bisect.key] = (spec.bisect.low, spec.bisect.high)[which]
     return ends

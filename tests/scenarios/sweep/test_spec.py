@@ -1,0 +1,117 @@
+"""A specification is checked whole before anything is run: every fault with its place."""
+
+import pytest
+
+from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.sweep.spec import read_campaign, shipped
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.fixture
+def campaign(tmp_path):
+    def make(text, *overrides, **named):
+        path = tmp_path / "c.yaml"
+        path.write_text(text)
+        return read_campaign(str(path), overrides, **named)
+
+    return make
+
+
+@pytest.fixture
+def refused(campaign):
+    def make(text, *overrides):
+        with pytest.raises(ScenarioError) as error:
+            campaign(text, *overrides)
+        return [problem.rpartition("/")[2] for problem in error.value.problems]
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "what"),
+    [
+        ("scenario: walk\nset: {gait.stepz: 3}", "c.yaml:2:19", "unknown key 'stepz'; did you mean 'steps'?"),
+        ("scenario: walk\ngrid: {gait.steps: []}", "c.yaml:2:20", "give more elements"),
+        ("scenario: walk\ngrid: {gait.steps: [3, x]}", "c.yaml:2:24", "gait.steps is 'x'; give a whole number"),
+        ("scenario: walk\ngrid: {a: {b: {gait.x: 1}}}", "c.yaml:2:24", "unknown key 'x'"),
+        ("scenario: walk\ngrid: {terrain.friction: [1, -1]}", "c.yaml:2:30", "it must be at least 0"),
+        ("scenario: walk\nsample: {terrain.friction: {uniform: [2, 1]}}", "c.yaml:2:28", "uniform from 2 to 1 is"),
+        ("scenario: walk\nsample: {terrain.friction: {uniform: [-1, 1]}}", "c.yaml:2:28", "is -1.0; it must be at"),
+        ("scenario: walk\nsample: {terrain.friction: {uniform: [0, 99]}}", "c.yaml:2:28", "is 99.0; it must be at"),
+        ("scenario: walk\nsample: {terrain.friction: {normal: [1, -1]}}", "c.yaml:2:28", "standard deviation of -1"),
+        ("scenario: walk\nsample: {terrain.friction: {}}", "c.yaml:2:28", "needs one distribution"),
+        ("scenario: walk\nsample: {gait.steps: {choice: [3, x]}}", "c.yaml:2:35", "gait.steps is 'x'"),
+        ("scenario: walk\nsample: {gait.steps: {choice: [x, 3]}}", "c.yaml:2:22", "gait.steps is 'x'"),
+        ("scenario: walk\nfirst: {gait.com_height: [1, x]}", "c.yaml:2:30", "gait.com_height is 'x'"),
+        ("scenario: walk\nbisect: {key: gait.steps, low: 3, high: 2, ratio: 2}", "c.yaml:2:9", "from 3 to 2 is empty"),
+        ("scenario: walk\nbisect: {key: seed, low: 3, high: 5}", "c.yaml:2:9", "needs tolerance"),
+        ("scenario: walk\nbisect: {key: gait.x, low: 3, high: 5, tolerance: 1}", "c.yaml:2:15", "unknown key 'x'"),
+        ("scenario: walk\nbisect: {key: terrain.friction, low: 1, high: 20, ratio: 2}", "c.yaml:2:15", "20"),
+        ("scenario: walk\nseeds: 0", "c.yaml:2:8", "seeds is 0"),
+        ("scenario: walk\nseedz: 1", "c.yaml:2:1", "unknown key 'seedz'"),
+        ("scenario: walk\ngrid: {seed: [1]}", "c.yaml:2:14", "seed is varied by seeds too"),
+        ("scenario: walk\ngrid: {gait.turn: [0]}\nsample: {gait.turn: {choice: [0]}}", "c.yaml:2:19", "by sample too"),
+        ("seeds: 3", "c.yaml:1:1", "names no scenario"),
+        ("[1]", "c.yaml:1:1", "a group of keys"),
+        ("", "c.yaml:1:1", "a group of keys"),
+        ("scenario: walk\nseeds: 2000\ngrid: {gait.turn: [0, 0.1], gait.steps: [3, 4]}", "", ""),
+    ],
+)  # fmt: skip
+def test_faults_have_their_places(refused, campaign, text, place, what):
+    if not place:  # a sound one, as a control
+        assert campaign(text).cells == 8000
+        return
+    (problem,) = refused(text)
+    assert problem.startswith(f"{place}: ")
+    assert what in problem
+
+
+def test_a_scenario_that_is_not_there_and_too_many_runs(refused, campaign):
+    assert "did you mean 'walk'?" in refused("scenario: walkk")[0]
+    assert "at most 1000000 runs" in refused("scenario: walk\nseeds: 1000000\ngrid: {gait.steps: [3, 4]}")[0]
+
+
+def test_a_range_of_its_own(campaign, refused):
+    search = "bisect: {{key: gait.turn, low: 0.1, high: 1, ratio: 2}}"
+    text = f"scenario: walk\n{search}\ngrid: {{{{a: {{{{b: {{{{bisect.low: {{}}}}}}}}}}}}}}"
+    made = campaign(text.format(0.2))
+    ((_, keys),) = made.combinations()
+    assert made.bisect(keys).low == 0.2
+    assert "from 5 to 1 is empty" in refused(text.format(5))[0]
+
+
+def test_what_is_set_from_outside_takes_the_place_of_what_varies(campaign, refused):
+    text = """
+scenario: walk
+set: {gait.steps: 3}
+grid: {gait.turn: [0, 0.1], pace: {slow: {gait.single_support: 1.0}, 2: {gait.single_support: 0.5}}}
+sample: {terrain.friction: {uniform: [0.5, 1]}}
+"""
+    made = campaign(text, "gait.turn=0.2", "pace=2", "terrain.friction=0.7", seeds=4)
+    assert list(made.combinations()) == [
+        (
+            {"gait.turn": 0.2, "pace": 2},
+            {"gait.steps": 3, "terrain.friction": 0.7, "gait.turn": 0.2, "gait.single_support": 0.5},
+        )
+    ]
+    assert made.spec.sample == {}
+    assert made.cells == 4
+    assert campaign(text).cells == 4
+    assert "did you mean 'slow'?" in refused(text, "pace=slo")[0]
+    assert "write --set key=value" in refused(text, "pace")[0]
+    assert "unknown key 'x'" in refused(text, "gait.x=1")[0]
+
+
+def test_a_scenario_beside_the_specification(tmp_path, campaign):
+    (tmp_path / "mine.yaml").write_text("gait: {steps: 2}")
+    made = campaign("scenario: mine.yaml")
+    assert made.bases["mine.yaml"].text == "gait: {steps: 2}"
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_campaigns_that_come_along_can_be_run(name):
+    campaign = read_campaign(name)
+    assert campaign.spec.about
+    assert campaign.spec.name == name
+    assert campaign.cells > 1

@@ -307,7 +307,7 @@ def paper(
     Begun again, it goes on where it stopped.
     """
     from surefoot.scenarios.paper.page import paper as run_paper
-    from surefoot.scenarios.paper.runner import InterruptedRunsError
+    from surefoot.scenarios.sweep.engine import InterruptedRunsError
     from surefoot.scenarios.sweep.sweep import cores
 
     try:

@@ -220,13 +220,23 @@ def apply_overrides(source: Source, overrides: Overrides) -> None:
             _set(source, str(name), _plain(value, f"--set {name}"))
         return
     for override in overrides:
-        name, equals, text = override.partition("=")
-        if not equals or not name.strip():
-            raise ScenarioError([f"--set {override}: not a setting; write --set key=value"])
-        parsed = parse(text, f"--set {name.strip()}")
-        if parsed.problems:
-            raise ScenarioError([parsed.describe(problem) for problem in parsed.problems])
-        _set(source, name.strip(), parsed.value)
+        _set(source, *setting(override))
+
+
+def setting(override: str) -> tuple[str, Any]:
+    """Dotted key and value of ``key=value``.
+
+    Raises:
+        ScenarioError: it is none.
+    """
+    name, equals, text = override.partition("=")
+    name = name.strip()
+    if not equals or not name:
+        raise ScenarioError([f"--set {override}: not a setting; write --set key=value"])
+    parsed = parse(text, f"--set {name}")
+    if parsed.problems:
+        raise ScenarioError([parsed.describe(problem) for problem in parsed.problems])
+    return name, parsed.value
 
 
 def _set(source: Source, name: str, value: Any) -> None:

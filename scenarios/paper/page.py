@@ -17,8 +17,8 @@ from surefoot.scenarios.paper.claims import CLAIMS
 from surefoot.scenarios.paper.energy import ENERGY_CLAIMS
 from surefoot.scenarios.paper.figures import PLATES, Plate
 from surefoot.scenarios.paper.grid import svg
-from surefoot.scenarios.paper.results import Results
-from surefoot.scenarios.paper.runner import ExperimentBar, provenance, run_all, runs_table
+from surefoot.scenarios.paper.results import Results, run_experiments
+from surefoot.scenarios.paper.runs import provenance, runs_table
 from surefoot.scenarios.paper.studies import Study, experiments
 from surefoot.scenarios.paper.tables import (
     Table,
@@ -31,6 +31,8 @@ from surefoot.scenarios.paper.tables import (
     table_html,
     tag,
 )
+from surefoot.scenarios.sweep.engine import local_workers
+from surefoot.scenarios.sweep.sweep import CampaignBar
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,12 +220,12 @@ def paper(out: Path, jobs: int, replace: bool = False) -> Written:
         LogError: the directory or the page cannot be written, or the page exists.
         InterruptedRunsError: the user stopped it; what was run is kept.
     """
-    runs = made_folder(out / RUNS_NAME)
+    runs = made_folder(out) / RUNS_NAME
     for name in (PAGE_NAME, NUMBERS_NAME):
         refuse_existing(out / name, replace)
     every = experiments()
-    with ExperimentBar(len(every)) as bar:
-        results = Results(run_all(every, runs, jobs, bar))
+    with CampaignBar(len(every), "experiments") as bar:
+        results = Results(run_experiments(every, runs, local_workers(runs, jobs, keep_all=True), bar))
     return write(results, out, replace)
 
 

@@ -1,20 +1,22 @@
 """What the logs of the experiments say, run by run and over seeds."""
 
 import statistics
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
-from surefoot.scenarios.judge.verdict import judge
-from surefoot.scenarios.log import Log, read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.file.source import setting
+from surefoot.scenarios.log import read
 from surefoot.scenarios.paper.studies import PROFILES, WORLD_SETTINGS, Experiment, Study, World
-from surefoot.scenarios.record.provenance import END_RECORD, LOG_NAME, SCENARIO_FILE, taken_folders, versions
-from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.setup.walk import scenario_yaml
+from surefoot.scenarios.record.provenance import END_RECORD
+from surefoot.scenarios.setup.load import written
+from surefoot.scenarios.sweep.engine import Single, Worker, run_cells
+from surefoot.scenarios.sweep.journal import Journal
+from surefoot.scenarios.sweep.points import Point, Record
+from surefoot.scenarios.sweep.sweep import CampaignBar
 
 ENDED = ("completed", "fall")
 """How a run ends that is a result; a fall is one."""
@@ -41,58 +43,58 @@ class Outcome:
     written: str = ""
 
 
-def execute(experiment: Experiment, folder: Path) -> Outcome:
-    """Run an experiment, unless its log is there already, and read off its log what became of it.
+def run_experiments(
+    experiments: Sequence[Experiment], folder: Path, workers: Sequence[Worker], bar: CampaignBar | None = None
+) -> tuple[Outcome, ...]:
+    """Run what has not been run; one that fails does not stop the others.
 
     Args:
-        experiment: to run.
+        experiments: to run.
         folder: of all runs.
-    """
-    try:
-        scenario = load_scenario(experiment.base, experiment.overrides)
-        logs = (own / LOG_NAME for own in taken_folders(folder, scenario.name, scenario.seed))
-        done = next((log for log in logs if is_done(log, scenario_yaml(scenario))), None)
-        return outcome_of(experiment, done or run_scenario(scenario, folder).log)
-    except (ScenarioError, SetupError, LogError) as refusal:
-        return Outcome(experiment, failure=" ".join(str(refusal).split()))
-    except Exception as error:
-        return Outcome(experiment, failure=f"internal error, {type(error).__name__}: {error}")
+        workers: that make the runs.
+        bar: is told each.
 
-
-def is_done(path: Path, scenario: str) -> bool:
-    """Whether a log is whole, and of this scenario, this code and these versions."""
-    try:
-        log = read(path)
-        same_scenario = log.attachments.get(SCENARIO_FILE) == scenario.encode()
-    except LogError:
-        return False
-    ended = log.metadata.get(END_RECORD, {}).get("kind") in ENDED
-    return ended and not log.truncated and same_scenario and not log.losses() and _made_by(log) == _relevant(versions())
-
-
-def outcome_of(experiment: Experiment, path: Path) -> Outcome:
-    """Read off a log what became of an experiment.
+    Returns:
+        an outcome for each experiment, in their order.
 
     Raises:
-        LogError: the log cannot be read.
+        LogError: the folder cannot be written.
+        InterruptedRunsError: Ctrl-C; what was run is kept.
     """
-    log = read(path)
-    end = log.metadata.get(END_RECORD, {})
-    written = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
-    made = dict(log.metadata.get("versions", {}))
+    points = {experiment: point_of(experiment) for experiment in experiments}
+    told = (bar.run, bar.cell) if bar is not None else ()
+    with Journal(folder, keep_all=True) as journal:
+        run_cells(map(Single, points.values()), journal, workers, *told)
+        records = {experiment: journal.said(point.id) for experiment, point in points.items()}
+    return tuple(outcome_of(one, record, folder) for one, record in records.items() if record is not None)
+
+
+def point_of(experiment: Experiment) -> Point:
+    """The run of an experiment."""
+    return Point(written(experiment.base), dict(map(setting, experiment.overrides)), {}, experiment.folder)
+
+
+def outcome_of(experiment: Experiment, record: Record, folder: Path) -> Outcome:
+    """What became of an experiment, by the result of its run.
+
+    Args:
+        experiment: that was run.
+        record: of its run.
+        folder: of all runs.
+    """
+    if not record.log:
+        return Outcome(experiment, failure="; ".join(record.reasons))
+    path = folder / record.log
+    try:
+        log = read(path)
+    except LogError as error:
+        return Outcome(experiment, failure=" ".join(str(error).split()))
+    end, made = log.metadata.get(END_RECORD, {}), dict(log.metadata.get("versions", {}))
+    at = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
     if end.get("kind") not in ENDED:
         failure = f"the run ended at {end.get('time', '?')} s: {end.get('reason') or 'its log was cut off'}"
-        return Outcome(experiment, path, {}, failure, made, written)
-    return Outcome(experiment, path, judge(log).metrics, "", made, written)
-
-
-def _made_by(log: Log) -> dict[str, str]:
-    return _relevant(log.metadata.get("versions", {}))
-
-
-def _relevant(made: Mapping[str, str]) -> dict[str, str]:
-    """Versions that a run depends on: not the revision, whose digest says more and does not change with a text."""
-    return {name: version for name, version in made.items() if name != "git_revision"}
+        return Outcome(experiment, path, {}, failure, made, at)
+    return Outcome(experiment, path, record.metrics, "", made, at)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from surefoot.scenarios.errors import Key, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.group import WHOLE, Finite, Group
-from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar
+from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar, setting
 from surefoot.scenarios.file.translate import problems_of
 from surefoot.scenarios.setup.load import Written, key_problems, written
 
@@ -222,11 +222,8 @@ def _overridden(spec: Spec, overrides: Sequence[str]) -> Spec:
     """The specification with keys fixed from outside, wherever it has them."""
     fixed, grid = dict(spec.set), dict(spec.grid)
     for override in overrides:
-        name, equals, text = override.partition("=")
-        name = name.strip()
-        if not equals or not name:
-            raise ScenarioError([f"--set {override}: not a setting; write --set key=value"])
-        value, axis = parse(text, f"--set {name}").value, grid.get(name)
+        name, value = setting(override)
+        text, axis = override.partition("=")[2], grid.get(name)
         if isinstance(axis, dict):
             if text not in axis:
                 raise ScenarioError([f"--set {name}={text}: the grid has no such setting; {nearest(text, axis)}"])
@@ -280,19 +277,16 @@ def _twice(campaign: Campaign) -> Iterator[Problem]:
 
 def _faults(campaign: Campaign) -> Iterator[Problem]:
     """List what is wrong with keys or values alone; what several together cannot be is told by the run itself."""
-    labels_and_keys = list(itertools.islice(campaign.combinations(), MOST_RUNS))
-    if not labels_and_keys:
-        return
-    base = labels_and_keys[0][1]
+    base = next(campaign.combinations())[1]
     plain = base | _ends(campaign.spec, 0)
     yield from _of_point(campaign, plain, {key: ("set", key) for key in campaign.spec.set} | _searched(campaign.spec))
     for name, axis in campaign.axes.items():
         named = isinstance(campaign.spec.grid[name], dict)
-        for index, setting in enumerate(axis):
-            others = [one for _, one in labels_and_keys if setting.keys.items() <= one.items()][:1]
-            at: Key = ("grid", name, str(setting.label)) if named else ("grid", name, index)
-            places = {key: (*at, key) if named else at for key in setting.keys}
-            yield from _of_point(campaign, (others[0] if others else plain) | _ends(campaign.spec, 0), places)
+        for index, one in enumerate(axis):
+            at: Key = ("grid", name, str(one.label)) if named else ("grid", name, index)
+            places = {key: (*at, key) if named else at for key in one.keys}
+            alone = replace(campaign, axes={**campaign.axes, name: (one,)})
+            yield from _of_point(campaign, next(alone.combinations())[1] | _ends(campaign.spec, 0), places)
     yield from _of_point(campaign, base | _ends(campaign.spec, -1), _searched(campaign.spec))
     for key, values in campaign.spec.first.items():
         for index, value in enumerate(values[1:], start=1):

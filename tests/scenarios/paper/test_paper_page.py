@@ -2,8 +2,6 @@
 
 import json
 import re
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from html.parser import HTMLParser
 
 import pytest
@@ -12,10 +10,10 @@ from paper_samples import FALL, outcome, results
 from surefoot.scenarios import cli
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import read
-from surefoot.scenarios.paper import page, runner
+from surefoot.scenarios.paper import page
 from surefoot.scenarios.paper.figures import JERKS, POSITIONS, grid
 from surefoot.scenarios.paper.grid import Column, svg
-from surefoot.scenarios.paper.results import Spread, execute
+from surefoot.scenarios.paper.results import Spread, run_experiments
 from surefoot.scenarios.paper.studies import SHOVES, WALK, Experiment, Study
 from surefoot.scenarios.paper.tables import (
     balance_table,
@@ -26,6 +24,7 @@ from surefoot.scenarios.paper.tables import (
     spread_text,
     table_html,
 )
+from surefoot.scenarios.sweep.engine import InterruptedRunsError
 
 SHORT = ("gait.steps=1", "gait.single_support=0.6", "gait.initial_stand=0.2", "rates.control=100")
 SHORT_WALK = Study("short", "Short walk", "paper-walk", SHORT, "")
@@ -50,8 +49,9 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def walk(tmp_path_factory):
-    return execute(Experiment(SHORT_WALK, "default", "pendulum"), tmp_path_factory.mktemp("runs"))
+def walk(tmp_path_factory, worker):
+    folder = tmp_path_factory.mktemp("runs")
+    return run_experiments((Experiment(SHORT_WALK, "default", "pendulum"),), folder, [worker(folder)])[0]
 
 
 def values(html):
@@ -122,13 +122,13 @@ def test_the_page_asks_for_nothing_and_its_links_lead_somewhere(walk, monkeypatc
 
 
 @pytest.fixture
-def surefoot(monkeypatch, capsys, tmp_path):
-    """Run the command with a few experiments, in threads and without figures."""
+def surefoot(monkeypatch, capsys, tmp_path, worker):
+    """Run the command with a few experiments, in this process and without figures."""
 
     def run(*arguments, studies=(SHORT_WALK,)):
         every = tuple(Experiment(study, "default", "pendulum") for study in studies)
         monkeypatch.setattr(page, "experiments", lambda: every)
-        monkeypatch.setattr(page, "run_all", partial(runner.run_all, worker=lambda: ThreadPoolExecutor(1)))
+        monkeypatch.setattr(page, "local_workers", lambda folder, jobs, keep_all: [worker(folder)])
         monkeypatch.setattr(page, "PLATES", {})
         monkeypatch.setattr("sys.argv", ["surefoot", "paper", *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
@@ -145,7 +145,7 @@ def test_command_writes_page_and_numbers(surefoot, tmp_path):
     assert (code, err) == (0, "")
     assert out.splitlines()[-1] == str(tmp_path / "out" / "paper.html")
     (run,) = json.loads((tmp_path / "out" / "paper.json").read_text())["runs"]
-    log = read(tmp_path / "out" / "runs" / run["run"] / "log.mcap")
+    log = read(tmp_path / "out" / "runs" / "logs" / run["run"] / "log.mcap")
     assert run["metrics"] == judge(log).metrics
 
 
@@ -170,7 +170,7 @@ def test_bad_input_ends_with_2(surefoot, tmp_path):
 @pytest.mark.unit
 def test_an_interruption_ends_with_130_and_says_how_to_go_on(surefoot, tmp_path, monkeypatch):
     def interrupted(*arguments, **named):
-        raise runner.InterruptedRunsError
+        raise InterruptedRunsError
 
     monkeypatch.setattr(page, "paper", interrupted)
     code, _, err = surefoot("--out", tmp_path)

@@ -103,7 +103,10 @@ def _beliefs(draft: Draft) -> Iterator[Problem]:
 
 
 def _controller(draft: Draft) -> Iterator[Problem]:
-    for fault in controller_faults(draft.keys.wbc):
+    wbc = draft.keys.wbc
+    if wbc is not None and wbc.friction is not None and draft.keys.errors.friction != 0.0:
+        yield Problem(("wbc", "friction"), "a believed friction beside errors.friction", "give one of them")
+    for fault in controller_faults(wbc):
         yield Problem(fault.key, fault.what, fault.right)
 
 
@@ -120,7 +123,9 @@ def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
     except PluginError as error:
         yield Problem(("robot",), error.what, error.right)
         return
-    bodies = [(("pushes", i, "body"), push.body) for i, push in enumerate(draft.keys.pushes)]
+    bodies: list[tuple[Key, str | None]] = [(("pushes", i, "body"), p.body) for i, p in enumerate(draft.keys.pushes)]
+    load = draft.keys.errors.payload
+    bodies += [(("errors", "payload", "body"), load.body)] if load is not None else []
     for key, body in (*bodies, (("robot_options", "payload_body"), draft.keys.robot_options.payload_body)):
         if body is not None and body not in facts.bodies:
             yield Problem(key, f"unknown body '{body}' of {draft.keys.robot}", nearest(body, facts.bodies))
@@ -179,6 +184,7 @@ _NO_CONTACT = (
     ("terrain", "height_noise"),
     ("start", "angle_noise"),
     ("errors", "friction"),
+    ("errors", "torso_com"),
     ("errors", "ground"),
 )
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""

@@ -18,8 +18,8 @@ DESCRIPTION = (
     "cannot tell: a number with a unit that is out of the range of its key; numbers under wbc that the "
     "controller refuses; rates that do not divide; pushes without a begin or with two, both by force and by "
     "impulse, in a step that is not walked, or on a body that the robot has not got; gaits and grounds that the "
-    "legs cannot reach or stand on; criteria with min above max, that any run meets, or that the fidelity cannot measure; keys given "
-    "twice; more than 20 levels or half a megabyte."
+    "legs cannot reach or stand on; criteria with min above max, that any run meets, or that the "
+    "fidelity cannot measure; keys given twice; more than 20 levels or half a megabyte."
 )
 
 

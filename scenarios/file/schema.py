@@ -260,6 +260,10 @@ class BeliefErrors(Group):
     ground: Annotated[tuple[GroundError, ...], BeforeValidator(as_tuple)] | None = Field(
         default=None, description="boxes on the ground that are not believed in, null: none"
     )
+    ground_noise: Annotated[float, Field(ge=0, le=0.05, allow_inf_nan=False), METRE] | None = Field(
+        default=None,
+        description="half range by which level ground is truly higher or lower, tile by tile from the seed, null: 0",
+    )
 
 
 class PushSettings(Group):

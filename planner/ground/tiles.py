@@ -11,8 +11,8 @@ from surefoot.planner.geometry import sole_rotation
 from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
 from surefoot.planner.types import Array
 
-TILE = 0.4
-"""Side of a tile [m]."""
+TILE = 0.5
+"""Side of a tile, as of a paving slab [m]."""
 
 AROUND = 2
 """How many tiles are laid around the one that a footstep is on, to each side [-]."""
@@ -51,7 +51,7 @@ class Tiles:
             centre = origin + rotation[:2, :2] @ (TILE * (cell + 0.5))
             height = self.noise * (2.0 * float(self._random(*(cell + _MIDDLE))[0]) - 1.0)
             if start.top(centre[None])[1][0] > -math.sqrt(0.5) * TILE:
-                height = min(height, 0.0)
+                height = -abs(height)
             boxes.append(self._box(centre, np.full(2, 0.5 * TILE), height, rotation))
         return Terrain(tuple(boxes), site.friction, plane=-self.noise)
 

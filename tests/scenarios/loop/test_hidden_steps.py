@@ -36,10 +36,9 @@ def test_a_hidden_step_is_felt_and_walked_over(scenario, overrides, step, tmp_pa
     assert metrics["footstep_error_max"] >= 0.95 * step[0]
 
 
-@pytest.mark.parametrize("seed", [0, 3])
-def test_ground_a_centimetre_off_is_felt_and_walked_over(seed, tmp_path):
+def test_ground_a_centimetre_off_is_felt_and_walked_over(tmp_path):
     """It is felt: the same walk on tiles that are all as high as believed has none of it."""
-    settings = ["gait.steps=4", f"seed={seed}", "duration=5"]
+    settings = ["gait.steps=3", "seed=3", "duration=4.5"]
     rough, flush = (
         run_scenario(load_scenario("walk", [*settings, f"errors.ground_noise={noise}"]), tmp_path)
         for noise in (0.01, 1e-7)

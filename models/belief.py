@@ -5,8 +5,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from xml.etree import ElementTree
 
+import numpy as np
+
 from surefoot.models.mjcf import numbers
-from surefoot.models.types import RobotDescription, RobotError
+from surefoot.models.types import Array, RobotDescription, RobotError, nearest
 
 
 def with_com_raised(description: RobotDescription, height: float) -> RobotDescription:
@@ -45,20 +47,89 @@ def with_mass_scaled(description: RobotDescription, factor: float) -> RobotDescr
         raise RobotError(("factor",), what, "it must be a positive number")
     root = ElementTree.fromstring(description.mjcf)
     for inertial in root.iter("inertial"):
-        inertial.set("mass", repr(factor * float(inertial.attrib["mass"])))
-        inertial.set("diaginertia", numbers(factor * float(value) for value in inertial.attrib["diaginertia"].split()))
+        _scale(inertial, factor)
     return replace(description, mjcf=_text(root), mass=factor * description.mass)
+
+
+def with_masses_scattered(
+    description: RobotDescription, half_range: float, rng: np.random.Generator
+) -> RobotDescription:
+    """The robot with the mass of every body, and its moments of inertia, multiplied by 1 + u.
+
+    Args:
+        description: the robot.
+        half_range: each u is drawn from within it, by itself, in the order of the bodies [-].
+        rng: draws them.
+
+    Raises:
+        RobotError: the half range would let a mass vanish.
+    """
+    if not 0.0 <= half_range < 1.0:
+        what = f"the masses of {description.name} shall be scattered by {half_range}"
+        raise RobotError(("half_range",), what, "it must be at least 0 and less than 1")
+    root = ElementTree.fromstring(description.mjcf)
+    inertials = list(root.iter("inertial"))
+    for inertial, error in zip(inertials, rng.uniform(-half_range, half_range, len(inertials)), strict=True):
+        _scale(inertial, 1.0 + float(error))
+    return replace(description, mjcf=_text(root), mass=sum(float(inertial.attrib["mass"]) for inertial in inertials))
+
+
+def with_torso_com_moved(description: RobotDescription, offset: Array) -> RobotDescription:
+    """The robot with the CoM of its torso moved by an offset in the torso's frame, shape (3,) [m]; moments stay.
+
+    Raises:
+        RobotError: the torso has no inertial, or the offset is not finite.
+    """
+    if not np.isfinite(offset).all():
+        what = f"the CoM of the torso of {description.name} shall move by {offset} m"
+        raise RobotError(("offset",), what, "it must be three finite numbers")
+    root = ElementTree.fromstring(description.mjcf)
+    inertial = _inertial(root, description, description.torso_body)
+    inertial.set("pos", numbers(np.array([float(value) for value in inertial.attrib["pos"].split()]) + offset))
+    return replace(description, mjcf=_text(root))
+
+
+def with_load(description: RobotDescription, mass: float, body: str | None = None) -> RobotDescription:
+    """The robot with a point mass [kg] at the CoM of a body, the torso if None; the payload option of a finished text.
+
+    Raises:
+        RobotError: the mass is negative or not finite, or the body is unknown or has no inertial.
+    """
+    if not 0.0 <= mass < math.inf:
+        what = f"{description.name} shall carry {mass} kg"
+        raise RobotError(("mass",), what, "it must be a finite mass of at least 0 kg")
+    root = ElementTree.fromstring(description.mjcf)
+    inertial = _inertial(root, description, body or description.torso_body)
+    inertial.set("mass", repr(float(inertial.attrib["mass"]) + mass))
+    return replace(description, mjcf=_text(root), mass=description.mass + mass)
+
+
+def _scale(inertial: ElementTree.Element, factor: float) -> None:
+    inertial.set("mass", repr(factor * float(inertial.attrib["mass"])))
+    inertial.set("diaginertia", numbers(factor * float(value) for value in inertial.attrib["diaginertia"].split()))
+
+
+def _inertial(root: ElementTree.Element, description: RobotDescription, name: str) -> ElementTree.Element:
+    """Inertial of the body of that name."""
+    if name not in description.bodies:
+        what = f"'{name}' is no body of {description.name}"
+        raise RobotError(("body",), what, nearest(name, description.bodies))
+    return _own(next(body for body in root.iter("body") if body.get("name") == name), description)
+
+
+def _own(body: ElementTree.Element, description: RobotDescription) -> ElementTree.Element:
+    inertial = body.find("inertial")
+    if inertial is None:
+        what = f"body {body.get('name')} of {description.name} has no inertial"
+        raise RobotError(("mjcf",), what, "it must have one")
+    return inertial
 
 
 def _trunk(root: ElementTree.Element, description: RobotDescription) -> Iterator[ElementTree.Element]:
     """Inertials of the bodies that contain the torso: the way from the pelvis to it."""
     for body in root.iter("body"):
         if any(inner.get("name") == description.torso_body for inner in body.iter("body")):
-            inertial = body.find("inertial")
-            if inertial is None:
-                what = f"body {body.get('name')} of {description.name} has no inertial"
-                raise RobotError(("mjcf",), what, "it must have one")
-            yield inertial
+            yield _own(body, description)
 
 
 def _text(root: ElementTree.Element) -> str:

@@ -27,7 +27,8 @@ def add_terrain(worldbody: ElementTree.Element, terrain: Terrain) -> None:
         "solimp": "0.95 0.99 0.0001",
     }
     plane = {"name": GROUND, "type": "plane", "size": "0 0 1", "material": "floor"}
-    ElementTree.SubElement(worldbody, "geom", {**plane, **surface})
+    place = {"pos": numbers((0.0, 0.0, terrain.plane))} if terrain.plane != 0.0 else {}
+    ElementTree.SubElement(worldbody, "geom", {**plane, **place, **surface})
     for index, box in enumerate(terrain.boxes):
         shape = {
             "name": f"terrain_{index}",

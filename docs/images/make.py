@@ -81,10 +81,15 @@ def figures(log: Path) -> None:
 
 
 def gait_map(_: Path) -> None:
-    """Where the robot walks."""
+    """Where the robot walks, by a campaign of some minutes."""
     from gait_map import main as draw_map
 
-    draw_map([])
+    from surefoot.scenarios.sweep.spec import read_campaign
+    from surefoot.scenarios.sweep.sweep import cores, sweep
+
+    with tempfile.TemporaryDirectory() as folder:
+        swept = sweep(read_campaign("gait-map"), Path(folder) / "gait-map", cores())
+        draw_map([str(swept.folder / "table.csv")])
 
 
 PICTURES: dict[str, tuple[str, Callable[[Path], None]]] = {

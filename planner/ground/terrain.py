@@ -52,7 +52,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True)
 class Terrain:
-    """Ground plane at z = 0 with boxes on it.
+    """A level ground plane with boxes on it.
 
     Attributes:
         boxes: solids on the plane; the highest top face under a point carries it.
@@ -60,12 +60,14 @@ class Terrain:
         path_start: x, y [m] and heading [rad] from which footsteps are laid, wherever exactly the feet stand; None
             where any other place is as good.
         wide: whether its faces are so wide that a footstep may be moved anywhere in reach, and its successors with it.
+        plane: height of the ground plane [m].
     """
 
     boxes: tuple[Box, ...] = ()
     friction: float = 0.8
     path_start: tuple[float, float, float] | None = None
     wide: bool = False
+    plane: float = 0.0
 
     @property
     def has_edges(self) -> bool:
@@ -83,7 +85,7 @@ class Terrain:
 
     def heights(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Ground heights at world points x, y, shape (k, 2) [m]; shape (k,) [m]."""
-        highest = np.zeros(len(points))
+        highest = np.full(len(points), self.plane)
         for box in self.boxes:
             top, inside = box.top(points)
             highest = np.where(inside >= 0.0, np.maximum(highest, top), highest)
@@ -95,7 +97,7 @@ class Terrain:
 
     def normals(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Unit normals of the faces that carry world points x, y, shape (k, 2) [m]; shape (k, 3) [-]."""
-        highest, normals = np.zeros(len(points)), np.tile([0.0, 0.0, 1.0], (len(points), 1))
+        highest, normals = np.full(len(points), self.plane), np.tile([0.0, 0.0, 1.0], (len(points), 1))
         for box in self.boxes:
             top, inside = box.top(points)
             carrying = (inside >= 0.0) & (top > highest)
@@ -117,11 +119,11 @@ class Terrain:
             Shape (n,) [m].
         """
         points, shape = corners.reshape(-1, 2), corners.shape[:2]
-        highest, margins = np.zeros(len(centers)), np.full(len(centers), np.inf)
+        highest, margins = np.full(len(centers), self.plane), np.full(len(centers), np.inf)
         for box in self.boxes:
             height, inside = box.top(centers)
             corner_inside = box.top(points)[1].reshape(shape)
-            on_plane = (highest == 0.0) & (inside < 0.0)
+            on_plane = (highest == self.plane) & (inside < 0.0)
             margins[on_plane] = np.minimum(margins, -corner_inside.max(axis=1))[on_plane]
             carrying = (inside >= 0.0) & (height > highest)
             highest[carrying] = height[carrying]

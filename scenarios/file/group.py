@@ -212,6 +212,7 @@ if TYPE_CHECKING:
     class ControllerSettings(Group):
         """The whole-body controller."""
 
+        friction: float | None
         tasks: tuple[str, ...]
 
 else:
@@ -219,7 +220,17 @@ else:
         "ControllerSettings",
         WbcParameters(),
         "The whole-body controller.",
-        {"tasks": (_TASKS, Field(default=(), description="tasks of other packages in its QP, by name"))},
+        {
+            "friction": (
+                Annotated[float, Field(ge=0.05, le=10, allow_inf_nan=False)] | None,
+                Field(
+                    default=None,
+                    description="friction coefficient that it counts on, whatever the ground has, null: "
+                    "terrain.friction + errors.friction [-]",
+                ),
+            ),
+            "tasks": (_TASKS, Field(default=(), description="tasks of other packages in its QP, by name")),
+        },
     )
 
 

@@ -52,6 +52,7 @@ NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Rate = Annotated[int, Field(ge=1, le=100_000), WHOLE, HERTZ]
 Newtons = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False), NEWTON]
 Force = Annotated[tuple[Newtons, Newtons, Newtons], BeforeValidator(as_tuple)]
+Offset = Annotated[float, Field(ge=-0.5, le=0.5, allow_inf_nan=False), METRE]
 Impulse = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False), Unit("N·s/kg")]
 
 
@@ -227,6 +228,15 @@ class GroundError(Group):
     )
 
 
+class PayloadError(Group):
+    """A mass that the robot carries and that neither planner nor controller knows of."""
+
+    mass: Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False), KILOGRAM] = Field(
+        default=0.0, description="carried, at the centre of mass of its body"
+    )
+    body: str | None = Field(default=None, description="body that carries it, null: the torso")
+
+
 class BeliefErrors(Group):
     """The planner's belief minus the truth."""
 
@@ -236,11 +246,23 @@ class BeliefErrors(Group):
     mass_scale: Annotated[float, Field(ge=0.5, le=2.0, allow_inf_nan=False)] = Field(
         default=1.0, description="believed over true mass [-]"
     )
+    link_mass_noise: Annotated[float, Field(ge=0, le=0.5, allow_inf_nan=False)] | None = Field(
+        default=None,
+        description="half range of the relative error of the mass of every body, each drawn from the seed, null: 0 [-]",
+    )
+    torso_com: Annotated[tuple[Offset, Offset, Offset], BeforeValidator(as_tuple)] | None = Field(
+        default=None, description="error of the centre of mass of the torso's own body, in its frame, null: none"
+    )
+    payload: PayloadError | None = Field(default=None, description="a mass carried that is not believed in, null: none")
     friction: Annotated[float, Field(ge=-10, le=10, allow_inf_nan=False)] = Field(
         default=0.0, description="error of the friction coefficient [-]"
     )
     ground: Annotated[tuple[GroundError, ...], BeforeValidator(as_tuple)] | None = Field(
         default=None, description="boxes on the ground that are not believed in, null: none"
+    )
+    ground_noise: Annotated[float, Field(ge=0, le=0.05, allow_inf_nan=False), METRE] | None = Field(
+        default=None,
+        description="half range by which level ground is truly higher or lower, tile by tile from the seed, null: 0",
     )
 
 

@@ -75,7 +75,7 @@ def _clearance(run: RunView, poses: Array) -> float:
 def _terrain(run: RunView) -> Terrain:
     """The true ground."""
     boxes = [np.array(numbers) for numbers in run.constants.boxes]
-    return Terrain(tuple(Box(n[:3], n[3:6], n[6:].reshape(3, 3)) for n in boxes))
+    return Terrain(tuple(Box(n[:3], n[3:6], n[6:].reshape(3, 3)) for n in boxes), plane=run.constants.plane)
 
 
 LOADED = 0.02

@@ -236,6 +236,7 @@ def run_constants(walk: Walk) -> RunConstants:
             (*box.center.tolist(), *box.half_size.tolist(), *box.rotation.ravel().tolist())
             for box in walk.true_terrain.boxes
         ),
+        plane=walk.true_terrain.plane,
     )
 
 

@@ -78,6 +78,7 @@ class RunConstants:
         boxes: the solids on the ground plane, each as centre, half sizes [m] and rotation to the world, row by row.
         roles: names of joints and bodies by role (knees, left_leg, right_leg, torso); a log may lack them.
         velocity_limit: no-load speed by joint; empty in a log that lacks them [rad/s].
+        plane: height of the ground plane; a log has it where it is not 0 [m].
     """
 
     scenario: str
@@ -99,10 +100,14 @@ class RunConstants:
     boxes: tuple[tuple[float, ...], ...] = ()
     roles: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     velocity_limit: tuple[float, ...] = ()
+    plane: float = 0.0
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""
-        return {name: json.dumps(value) for name, value in asdict(self).items()}
+        written = asdict(self)
+        if self.plane == 0.0:
+            del written["plane"]
+        return {name: json.dumps(value) for name, value in written.items()}
 
     @classmethod
     def from_metadata(cls, records: Mapping[str, Mapping[str, str]], log_name: str) -> "RunConstants":
@@ -136,7 +141,8 @@ class RunConstants:
             values = getattr(self, name)
             if len(values) != len(self.joint_names) or any(math.isnan(value) for value in values):
                 return f"{name}, of {len(values)} numbers for {len(self.joint_names)} joints"
-        if any(len(box) != 15 or not all(map(math.isfinite, box)) for box in self.boxes):
+        boxes_fit = all(len(box) == 15 and all(map(math.isfinite, box)) for box in self.boxes)
+        if not (boxes_fit and math.isfinite(self.plane)):
             return "ground"
         return ""
 

@@ -103,7 +103,10 @@ def _beliefs(draft: Draft) -> Iterator[Problem]:
 
 
 def _controller(draft: Draft) -> Iterator[Problem]:
-    for fault in controller_faults(draft.keys.wbc):
+    wbc = draft.keys.wbc
+    if wbc is not None and wbc.friction is not None and draft.keys.errors.friction != 0.0:
+        yield Problem(("wbc", "friction"), "a believed friction beside errors.friction", "give one of them")
+    for fault in controller_faults(wbc):
         yield Problem(fault.key, fault.what, fault.right)
 
 
@@ -120,12 +123,31 @@ def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
     except PluginError as error:
         yield Problem(("robot",), error.what, error.right)
         return
-    bodies = [(("pushes", i, "body"), push.body) for i, push in enumerate(draft.keys.pushes)]
+    bodies: list[tuple[Key, str | None]] = [(("pushes", i, "body"), p.body) for i, p in enumerate(draft.keys.pushes)]
+    load = draft.keys.errors.payload
+    bodies += [(("errors", "payload", "body"), load.body)] if load is not None else []
     for key, body in (*bodies, (("robot_options", "payload_body"), draft.keys.robot_options.payload_body)):
         if body is not None and body not in facts.bodies:
             yield Problem(key, f"unknown body '{body}' of {draft.keys.robot}", nearest(body, facts.bodies))
     steps = commanded_step_problems if draft.commanded else footstep_problems
-    yield from list(_reach(draft, facts)) or list(steps(draft, facts)) or draft.kind.problems(draft, facts)
+    feet = list(_reach(draft, facts)) or list(steps(draft, facts))
+    yield from feet or [*draft.kind.problems(draft, facts), *_unevenness(draft)]
+
+
+MOST_TILES = 1000
+"""Tiles of uneven ground, since every look at it goes through all of them [-]."""
+
+
+def _unevenness(draft: Draft) -> Iterator[Problem]:
+    key, kind = ("errors", "ground_noise"), draft.keys.terrain.kind
+    if draft.tiles is None:
+        return
+    if kind != "flat":
+        right = "use terrain.height_noise" if "height_noise" in draft.kind.keys and kind != "slope" else "use kind flat"
+        yield Problem(key, f"errors.ground_noise on terrain.kind {kind}", right)
+    elif draft.gait.steps > MOST_TILES or len(draft.tiles.cells(draft.site)) > MOST_TILES:
+        what = f"errors.ground_noise under {draft.gait.steps} steps needs more than {MOST_TILES} tiles"
+        yield Problem(key, what, "take fewer steps, or leave it out")
 
 
 def _reach(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
@@ -179,7 +201,9 @@ _NO_CONTACT = (
     ("terrain", "height_noise"),
     ("start", "angle_noise"),
     ("errors", "friction"),
+    ("errors", "torso_com"),
     ("errors", "ground"),
+    ("errors", "ground_noise"),
 )
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
+from surefoot.planner.ground.tiles import Tiles
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.parameters import GroundSearch, PlannerParameters, StepAdaptation
 from surefoot.planner.references.com_height import (
@@ -36,6 +37,9 @@ from surefoot.scenarios.setup.terrain import KINDS, TerrainKind
 
 _STREAM = 2
 """Random numbers of the ground, apart from those of other things with the same seed."""
+
+LONG_FOOT = 0.3
+"""Feet are at most as long where the scenario says nothing about it [m]."""
 
 SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
 """Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait [m]."""
@@ -102,20 +106,30 @@ class Draft:
 
     @cached_property
     def true_terrain(self) -> Terrain:
-        """The ground as it is: treads higher or lower than believed, by the seed, and what the planner knows not of.
+        """The ground as it is: higher or lower than believed, by the seed, and with what the planner knows not of.
 
         Where the robot starts is known.
         """
         terrain, noise = self.terrain, self.keys.terrain.height_noise
-        boxes = terrain.boxes
-        if noise != 0.0:
-            errors = np.random.default_rng(self.keys.seed).uniform(-noise, noise, len(boxes))
-            boxes = tuple(
+        if self.tiles is not None:
+            terrain = self.tiles.build(self.site)
+        elif noise != 0.0:
+            errors = np.random.default_rng(self.keys.seed).uniform(-noise, noise, len(terrain.boxes))
+            boxes = (
                 box if box.top(self.origin[None])[1][0] >= 0.0 else _raised(box, error)
-                for box, error in zip(boxes, errors, strict=True)
+                for box, error in zip(terrain.boxes, errors, strict=True)
             )
+            terrain = replace(terrain, boxes=tuple(boxes))
         hidden = tuple(self._hidden(error) for error in self.keys.errors.ground or ())
-        return replace(terrain, boxes=(*boxes, *hidden)) if hidden or noise != 0.0 else terrain
+        return replace(terrain, boxes=(*terrain.boxes, *hidden)) if hidden else terrain
+
+    @cached_property
+    def tiles(self) -> Tiles | None:
+        """What lies in truth where level ground is believed in; None when it is level."""
+        keys = self.keys
+        noise = keys.errors.ground_noise if keys.fidelity == "full" else None
+        room = 0.5 * max(keys.robot_options.foot_length or 0.0, LONG_FOOT) + keys.start.position_noise
+        return Tiles(noise, keys.seed, room) if noise else None
 
     def _hidden(self, error: GroundError) -> Box:
         """A box that is there and that nobody believes in, laid along the start heading."""

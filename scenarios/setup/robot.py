@@ -1,7 +1,9 @@
 """The robot of a scenario: its description with the chosen options, what bounds its walk, and what it is in truth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
 
 from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings
 
@@ -79,14 +81,35 @@ def describe(name: str, options: RobotSettings) -> "RobotDescription":
     return describe_robot(name, RobotOptions(**options.model_dump()))
 
 
-def true_robot(errors: BeliefErrors, robot: "RobotDescription") -> "RobotDescription":
-    """The robot as it is; itself when nothing about its mass is believed wrongly."""
-    from surefoot.models.belief import with_com_raised, with_mass_scaled
+_STREAM = 3
+"""Random numbers of the masses, apart from those of other things with the same seed."""
+
+
+def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "RobotDescription":
+    """The robot as it is; itself when nothing about its mass is believed wrongly.
+
+    What it carries unbeknown comes last, so that it is as heavy as was said, at the true CoM of its body.
+    """
+    from surefoot.models.belief import (
+        with_com_raised,
+        with_load,
+        with_mass_scaled,
+        with_masses_scattered,
+        with_torso_com_moved,
+    )
 
     if errors.com_height != 0.0:
         robot = with_com_raised(robot, -errors.com_height)
     if errors.mass_scale != 1.0:
-        robot = with_mass_scaled(robot, 1.0 / errors.mass_scale)
+        # Of the mass itself the quotient, which logs have to the last digit.
+        robot = replace(with_mass_scaled(robot, 1.0 / errors.mass_scale), mass=float(robot.mass) / errors.mass_scale)
+    if any(errors.torso_com or ()):
+        robot = with_torso_com_moved(robot, -np.array(errors.torso_com))
+    if errors.link_mass_noise:
+        rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(_STREAM,)))
+        robot = with_masses_scattered(robot, errors.link_mass_noise, rng)
+    if errors.payload is not None and errors.payload.mass > 0.0:
+        robot = with_load(robot, errors.payload.mass, errors.payload.body)
     return robot
 
 

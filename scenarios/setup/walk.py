@@ -146,7 +146,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
     near, far = draft.parameters.reach_width
     region = draft.region(sole, robot.shank_spacing)
     apart = max(near, robot.sole_width + 0.5 * region.gap)
-    true_mass = float(robot.mass) / keys.errors.mass_scale
+    true = true_robot(keys.errors, robot, keys.seed)
     return Walk(
         name=keys.name,
         text=scenario_yaml(keys),
@@ -156,11 +156,11 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         gait_duration=draft.gait_duration,
         rates=keys.rates,
         robot=robot,
-        true_robot=true_robot(keys.errors, robot) if keys.fidelity == "full" else robot,
-        true_mass=true_mass,
+        true_robot=true if keys.fidelity == "full" else robot,
+        true_mass=float(true.mass),
         true_com_height=keys.gait.com_height - keys.errors.com_height,
         height_error=keys.errors.com_height,
-        friction=max(keys.terrain.friction + keys.errors.friction, LEAST_BELIEVED_FRICTION),
+        friction=_friction(keys),
         gait=draft.fitted_gait(region),
         heights=draft.heights,
         standing_height=draft.standing_height,
@@ -177,10 +177,17 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         tasks=keys.wbc.tasks if keys.wbc is not None else (),
         sensing=keys.sensing,
         filter=_filter(draft),
-        pushes=_pushes(draft, robot, true_mass),
+        pushes=_pushes(draft, robot, float(true.mass)),
         faults=keys.faults,
         pendulum=keys.pendulum,
     )
+
+
+def _friction(keys: Scenario) -> float:
+    """The friction coefficient that the controller counts on [-]."""
+    if keys.wbc is not None and keys.wbc.friction is not None:
+        return keys.wbc.friction
+    return max(keys.terrain.friction + keys.errors.friction, LEAST_BELIEVED_FRICTION)
 
 
 def _filter(draft: Draft) -> str:

@@ -5,7 +5,13 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.models.belief import with_com_raised, with_mass_scaled
+from surefoot.models.belief import (
+    with_com_raised,
+    with_load,
+    with_mass_scaled,
+    with_masses_scattered,
+    with_torso_com_moved,
+)
 from surefoot.models.consistency import EnginePair
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
@@ -53,14 +59,79 @@ def test_scaled_mass_is_in_both_engines_and_in_the_description():
     np.testing.assert_allclose((after, believed), (before, before), atol=1e-12)
 
 
+def scattered(seed, half_range=0.3):
+    return with_masses_scattered(ROBOT, half_range, np.random.default_rng(seed))
+
+
+def test_every_mass_has_an_error_of_its_own_and_its_inertia_the_same():
+    before, (com, believed, after) = standing(ROBOT)[2], standing(scattered(1))
+    masses, moments = after.body_mass[1:] / before.body_mass[1:], after.body_inertia[1:] / before.body_inertia[1:]
+    assert len(set(masses)) == len(masses)
+    assert np.abs(masses - 1.0).max() <= 0.3
+    assert masses.min() < 0.9 and masses.max() > 1.1
+    np.testing.assert_allclose(moments, np.repeat(masses[:, None], 3, axis=1))
+    np.testing.assert_array_equal(after.body_ipos, before.body_ipos)
+    assert scattered(1).mass == pytest.approx(after.body_mass.sum(), rel=1e-14)
+    np.testing.assert_allclose(com, believed, atol=1e-12)
+
+
+def test_masses_are_drawn_from_the_seed_and_grow_with_the_half_range():
+    assert scattered(1).mjcf == scattered(1).mjcf != scattered(2).mjcf
+    one, half = standing(scattered(1))[2].body_mass, standing(scattered(1, 0.15))[2].body_mass
+    before = standing(ROBOT)[2].body_mass
+    np.testing.assert_allclose(one - before, 2.0 * (half - before), atol=1e-12)
+    np.testing.assert_array_equal(standing(scattered(1, 0.0))[2].body_mass, before)
+
+
+def test_whole_com_moves_by_the_torsos_share_of_the_mass():
+    offset = np.array([0.03, -0.02, 0.01])
+    _, _, model = standing(ROBOT)
+    before, after = standing(ROBOT), standing(with_torso_com_moved(ROBOT, offset))
+    share = model.body("torso").mass[0] / ROBOT.mass  # 5 kg of it are its load
+    for engine in (0, 1):  # waist and base are at zero, so that the torso has the axes of the world
+        np.testing.assert_allclose(after[engine] - before[engine], share * offset, atol=1e-12)
+    moved = {model.body(k).name for k in np.flatnonzero((after[2].body_ipos != model.body_ipos).any(axis=1))}
+    assert moved == {"torso"}
+    for name in ("body_mass", "body_inertia"):
+        np.testing.assert_array_equal(getattr(after[2], name), getattr(model, name))
+
+
+@pytest.mark.parametrize("body", [None, "left_shank"])
+def test_a_load_is_the_payload_that_a_robot_may_be_built_with(body):
+    """The same as the option, which is applied to the tree before there is a text."""
+    built = describe("humanoid100", RobotOptions(payload_mass=5.0, payload_body=body))
+    loaded = with_load(describe("humanoid100", RobotOptions()), 5.0, body)
+    assert loaded.mass == built.mass
+    for name in ("body_mass", "body_ipos", "body_inertia"):
+        np.testing.assert_array_equal(getattr(standing(loaded)[2], name), getattr(standing(built)[2], name))
+
+
 def test_engines_agree_about_the_changed_robots():
     rng = np.random.default_rng(5)
-    for changed in (with_com_raised(ROBOT, -0.2), with_mass_scaled(ROBOT, 1.3)):
+    changes = (
+        *(with_com_raised(ROBOT, -0.2), with_mass_scaled(ROBOT, 1.3), scattered(3)),
+        *(with_torso_com_moved(ROBOT, np.array([0.03, 0.02, -0.01])), with_load(ROBOT, 4.0, "left_shank")),
+    )
+    for changed in changes:
         pair = EnginePair(changed)
         assert max(pair.difference(*pair.random_state(rng)).largest for _ in range(5)) < 1e-9
 
 
-@pytest.mark.parametrize(("change", "value"), [(with_com_raised, np.nan), (with_mass_scaled, 0.0)])
-def test_impossible_changes_are_refused(change, value):
+@pytest.mark.parametrize(
+    ("change", "values"),
+    [
+        (with_com_raised, (np.nan,)),
+        (with_mass_scaled, (0.0,)),
+        (with_masses_scattered, (1.0, np.random.default_rng(0))),
+        (with_torso_com_moved, (np.array([0.0, np.inf, 0.0]),)),
+        (with_load, (-1.0,)),
+    ],
+)
+def test_impossible_changes_are_refused(change, values):
     with pytest.raises(RobotError, match="humanoid100 shall"):
-        change(ROBOT, value)
+        change(ROBOT, *values)
+
+
+def test_a_load_on_no_body_is_refused_with_the_nearest_one():
+    with pytest.raises(RobotError, match="'torzo' is no body of humanoid100; did you mean 'torso'"):
+        with_load(ROBOT, 1.0, "torzo")

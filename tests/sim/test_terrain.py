@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -40,11 +42,13 @@ def _height_by_ray(world: World, x: float, y: float) -> tuple[float, bool]:
     return 5.0 - float(distance), normal[2] > 0.7
 
 
-def test_geoms_have_the_heights_that_the_planner_is_told() -> None:
-    world = World(describe("humanoid100", RobotOptions()), TERRAIN, 1000)
+@pytest.mark.parametrize("terrain", [TERRAIN, replace(TERRAIN, plane=-0.03)])
+def test_geoms_have_the_heights_that_the_planner_is_told(terrain: Terrain) -> None:
+    world = World(describe("humanoid100", RobotOptions()), terrain, 1000)
     mujoco.mj_forward(world.model, world.data)
     points = np.random.default_rng(1).uniform((-1.5, -1.0), (1.5, 1.0), size=(300, 2))
-    expected = [TERRAIN.height(x, y) for x, y in points]
+    expected = [terrain.height(x, y) for x, y in points]
+    assert min(expected) == terrain.plane
     assert len({round(height, 3) for height in expected}) > 20
     measured, upper = np.array([_height_by_ray(world, x, y) for x, y in points]).T
     assert upper.mean() > 0.98

@@ -56,7 +56,7 @@ class Walk:
             "/measurement": {"joint_velocity": self.speed},
         }  # fmt: skip
         constants = SimpleNamespace(
-            mass=100.0, foot_length=LENGTH, foot_width=WIDTH, control_rate=RATE, boxes=self.boxes,
+            mass=100.0, foot_length=LENGTH, foot_width=WIDTH, control_rate=RATE, boxes=self.boxes, plane=0.0,
             velocity_limit=self.velocity_limit, fidelity="full", com_height=0.9,
         )  # fmt: skip
         footstep = _Channel({"foot": [1], "planned": np.array([self.footstep])}, [350])

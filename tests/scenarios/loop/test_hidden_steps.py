@@ -36,6 +36,21 @@ def test_a_hidden_step_is_felt_and_walked_over(scenario, overrides, step, tmp_pa
     assert metrics["footstep_error_max"] >= 0.95 * step[0]
 
 
+def test_ground_a_centimetre_off_is_felt_and_walked_over(tmp_path):
+    """It is felt: the same walk on tiles that are all as high as believed has none of it."""
+    settings = ["gait.steps=3", "seed=3", "duration=4.5"]
+    rough, flush = (
+        run_scenario(load_scenario("walk", [*settings, f"errors.ground_noise={noise}"]), tmp_path)
+        for noise in (0.01, 1e-7)
+    )
+    metrics, level = rough.verdict.metrics, flush.verdict.metrics
+    assert not metrics["fell"]
+    assert metrics["steps_taken"] == metrics["steps_planned"]
+    assert level["stance_tilt_max"] < 0.005 < 0.02 < metrics["stance_tilt_max"]
+    soles = read(rough.log)["/truth"].field("left_sole")[0, 2], read(rough.log)["/truth"].field("right_sole")[0, 2]
+    assert max(map(abs, soles)) < 1e-4  # the start is as believed
+
+
 def test_a_step_of_ten_centimetres_cannot_be_hidden(tmp_path):
     scenario = load_scenario("diagonal-walk", [*STRAIGHT, hidden_step(0.1, 0.3, 0.66)])
     assert run_scenario(scenario, tmp_path).verdict.metrics["fell"]

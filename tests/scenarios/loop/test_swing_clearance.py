@@ -12,14 +12,16 @@ pytestmark = pytest.mark.unit
 LENGTH, WIDTH, TICKS = 0.22, 0.11, 200
 
 
-def _run(height: np.ndarray, pitch: float = 0.0, boxes: tuple = (), x: float = 0.0) -> SimpleNamespace:
+def _run(
+    height: np.ndarray, pitch: float = 0.0, boxes: tuple = (), x: float = 0.0, plane: float = 0.0
+) -> SimpleNamespace:
     """The left foot swings at heights [m] over ticks, pitched heel up [rad]; the right one stands."""
     soles = np.zeros((TICKS, 2, 7))
     soles[:, :, 6] = 1.0
     soles[:, 0, 0], soles[:, 0, 2] = x, height
     soles[:, 0, 4], soles[:, 0, 6] = np.sin(pitch / 2), np.cos(pitch / 2)
     return SimpleNamespace(
-        constants=SimpleNamespace(foot_length=LENGTH, foot_width=WIDTH, boxes=boxes),
+        constants=SimpleNamespace(foot_length=LENGTH, foot_width=WIDTH, boxes=boxes, plane=plane),
         single_support=np.ones(TICKS, dtype=bool),
         sole=lambda foot: soles[:, foot],
         field=lambda topic, name: np.ones(TICKS),
@@ -47,6 +49,10 @@ def test_a_tread_under_the_toe_counts() -> None:
     tread = (0.6, 0.0, 0.015, 0.5, 1.0, 0.015, *np.eye(3).ravel())
     assert swing_clearance_min(_run(np.full(TICKS, 0.05), boxes=(tread,))) == pytest.approx(0.02)
     assert swing_clearance_min(_run(np.full(TICKS, 0.05), boxes=(tread,), x=-0.1)) == pytest.approx(0.05)
+
+
+def test_a_plane_that_lies_lower_is_farther_away() -> None:
+    assert swing_clearance_min(_run(np.full(TICKS, 0.05), plane=-0.01)) == pytest.approx(0.06)
 
 
 def test_without_a_swing_there_is_none() -> None:

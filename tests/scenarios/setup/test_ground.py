@@ -3,10 +3,15 @@
 import numpy as np
 import pytest
 
+from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.loop.run import run_constants
+from surefoot.scenarios.record.provenance import RECORD, RunConstants
+from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.load import read_scenario
+from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
 
@@ -41,6 +46,74 @@ def test_truth_differs_from_belief_by_the_noise_but_not_where_the_robot_starts(r
         Draft(scenario(robots)).true_terrain.boxes[0].center.tolist()
         == Draft(scenario(robots)).terrain.boxes[0].center.tolist()
     )
+
+
+UNEVEN = "errors.ground_noise=0.01"
+ALIVE = "criteria={fell: false}"
+
+
+@pytest.mark.parametrize("name", ["walk", "diagonal-walk", "walk-curve", "walk-sideways", "walk-backward"])
+def test_level_ground_is_uneven_in_truth_alone_and_under_every_footstep(name):
+    draft = Draft(load_scenario(name, [UNEVEN]))
+    assert draft.terrain == flat()
+    footsteps = draft.level_footsteps.position[:, :2]
+    heights = draft.true_terrain.heights(footsteps)
+    np.testing.assert_array_equal(heights[:2], 0.0)
+    assert heights.min() < 0.0
+    assert np.abs(heights).max() <= 0.01 == -draft.true_terrain.plane
+    assert heights.min() > draft.true_terrain.plane
+    assert len(draft.true_terrain.boxes) < 150
+
+
+def test_uneven_ground_is_that_of_the_seed_and_bears_hidden_steps_as_level_ground_does():
+    points = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 2))
+    step = "errors.ground=[{x: 0.5, length: 0.2, height: 0.03}]"
+    one, same, other, stepped = (
+        Draft(load_scenario("walk", [UNEVEN, *more])).true_terrain.heights(points)
+        for more in (["seed=1"], ["seed=1", "gait.step_length=0.2"], ["seed=2"], ["seed=1", step])
+    )
+    np.testing.assert_array_equal(one, same)
+    assert not np.array_equal(one, other)
+    on = np.abs(points[:, 0] - 0.5) < 0.1
+    np.testing.assert_allclose(stepped[on], 0.03)
+    np.testing.assert_array_equal(stepped[~on], one[~on])
+
+
+@pytest.mark.parametrize("level", ["errors.ground_noise=0", "errors.ground_noise=null", "seed=3"])
+def test_ground_without_noise_is_what_is_believed(level):
+    draft = Draft(load_scenario("walk", [level]))
+    assert draft.true_terrain is draft.terrain
+
+
+def test_a_log_says_where_the_plane_lies_only_where_it_lies_lower():
+    uneven, level = (run_constants(resolve(load_scenario("walk", more))) for more in ([UNEVEN], []))
+    assert "plane" not in level.to_metadata()
+    for constants in (uneven, level):
+        assert RunConstants.from_metadata({RECORD: constants.to_metadata()}, "log") == constants
+    assert uneven.plane == -0.01
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        (
+            ["walk", "gait.steps=400"],
+            "errors.ground_noise under 400 steps needs more than 1000 tiles; take fewer steps",
+        ),
+        (["stair-climbing"], "errors.ground_noise on terrain.kind stairs; use terrain.height_noise"),
+        (["blocks"], "errors.ground_noise on terrain.kind blocks; use terrain.height_noise"),
+        (["slope"], "errors.ground_noise on terrain.kind slope; use kind flat"),
+    ],
+)
+def test_ground_that_cannot_be_uneven_is_refused_with_the_key_that_is_right(settings, message):
+    with pytest.raises(ScenarioError, match=message):
+        load_scenario(settings[0], [*settings[1:], UNEVEN])
+
+
+def test_a_pendulum_is_told_that_it_does_not_feel_the_ground():
+    draft = Draft(load_scenario("walk", ["fidelity=pendulum", UNEVEN, ALIVE]))
+    assert "errors.ground_noise has no effect on a pendulum" in notes(draft)
+    assert draft.true_terrain is draft.terrain
 
 
 @pytest.mark.parametrize(

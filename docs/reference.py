@@ -42,6 +42,7 @@ CHANNELS = (
         channels.torque,
     ),
     channels.timing,
+    channels.process,
 )
 SIZES = Sizes(nj=1009, nq=1013, nv=1019, horizon=1031)
 _SYMBOLS = {1009: "nj", 1013: "nq", 1019: "nv", 1031: "N", 1032: "N+1"}

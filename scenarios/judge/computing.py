@@ -11,6 +11,9 @@ Rows = NDArray[np.intp]
 
 _SPREAD = ("median", "p99")
 
+WARM = 60.0
+"""Time by which everything that a run needs once is there [s]."""
+
 
 @metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",), "/planner_state": ("com",)}, least=0.0)
 def estimation_error_rms(run: RunView) -> float | None:
@@ -70,6 +73,16 @@ def real_time_factor(run: RunView) -> float | None:
     """Simulated over wall-clock time of the loop [-]."""
     wall = float(run.field("/timing", "tick").sum()) * 1e-6
     return run.ticks / run.constants.control_rate / wall if wall > 0 else None
+
+
+@metric(shown=(1e2, "%"), reads={"/process": ("memory",)}, repeatable=False)
+def memory_growth(run: RunView) -> float | None:
+    """Growth of the process's memory after the first simulated minute, over what it was then [-]."""
+    later = run.log["/process"].time >= WARM
+    memory = run.log["/process"].field("memory")[later]
+    if len(memory) < 2 or not np.isfinite(memory).all():
+        return None
+    return float(memory.max() / memory[0] - 1.0)
 
 
 @metric(reads={"/wbc": ("status", "solver")}, body=True, least=0.0)

@@ -224,3 +224,9 @@ def timing(_: Sizes) -> ChannelSpec:
     parts = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick")
     fields = tuple(_scalar(part, "us", "wall-clock time") for part in parts)
     return ChannelSpec("/timing", "Timing", fields, timing.__doc__ or "")
+
+
+def process(_: Sizes) -> ChannelSpec:
+    """The process that makes the run, every simulated second; excluded from reproducibility."""
+    fields = (_scalar("memory", "B", "resident memory"),)
+    return ChannelSpec("/process", "Process", fields, process.__doc__ or "")

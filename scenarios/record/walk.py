@@ -1,6 +1,7 @@
 """Writes what every walk has, whatever its fidelity, and what the pendulum has in place of a body."""
 
 import math
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from operator import attrgetter
@@ -72,6 +73,8 @@ class WalkRecorder:
         parts = [field.name for field in timing.spec.fields]
         self._timing = writer.rows((), ((timing, parts),))
         self._parts: Callable[[TickTiming], tuple[float, ...]] = attrgetter(*parts)
+        self._process = writer.channel(channels.process(sizes))
+        self._looked = -1
         self._support = np.zeros((SUPPORT_VERTICES, 2))
         self._rolls = sizes.nj > 0  # the ideal feet of a point mass stay level
 
@@ -128,8 +131,21 @@ class WalkRecorder:
         )  # fmt: skip
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
-        """Wall-clock times of the tick."""
+        """Wall-clock times of the tick, and once a simulated second the state of the process."""
         self._timing.append(time_ns, tuple([1e6 * part for part in self._parts(timing)]))
+        second = time_ns // 1_000_000_000
+        if second != self._looked:
+            self._looked = second
+            self._process.append(time_ns, resident_memory())
+
+
+def resident_memory() -> float:
+    """Memory that the process holds now; NaN where the system does not tell [B]."""
+    try:
+        with open("/proc/self/statm", "rb") as file:  # noqa: PTH123  once a second, without a path's cost
+            return float(int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
+    except (OSError, ValueError, IndexError):
+        return math.nan
 
 
 def _pose(footstep: Footstep) -> tuple[float, ...]:

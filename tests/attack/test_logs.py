@@ -22,6 +22,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.recover import recover
+from surefoot.scenarios.show.compare.divergence import WALL_CLOCK
 
 TRIALS = int(os.environ.get("SUREFOOT_TRIALS", "2000"))
 SLOWEST, MOST = 10.0, 300 << 10
@@ -46,7 +47,7 @@ def content(log):
     """Digest of every numeric channel but that of wall-clock times."""
     digest = hashlib.sha256()
     for topic in sorted(log.numeric):
-        digest.update(topic.encode() + (b"" if topic == "/timing" else log[topic].content()))
+        digest.update(topic.encode() + (b"" if topic in WALL_CLOCK else log[topic].content()))
     return digest.hexdigest()
 
 

@@ -7,6 +7,7 @@ import surefoot
 from surefoot.planner.laws.law import Motion
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.scenarios.loop.sensing import TrueState
+from surefoot.scenarios.show.compare.divergence import WALL_CLOCK
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.types import RobotState
 
@@ -25,7 +26,7 @@ def same_content(a, b):
     """Topics in which two logs differ, wall-clock times aside."""
     first, second = surefoot.read(a), surefoot.read(b)
     assert first.topics == second.topics
-    topics = [topic for topic in first.numeric if topic != "/timing"]
+    topics = [topic for topic in first.numeric if topic not in WALL_CLOCK]
     return [topic for topic in topics if first[topic].content() != second[topic].content()]
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 
-WALL_CLOCK = ("/timing",)
+WALL_CLOCK = ("/process", "/timing")
 """Topics that differ between any two runs."""
 
 _CHAIN = (

@@ -17,8 +17,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from surefoot.scenarios.paper.results import Outcome, Results, execute
 from surefoot.scenarios.paper.studies import Experiment
-from surefoot.scenarios.paper.tables import MISSING, escape, number, tag
 from surefoot.scenarios.record.provenance import ABSENT
+from surefoot.scenarios.show.html import MISSING, escape, number, tag
 
 
 class ExperimentBar:

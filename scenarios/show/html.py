@@ -14,6 +14,8 @@ from surefoot.scenarios.show.figures.style import in_style
 
 MISSING = "–"
 """Stands where there is no number."""
+_PIXELS = 98
+"""Of a page for an inch of a figure: one of 11.6 in is as wide as the text."""
 
 
 def number(value: float | None, scale: float = 1.0, digits: int = 3) -> str:
@@ -53,8 +55,11 @@ def document(title: str, body: str) -> str:
 
 
 def figure_html(figure: Figure, caption: str, name: str = "", kind: str = "") -> str:
-    """A figure with its caption, below an anchor."""
-    picture = svg(figure).replace("<svg ", f'<svg role="img" aria-label="{escape(caption)}" ', 1)
+    """A figure with its caption, below an anchor; a narrow one stays narrow, so that letters are as large in all."""
+    shown = (
+        f'<svg role="img" aria-label="{escape(caption)}" style="max-width: {_PIXELS * figure.get_figwidth():.0f}px" '
+    )
+    picture = svg(figure).replace("<svg ", shown, 1)
     return tag("figure", f"{picture}\n{tag('figcaption', escape(caption))}", id=name, kind=kind)
 
 

@@ -7,7 +7,7 @@ torso's rotation, nor a second step, nor another clock is in it: a controller th
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -23,12 +23,9 @@ from surefoot.planner.walk.reach import reach_box
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import read
-from surefoot.scenarios.setup.load import read_scenario
+from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.scenarios.show.logview import LogView, MissingError
-from surefoot.scenarios.sweep.engine import Outcome
-from surefoot.scenarios.sweep.points import Cell, Point
-from surefoot.scenarios.sweep.spec import Bisect
 
 _TICK = 1e-6
 """Of two times nearer than this, neither is earlier [s]."""
@@ -104,18 +101,17 @@ def landing_points(stance: Array, support: Array, sole: tuple[float, float], rea
     return np.vstack([support, stance[:2] + corners @ np.array([[c, s], [-s, c]])])
 
 
-def moment_of(point: Point, log: Path, push: int) -> Moment | None:
-    """The state of a run as a push begins, by its log; None where there is none of the kind that has a limit.
+def moment_of(log: Path, push: int) -> Moment | None:
+    """The state of a run as a push begins; None where there is none of the kind that has a limit.
 
     It has one on flat ground, in a walk with its steps on the clock, before the last foot has landed.
 
     Args:
-        point: the run.
-        log: of it.
+        log: of the run.
         push: its number, from 0.
     """
     try:
-        scenario = read_scenario(point.base, point.settings)
+        scenario = load(log)
         walk = resolve(scenario)
         return _moment(scenario, walk, LogView(read(log)), push) if walk.terrain_kind == "flat" else None
     except (ScenarioError, SetupError, ParameterError, LogError, MissingError, IndexError):
@@ -158,27 +154,22 @@ class Limits:
     The state in which the push begins is the same for all its directions; it is taken from the first log that is kept.
 
     Args:
-        bisect: the search.
-        outcomes: of its cells.
-        folder: of its logs.
+        key: that was searched.
+        logs: labels of searches with logs of runs of theirs.
         angle: name of the axis that gives the direction; empty where it is not varied.
     """
 
-    def __init__(self, bisect: Bisect, outcomes: Sequence[Outcome], folder: Path, angle: str) -> None:
+    def __init__(self, key: str, logs: Iterable[tuple[Mapping[str, Any], Path]], angle: str) -> None:
         self._angle = angle
         self._moments: dict[str, Moment] = {}
-        searched = re.fullmatch(r"pushes\.(\d+)\.impulse", bisect.key)
-        if searched is None or (angle and angle != f"pushes.{searched[1]}.direction"):
+        push = re.fullmatch(r"pushes\.(\d+)\.impulse", key)
+        if push is None or (angle and angle != f"pushes.{push[1]}.direction"):
             return
-        for outcome in outcomes:
-            assert isinstance(outcome.cell, Cell)
-            name = self._name(outcome.cell.labels)
-            kept = (run for run in outcome.runs if run[1].log and name not in self._moments)
-            for point, record in kept:
-                moment = moment_of(point, folder / record.log, int(searched[1]))
-                if moment is not None:
-                    self._moments[name] = moment
-                break
+        for labels, log in logs:
+            name = self._name(labels)
+            moment = None if name in self._moments else moment_of(log, int(push[1]))
+            if moment is not None:
+                self._moments[name] = moment
 
     def __bool__(self) -> bool:
         """Whether there is any."""

@@ -219,7 +219,7 @@ def _fill(axes: Axes, table: Sequence[Sequence[Square]], small: bool) -> None:
     colors = [
         [none if math.isnan(one.share) else (1 - one.share) * bad + one.share * good for one in row] for row in table
     ]
-    axes.imshow(np.array(colors), origin="lower", aspect="auto")
+    axes.pcolormesh(range(len(table[0])), range(len(table)), np.array(colors), shading="nearest")
     axes.grid(visible=False)
     for up, row in enumerate(table):
         for right, one in enumerate(row):

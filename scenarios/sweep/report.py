@@ -137,7 +137,8 @@ def _thresholds(swept: "Swept", axes: Sequence[Axis]) -> str:
         return tag("section", parts[0] + tag("p", "No search has come to its end."))
     varied = [axis for axis in axes if len({one.labels[axis.name] for one in found}) > 1]
     angle = figures.angle_of(axes)
-    limits = Limits(bisect, swept.outcomes, swept.folder, angle.name if angle else "")
+    logs = ((one.labels, swept.folder / record.log) for one, runs in ends for _, record in runs if record.log)
+    limits = Limits(bisect.key, logs, angle.name if angle else "")
     if figures.is_around(varied):
         drawn = figures.compass(found, varied, bisect.key, limits.at)
         caption = (

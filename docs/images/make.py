@@ -100,6 +100,9 @@ PICTURES: dict[str, tuple[str, Callable[[Path], None]]] = {
 }
 """The scenario that a picture shows, if it is one, and what draws it from its log."""
 
+OF_CAMPAIGNS = ("push-map.png", "robustness.png")
+"""Pictures of campaigns that take hours, which `campaigns.py` draws from their results."""
+
 
 def main() -> None:
     """Draw the pictures that are asked for; each scenario is run once."""

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from surefoot.scenarios.paper.results import Results, Sample
-from surefoot.scenarios.paper.tables import MM, WORLD_NAMES, fell_text, number
+from surefoot.scenarios.paper.tables import MM, WORLD_NAMES, fell_text
+from surefoot.scenarios.show.html import number
 
 Verdict = Literal["holds", "holds with a change", "does not hold", "not measured"]
 

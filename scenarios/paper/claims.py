@@ -19,7 +19,8 @@ from surefoot.scenarios.paper.studies import (
     ZMP_ONLY,
     Study,
 )
-from surefoot.scenarios.paper.tables import PERCENT, error_norms, feasible, number, preview_gain, spread_text, survived
+from surefoot.scenarios.paper.tables import PERCENT, error_norms, feasible, preview_gain, spread_text, survived
+from surefoot.scenarios.show.html import number
 
 BETTER = 1.1
 """Ratio from which a ZMP error counts as lower."""

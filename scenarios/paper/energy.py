@@ -6,7 +6,7 @@ from functools import partial
 from surefoot.scenarios.paper.claim import Claim, Finding, grade
 from surefoot.scenarios.paper.results import Results
 from surefoot.scenarios.paper.studies import GAITS, knee_study
-from surefoot.scenarios.paper.tables import number
+from surefoot.scenarios.show.html import number
 
 SAVES = 0.05
 """Share from which effort counts as lower."""

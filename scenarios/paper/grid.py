@@ -1,16 +1,11 @@
 """A figure as a grid of panels: runs side by side, quantities below each other, one axis of time."""
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from io import StringIO
-from typing import Any
 
-import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from matplotlib.typing import RcKeyType
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
@@ -76,20 +71,6 @@ def grid(columns: Sequence[Column], rows: Sequence[Row]) -> Figure:
         area.align_ylabels(axes[:, 0])
         top.legend(handles=list(handles.values()), loc="center left", bbox_to_anchor=(0.01, 0.5), ncols=8)
     return figure
-
-
-def svg(figure: Figure) -> str:
-    """A figure as an SVG element for a page: no prolog, no metadata, words as words."""
-    drawn = StringIO()
-    words: dict[RcKeyType, Any] = {
-        "svg.fonttype": "none",
-        "font.sans-serif": ["Helvetica", "Arial", "Liberation Sans", "DejaVu Sans"],
-    }
-    with in_style(), matplotlib.rc_context(words):
-        figure.savefig(drawn, format="svg", metadata={"Date": None})
-    text = drawn.getvalue()
-    text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
-    return re.sub(r'<svg ([^>]*?)width="[^"]*" height="[^"]*"|<svg height="[^"]*"', r"<svg \1", text, count=1)
 
 
 def _draw_column(axes: Sequence[Axes], column: Column, rows: Sequence[Row]) -> dict[str, object]:

@@ -16,21 +16,19 @@ from surefoot.scenarios.paper.claim import Claim, Finding, Verdict
 from surefoot.scenarios.paper.claims import CLAIMS
 from surefoot.scenarios.paper.energy import ENERGY_CLAIMS
 from surefoot.scenarios.paper.figures import PLATES, Plate
-from surefoot.scenarios.paper.grid import svg
 from surefoot.scenarios.paper.results import Results, run_experiments
 from surefoot.scenarios.paper.runs import provenance, runs_table
 from surefoot.scenarios.paper.studies import Study, experiments
 from surefoot.scenarios.paper.tables import (
     Table,
     balance_table,
-    escape,
     knee_table,
     listing,
     paragraphs,
     shove_table,
     table_html,
-    tag,
 )
+from surefoot.scenarios.show.html import document, escape, figure_html, tag
 from surefoot.scenarios.sweep.engine import local_workers
 from surefoot.scenarios.sweep.sweep import CampaignBar
 
@@ -112,13 +110,7 @@ def page(results: Results) -> str:
     }
     every = sections()
     written = [_section(section, content.get(section.name, ""), numbers, results) for section in every]
-    style = (files(__package__) / "style.css").read_text(encoding="utf-8")
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(TITLE)}</title>'
-    body = "\n".join((_top(results, claims), _contents(every), *written))
-    return (
-        f'<!doctype html>\n<html lang="en"><head>{head}\n<style>\n{style}</style></head>\n'
-        f"<body><main>\n{body}\n</main></body></html>\n"
-    )
+    return document(TITLE, "\n".join((_top(results, claims), _contents(every), *written)))
 
 
 def tally(claims: Judged) -> dict[Verdict, int]:
@@ -155,9 +147,7 @@ def _section(section: Section, content: str, numbers: dict[str, tuple[Table, ...
 
 
 def _figure(plate: Plate, results: Results) -> str:
-    picture = svg(plate.draw(results)).replace("<svg ", f'<svg role="img" aria-label="{escape(plate.caption)}" ', 1)
-    caption = tag("figcaption", escape(plate.caption))
-    return tag("figure", f"{picture}\n{caption}", id=plate.name, kind="half" if plate.half else "")
+    return figure_html(plate.draw(results), plate.caption, plate.name, "half" if plate.half else "")
 
 
 def _claims_table(claims: Judged) -> str:

@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 
 from surefoot.scenarios.paper.results import Outcome, Results
-from surefoot.scenarios.paper.tables import MISSING, escape, number, tag
 from surefoot.scenarios.record.provenance import ABSENT
+from surefoot.scenarios.show.html import MISSING, escape, number, tag
 
 
 def provenance(results: Results) -> str:

@@ -1,6 +1,5 @@
 """The tables of the page and the HTML that they are made of."""
 
-import html
 import math
 import statistics
 from collections.abc import Iterable, Sequence
@@ -17,9 +16,7 @@ from surefoot.scenarios.paper.studies import (
     knee_study,
     shove,
 )
-
-MISSING = "–"
-"""Stands where there is no number."""
+from surefoot.scenarios.show.html import MISSING, escape, number, tag
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,15 +58,6 @@ class Table:
         return tuple(row for _, rows in self.groups for row in rows)
 
 
-def number(value: float | None, scale: float = 1.0, digits: int = 3) -> str:
-    """A number with some significant digits."""
-    if value is None:
-        return MISSING
-    shown = scale * value
-    text = f"{shown:.0f}" if abs(shown) >= 10 ** (digits - 1) else f"{shown:.{digits}g}"
-    return text.replace("-", "\N{MINUS SIGN}")
-
-
 def spread_text(spread: Spread | None, scale: float = 1.0, digits: int = 3) -> str:
     """A median, with its range where that is another text."""
     if spread is None:
@@ -88,18 +76,6 @@ def spread_cell(spread: Spread | None, scale: float = 1.0, kind: str = "number")
 def words(text: str, kind: str = "") -> Cell:
     """A cell of words."""
     return Cell(text, kind)
-
-
-def escape(text: str) -> str:
-    """Text for HTML."""
-    return html.escape(text, quote=True)
-
-
-def tag(name: str, content: str, **attributes: str) -> str:
-    """An element; ``kind`` is its class, content is HTML."""
-    named = {"class" if key == "kind" else key.replace("_", "-"): value for key, value in attributes.items() if value}
-    inside = "".join(f' {key}="{escape(value)}"' for key, value in named.items())
-    return f"<{name}{inside}>{content}</{name}>"
 
 
 def table_html(table: Table) -> str:

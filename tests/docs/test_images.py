@@ -47,8 +47,9 @@ def test_the_digest_follows_the_sources(make, tmp_path, monkeypatch):
     assert make.digest("figures.png") != before
 
 
-def test_one_command_makes_every_picture_that_a_page_shows(make):
+def test_every_picture_that_a_page_shows_can_be_made(make):
     pages = (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))
     shown = {name for page in pages for name in re.findall(r"!\[[^\]]*\]\(\S*images/(\S+)\)", page.read_text("utf-8"))}
     drawn = {path.name for path in (ROOT / "docs" / "images").iterdir() if path.suffix in (".png", ".gif", ".svg")}
-    assert shown == drawn == set(make.PICTURES)
+    assert shown == drawn
+    assert set(make.PICTURES) <= drawn <= {*make.PICTURES, *make.OF_CAMPAIGNS}

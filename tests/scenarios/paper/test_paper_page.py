@@ -12,18 +12,18 @@ from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import read
 from surefoot.scenarios.paper import page
 from surefoot.scenarios.paper.figures import JERKS, POSITIONS, grid
-from surefoot.scenarios.paper.grid import Column, svg
+from surefoot.scenarios.paper.grid import Column
 from surefoot.scenarios.paper.results import Spread, run_experiments
 from surefoot.scenarios.paper.studies import SHOVES, WALK, Experiment, Study
 from surefoot.scenarios.paper.tables import (
     balance_table,
     feasible,
-    number,
     shove_table,
     spread_cell,
     spread_text,
     table_html,
 )
+from surefoot.scenarios.show.html import number, svg
 from surefoot.scenarios.sweep.engine import InterruptedRunsError
 
 SHORT = ("gait.steps=1", "gait.single_support=0.6", "gait.initial_stand=0.2", "rates.control=100")

@@ -12,9 +12,11 @@ from typing import Literal
 import yaml
 
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.check.baseline import ENDING, Baseline, Move, Parting, read_baseline, write_baseline
+from surefoot.scenarios.check.baseline import ENDING, Baseline, Move, read_baseline, write_baseline
+from surefoot.scenarios.check.trace import Parting
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.judge.verdict import Verdict
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load
@@ -22,7 +24,9 @@ from surefoot.scenarios.setup.load import load
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
 
-Status = Literal["same", "better", "moved", "failed", "without baseline", "other scenario", "could not run"]
+Status = Literal[
+    "same", "better", "moved", "failed", "without baseline", "unreadable baseline", "other scenario", "could not run"
+]
 
 PASSING: tuple[Status, ...] = ("same", "better")
 
@@ -57,7 +61,7 @@ class Checked:
         status: how the run compares with its baseline.
         reasons: why it failed or could not run, one sentence each.
         moves: metrics that are not where the baseline has them.
-        parting: where the run first parts from its baseline.
+        partings: where the run first is not as its baseline, and where it is farthest from it, if that is elsewhere.
         log: of the run, None when there is none.
         now: what the run would be as a baseline, None when there was no run.
     """
@@ -66,7 +70,7 @@ class Checked:
     status: Status
     reasons: tuple[str, ...] = ()
     moves: tuple[Move, ...] = ()
-    parting: Parting | None = None
+    partings: tuple[Parting, ...] = ()
     log: Path | None = None
     now: Baseline | None = None
 
@@ -121,21 +125,39 @@ def run_case(case: Case, out: Path) -> Checked:
         result = run_scenario(case.scenario, out)
         log = read(result.log)
         now = Baseline.of(case.scenario.name, case.settings, result.verdict.metrics, log)
-        known = replace(Checked(case, "same"), log=result.log, now=now, reasons=result.verdict.reasons)
-        before = read_baseline(case.baseline) if case.baseline.exists() else None
-        if before is None:
-            return replace(known, status="without baseline" if result.verdict.passed else "failed")
-        moves = tuple(before.moves(result.verdict.metrics, case.scenario.criteria))
-        compared = replace(known, moves=moves, parting=before.parting(log))
-        if not result.verdict.passed:
-            return replace(compared, status="failed")
-        if yaml.safe_load(before.settings) != yaml.safe_load(case.settings):
-            return replace(compared, status="other scenario")
-        if any(move.direction != "better" for move in moves):
-            return replace(compared, status="moved")
-        return replace(compared, status="better" if moves else "same")
     except (ScenarioError, SetupError, LogError) as refusal:
         return Checked(case, "could not run", (" ".join(str(refusal).split()),))
+    return _held_against_baseline(case, result.verdict, replace(Checked(case, "same"), log=result.log, now=now))
+
+
+def _held_against_baseline(case: Case, verdict: Verdict, run: Checked) -> Checked:
+    """What a run is by its verdict and by its baseline, in this order."""
+    run = replace(run, reasons=verdict.reasons)
+    try:
+        before = read_baseline(case.baseline) if case.baseline.exists() else None
+    except ScenarioError as refusal:
+        status: Status = "unreadable baseline" if verdict.passed else "failed"
+        return replace(run, status=status, reasons=(*run.reasons, " ".join(str(refusal).split())))
+    if before is None:
+        return replace(run, status="without baseline" if verdict.passed else "failed")
+    if yaml.safe_load(before.settings) != yaml.safe_load(case.settings):
+        return replace(run, status="other scenario" if verdict.passed else "failed")
+    moves = tuple(before.moves(verdict.metrics, case.scenario.criteria))
+    partings = _first_and_most(before.trace.partings(run.now.trace) if run.now is not None else [])
+    run = replace(run, moves=moves, partings=partings)
+    if not verdict.passed:
+        return replace(run, status="failed")
+    if partings or any(move.direction != "better" for move in moves):
+        return replace(run, status="moved")
+    return replace(run, status="better" if moves else "same")
+
+
+def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
+    """Of partings in order, the first, and the one that is farthest off if that is another."""
+    if not partings:
+        return ()
+    most = max(partings, key=lambda one: one.excess)
+    return (partings[0],) if most is partings[0] else (partings[0], most)
 
 
 def check(

@@ -1,5 +1,6 @@
 """What a check found, for a person, for a CI page and for a CI server."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree as Xml
@@ -8,11 +9,15 @@ from rich.console import Console
 
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked
+from surefoot.scenarios.check.trace import Parting
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
 from surefoot.scenarios.output import write_whole
 
 _SHOWN_MOVES = 12
 """Moves of a run that are named; the others are counted."""
+
+_LEAST_WINDOW = 0.2
+"""Least time that a figure is asked to show [s]."""
 
 
 def move_text(move: Move) -> str:
@@ -32,15 +37,24 @@ def lines_of(checked: Checked) -> list[str]:
     lines = [*checked.reasons, *moves[:_SHOWN_MOVES]]
     if len(moves) > _SHOWN_MOVES:
         lines.append(f"and {len(moves) - _SHOWN_MOVES} metrics more")
-    if checked.parting is not None:
-        lines.append(f"parts first from its baseline: {checked.parting}")
+    for when, parting in zip(("first", "most"), checked.partings, strict=False):
+        lines.append(f"parts {when}: {parting.text}")
     if checked.status == "other scenario":
         lines.append(f"{checked.case.baseline} is of other settings; --update writes it anew")
     if checked.status == "without baseline":
         lines.append(f"no baseline at {checked.case.baseline}; --update writes it")
     if checked.log is not None and not checked.passed:
-        lines.append(f"look at: surefoot plot {checked.log}")
+        lines += [f"look at: surefoot plot {checked.log}{where}" for where in _figures(checked.partings)]
     return lines
+
+
+def _figures(partings: Sequence[Parting]) -> list[str]:
+    """Options by which `surefoot plot` shows each; none of them for the page of all figures."""
+    shown = []
+    for parting in partings:
+        until = f" --to {max(parting.end, parting.begin + _LEAST_WINDOW):g}" if math.isfinite(parting.end) else ""
+        shown.append(f" --what {parting.figure} --from {parting.begin:g}{until}")
+    return list(dict.fromkeys(shown)) or [""]
 
 
 def print_checked(checked: Checked, console: Console) -> None:

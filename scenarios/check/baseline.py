@@ -76,6 +76,15 @@ class Baseline:
                 if not _near(old, new, allowed):
                     yield Move(label, old, new, allowed, metric.unit, _direction(criteria.get(name), old, new))
 
+    def other_settings(self, settings: str) -> list[str]:
+        """Which keys of a scenario's settings, in YAML, are not as here, a sentence each."""
+        before, now = (_flat(yaml.safe_load(text) or {}) for text in (self.settings, settings))
+        return [
+            f"{key} is {now.get(key, 'the default')}, {before.get(key, 'the default')} in the baseline"
+            for key in {**before, **now}
+            if (key in before, before.get(key)) != (key in now, now.get(key))
+        ]
+
     def text(self) -> str:
         """The file: metrics with their units, then the trace."""
         lines = [
@@ -101,7 +110,7 @@ def read_baseline(path: Path) -> Baseline:
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
         settings, metrics = str(data["settings"]), dict(data["metrics"])
-        yaml.safe_load(settings)
+        _flat(yaml.safe_load(settings) or {})
         if wrong := [name for name, value in metrics.items() if (m := known(name)) is not None and not m.fits(value)]:
             raise ValueError(wrong)
         return Baseline(str(data["scenario"]), settings, metrics, Trace.from_rows(data["trace"]))
@@ -133,6 +142,14 @@ def _elements(name: str, before: Any, now: Any) -> Iterator[tuple[str, Value, Va
         yield from ((f"{name}.{part}", old, parts.get(part)) for part, old in before.items())
     else:
         yield name, before, now
+
+
+def _flat(settings: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Settings by dotted key."""
+    flat: dict[str, Any] = {}
+    for key, value in settings.items():
+        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+    return flat
 
 
 def _near(before: Value, now: Value, allowed: float) -> bool:

@@ -1,5 +1,6 @@
 """``surefoot check``: runs scenarios side by side and holds each against its baseline."""
 
+import shutil
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
@@ -133,15 +134,17 @@ def run_case(case: Case, out: Path) -> Checked:
 def _held_against_baseline(case: Case, verdict: Verdict, run: Checked) -> Checked:
     """What a run is by its verdict and by its baseline, in this order."""
     run = replace(run, reasons=verdict.reasons)
+    status: Status
     try:
         before = read_baseline(case.baseline) if case.baseline.exists() else None
     except ScenarioError as refusal:
-        status: Status = "unreadable baseline" if verdict.passed else "failed"
+        status = "unreadable baseline" if verdict.passed else "failed"
         return replace(run, status=status, reasons=(*run.reasons, " ".join(str(refusal).split())))
     if before is None:
         return replace(run, status="without baseline" if verdict.passed else "failed")
-    if yaml.safe_load(before.settings) != yaml.safe_load(case.settings):
-        return replace(run, status="other scenario" if verdict.passed else "failed")
+    if others := before.other_settings(case.settings):
+        status = "other scenario" if verdict.passed else "failed"
+        return replace(run, status=status, reasons=(*run.reasons, *others))
     moves = tuple(before.moves(verdict.metrics, case.scenario.criteria))
     partings = _first_and_most(before.trace.partings(run.now.trace) if run.now is not None else [])
     run = replace(run, moves=moves, partings=partings)
@@ -163,7 +166,7 @@ def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
 def check(
     chosen: Sequence[Case], out: Path, jobs: int, on_done: Callable[[Checked], None] = lambda _: None
 ) -> tuple[Checked, ...]:
-    """Run cases side by side.
+    """Run cases side by side; the logs of those that are the same as their baselines are not kept.
 
     Args:
         chosen: to run.
@@ -176,6 +179,9 @@ def check(
     """
     done: dict[str, Checked] = {}
     for case, checked in _side_by_side(chosen, out, jobs):
+        if checked.status == "same" and checked.log is not None:
+            shutil.rmtree(checked.log.parent)
+            checked = replace(checked, log=None)
         done[case.scenario.name] = checked
         on_done(checked)
     return tuple(done[case.scenario.name] for case in chosen)
@@ -217,3 +223,16 @@ def update(checked: Sequence[Checked]) -> tuple[Path, ...]:
         write_baseline(one.case.baseline, one.now)
         written.append(one.case.baseline)
     return tuple(written)
+
+
+def exit_code(checked: Sequence[Checked], updated: bool) -> int:
+    """0 when all is as it should be, 2 where something could not be run or read, 1 otherwise.
+
+    Args:
+        checked: what became of the cases.
+        updated: whether baselines were written, after which only runs without one are not as they should be.
+    """
+    statuses = {one.status for one in checked if not one.passed}
+    if updated:
+        statuses &= {"failed", "could not run"}
+    return 2 if statuses & {"could not run", "unreadable baseline"} else int(bool(statuses))

@@ -43,7 +43,7 @@ def lines_of(checked: Checked) -> list[str]:
         lines.append(f"{checked.case.baseline} is of other settings; --update writes it anew")
     if checked.status == "without baseline":
         lines.append(f"no baseline at {checked.case.baseline}; --update writes it")
-    if checked.log is not None and not checked.passed:
+    if checked.log is not None and checked.status in ("failed", "moved", "better"):
         lines += [f"look at: surefoot plot {checked.log}{where}" for where in _figures(checked.partings)]
     return lines
 
@@ -71,7 +71,9 @@ def summary(checked: Sequence[Checked]) -> str:
     counts = {
         status: sum(one.status == status for one in checked) for status in dict.fromkeys(c.status for c in checked)
     }
-    return f"{len(checked)} scenarios: " + ", ".join(f"{count} {status}" for status, count in counts.items())
+    return f"{len(checked)} scenario{'s' if len(checked) != 1 else ''}: " + ", ".join(
+        f"{count} {status}" for status, count in counts.items()
+    )
 
 
 def markdown(checked: Sequence[Checked]) -> str:

@@ -10,7 +10,7 @@ import yaml
 from surefoot.scenarios.check import check as checking
 from surefoot.scenarios.check import report
 from surefoot.scenarios.check.baseline import Baseline, read_baseline, write_baseline
-from surefoot.scenarios.check.check import cases, run_case, update
+from surefoot.scenarios.check.check import cases, exit_code, run_case, update
 from surefoot.scenarios.check.signs import COLUMNS, SIGNS
 from surefoot.scenarios.check.trace import Trace
 from surefoot.scenarios.errors import ScenarioError
@@ -176,8 +176,33 @@ def test_a_missed_criterion_fails_whatever_the_baseline_says_and_is_no_baseline(
 def test_a_baseline_of_other_settings_is_not_compared(kept, tmp_path):
     case, baseline = kept
     assert yaml.safe_load(baseline.settings)["gait"]["steps"] == 2
-    write_baseline(case.baseline, replace(baseline, settings=baseline.settings.replace("steps: 2", "steps: 3")))
-    assert run_case(case, tmp_path / "again").status == "other scenario"
+    other = baseline.settings.replace("steps: 2", "steps: 3").replace("  double_support: 0.1\n", "") + "seed: 4\n"
+    write_baseline(case.baseline, replace(baseline, settings=other))
+    found = run_case(case, tmp_path / "again")
+    assert (found.status, found.moves, found.partings) == ("other scenario", (), ())
+    assert found.reasons == (
+        "gait.steps is 2, 3 in the baseline",
+        "seed is the default, 4 in the baseline",
+        "gait.double_support is 0.1, the default in the baseline",
+    )
+
+
+@pytest.mark.parametrize(
+    ("statuses", "code", "code_after_update"),
+    [
+        (["same", "better"], 0, 0),
+        (["same", "moved"], 1, 0),
+        (["without baseline", "other scenario"], 1, 0),
+        (["failed", "same"], 1, 1),
+        (["unreadable baseline", "moved"], 2, 0),
+        (["could not run", "failed"], 2, 2),
+    ],
+)
+def test_the_exit_code_tells_what_is_worse_from_what_could_not_be_held_against_anything(
+    first, statuses, code, code_after_update
+):
+    found = [replace(first, status=status) for status in statuses]
+    assert (exit_code(found, False), exit_code(found, True)) == (code, code_after_update)
 
 
 def test_what_cannot_run_and_what_is_no_baseline_is_told(case, tmp_path):
@@ -249,6 +274,8 @@ def test_scenarios_run_side_by_side_in_the_order_in_which_they_were_named(kept, 
     found = checking.check(chosen, tmp_path / "runs", 2, seen.append)
     assert [one.status for one in found] == ["without baseline", "same"]
     assert {one.case.scenario.name for one in seen} == {"ramble", "stroll"}
+    assert [path.parent.name for path in (tmp_path / "runs").glob("*/log.mcap")] == ["ramble-0"]
+    assert [one.log is None for one in found] == [False, True]
 
 
 def test_a_baseline_is_read_as_it_was_written(kept):

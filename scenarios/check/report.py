@@ -31,14 +31,13 @@ def move_text(move: Move) -> str:
 
 
 def lines_of(checked: Checked) -> list[str]:
-    """What is to be known of one run, worst first: why it failed, what moved, where to look."""
+    """What is to be known of one run, worst first: why it failed, in what it parts, what moved, where to look."""
     order = {"worse": 0, "other": 1, "better": 2}
     moves = [move_text(move) for move in sorted(checked.moves, key=lambda move: order[move.direction])]
-    lines = [*checked.reasons, *moves[:_SHOWN_MOVES]]
+    partings = zip(("first", "most"), checked.partings, strict=False)
+    lines = [*checked.reasons, *(f"parts {when}: {one.text}" for when, one in partings), *moves[:_SHOWN_MOVES]]
     if len(moves) > _SHOWN_MOVES:
         lines.append(f"and {len(moves) - _SHOWN_MOVES} metrics more")
-    for when, parting in zip(("first", "most"), checked.partings, strict=False):
-        lines.append(f"parts {when}: {parting.text}")
     if checked.status == "other scenario":
         lines.append(f"{checked.case.baseline} is of other settings; --update writes it anew")
     if checked.status == "without baseline":

@@ -132,6 +132,14 @@ def test_a_run_whose_trace_parts_has_moved_and_is_told_where_first_and_most(kept
     assert f"look at: surefoot plot {found.log} --what soles --from {end:g}" in lines
 
 
+def test_a_metric_of_a_package_that_is_not_here_is_named(kept, tmp_path):
+    case, baseline = kept
+    changed(case, baseline, com_sway=0.1)
+    found = run_case(case, tmp_path / "again")
+    assert found.status == "moved"
+    assert report.lines_of(found)[0] == "com_sway is not known here; install the package that has this metric"
+
+
 def test_each_figure_that_is_pointed_to_is_there():
     assert {sign.figure for sign in SIGNS} <= set(FIGURES)
 

@@ -175,7 +175,7 @@ _MM = (1e3, "mm")
 _GRIP = "largest force along the ground over normal force that the controller plans for the {side} foot {stage}"
 
 SIGNS: tuple[Sign, ...] = (
-    Sign(("time",), 3, (0.011, 0.0), (1.0, "s"), "feet", "begin, {stage}", _times),
+    Sign(("time",), 3, (0.011, 0.0), (1.0, "s"), "feet", "begin of {label}", _times),
     Sign(
         ("lag",), 4, (1e-3, 0.0), (1e3, "ms"), "feet",
         "lag of the measured ground forces behind those that the controller plans {stage}", _lag, body=True,
@@ -183,11 +183,6 @@ SIGNS: tuple[Sign, ...] = (
     *(
         Sign((f"friction_{side}",), 3, (0.1, 0.0), (1.0, ""), "grip", _GRIP.replace("{side}", side),
              _friction(foot), body=True)
-        for foot, side in enumerate(FEET)
-    ),
-    *(
-        Sign((f"torque_{side}",), 2, (0.5, 0.02), (1.0, "N m"), "torques", f"torque of the {side} leg (RMS) {{stage}}",
-             _leg_torque(foot), body=True)
         for foot, side in enumerate(FEET)
     ),
     Sign(
@@ -201,12 +196,17 @@ SIGNS: tuple[Sign, ...] = (
         ("swing",), 5, (5e-5, 0.05), _MM, "feet",
         "swing task: largest distance of the {foot} sole from its reference {stage}", _swing_error,
     ),
+    *(
+        Sign((f"torque_{side}",), 2, (0.5, 0.02), (1.0, "N m"), "torques", f"torque of the {side} leg (RMS) {{stage}}",
+             _leg_torque(foot), body=True)
+        for foot, side in enumerate(FEET)
+    ),
     Sign(
         ("zmp",), 4, (5e-3, 0.05), _MM, "balance", "largest distance of the ZMP from its reference {stage}", _zmp_error
     ),
     Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), _MM, "balance", "CoM at the end of {label}", _com),
 )  # fmt: skip
-"""What is kept of a run, from the controller's answer to what comes of it: of those that part in the same stage, the
-first is nearest to the cause."""
+"""What is kept of a run; of those that part in the same stage, the first is nearest to the cause. Torques come late: after
+the first tick they follow from how the robot moves."""
 
 COLUMNS = tuple(column for sign in SIGNS for column in sign.columns)

@@ -206,7 +206,7 @@ SIGNS: tuple[Sign, ...] = (
     ),
     Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), _MM, "balance", "CoM at the end of {label}", _com),
 )  # fmt: skip
-"""What is kept of a run; of those that part in the same stage, the first is nearest to the cause. Torques come late: after
-the first tick they follow from how the robot moves."""
+"""What is kept of a run; of those that part in the same stage, the first is nearest to the cause. Torques come late:
+after the first tick they follow from how the robot moves."""
 
 COLUMNS = tuple(column for sign in SIGNS for column in sign.columns)

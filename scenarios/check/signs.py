@@ -81,6 +81,7 @@ class Sign:
         words: what it is, of which foot and in which stage.
         measure: from a run and its stages to the values, shape (stages, columns); NaN where it means nothing.
         body: whether it is of joints and real feet, which a pendulum has not got.
+        peak: whether it parts only above the greatest value of all stages.
     """
 
     columns: tuple[str, ...]
@@ -91,6 +92,7 @@ class Sign:
     words: str
     measure: Callable[[RunView, Sequence[Stage]], Array]
     body: bool = False
+    peak: bool = False
 
 
 def _times(run: RunView, parts: Sequence[Stage]) -> Array:
@@ -182,7 +184,7 @@ SIGNS: tuple[Sign, ...] = (
     ),
     *(
         Sign((f"friction_{side}",), 3, (0.1, 0.0), (1.0, ""), "grip", _GRIP.replace("{side}", side),
-             _friction(foot), body=True)
+             _friction(foot), body=True, peak=True)
         for foot, side in enumerate(FEET)
     ),
     Sign(

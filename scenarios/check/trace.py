@@ -99,7 +99,9 @@ class Trace:
         if not np.isfinite(after).all():
             return _LOST, f"{what} cannot be told any more"
         yaw = self.values["sole_yaw"][stage] if len(before) == 3 and "sole_yaw" in self.values else 0.0
-        off = after - before
+        if sign.peak:
+            before = np.array([np.nanmax(self.values[sign.columns[0]])])
+        off = np.maximum(after - before, 0.0) if sign.peak else after - before
         if sign.shown[1] == "deg":
             off = np.remainder(off + math.pi, 2.0 * math.pi) - math.pi
         allowed = sign.tolerance[0] + sign.tolerance[1] * float(np.abs(before).max())
@@ -155,4 +157,4 @@ def _place_text(off: Array, yaw: float, sign: Sign) -> str:
 def _number_text(now: Array, before: Array, sign: Sign) -> str:
     scale, unit = sign.shown
     values = (f"{scale * float(one[0]):.3g} {unit}".rstrip() for one in (now, before))
-    return ", ".join(values) + " in the baseline"
+    return f"{next(values)}, {'at most ' if sign.peak else ''}{next(values)} in the baseline"

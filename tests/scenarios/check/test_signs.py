@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from surefoot.scenarios.check.signs import SIGNS, Stage, stages
+from surefoot.scenarios.check.trace import Trace
 
 pytestmark = pytest.mark.unit
 
@@ -106,3 +107,14 @@ def test_stages_go_from_lift_off_to_lift_off_and_cover_the_run():
     cut = SimpleNamespace(ticks=30, single_support=single[:30], field=lambda topic, name: stance[:30])
     assert stages(cut)[-1] == Stage("step 1", 20, 30, foot=0, landed=29)
     assert stages(SimpleNamespace(ticks=0)) == []
+
+
+def test_friction_parts_only_above_what_all_steps_of_the_baseline_use():
+    def trace(*friction):
+        values = {"time": np.array([0.0, 0.6]), "friction_left": np.array(friction)}
+        return Trace(("step 1", "step 2"), ("left", "right"), values)
+
+    assert trace(0.4, 0.6).partings(trace(0.65, 0.1)) == []
+    (parting,) = trace(0.4, 0.6).partings(trace(0.75, 0.6))
+    assert parting.text.endswith("for the left foot in step 1: 0.75, at most 0.6 in the baseline")
+    assert parting.excess == pytest.approx(1.5)

@@ -4,12 +4,12 @@ PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test unit physics long gate format bench clean
+.PHONY: walk test unit physics check long gate format bench clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
 
-test: gate unit physics
+test: gate unit physics check
 
 gate: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
@@ -24,6 +24,9 @@ unit: $(VENV)/.installed-dev
 
 physics: $(VENV)/.installed-dev
 	$(BIN)/pytest -m physics -n auto --dist loadscope
+
+check: $(VENV)/.installed-dev
+	$(BIN)/surefoot check stand paper-brisk stairs-tall walk-sideways walk
 
 long: $(VENV)/.installed-dev
 	$(BIN)/pytest -m long

@@ -23,6 +23,7 @@ from surefoot.scenarios.file.schema import (
     VelocitySettings,
 )
 from surefoot.scenarios.file.units import unit_of
+from surefoot.scenarios.judge.metric import LITTLE, SHARE, Metric
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log.spec import ChannelSpec
 from surefoot.scenarios.log.writer import CHUNK_PERIOD_NS
@@ -68,10 +69,23 @@ def channels_table() -> str:
 def metrics_table() -> str:
     """Every metric with its meaning."""
     rows = [
-        f"| `{name}` | {metric.shown} | {'' if metric.body else 'yes'} | {metric.meaning} |"
+        f"| `{name}` | {metric.shown} | {'' if metric.body else 'yes'} | {tolerance(metric)} | {metric.meaning} |"
         for name, metric in OWN.items()
     ]
-    return "\n".join(["| metric | shown in | pendulum | meaning |", "|---|---|---|---|", *rows])
+    head = ["| metric | shown in | pendulum | tolerance | meaning |", "|---|---|---|---|---|"]
+    return "\n".join([*head, *rows])
+
+
+def tolerance(metric: Metric[Any]) -> str:
+    """By how much `surefoot check` lets a metric move, in the unit in which it is shown and of its value."""
+    if not metric.repeatable:
+        return "not compared"
+    counts = metric.tolerance is None and metric.kind in ("bool", "int")
+    little, share = (0.0, 0.0) if counts else metric.tolerance or (LITTLE.get(metric.unit, 0.0), SHARE)
+    unit = "%" if metric.shown.startswith("%") else metric.shown
+    parts = [f"{little * metric.scale:.3g} {unit}".strip() if little else ""]
+    parts.append(f"{100.0 * share:g} % of it" if share else "")
+    return " + ".join(part for part in parts if part) or "none"
 
 
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {

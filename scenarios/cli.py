@@ -416,8 +416,7 @@ def check(
     if update:
         for path in checking.update(found):
             typer.echo(f"written: {path}")
-        raise typer.Exit(0 if all(one.now is not None and one.status != "failed" for one in found) else MISSED)
-    raise typer.Exit(0 if all(one.passed for one in found) else MISSED)
+    raise typer.Exit(checking.exit_code(found, update))
 
 
 @app.command()

@@ -1,50 +1,24 @@
 """A baseline: what a scenario's run measured when it was as it should be, in a file that people read and review."""
 
 import contextlib
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
 import yaml
 
+from surefoot.scenarios.check.trace import Trace
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
 
 ENDING = ".baseline.yaml"
 
-TRACE_PERIOD = 0.5
-"""Time between two samples of a baseline's trace [s]."""
-
-TRACED: Mapping[str, tuple[str, str, float]] = {
-    "CoM": ("/truth", "com", 2e-3),
-    "ZMP": ("/contact", "zmp", 5e-3),
-    "left sole": ("/truth", "left_sole", 2e-3),
-    "right sole": ("/truth", "right_sole", 2e-3),
-}
-"""What is kept of a run over time: topic and field, of which x, y and z; and how far a run may part from it [m]."""
-
-RELATIVE = 0.05
-"""Share of a metric's value by which it may differ from its baseline."""
-
-ABSOLUTE = {"m": 2e-4, "rad": 2e-3, "s": 0.011, "m/s": 2e-3, "": 2e-3}
-"""How much it may differ whatever its value, by its unit: less than what anyone would call a change of the walk."""
-
 Value = bool | int | float | None
 Direction = Literal["better", "worse", "other"]
-
-
-def tolerance(metric: Metric[Any], value: Value) -> float:
-    """How far a metric may be from this value of its baseline, in its unit; counts may not differ at all."""
-    if not isinstance(value, float):
-        return 0.0
-    return ABSOLUTE.get(metric.unit, 0.0) + RELATIVE * abs(value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,28 +43,6 @@ class Move:
 
 
 @dataclass(frozen=True, slots=True)
-class Parting:
-    """Where a run first is not where its baseline was.
-
-    Attributes:
-        time: of the sample [s].
-        what: in words, such as "ZMP y".
-        before: of the baseline [m].
-        now: of the run [m]; NaN where it has ended.
-    """
-
-    time: float
-    what: str
-    before: float
-    now: float
-
-    def __str__(self) -> str:
-        """In a sentence without a full stop."""
-        now = "the run has ended" if math.isnan(self.now) else f"{self.now:.4f} m"
-        return f"{self.what} at {self.time:g} s: {now}, {self.before:.4f} m in the baseline"
-
-
-@dataclass(frozen=True, slots=True)
 class Baseline:
     """Metrics and trace of a run that was as it should be.
 
@@ -98,19 +50,19 @@ class Baseline:
         scenario: its name.
         settings: what shapes the run and is not a default, so that a baseline of another scenario is not compared.
         metrics: those that two runs have in common, by name.
-        trace: of each thing that is traced, samples every `TRACE_PERIOD`, shape (n, 3) [m].
+        trace: its signs, stage by stage.
     """
 
     scenario: str
     settings: str
     metrics: Mapping[str, Any]
-    trace: Mapping[str, np.ndarray]
+    trace: Trace
 
     @classmethod
     def of(cls, scenario: str, settings: str, metrics: Mapping[str, Any], log: Log) -> "Baseline":
         """What is kept of a run."""
         kept = {name: value for name, value in metrics.items() if (m := known(name)) is not None and m.repeatable}
-        return cls(scenario, settings, kept, traced(log))
+        return cls(scenario, settings, kept, Trace.of(log))
 
     def moves(self, metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> Iterator[Move]:
         """Metrics that moved by more than their tolerance; those that the baseline has not got are no moves."""
@@ -120,24 +72,18 @@ class Baseline:
                 yield Move(name, None, None, 0.0, "", "other")
                 continue
             for label, old, new in _elements(name, before, metrics.get(name)):
-                allowed = tolerance(metric, old)
+                allowed = 0.0 if isinstance(old, bool) else metric.allowed(old)
                 if not _near(old, new, allowed):
                     yield Move(label, old, new, allowed, metric.unit, _direction(criteria.get(name), old, new))
 
-    def parting(self, log: Log) -> Parting | None:
-        """Where the run of a log first parts from this one; None where it does not."""
-        found, now = [], traced(log)
-        for name, samples in self.trace.items():
-            other = np.full_like(samples, np.nan)
-            if name in now:
-                common = min(len(samples), len(now[name]))
-                other[:common] = now[name][:common]
-            apart = ~(np.abs(other - samples) <= TRACED[name][2]) & np.isfinite(samples)
-            if apart.any():
-                row, axis = (int(index[0]) for index in np.nonzero(apart))
-                values = float(samples[row, axis]), float(other[row, axis])
-                found.append(Parting(row * TRACE_PERIOD, f"{name} {'xyz'[axis]}", *values))
-        return min(found, key=lambda parting: parting.time, default=None)
+    def other_settings(self, settings: str) -> list[str]:
+        """Which keys of a scenario's settings, in YAML, are not as here, a sentence each."""
+        before, now = (_flat(yaml.safe_load(text) or {}) for text in (self.settings, settings))
+        return [
+            f"{key} is {now.get(key, 'the default')}, {before.get(key, 'the default')} in the baseline"
+            for key in {**before, **now}
+            if (key in before, before.get(key)) != (key in now, now.get(key))
+        ]
 
     def text(self) -> str:
         """The file: metrics with their units, then the trace."""
@@ -150,25 +96,9 @@ class Baseline:
             metric = known(name)
             unit = f"  # {metric.unit}" if metric is not None and metric.unit else ""
             lines.append(f"  {name}: {yaml.safe_dump(_rounded(value), default_flow_style=True).splitlines()[0]}{unit}")
-        lines.append(f"trace:  # every {TRACE_PERIOD:g} s, x y z [m]")
-        for name, samples in self.trace.items():
-            lines.append(f"  {name}:")
-            lines += [f"    - [{', '.join('.nan' if math.isnan(x) else f'{x:.4f}' for x in row)}]" for row in samples]
+        lines += ["trace:  # lift-off to lift-off; SI units", *(f"  - {row}" for row in self.trace.lines())]
         settings = "\n".join(f"  {line}" for line in self.settings.splitlines())
         return "\n".join([*lines, f"settings: |\n{settings}\n"])
-
-
-def traced(log: Log) -> dict[str, np.ndarray]:
-    """Samples of a run every `TRACE_PERIOD`, shape (n, 3) [m], as far as its log has them."""
-    found = {}
-    for name, (topic, field, _) in TRACED.items():
-        if topic in log:
-            channel = log[topic]
-            if len(channel.time):
-                times = np.arange(0.0, channel.time[-1] + 1e-9, TRACE_PERIOD)
-                rows = np.minimum(np.searchsorted(channel.time, times - 1e-9), len(channel.time) - 1)
-                found[name] = np.asarray(channel.field(field)[rows, :3], dtype=float)
-    return found
 
 
 def read_baseline(path: Path) -> Baseline:
@@ -179,11 +109,14 @@ def read_baseline(path: Path) -> Baseline:
     """
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
-        trace = {str(name): np.array(rows, dtype=float).reshape(-1, 3) for name, rows in data["trace"].items()}
-        return Baseline(str(data["scenario"]), str(data["settings"]), dict(data["metrics"]), trace)
+        settings, metrics = str(data["settings"]), dict(data["metrics"])
+        _flat(yaml.safe_load(settings) or {})
+        if wrong := [name for name, value in metrics.items() if (m := known(name)) is not None and not m.fits(value)]:
+            raise ValueError(wrong)
+        return Baseline(str(data["scenario"]), settings, metrics, Trace.from_rows(data["trace"]))
     except OSError as error:
         raise ScenarioError([f"{path}: cannot be read, {error.strerror}; give a baseline"]) from None
-    except (yaml.YAMLError, UnicodeError, KeyError, TypeError, ValueError, AttributeError):
+    except (yaml.YAMLError, UnicodeError, LookupError, TypeError, ValueError, AttributeError):
         raise ScenarioError([f"{path}: is no baseline; write it anew with `surefoot check --update`"]) from None
 
 
@@ -209,6 +142,14 @@ def _elements(name: str, before: Any, now: Any) -> Iterator[tuple[str, Value, Va
         yield from ((f"{name}.{part}", old, parts.get(part)) for part, old in before.items())
     else:
         yield name, before, now
+
+
+def _flat(settings: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Settings by dotted key."""
+    flat: dict[str, Any] = {}
+    for key, value in settings.items():
+        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+    return flat
 
 
 def _near(before: Value, now: Value, allowed: float) -> bool:

@@ -1,5 +1,6 @@
 """``surefoot check``: runs scenarios side by side and holds each against its baseline."""
 
+import shutil
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
@@ -12,9 +13,11 @@ from typing import Literal
 import yaml
 
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.check.baseline import ENDING, Baseline, Move, Parting, read_baseline, write_baseline
+from surefoot.scenarios.check.baseline import ENDING, Baseline, Move, read_baseline, write_baseline
+from surefoot.scenarios.check.trace import Parting
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.judge.verdict import Verdict
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load
@@ -22,7 +25,9 @@ from surefoot.scenarios.setup.load import load
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
 
-Status = Literal["same", "better", "moved", "failed", "without baseline", "other scenario", "could not run"]
+Status = Literal[
+    "same", "better", "moved", "failed", "without baseline", "unreadable baseline", "other scenario", "could not run"
+]
 
 PASSING: tuple[Status, ...] = ("same", "better")
 
@@ -57,7 +62,7 @@ class Checked:
         status: how the run compares with its baseline.
         reasons: why it failed or could not run, one sentence each.
         moves: metrics that are not where the baseline has them.
-        parting: where the run first parts from its baseline.
+        partings: where the run first is not as its baseline, and where it is farthest from it, if that is elsewhere.
         log: of the run, None when there is none.
         now: what the run would be as a baseline, None when there was no run.
     """
@@ -66,7 +71,7 @@ class Checked:
     status: Status
     reasons: tuple[str, ...] = ()
     moves: tuple[Move, ...] = ()
-    parting: Parting | None = None
+    partings: tuple[Parting, ...] = ()
     log: Path | None = None
     now: Baseline | None = None
 
@@ -121,27 +126,47 @@ def run_case(case: Case, out: Path) -> Checked:
         result = run_scenario(case.scenario, out)
         log = read(result.log)
         now = Baseline.of(case.scenario.name, case.settings, result.verdict.metrics, log)
-        known = replace(Checked(case, "same"), log=result.log, now=now, reasons=result.verdict.reasons)
-        before = read_baseline(case.baseline) if case.baseline.exists() else None
-        if before is None:
-            return replace(known, status="without baseline" if result.verdict.passed else "failed")
-        moves = tuple(before.moves(result.verdict.metrics, case.scenario.criteria))
-        compared = replace(known, moves=moves, parting=before.parting(log))
-        if not result.verdict.passed:
-            return replace(compared, status="failed")
-        if yaml.safe_load(before.settings) != yaml.safe_load(case.settings):
-            return replace(compared, status="other scenario")
-        if any(move.direction != "better" for move in moves):
-            return replace(compared, status="moved")
-        return replace(compared, status="better" if moves else "same")
     except (ScenarioError, SetupError, LogError) as refusal:
         return Checked(case, "could not run", (" ".join(str(refusal).split()),))
+    return _held_against_baseline(case, result.verdict, replace(Checked(case, "same"), log=result.log, now=now))
+
+
+def _held_against_baseline(case: Case, verdict: Verdict, run: Checked) -> Checked:
+    """What a run is by its verdict and by its baseline, in this order."""
+    run = replace(run, reasons=verdict.reasons)
+    status: Status
+    try:
+        before = read_baseline(case.baseline) if case.baseline.exists() else None
+    except ScenarioError as refusal:
+        status = "unreadable baseline" if verdict.passed else "failed"
+        return replace(run, status=status, reasons=(*run.reasons, " ".join(str(refusal).split())))
+    if before is None:
+        return replace(run, status="without baseline" if verdict.passed else "failed")
+    if others := before.other_settings(case.settings):
+        status = "other scenario" if verdict.passed else "failed"
+        return replace(run, status=status, reasons=(*run.reasons, *others))
+    moves = tuple(before.moves(verdict.metrics, case.scenario.criteria))
+    partings = _first_and_most(before.trace.partings(run.now.trace) if run.now is not None else [])
+    run = replace(run, moves=moves, partings=partings)
+    if not verdict.passed:
+        return replace(run, status="failed")
+    if partings or any(move.direction != "better" for move in moves):
+        return replace(run, status="moved")
+    return replace(run, status="better" if moves else "same")
+
+
+def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
+    """Of partings in order, the first, and the one that is farthest off if that is another."""
+    if not partings:
+        return ()
+    most = max(partings, key=lambda one: one.excess)
+    return (partings[0],) if most is partings[0] else (partings[0], most)
 
 
 def check(
     chosen: Sequence[Case], out: Path, jobs: int, on_done: Callable[[Checked], None] = lambda _: None
 ) -> tuple[Checked, ...]:
-    """Run cases side by side.
+    """Run cases side by side; the logs of those that are the same as their baselines are not kept.
 
     Args:
         chosen: to run.
@@ -154,6 +179,9 @@ def check(
     """
     done: dict[str, Checked] = {}
     for case, checked in _side_by_side(chosen, out, jobs):
+        if checked.status == "same" and checked.log is not None:
+            shutil.rmtree(checked.log.parent)
+            checked = replace(checked, log=None)
         done[case.scenario.name] = checked
         on_done(checked)
     return tuple(done[case.scenario.name] for case in chosen)
@@ -195,3 +223,16 @@ def update(checked: Sequence[Checked]) -> tuple[Path, ...]:
         write_baseline(one.case.baseline, one.now)
         written.append(one.case.baseline)
     return tuple(written)
+
+
+def exit_code(checked: Sequence[Checked], updated: bool) -> int:
+    """0 when all is as it should be, 2 where something could not be run or read, 1 otherwise.
+
+    Args:
+        checked: what became of the cases.
+        updated: whether baselines were written, after which only runs without one are not as they should be.
+    """
+    statuses = {one.status for one in checked if not one.passed}
+    if updated:
+        statuses &= {"failed", "could not run"}
+    return 2 if statuses & {"could not run", "unreadable baseline"} else int(bool(statuses))

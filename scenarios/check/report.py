@@ -1,5 +1,6 @@
 """What a check found, for a person, for a CI page and for a CI server."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree as Xml
@@ -8,16 +9,23 @@ from rich.console import Console
 
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked
+from surefoot.scenarios.check.trace import Parting
+from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
 from surefoot.scenarios.output import write_whole
 
 _SHOWN_MOVES = 12
 """Moves of a run that are named; the others are counted."""
 
+_LEAST_WINDOW = 0.2
+"""Least time that a figure is asked to show [s]."""
+
 
 def move_text(move: Move) -> str:
     """One move: from where to where, how it is meant, and what would have been allowed."""
     name = move.name.partition("[")[0]
+    if known(name) is None:
+        return f"{name} is not known here; install the package that has this metric"
     unit = shown_unit(name)
     before, now = (value_text(name, value) for value in (move.before, move.now))
     allowed = "" if not move.allowed else f", {value_text(name, move.allowed)} {unit} is allowed".replace("  ", " ")
@@ -26,21 +34,29 @@ def move_text(move: Move) -> str:
 
 
 def lines_of(checked: Checked) -> list[str]:
-    """What is to be known of one run, worst first: why it failed, what moved, where to look."""
+    """What is to be known of one run, worst first: why it failed, in what it parts, what moved, where to look."""
     order = {"worse": 0, "other": 1, "better": 2}
     moves = [move_text(move) for move in sorted(checked.moves, key=lambda move: order[move.direction])]
-    lines = [*checked.reasons, *moves[:_SHOWN_MOVES]]
+    partings = zip(("first", "most"), checked.partings, strict=False)
+    lines = [*checked.reasons, *(f"parts {when}: {one.text}" for when, one in partings), *moves[:_SHOWN_MOVES]]
     if len(moves) > _SHOWN_MOVES:
         lines.append(f"and {len(moves) - _SHOWN_MOVES} metrics more")
-    if checked.parting is not None:
-        lines.append(f"parts first from its baseline: {checked.parting}")
     if checked.status == "other scenario":
         lines.append(f"{checked.case.baseline} is of other settings; --update writes it anew")
     if checked.status == "without baseline":
         lines.append(f"no baseline at {checked.case.baseline}; --update writes it")
-    if checked.log is not None and not checked.passed:
-        lines.append(f"look at: surefoot plot {checked.log}")
+    if checked.log is not None and checked.status in ("failed", "moved", "better"):
+        lines += [f"look at: surefoot plot {checked.log}{where}" for where in _figures(checked.partings)]
     return lines
+
+
+def _figures(partings: Sequence[Parting]) -> list[str]:
+    """Options by which `surefoot plot` shows each; none of them for the page of all figures."""
+    shown = []
+    for parting in partings:
+        until = f" --to {max(parting.end, parting.begin + _LEAST_WINDOW):g}" if math.isfinite(parting.end) else ""
+        shown.append(f" --what {parting.figure} --from {parting.begin:g}{until}")
+    return list(dict.fromkeys(shown)) or [""]
 
 
 def print_checked(checked: Checked, console: Console) -> None:
@@ -57,7 +73,9 @@ def summary(checked: Sequence[Checked]) -> str:
     counts = {
         status: sum(one.status == status for one in checked) for status in dict.fromkeys(c.status for c in checked)
     }
-    return f"{len(checked)} scenarios: " + ", ".join(f"{count} {status}" for status, count in counts.items())
+    return f"{len(checked)} scenario{'s' if len(checked) != 1 else ''}: " + ", ".join(
+        f"{count} {status}" for status, count in counts.items()
+    )
 
 
 def markdown(checked: Sequence[Checked]) -> str:

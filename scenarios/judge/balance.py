@@ -41,13 +41,13 @@ def zmp_inside(run: RunView) -> Mask:
     return np.asarray(run.reduced(zmp_depth) >= -1e-9)
 
 
-@metric(shown=(1e2, "% of the time"), reduces=(zmp_depth,), least=0.0, most=1.0)
+@metric(shown=(1e2, "% of the time"), reduces=(zmp_depth,), least=0.0, most=1.0, tolerance=(0.002, 0.0))
 def zmp_inside_fraction(run: RunView) -> float:
     """Share of ticks at which `zmp_inside` holds."""
     return float(np.mean(zmp_inside(run)))
 
 
-@metric(unit="m", shown=(1e3, "mm"), reduces=(zmp_depth,))
+@metric(unit="m", shown=(1e3, "mm"), reduces=(zmp_depth,), tolerance=(0.001, 0.0))
 def zmp_excursion_max(run: RunView) -> float | None:
     """Farthest that the ZMP came out of the planned support polygon of feet shrunk to 90 %, negative inside [m]."""
     depth = run.reduced(zmp_depth)

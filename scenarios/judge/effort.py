@@ -91,7 +91,9 @@ def torque_ratio_max(run: RunView) -> float:
     return float(run.reduced(torque_ratio).max())
 
 
-@metric(unit="N m", reads={"/reference": ()}, reduces=(knee_torque_squared,), body=True, least=0.0)
+@metric(
+    unit="N m", reads={"/reference": ()}, reduces=(knee_torque_squared,), body=True, least=0.0, tolerance=(0.5, 0.01)
+)
 def knee_torque_rms(run: RunView) -> float | None:
     """Commanded knee torque, RMS over both knees from the first lift-off to the last touchdown, or the run [N m]."""
     squared = run.reduced(knee_torque_squared)[: run.ticks]
@@ -105,7 +107,7 @@ def torque_at_limit_fraction(run: RunView) -> float:
     return float(np.mean(run.reduced(torque_ratio) >= AT_LIMIT))
 
 
-@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reduces=(joint_limit_margin,), body=True)
+@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reduces=(joint_limit_margin,), body=True, tolerance=(0.005, 0.0))
 def joint_limit_margin_min(run: RunView) -> float:
     """Least distance of a joint from its limits, negative beyond them [rad]."""
     return float(run.reduced(joint_limit_margin).min())
@@ -117,7 +119,14 @@ def joint_speed_ratio_max(run: RunView) -> float:
     return float(run.reduced(joint_speed_ratio).max())
 
 
-@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads={"/reference": ()}, reduces=(knee_flexion,), body=True)
+@metric(
+    unit="rad",
+    shown=(180.0 / math.pi, "deg"),
+    reads={"/reference": ()},
+    reduces=(knee_flexion,),
+    body=True,
+    tolerance=(0.005, 0.0),
+)
 def knee_angle_mean(run: RunView) -> float | None:
     """Mean flexion of both knees while walking, or over the whole run when no foot was lifted [rad]."""
     if not run.knees:
@@ -125,7 +134,7 @@ def knee_angle_mean(run: RunView) -> float | None:
     return float(np.mean(run.reduced(knee_flexion)[run.walking if run.walking.stop else slice(None)]))
 
 
-@metric(reads={"/truth": ("com",)}, reduces=(joint_power,), body=True, least=0.0)
+@metric(reads={"/truth": ("com",)}, reduces=(joint_power,), body=True, least=0.0, tolerance=(0.002, 0.01))
 def cost_of_transport(run: RunView) -> float | None:
     """Joint work, absolute, over weight times the CoM's horizontal way from begin to end [-]."""
     com = run.field("/truth", "com")[:, :2]
@@ -136,7 +145,7 @@ def cost_of_transport(run: RunView) -> float | None:
     return work / (run.constants.mass * GRAVITY * way)
 
 
-@metric(unit="m/s", reads={"/truth": ("com",), "/reference": ("phase",)}, least=0.0)
+@metric(unit="m/s", reads={"/truth": ("com",), "/reference": ("phase",)}, least=0.0, tolerance=(0.002, 0.005))
 def speed_mean(run: RunView) -> float | None:
     """Horizontal way of the CoM from the first lift-off to the last touchdown over the time it took [m/s]."""
     if not run.walking.stop:
@@ -146,7 +155,7 @@ def speed_mean(run: RunView) -> float | None:
     return float(np.linalg.norm(com[-1] - com[0]) / (time[-1] - time[0])) if len(time) > 1 else None
 
 
-@metric(unit="m", needs=("/truth",), reads={"/footstep": ()}, least=0.0)
+@metric(unit="m", needs=("/truth",), reads={"/footstep": ()}, least=0.0, tolerance=(0.003, 0.001))
 def path_length(run: RunView) -> float:
     """Length of the way from one middle of the feet to the next, over all touchdowns [m]."""
     if not run.has("/footstep"):
@@ -156,7 +165,7 @@ def path_length(run: RunView) -> float:
     return float(np.linalg.norm(np.diff(middles, axis=0), axis=1).sum())
 
 
-@metric(unit="m", size=2, reads={"/truth": ()})
+@metric(unit="m", size=2, reads={"/truth": ()}, tolerance=(0.003, 0.001))
 def displacement(run: RunView) -> list[float]:
     """Way of the feet's middle from start to end, ahead and to the left in the start heading [m]."""
     middles, yaw = _middles(run), float(_heading(run)[0])
@@ -165,14 +174,14 @@ def displacement(run: RunView) -> list[float]:
     return [float(c * x + s * y), float(c * y - s * x)]
 
 
-@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads={"/truth": ()})
+@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads={"/truth": ()}, tolerance=(0.005, 0.0))
 def heading_change(run: RunView) -> float:
     """Change of the feet's mean heading from start to end, whole turns counted, left positive [rad]."""
     heading = _heading(run)
     return float(heading[-1] - heading[0])
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",)}, least=0.0)
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",)}, least=0.0, tolerance=(0.001, 0.0))
 def com_height_range(run: RunView) -> float:
     """Highest minus lowest CoM [m]."""
     return float(np.ptp(run.field("/truth", "com")[:, 2]))

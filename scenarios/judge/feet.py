@@ -40,7 +40,7 @@ def footstep_error_max(run: RunView) -> float | None:
     return float(np.linalg.norm((landed(run) - run.log["/footstep"].field("planned"))[:, :3], axis=1).max())
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("foot",)})
+@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("foot",)}, tolerance=(0.001, 0.0))
 def stair_edge_margin_min(run: RunView) -> float | None:
     """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
     terrain = _terrain(run)
@@ -54,7 +54,13 @@ def stair_edge_margin_min(run: RunView) -> float | None:
     return float(terrain.edge_margins(poses[:, :2], placed).min())
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/reference": ("phase", "stance")}, body=True)
+@metric(
+    unit="m",
+    shown=(1e3, "mm"),
+    reads={"/truth": (), "/reference": ("phase", "stance")},
+    body=True,
+    tolerance=(0.001, 0.0),
+)
 def swing_clearance_min(run: RunView) -> float | None:
     """Least height of a swing sole's corner over the ground, but for the first and last quarter of each swing [m]."""
     stance, least = run.field("/reference", "stance"), []

@@ -33,6 +33,12 @@ RESERVED = (
 )
 """Names that stand beside the metrics in what `inspect --json` prints."""
 
+SHARE = 0.05
+"""Share of its value by which a metric may differ between runs that count as the same, unless it says otherwise [-]."""
+
+LITTLE = {"m": 2e-4, "rad": 2e-3, "s": 0.011, "m/s": 2e-3, "": 2e-3}
+"""How much it may differ beside that, by its unit: less than what anyone would call a change of the walk."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reduction:
@@ -71,6 +77,8 @@ class Metric(Generic[T]):
         repeatable: whether two runs of the same scenario give the same value; times on the wall's clock do not.
         least: value that it never goes below by its nature, so that no bound there checks anything; None for none.
         most: value that it never exceeds, likewise.
+        tolerance: by how much two runs may differ that count as the same, in its unit and as a share of its value;
+            None for what its unit and kind say.
     """
 
     name: str
@@ -87,6 +95,7 @@ class Metric(Generic[T]):
     repeatable: bool
     least: float | None = None
     most: float | None = None
+    tolerance: tuple[float, float] | None = None
 
     def __call__(self, run: RunView) -> T:
         """Its value for a run."""
@@ -126,6 +135,13 @@ class Metric(Generic[T]):
         """Whether runs of a fidelity have it."""
         return fidelity != "pendulum" or not self.body
 
+    def allowed(self, value: float | None) -> float:
+        """How far from this value another run may be that counts as the same; counts may not differ, unless it says."""
+        if self.tolerance is None and not isinstance(value, float):
+            return 0.0
+        little, share = self.tolerance or (LITTLE.get(self.unit, 0.0), SHARE)
+        return little + share * abs(value or 0.0)
+
     def fits(self, value: Any) -> bool:
         """Whether a value is of the kind that was promised, so that no part of it escapes a criterion."""
         if value is None:
@@ -164,6 +180,7 @@ def metric(
     repeatable: bool = True,
     least: float | None = None,
     most: float | None = None,
+    tolerance: tuple[float, float] | None = None,
 ) -> Callable[[Callable[[RunView], T]], Metric[T]]:
     """Make a function of a run a metric of its name; the first line of its documentation says what it is.
 
@@ -179,6 +196,8 @@ def metric(
         repeatable: whether two runs of the same scenario give the same value.
         least: value that it never goes below by its nature; a criterion that asks for no more is refused.
         most: value that it never exceeds, likewise.
+        tolerance: by how much two runs may differ that `surefoot check` takes for the same, in its unit and as a share
+            of its value; by default what its unit says, and counts not at all.
 
     Raises:
         ParameterError: these do not make a metric.
@@ -192,7 +211,8 @@ def metric(
         reduced = (topic for one in reduces for topic in one.needs)
         topics = tuple(dict.fromkeys((*fields, *reduced))) if needs is None else needs
         found = Metric(
-            name, function, unit, scale, shown_unit, size, parts, topics, fields, reduces, body, repeatable, least, most
+            name, function, unit, scale, shown_unit, size, parts, topics, fields, reduces, body, repeatable, least,
+            most, tolerance,
         )  # fmt: skip
         _check(found)
         return found
@@ -219,6 +239,8 @@ def _check(made: Metric[Any]) -> None:
         raise ParameterError(("parts",), f"{who}: parts {made.parts}", "give words")
     if made.least is not None and made.most is not None and not made.least < made.most:
         raise ParameterError(("least",), f"{who}: never below {made.least} nor above {made.most}", "give a range")
+    if made.tolerance is not None and not all(0.0 <= part < math.inf for part in made.tolerance):
+        raise ParameterError(("tolerance",), f"{who}: tolerance {made.tolerance}", "give two numbers from 0 on")
     if not math.isfinite(made.scale) or made.scale == 0.0:
         raise ParameterError(("shown",), f"{who}: shown times {made.scale}", "give a factor that is not zero")
     _check_topics(who, "needs", made.needs)

@@ -25,7 +25,7 @@ def fell(run: RunView) -> bool:
     return fall_time(run) is not None
 
 
-@metric(unit="s", needs=("/truth",), reads=FALL_READS, least=0.0)
+@metric(unit="s", needs=("/truth",), reads=FALL_READS, least=0.0, tolerance=(0.011, 0.0))
 def fall_time(run: RunView) -> float | None:
     """First time at which the robot has fallen [s].
 
@@ -36,7 +36,7 @@ def fall_time(run: RunView) -> float | None:
     return float(run.time[fallen[0]]) if len(fallen) else None
 
 
-@metric(unit="s", reads={"/truth": ()}, least=0.0)
+@metric(unit="s", reads={"/truth": ()}, least=0.0, tolerance=(0.001, 0.0))
 def duration(run: RunView) -> float:
     """Simulated time [s]."""
     return float(run.time[-1] - run.time[0]) + 1 / run.constants.control_rate
@@ -72,7 +72,7 @@ def swings_ended(run: RunView) -> list[tuple[int, int]]:
     return sorted(swing for foot in (0, 1) for swing in runs_of(single & (stance == foot)) if swing[1] < end)
 
 
-@metric(unit="s", reads=_STILL_READS, least=0.0)
+@metric(unit="s", reads=_STILL_READS, least=0.0, tolerance=(0.05, 0.0))
 def standing_time_final(run: RunView) -> float:
     """How long the run ends with the CoM still and both feet loaded [s]."""
     moving = np.flatnonzero(~_still(run))
@@ -80,7 +80,7 @@ def standing_time_final(run: RunView) -> float:
     return (run.ticks - int(first)) / run.constants.control_rate
 
 
-@metric(unit="s", reads={**_STILL_READS, "/reference": ()}, least=0.0)
+@metric(unit="s", reads={**_STILL_READS, "/reference": ()}, least=0.0, tolerance=(0.05, 0.0))
 def standing_time_between(run: RunView) -> float:
     """Longest time between two steps with the CoM still and both feet loaded, 0 when the walk never stops [s]."""
     return (

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 import typer
+import yaml
 
 from surefoot.scenarios.cli import app
 from surefoot.scenarios.show.listing import keys
@@ -42,6 +43,21 @@ def faults(line):
 @pytest.mark.parametrize(("page", "line"), sorted(set(LINES)))
 def test_a_command_line_can_be_given(page, line):
     assert faults(line) == []
+
+
+def test_the_workflow_of_a_ci_server_gives_commands_that_are_there():
+    (text,) = re.findall(
+        r"(?s)```yaml\n(# \.github/.*?)```", (ROOT / "docs" / "checking.md").read_text(encoding="utf-8")
+    )
+    workflow = yaml.safe_load(text)
+    steps = workflow["jobs"]["check"]["steps"]
+    lines = [step["run"] for step in steps if "run" in step]
+    assert [line.split()[0] for line in lines] == ["pip", "surefoot", "cat"]
+    assert faults(lines[1]) == []
+    assert all({"run", "uses"} & set(step) for step in steps)
+    (kept,) = [step["with"]["path"] for step in steps if step.get("if") == "failure()"]
+    options = shlex.split(lines[1])
+    assert kept.split() == [options[options.index(name) + 1] for name in ("--out", "--junit")]
 
 
 def test_what_is_not_there_is_found():

@@ -61,21 +61,24 @@ def push_map(folders: list[Path]) -> None:
     names = {name: tuple(dict.fromkeys(one.labels[name] for one in found)) for name in found[0].labels}
     angle = next(name for name in names if name.endswith(".direction"))
     limits = Limits(key, logs, angle)
-    varied = [Axis(name, values) for name, values in names.items() if len(values) > 1 or name != angle]
+    varied = [Axis(name, values) for name, values in names.items()]
     _save(compass(found, varied, key, limits.at), "push-map.png")
 
 
 def robustness(folders: list[Path]) -> None:
     """What was drawn in runs that passed and in runs that failed."""
     (folder,) = folders
+    spec = specification(folder)
     runs = [row for row in rows(folder / "table.csv") if row["status"] in ("pass", "fail")]
     passed, failed = ([row for row in runs if row["status"] == status] for status in ("pass", "fail"))
     spreads = [
-        Spread(with_unit(key), [row[key] for row in passed], [row[key] for row in failed])
-        for key in specification(folder)["sample"]
+        Spread(with_unit(key), [row[key] for row in passed], [row[key] for row in failed]) for key in spec["sample"]
     ]
-    rate = wilson(len(passed), len(runs))
-    print(f"{len(passed)} of {len(runs)} pass: {rate.rate:.1%}, 95 % interval {rate.low:.1%} to {rate.high:.1%}")
+    for combination in sorted({tuple(str(row[name]) for name in spec.get("grid", {})) for row in runs}):
+        of_it = [row for row in runs if tuple(str(row[name]) for name in spec.get("grid", {})) == combination]
+        met = sum(row["status"] == "pass" for row in of_it)
+        rate = wilson(met, len(of_it))
+        print(*combination, f"{met} of {len(of_it)}: {rate.rate:.1%}, 95 % interval {rate.low:.1%} to {rate.high:.1%}")
     _save(distributions(spreads), "robustness.png")
 
 

@@ -147,7 +147,8 @@ def _rose(
             axes.plot(around, values, color=color, linestyle=(0, (4, 2)), linewidth=0.8)
     if bounds:
         axes.plot([], [], color=GREY, linestyle=(0, (4, 2)), linewidth=0.8, label="one-step capturability limit")
-    axes.set_rlim(0.0, min(1.1 * max(greatest, bounds), 1.35 * greatest) or 1.0)
+    top = min(1.1 * max(greatest, bounds), 1.35 * greatest)  # limits far beyond all thresholds may leave the figure
+    axes.set_rlim(0.0, top if top > 0.0 else 1.0)
     axes.set_theta_zero_location("N")
     axes.set_xticks([share * math.pi for share in ROUND], list(ROUND.values()))
     axes.set_rlabel_position(22.5)

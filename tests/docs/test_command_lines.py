@@ -62,7 +62,7 @@ def test_the_workflow_of_a_ci_server_gives_commands_that_are_there():
 
 def test_what_is_not_there_is_found():
     assert len(LINES) > 50
-    assert faults("surefoot sweep x") == ["sweep"]
+    assert faults("surefoot swep x") == ["swep"]
     assert faults("surefoot compare A B --exit-cod") == ["--exit-cod"]
     assert faults("surefoot run walk --set gait.stride=3 --seed 3") == ["gait.stride"]
 

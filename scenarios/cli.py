@@ -80,7 +80,7 @@ def _settings(incomplete: str) -> list[str]:
 
 @app.command("list")
 def list_(as_json: AsJson = False) -> None:
-    """List scenarios, robots and parts, one line each."""
+    """List scenarios, campaigns, robots and parts, one line each."""
     from surefoot.scenarios.show import listing
 
     if as_json:
@@ -421,7 +421,7 @@ def check(
 
 @app.command()
 def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocompletion=_scenarios)]) -> None:
-    """Print a scenario's commented YAML, to start one's own from."""
+    """Print the commented YAML of a scenario, or of a campaign, to start one's own from."""
     from surefoot.scenarios.show.listing import starter
 
     typer.echo(starter(scenario), nl=False)

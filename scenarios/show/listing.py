@@ -17,6 +17,7 @@ from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.judge.metrics import OWN as OWN_METRICS
 from surefoot.scenarios.loop.sensing import ESTIMATORS
 from surefoot.scenarios.setup.terrain import KINDS
+from surefoot.scenarios.sweep.spec import shipped
 from surefoot.wbc.tasks import TASKS
 
 _REGISTRIES: Mapping[str, tuple[Registry[Any], Callable[[str], str]]] = {
@@ -32,10 +33,10 @@ _REGISTRIES: Mapping[str, tuple[Registry[Any], Callable[[str], str]]] = {
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """Something that a scenario can name.
+    """Something that can be run, or that a scenario can name.
 
     Attributes:
-        kind: scenario, robot, profile, terrain, estimator, task or metric.
+        kind: scenario, campaign, robot, profile, terrain, estimator, task or metric.
         name: its name.
         package: what brings it.
         doc: what it is, in one line; empty where nothing says so.
@@ -56,6 +57,8 @@ def entries() -> Iterator[Entry]:
     """Everything, kind after kind: what is Surefoot's first, then what others bring."""
     for name in catalogue.names():
         yield Entry("scenario", name, catalogue.package(name), catalogue.summary(name))
+    for name, path in shipped().items():
+        yield Entry("campaign", name, OWN_PACKAGE, path.read_text(encoding="utf-8").split("\n", 1)[0].lstrip("# "))
     for kind, (registry, doc) in _REGISTRIES.items():
         for name in registry:
             package = registry.package(name)
@@ -80,7 +83,7 @@ def lines() -> Iterator[str]:
 
 def to_json() -> dict[str, list[dict[str, str]]]:
     """Everything by kind."""
-    found: dict[str, list[dict[str, str]]] = {kind: [] for kind in ("scenario", *_REGISTRIES)}
+    found: dict[str, list[dict[str, str]]] = {kind: [] for kind in ("scenario", "campaign", *_REGISTRIES)}
     for entry in entries():
         found[entry.kind].append({"name": entry.name, "package": entry.package, "doc": entry.doc})
     return found
@@ -106,9 +109,13 @@ _COLUMN = 40
 def starter(name: str) -> str:
     """YAML text of a scenario to start one's own from: each key with its meaning, and what lets an editor check them.
 
+    That of a campaign is given as it is.
+
     Raises:
         ScenarioError: its file is too large or no UTF-8, or there is none.
     """
+    if name not in catalogue.names() and name in (campaigns := shipped()):
+        return campaigns[name].read_text(encoding="utf-8")
     text = catalogue.text(name)[0]
     lines = text.splitlines(keepends=True)
     head = next((number for number, line in enumerate(lines) if not line.startswith("#")), len(lines))

@@ -221,7 +221,7 @@ def push_map(tmp_path_factory):
     campaign, out = read_campaign(str(folder / "spec.yaml")), folder / "out"
     every = tuple(cells(campaign))
     with Journal(out) as journal:
-        worker = LocalWorker(out, journal.scratch, keep_all=False, make=lambda: ThreadPoolExecutor(1))
+        worker = LocalWorker(out, keep_all=False, make=lambda: ThreadPoolExecutor(1))
         run_cells(every, journal, [worker])
         whole = Swept(campaign, out, tuple(outcome_of(cell, journal) for cell in every))
         write(whole)

@@ -24,7 +24,7 @@ ROUND = {0.0: "forward", 0.25: "", 0.5: "left", 0.75: "", 1.0: "backward", 1.25:
 
 Labels = tuple[Any, ...]
 Limit = Callable[[Mapping[str, Any], float], float | None]
-"""Gives the limit of a search by its labels but for the direction, and by that [rad]."""
+"""Gives the limit of a search by its labels, in a direction [rad]."""
 
 
 class Found(NamedTuple):
@@ -118,7 +118,7 @@ def compass(found: Sequence[Found], axes: Sequence[Axis], key: str, limit: Limit
         for one, (labels, group) in zip(every, panels.items(), strict=False):
             assert isinstance(one, PolarAxes)
             names = [axis.name for axis in others]
-            _rose(one, _grouped(group, [axis.name for axis in others[-1:]]), angle.name, names, limit)
+            _rose(one, _grouped(group, [axis.name for axis in others[-1:]]), angle, names, limit)
             one.set_title(title(dict(zip(names, labels, strict=False))) + f"\n{with_unit(key)}", fontsize=9)
         handles, shown = every[0].get_legend_handles_labels()
         figure.legend(handles, shown, loc="outside lower center", ncols=6)
@@ -126,28 +126,30 @@ def compass(found: Sequence[Found], axes: Sequence[Axis], key: str, limit: Limit
 
 
 def _rose(
-    axes: PolarAxes, curves: Mapping[Labels, Sequence[Found]], angle: str, names: Sequence[str], limit: Limit
+    axes: PolarAxes, curves: Mapping[Labels, Sequence[Found]], angle: Axis, names: Sequence[str], limit: Limit
 ) -> None:
-    greatest, bounds = 0.0, 0.0
+    greatest, bounds = 0.0, []
+    ways = sorted(angle.values, key=lambda way: way % (2.0 * math.pi))
     around = np.linspace(0.0, 2.0 * math.pi, 49)
     for color, (labels, group) in zip(CYCLE * len(curves), curves.items(), strict=False):
-        ordered = sorted(group, key=lambda one: one.labels[angle] % (2.0 * math.pi))
-        angles = [one.labels[angle] for one in ordered]
-        radii = [one.shown for one in ordered]
+        shown = {one.labels[angle.name]: one.shown for one in group}
         name = title(dict(zip(names[-1:], labels, strict=False))) or "threshold"
-        axes.plot([*angles, angles[0]], [*radii, radii[0]], color=color, marker="o", markersize=3.0, label=name)
-        beyond = [one for one in ordered if one.threshold.side != "inside"]
-        rest = {name: value for name, value in group[0].labels.items() if name != angle}
-        axes.plot([one.labels[angle] for one in beyond], [one.shown for one in beyond], "o", color=color, mfc="white")
-        greatest = max(greatest, *radii)
-        dashed = [limit(rest, float(way)) for way in around]
-        if any(one is not None for one in dashed):
-            values = np.array([np.nan if one is None else one for one in dashed])
-            bounds = max(bounds, float(np.nanmax(values)))
+        radii = [shown.get(way, math.nan) for way in (*ways, ways[0])]  # a gap where a search is not done
+        axes.plot([*ways, ways[0]], radii, color=color, marker="o", markersize=3.0, label=name)
+        beyond = [one for one in group if one.threshold.side != "inside"]
+        axes.plot(
+            [one.labels[angle.name] for one in beyond], [one.shown for one in beyond], "o", color=color, mfc="white"
+        )
+        greatest = max(greatest, *shown.values())
+        dashed = [limit(group[0].labels, float(way)) for way in around]
+        values = np.array([one for one in dashed if one is not None])
+        if len(values) == len(around):
+            bounds.append(float(values.max()))
             axes.plot(around, values, color=color, linestyle=(0, (4, 2)), linewidth=0.8)
     if bounds:
         axes.plot([], [], color=GREY, linestyle=(0, (4, 2)), linewidth=0.8, label="one-step capturability limit")
-    top = min(1.1 * max(greatest, bounds), 1.35 * greatest)  # limits far beyond all thresholds may leave the figure
+    # One limit at least is seen whole; those far beyond all thresholds may leave the figure.
+    top = min(1.1 * max(greatest, *bounds), max(1.35 * greatest, 1.1 * min(bounds))) if bounds else 1.1 * greatest
     axes.set_rlim(0.0, top if top > 0.0 else 1.0)
     axes.set_theta_zero_location("N")
     axes.set_xticks([share * math.pi for share in ROUND], list(ROUND.values()))

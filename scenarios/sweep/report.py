@@ -9,18 +9,15 @@ from urllib.parse import quote
 import numpy as np
 import yaml
 
-from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import relevant_versions
-from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.show.html import MISSING, document, escape, figure_html, number, tag
 from surefoot.scenarios.sweep import figures
 from surefoot.scenarios.sweep.capturability import Limits
-from surefoot.scenarios.sweep.figures import Axis, Found, Spread, Square
+from surefoot.scenarios.sweep.figures import Axis, Found, Square
 from surefoot.scenarios.sweep.journal import JOURNAL
 from surefoot.scenarios.sweep.points import Cell, Point, Record, Status
+from surefoot.scenarios.sweep.spreads import Runs, drawn, of_criteria
 from surefoot.scenarios.sweep.table import wilson
 
 if TYPE_CHECKING:
@@ -29,7 +26,6 @@ if TYPE_CHECKING:
 MOST_ROWS = 200
 """Failing runs that the page lists."""
 
-Runs = Sequence[tuple[Point, Record]]
 Row = Sequence[str]
 
 
@@ -290,8 +286,8 @@ def _distributions(swept: "Swept", runs: Runs) -> str:
     judged = _judged(runs)
     if not judged:
         return ""
-    sampled = [_drawn(key, draw.choice is not None, judged) for key, draw in swept.campaign.spec.sample.items()]
-    measured = list(_of_criteria(judged))
+    sampled = [drawn(key, draw.choice is not None, judged) for key, draw in swept.campaign.spec.sample.items()]
+    measured = list(of_criteria(judged))
     parts = []
     for name, spreads, caption in (
         ("sampled", sampled, "What was drawn, of runs that met their criteria and that missed them."),
@@ -300,56 +296,6 @@ def _distributions(swept: "Swept", runs: Runs) -> str:
         if spreads:
             parts.append(figure_html(figures.distributions(spreads), caption, name))
     return tag("section", tag("h2", "Distributions") + "\n".join(parts)) if parts else ""
-
-
-def _drawn(key: str, choice: bool, judged: Runs) -> Spread:
-    """What was drawn; of a choice by its words."""
-
-    def values(run: tuple[Point, Record]) -> list[Any]:
-        value = run[0].labels[key]
-        return [figures.text(value) if choice else value]
-
-    return _spread(figures.with_unit(key), judged, values)
-
-
-def _spread(heading: str, judged: Runs, values: Any, bounds: Sequence[float] = ()) -> Spread:
-    groups: dict[str, list[Any]] = {"pass": [], "fail": []}
-    for run in judged:
-        groups[run[1].status] += values(run)
-    return Spread(heading, groups["pass"], groups["fail"], bounds)
-
-
-def _of_criteria(judged: Runs) -> Iterator[Spread]:
-    """Every metric that a criterion bounds by a number, in the unit that a person is shown."""
-    for name, bounds in criteria(judged).items():
-        metric = known(name)
-        scale = metric.scale if metric else 1.0
-        limits = {scale * one for bound in bounds for one in _numbers((bound.min, bound.max, bound.equals))}
-        heading = f"{name} [{metric.shown}]" if metric and metric.shown else name
-
-        def values(run: tuple[Point, Record], name: str = name, scale: float = scale) -> list[Any]:
-            value = run[1].metrics.get(name)
-            return [str(value).lower()] if isinstance(value, bool) else [scale * one for one in _numbers((value,))]
-
-        spread = _spread(heading, judged, values, sorted(limits))
-        if spread.passed or spread.failed:
-            yield spread
-
-
-def criteria(runs: Runs) -> dict[str, list[Bound]]:
-    """Every bound on a metric in some runs; those of one scenario are asked once, and refused ones have none."""
-    asked = {
-        (point.base.place, str([(k, v) for k, v in point.settings.items() if k.startswith("criteria")])): point
-        for point, _ in runs
-    }
-    found: dict[str, list[Bound]] = {}
-    for point in asked.values():
-        try:
-            for name, bound in read_scenario(point.base, point.settings).criteria.items():
-                found.setdefault(name, []).append(bound)
-        except ScenarioError:
-            continue
-    return found
 
 
 def _failures(swept: "Swept", runs: Runs) -> str:
@@ -405,14 +351,3 @@ def _passed(runs: Runs) -> int:
 
 def _are_numbers(values: Iterable[Any]) -> bool:
     return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
-
-
-def _numbers(values: Iterable[Any]) -> list[float]:
-    """Numbers among values and among the elements of lists of them."""
-    found: list[float] = []
-    for value in values:
-        several = (
-            value if isinstance(value, list | tuple) else list(value.values()) if isinstance(value, dict) else [value]
-        )
-        found += [float(one) for one in several if isinstance(one, int | float) and not isinstance(one, bool)]
-    return found

@@ -93,13 +93,40 @@ def chunk_head(chunk: Chunk) -> bytes:
     return struct.pack("<BQ", Opcode.CHUNK, len(body) + size) + body
 
 
+class Packed:
+    """Records that wait for the end of a file, compressed: those of an hour's walk are many megabytes.
+
+    Attributes:
+        count: how many there are.
+    """
+
+    _BLOCK = 1 << 18
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._blocks: list[bytes] = []
+        self._last = bytearray()
+
+    def append(self, record: bytes) -> None:
+        """Add a record."""
+        self.count += 1
+        self._last += record
+        if len(self._last) >= self._BLOCK:
+            self._blocks.append(zstandard.compress(bytes(self._last)))
+            self._last = bytearray()
+
+    def __bytes__(self) -> bytes:
+        """All of them in order."""
+        return b"".join((*map(zstandard.decompress, self._blocks), self._last))
+
+
 class Summary:
     """Everything a reader wants to know before it reads the messages."""
 
     def __init__(self) -> None:
         self._schemas: list[Schema] = []
         self._channels: list[Channel] = []
-        self._chunks: list[bytes] = []
+        self._chunks = Packed()
         self._times: tuple[int, int] | None = None
         self._attachments: list[AttachmentIndex] = []
         self._metadata: list[MetadataIndex] = []
@@ -159,7 +186,7 @@ class Summary:
             (Opcode.SCHEMA, [*map(encoded, self._schemas)]),
             (Opcode.CHANNEL, [*map(encoded, self._channels)]),
             (Opcode.STATISTICS, [encoded(self._statistics(counts))]),
-            (Opcode.CHUNK_INDEX, self._chunks),
+            (Opcode.CHUNK_INDEX, [bytes(self._chunks)]),
             (Opcode.ATTACHMENT_INDEX, [*map(encoded, self._attachments)]),
             (Opcode.METADATA_INDEX, [*map(encoded, self._metadata)]),
         ]
@@ -181,7 +208,7 @@ class Summary:
             attachment_count=len(self._attachments),
             channel_count=len(self._channels),
             channel_message_counts=dict(counts),
-            chunk_count=len(self._chunks),
+            chunk_count=self._chunks.count,
             message_count=sum(counts.values()),
             message_end_time=end,
             message_start_time=start,

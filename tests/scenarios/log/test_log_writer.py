@@ -14,6 +14,7 @@ from mcap_protobuf.decoder import DecoderFactory
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, FieldSpec, LogWriter, read
+from surefoot.scenarios.log.encoding import Packed
 from surefoot.scenarios.record import channels
 
 pytestmark = pytest.mark.unit
@@ -201,3 +202,15 @@ def test_a_killed_run_loses_less_than_100_ms(tmp_path):
     assert log.truncated
     assert log.metadata == {"run": {"seed": "3"}}
     assert log["/x"].time[-1] > written[-1] * 0.002 - 0.1
+
+
+def test_records_that_wait_come_out_in_order_and_take_little_room():
+    rng = np.random.default_rng(0)
+    records = [bytes(rng.integers(0, 4, 300, dtype=np.uint8)) for _ in range(3000)]
+    packed, blocks = Packed(), []
+    for record in records:
+        packed.append(record)
+        blocks.append(sum(map(len, packed._blocks)) + len(packed._last))
+    assert bytes(packed) == b"".join(records)
+    assert packed.count == 3000
+    assert max(blocks) < 0.5 * sum(map(len, records))

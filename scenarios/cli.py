@@ -348,7 +348,7 @@ def sweep(
     out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run a campaign: a grid, random samples or thresholds, over any key.
+    """Run a campaign: a grid, samples or thresholds over any key.
 
     Begun again, it goes on where it stopped.
     """
@@ -421,7 +421,7 @@ def check(
 
 @app.command()
 def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocompletion=_scenarios)]) -> None:
-    """Print the commented YAML of a scenario, or of a campaign, to start one's own from."""
+    """Print the YAML of a scenario or campaign, to start from."""
     from surefoot.scenarios.show.listing import starter
 
     typer.echo(starter(scenario), nl=False)

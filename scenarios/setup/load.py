@@ -126,7 +126,7 @@ def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None
     Raises:
         ScenarioError: it cannot be found, read or run; lists every fault with its place.
     """
-    return read_scenario(written(str(reference)), overrides, robots)
+    return read_scenario(*written(str(reference)), overrides, robots)
 
 
 def locate(reference: str, overrides: Overrides, refusal: SetupError) -> ScenarioError:
@@ -141,10 +141,12 @@ def locate(reference: str, overrides: Overrides, refusal: SetupError) -> Scenari
     return ScenarioError([source.describe(refusal.problem)])
 
 
-def read_scenario(written: Written, overrides: Overrides, robots: Robots | None = None) -> Scenario:
-    """Check a scenario's text; other arguments and errors as of `load`."""
+def read_scenario(
+    text: str, place: str, stem: str, overrides: Overrides = (), robots: Robots | None = None
+) -> Scenario:
+    """Check a scenario as it is `Written`; other arguments and errors as of `load`."""
     robots = robots or RegisteredRobots()
-    source = _source(written, overrides)
+    source = _source(Written(text, place, stem), overrides)
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}

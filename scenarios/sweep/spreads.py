@@ -57,7 +57,7 @@ def criteria(runs: Runs) -> dict[str, list[Bound]]:
     found: dict[str, list[Bound]] = {}
     for point in asked.values():
         try:
-            for name, bound in read_scenario(point.base, point.settings).criteria.items():
+            for name, bound in read_scenario(*point.base, point.settings).criteria.items():
                 found.setdefault(name, []).append(bound)
         except ScenarioError:
             continue

@@ -11,7 +11,7 @@ import yaml
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
-from surefoot.scenarios.setup.load import Written, read_scenario
+from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import RegisteredRobots
 
 pytestmark = pytest.mark.unit
@@ -74,7 +74,7 @@ def test_scenarios_of_the_documentation_load(page):
     examples = re.findall(r"(?s)```yaml\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"))
     assert examples
     for text in examples:
-        read_scenario(Written(text, "example.yaml", "example"), (), RegisteredRobots())
+        read_scenario(text, "example.yaml", "example", (), RegisteredRobots())
 
 
 def test_the_faults_that_the_page_shows_are_those_that_are_found():
@@ -82,7 +82,7 @@ def test_the_faults_that_the_page_shows_are_those_that_are_found():
     text = re.search(r"(?s)```yaml\n(.*?)```", page)[1].replace("steps: 6", "step: 6").replace("0.25", "0.9", 1)
     shown = re.search(r"(?s)```\n(pushed\.yaml:.*?)\n```", page)[1]
     with pytest.raises(ScenarioError) as refusal:
-        read_scenario(Written(text, "pushed.yaml", "pushed"), (), RegisteredRobots())
+        read_scenario(text, "pushed.yaml", "pushed", (), RegisteredRobots())
     assert str(refusal.value) == shown
 
 

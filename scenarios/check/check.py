@@ -1,12 +1,10 @@
 """``surefoot check``: runs scenarios side by side and holds each against its baseline."""
 
 import shutil
-import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Literal
 
@@ -21,6 +19,7 @@ from surefoot.scenarios.judge.verdict import Verdict
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.sweep.engine import processes
 
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
@@ -188,7 +187,7 @@ def check(
 
 
 def _side_by_side(chosen: Sequence[Case], out: Path, jobs: int) -> Iterator[tuple[Case, Checked]]:
-    with ProcessPoolExecutor(min(jobs, len(chosen)), get_context("spawn"), initializer=_leave_interrupts) as pool:
+    with processes(min(jobs, len(chosen))) as pool:
         futures: dict[Future[Checked], Case] = {pool.submit(run_case, case, out): case for case in chosen}
         try:
             for future in as_completed(futures):
@@ -203,11 +202,6 @@ def _outcome(case: Case, future: "Future[Checked]") -> Checked:
         return future.result()
     except BrokenProcessPool:
         return Checked(case, "could not run", ("its process ended unexpectedly, as when memory runs out",))
-
-
-def _leave_interrupts() -> None:
-    """Leave Ctrl-C to the parent process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def update(checked: Sequence[Checked]) -> tuple[Path, ...]:

@@ -128,7 +128,7 @@ class LocalWorker:
 
     def __init__(self, folder: Path, keep_all: bool, make: Callable[[], Executor] | None = None) -> None:
         self._folder, self._keep_all = folder, keep_all
-        self._make = make or process
+        self._make = make or processes
         self._executor = self._make()
         self._executor.submit(int)  # begins its process now, while interrupts are ignored, which it inherits
 
@@ -156,9 +156,9 @@ def local_workers(folder: Path, jobs: int, keep_all: bool) -> list[Worker]:
         return [LocalWorker(folder, keep_all) for _ in range(jobs)]
 
 
-def process() -> Executor:
-    """An executor of one process, which leaves Ctrl-C to its parent and does not outlive it."""
-    return ProcessPoolExecutor(1, get_context("spawn"), initializer=_set_up)
+def processes(count: int = 1) -> Executor:
+    """An executor of processes that leave Ctrl-C to their parent and do not outlive it."""
+    return ProcessPoolExecutor(count, get_context("spawn"), initializer=_set_up)
 
 
 def _set_up() -> None:

@@ -76,7 +76,7 @@ def print_ticks(steps: int) -> None:
             return plan
 
         planner.update = timed
-        walk_pendulum(planner, feet, planner.schedule.last * T + 1.0, com=np.array([0.0, 0.0, 1.0]), substeps=2)
+        walk_pendulum(planner, feet, gait.duration + 1.0, com=np.array([0.0, 0.0, 1.0]), substeps=2)
         median, p90, p99 = np.percentile(spent, (50, 90, 99)) * 1e6
         print(f"{name:<42} {median:>10.0f} {p90:>10.0f} {p99:>10.0f}")
 

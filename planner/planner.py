@@ -1,7 +1,7 @@
 """The walking planner: the four modules of the paper, put together once per tick."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,26 +15,25 @@ from surefoot.planner.model.jerk import Trajectory, block_moves, predict, trajec
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight, check_height
-from surefoot.planner.references.leg_offset import swing_shape
 from surefoot.planner.references.window import OffsetTable, Outlook, Window
 from surefoot.planner.references.zmp_reference import Support, present_support
-from surefoot.planner.swing.course import swing_courses
-from surefoot.planner.swing.heel_off import FootRoll, roll_plan
+from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.trajectory import SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import (
     Array,
     CentroidalState,
     FeetState,
     Foot,
-    PhaseKind,
     PlannedFootstep,
     PlanStatus,
     SolverStatus,
 )
-from surefoot.planner.walk.clock import Stepper, schedule
-from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
+from surefoot.planner.walk.clock import Stepper
+from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import check_reach
+from surefoot.planner.walk.phases import Flow
+from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.source import StepSource
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,17 +67,16 @@ def world_plan(time: float, stepper: Stepper, support: Support, window: Window, 
         window: references.
         decided: motion and footsteps.
     """
-    motion, reference, schedule = decided.motion, window.reference, stepper.schedule
+    motion, reference = decided.motion, window.reference
     count, to_world = len(motion.zmp), support.rotation.T
     com = np.empty((3, count, 3))
     com[:, :, :2] = motion.com @ to_world
     com[0, :, :2] += support.origin
     com[:, :, 2] = window.height.height[:, :count]
     point = reference.point[:count] + reference.gain[:count] @ decided.shifts
-    samples = slice(window.start, window.start + count)
     return WalkPlan(
         time=time,
-        sample_time=schedule.sample_time,
+        sample_time=stepper.sample_time,
         com=com[0],
         com_velocity=com[1],
         com_acceleration=com[2],
@@ -89,8 +87,8 @@ def world_plan(time: float, stepper: Stepper, support: Support, window: Window, 
         stiffness=window.stiffness[:count],
         omega=window.omega[:count],
         phase=stepper.info,
-        contacts=schedule.contacts[samples],
-        load_left=schedule.load_left[samples],
+        contacts=window.contacts[:count],
+        load_left=window.load_left[:count],
         support_polygon=support.outer,
         inner_polygon=support.inner,
         footholds=support.footholds,
@@ -99,6 +97,40 @@ def world_plan(time: float, stepper: Stepper, support: Support, window: Window, 
         roll=decided.roll,
         status=decided.status,
     )
+
+
+_AT_ONCE = 2000
+"""Samples of a walk that are checked together."""
+
+_DISTINCT = 6
+"""Equal steps on bare ground after which all that follow are as those before: the first, one of each foot, the last."""
+
+
+def check_walk(
+    gait: GaitParameters,
+    feet: FeetState,
+    foot_length: float,
+    foot_width: float,
+    terrain: Terrain,
+    parameters: PlannerParameters,
+    height_profile: HeightProfile,
+) -> None:
+    """Refuse a gait of which `WalkingPlanner` would refuse a step while it walks; arguments as there.
+
+    Raises:
+        ParameterError: see `WalkingPlanner`.
+    """
+    if not gait.bouts and not terrain.has_edges:
+        gait = replace(gait, steps=min(gait.steps, _DISTINCT))
+    queue = StepQueue(gait, feet, Ground(terrain, 0.5 * np.array([foot_length, foot_width]), parameters))
+    clock, last = 0, 0.0
+    while clock <= last:
+        queue.extend(clock + _AT_ONCE)
+        samples = queue.samples(Flow(np.arange(clock, clock + _AT_ONCE, dtype=np.float64)))
+        check_height(height_profile, gait, samples, queue.support_heights)
+        clock += _AT_ONCE - 2
+        last = queue.phases[-1].start
+        queue.enter(clock)
 
 
 _SAME_TARGET = 1e-4
@@ -122,16 +154,16 @@ class WalkingPlanner:
         parameters: the planner's own parameters; those of the profile by default.
         height_profile: vertical CoM motion; that of the profile, or else the smooth one, by default.
         profile: formulation of the planner; the robust one by default.
+        source: of the steps; those of the gait by default.
 
     Attributes:
         gait: the walk.
         parameters: the planner's own parameters.
-        schedule: its phases on the clock.
         motion: the law's answer of the last tick, with the QPs that it solved; None before the first.
 
     Raises:
-        ParameterError: a duration is no multiple of the sample time, a footstep is out of reach, the CoM would fall
-            almost freely, or no swing clears the edges before a footstep.
+        ParameterError: of the steps in sight, a footstep is out of reach, the CoM would fall almost freely, or no swing
+            clears the edges before a footstep; `check_walk` looks at all steps of a walk.
     """
 
     def __init__(
@@ -144,6 +176,7 @@ class WalkingPlanner:
         parameters: PlannerParameters | None = None,
         height_profile: HeightProfile | None = None,
         profile: Profile = PROFILES["default"],
+        source: StepSource | None = None,
     ) -> None:
         self.gait = gait
         self.parameters = parameters or profile.parameters
@@ -153,19 +186,15 @@ class WalkingPlanner:
             if not (size > 0.0 and math.isfinite(size)):
                 raise ParameterError((name,), f"{name} is {size:g}", "it must be a finite number greater than 0")
         self._half_size = 0.5 * np.array([foot_length, foot_width])
-        self.schedule = schedule(gait, p.sample_time, p.horizon + p.preview)
-        footsteps = plan_footsteps(gait, feet, terrain)
-        for row in range(2, footsteps.steps + 2):
-            check_reach(row - 1, footsteps.landing(row), p)
-        shape = (height_profile or profile.height or SmoothHeight()).shape(gait, self.schedule)
-        check_height(shape, self.schedule, footsteps.support_points()[:, 2])
-        self._courses = swing_courses(footsteps, self.schedule, terrain, self._half_size, gait.swing_height, p)
-        self._rolls = roll_plan(self.schedule, footsteps, gait.heel_off, float(self._half_size[0]))
-        swings = swing_shape(self.schedule, footsteps, self._courses, self._rolls, p)
-        self._stepper = Stepper(self.schedule, footsteps, terrain, p)
-        self._outlook = Outlook(self.schedule, shape, swings, p.leg, p.horizon + p.preview + 1)
+        profile_height = height_profile or profile.height or SmoothHeight()
+        self._outlook = Outlook(
+            gait, profile_height, p.leg, float(self._half_size[0]), p.horizon + p.preview + 1, p.sample_time
+        )
+        queue = StepQueue(gait, feet, Ground(terrain, self._half_size, p), source)
+        self._stepper = Stepper(queue, terrain, p, self._outlook.reach + 1)
+        check_height(profile_height, gait, self._stepper.samples(self._outlook.reach), queue.support_heights)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
-        self._law = profile.law(p, shape.standing_height)
+        self._law = profile.law(p, profile_height.standing(gait))
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
         self._swing: SwingTrajectory | None = None
@@ -174,7 +203,7 @@ class WalkingPlanner:
 
     @property
     def footsteps(self) -> FootstepPlan:
-        """All footholds: landed ones as measured, the others as nominally planned from them."""
+        """Footholds in sight: landed ones as measured, the others as nominally planned from them."""
         return self._stepper.footsteps
 
     def update(self, state: CentroidalState, feet: FeetState) -> WalkPlan:
@@ -194,13 +223,12 @@ class WalkingPlanner:
         self._fix_imminent_footstep(state.time)
         # ZMP planner: what carries the robot now, and the ZMP that the footsteps define.
         support = self._support = present_support(self._support, stepper, self._half_size, p.foot_margin)
-        reference = self._outlook.zmp(stepper.sample, support)
+        samples = stepper.samples(self._outlook.reach)
+        reference = self._outlook.zmp(samples, support)
         # Vertical motion planner of the CoM, with it the varying dynamics.
-        height = self._outlook.com_height(stepper.sample, support, reference)
+        height = self._outlook.com_height(samples, support, reference)
         local = self._local_state(state, support)
-        window = self._outlook.window(
-            stepper.sample, support, reference, height, stepper.footsteps, local[:, 0], self._offsets
-        )
+        window = self._outlook.window(stepper, samples, support, reference, height, local[:, 0], self._offsets)
         self._offsets = window.table
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         problem = self._problem(local, feet, support, window)
@@ -251,7 +279,7 @@ class WalkingPlanner:
         increment[: len(ahead)] = ahead
         side = 1.0 if steps.feet[row] is Foot.RIGHT else -1.0
         here = None if swing is None else (feet.position[swing, :2] - support.origin) @ support.rotation
-        left = 0.0 if swing is None else stepper.time_to_touchdown(stepper.phase.step)
+        left = 0.0 if swing is None else stepper.time_left
         return StepContext(increment, (side, -side), stepper.free, here, left, stepper.transfer_time)
 
     def _local_state(self, state: CentroidalState, support: Support) -> Array:
@@ -265,7 +293,7 @@ class WalkingPlanner:
     def _update_swing(
         self, time: float, feet: FeetState, footsteps: tuple[PlannedFootstep, ...], solver: SolverStatus
     ) -> None:
-        stepper, phase, foot = self._stepper, self._stepper.phase, self._stepper.swing_foot
+        stepper, foot = self._stepper, self._stepper.swing_foot
         if foot is None:
             self._swing = None
             return
@@ -275,8 +303,8 @@ class WalkingPlanner:
             yaw = float(stepper.footsteps.yaw[stepper.row - 1])
             yaw += wrap_angle(float(feet.yaw[foot]) - yaw)
             pose = sole_pose(feet.position[foot], yaw, stepper.footsteps.normal[stepper.row - 1])
-            course = self._courses[phase.step - 1]
-            times = swing_times(time, phase.samples, course, self.parameters)
+            course = stepper.swinging.course
+            times = swing_times(time, stepper.phase.end - stepper.tick, course, self.parameters)
             self._swing = start_swing(foot, pose, target, times, course.height, self.parameters)
             return
         decided = stepper.fixed or solver is SolverStatus.HELD
@@ -284,10 +312,13 @@ class WalkingPlanner:
             self._swing = self._swing.retargeted(time, target)
 
     def _roll(self, time: float) -> FootRoll | None:
-        stepper = self._stepper
-        step = stepper.phase.step + (stepper.phase.kind is not PhaseKind.SINGLE)
-        foot = self.gait.step_foot(step)
-        return self._rolls.of_step(step, foot, time, stepper.tick, self.parameters.sample_time)
+        stepper, t = self._stepper, self.parameters.sample_time
+        span = stepper.phase.roll
+        if span is None or stepper.tick >= span.end:
+            return None
+        foot = self.gait.step_foot(stepper.phase.row)
+        start, end = (time + (at - stepper.tick) * t for at in span[:2])
+        return FootRoll(foot, start, end, span.angle, float(self._half_size[0]))
 
     def _status(self, motion: Motion) -> PlanStatus:
         age = 0

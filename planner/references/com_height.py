@@ -6,7 +6,6 @@ already over the front foot: the rear leg is then too short. So there are two pl
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol
@@ -16,8 +15,8 @@ from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.planner.types import GRAVITY, Array, PhaseKind
-from surefoot.planner.walk.clock import Phase, Schedule
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.phases import PhaseSamples
 
 _FALL_LIMIT = 0.8
 """Downward CoM acceleration that a plan may ask for, as a share of gravity: beyond it the feet hardly press [-]."""
@@ -52,63 +51,29 @@ class Rise(Enum):
     SINGLE = "single"
 
 
-@dataclass(frozen=True, slots=True)
-class HeightShape:
-    """CoM height of a whole walk, before the heights of the footholds are known.
-
-    At sample k the CoM is at `level[i] + rise[0, k] * (level[i + 1] - level[i]) + bump[0, k]` with i = `index[k]`, and
-    with `fall` for `rise` where the next level is lower.
-
-    Attributes:
-        index: base level that the CoM leaves, shape (K,).
-        rise: share of the change to the next level done, its first and second derivative, shape (3, K) [-, 1/s, 1/s^2].
-        fall: the same on the way down.
-        bump: height above the base, and its first and second derivative, shape (3, K) [m, m/s, m/s^2].
-        levels: makes the base levels of the heights of the support points, both of shape (n + 2,) [m].
-        impulsive: whether the velocity jumps, which the second derivative then has as impulses of one sample.
-    """
-
-    index: NDArray[np.intp]
-    rise: Array
-    fall: Array
-    bump: Array
-    levels: Callable[[Array], Array]
-    impulsive: bool = False
-
-    @property
-    def standing_height(self) -> float:
-        """Height above the base with which the walk begins, at rest [m]."""
-        return float(self.bump[0, 0])
-
-    def height(self, window: slice, support_height: Array) -> Array:
-        """z, z', z'' in the world frame over a window, shape (3, n) [m, m/s, m/s^2].
-
-        Args:
-            window: samples.
-            support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
-        """
-        levels, index = self.levels(support_height), self.index[window]
-        step = np.append(np.diff(levels), 0.0)[index]
-        height = self.bump[:, window] + np.where(step < 0.0, self.fall[:, window], self.rise[:, window]) * step
-        height[0] += levels[index]
-        return np.asarray(height)
-
-
-def own_levels(support_height: Array) -> Array:
-    """Base levels of `Rise.DOUBLE`: the heights of the support points, shape (n + 2,) [m]."""
-    return support_height
-
-
 def lower_levels(support_height: Array) -> Array:
     """Base levels of `Rise.SINGLE`: the lower foot of each double support 0..n, and the last one again [m]."""
     return np.append(np.minimum(support_height[:-1], support_height[1:]), support_height[-1])
 
 
 class HeightProfile(Protocol):
-    """Anything that lays a CoM height on a schedule."""
+    """A law of the CoM height: a function of the phases and of the heights of the footholds."""
 
-    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
-        """The height of the whole walk."""
+    @property
+    def impulsive(self) -> bool:
+        """Whether the velocity jumps, which the second derivative then has as impulses of one sample."""
+
+    def standing(self, gait: GaitParameters) -> float:
+        """Height over the feet at which the robot stands [m]."""
+
+    def height(self, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
+        """z, z', z'' in the world frame at the samples of a window, shape (3, n) [m, m/s, m/s^2].
+
+        Args:
+            gait: gives height and apexes.
+            samples: the phases there; what a law makes of the first and the last of them is not used.
+            support_height: heights of the support points in sight, shape (m,) [m].
+        """
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,15 +89,20 @@ class SmoothHeight:
 
     rise: Rise = Rise.DOUBLE
 
-    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
-        """The height of the whole walk (see `HeightProfile`)."""
-        bump = np.zeros((3, len(schedule.index)))
-        bump[0] = gait.com_height
-        for phase in schedule.phases:
-            amplitude = {PhaseKind.SINGLE: gait.apex_ss, PhaseKind.DOUBLE: gait.apex_ds}.get(phase.kind, 0.0)
-            if amplitude:
-                bump[:, phase.start : phase.end] += _sine_cubed(phase, amplitude, schedule.sample_time)
-        return _on_levels(self.rise, schedule, bump)
+    @property
+    def impulsive(self) -> bool:
+        """See `HeightProfile`."""
+        return False
+
+    def standing(self, gait: GaitParameters) -> float:
+        """See `HeightProfile`."""
+        return gait.com_height
+
+    def height(self, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
+        """See `HeightProfile`."""
+        bump = _sine_cubed(samples, samples.per_phase((0.0, gait.apex_ds, gait.apex_ss)))
+        bump[0] += self.standing(gait)
+        return _on_levels(self.rise, samples, bump, support_height)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,11 +115,20 @@ class BentKneeHeight:
 
     rise: Rise = Rise.DOUBLE
 
-    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
-        """The height of the whole walk (see `HeightProfile`)."""
-        bump = np.zeros((3, len(schedule.index)))
-        bump[0] = gait.com_height - BENT_KNEES
-        return _on_levels(self.rise, schedule, bump)
+    @property
+    def impulsive(self) -> bool:
+        """See `HeightProfile`."""
+        return False
+
+    def standing(self, gait: GaitParameters) -> float:
+        """See `HeightProfile`."""
+        return gait.com_height - BENT_KNEES
+
+    def height(self, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
+        """See `HeightProfile`."""
+        bump = np.zeros((3, len(samples.kind)))
+        bump[0] = self.standing(gait)
+        return _on_levels(self.rise, samples, bump, support_height)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,50 +142,67 @@ class PaperHeight:
     z'' instead, which ignores the jumps, would leave a λ that stairs do not change at all.
     """
 
-    def shape(self, gait: GaitParameters, schedule: Schedule) -> HeightShape:
-        """The height of the whole walk (see `HeightProfile`)."""
-        t = schedule.sample_time
-        bump = np.full(len(schedule.index), gait.com_height)
-        for phase in schedule.phases:
-            amplitude = {PhaseKind.SINGLE: gait.apex_ss, PhaseKind.DOUBLE: gait.apex_ds}.get(phase.kind, 0.0)
-            if amplitude:
-                bump[phase.start : phase.end] += amplitude * np.sin(np.pi * np.arange(phase.samples) / phase.samples)
+    @property
+    def impulsive(self) -> bool:
+        """See `HeightProfile`."""
+        return True
+
+    def standing(self, gait: GaitParameters) -> float:
+        """See `HeightProfile`."""
+        return gait.com_height
+
+    def height(self, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
+        """See `HeightProfile`."""
+        amplitude = samples.per_phase((0.0, gait.apex_ds, gait.apex_ss))
+        bump = gait.com_height + amplitude * np.sin(np.pi * samples.elapsed / samples.length)
+        t = samples.sample_time
         # Where a rise has just ended its slope still counts: that sample belongs to the level that was left.
-        ended = np.diff(schedule.index, prepend=0) > 0
-        index, done = schedule.index - ended, schedule.index + schedule.fraction
+        index = samples.index - (np.diff(samples.index, prepend=samples.index[:1]) > 0)
+        done = samples.first + samples.index + samples.fraction
         rise = _differences(done, t)
-        rise[0] = done - index
-        return HeightShape(index, rise, rise, _differences(bump, t), own_levels, impulsive=True)
+        rise[0] = done - (samples.first + index)
+        return _lifted(_differences(bump, t), index, rise, rise, support_height)
 
 
 def _differences(values: Array, sample_time: float) -> Array:
-    """Values and their first and second central differences, at rest beyond both ends, shape (3, K)."""
+    """Values and their first and second central differences, at rest beyond both ends, shape (3, n)."""
     padded = np.pad(values, 1, mode="edge")
     slope = (padded[2:] - padded[:-2]) / (2.0 * sample_time)
     return np.stack((values, slope, (padded[2:] - 2.0 * values + padded[:-2]) / sample_time**2))
 
 
-def _on_levels(place: Rise, schedule: Schedule, bump: Array) -> HeightShape:
-    """A shape with quintic changes of level at a place."""
+def _lifted(bump: Array, index: NDArray[np.intp], rise: Array, fall: Array, levels: Array) -> Array:
+    """A height above base levels, shape (3, n).
+
+    Args:
+        bump: height above the base, and its first and second derivative, shape (3, n) [m, m/s, m/s^2].
+        index: base level that the CoM leaves, shape (n,).
+        rise: share of the change to the next level done, and its derivatives, shape (3, n) [-, 1/s, 1/s^2].
+        fall: the same on the way down.
+        levels: base levels, shape (m,) [m].
+    """
+    step = np.append(np.diff(levels), 0.0)[index]
+    height = bump + np.where(step < 0.0, fall, rise) * step
+    height[0] += levels[index]
+    return np.asarray(height)
+
+
+def _on_levels(place: Rise, samples: PhaseSamples, bump: Array, support_height: Array) -> Array:
+    """A height with quintic changes of level at a place; the bump is by the clock."""
     if place is Rise.DOUBLE:
-        rise = quintic_rise(schedule.fraction, schedule.fraction_rate)
-        return HeightShape(schedule.index, rise, rise, bump, own_levels)
-    index, changes = np.empty_like(schedule.index), np.zeros((2, *bump.shape))
-    for phase in schedule.phases:
-        span = slice(phase.start, phase.end if phase.samples else None)
-        reached = phase.kind is PhaseKind.SINGLE or phase.samples == 0
-        index[span] = max(phase.support - reached, 0)
-        if phase.kind is PhaseKind.SINGLE:
-            for change, share in zip(changes, (_CLIMB_SHARE, _DESCENT_SHARE), strict=True):
-                change[:, span] = _early_rise(phase, share, schedule.sample_time)
-    rise, fall = changes
-    return HeightShape(index, rise, fall, bump, lower_levels)
+        rise = quintic_rise(samples.fraction, samples.fraction_rate)
+        return samples.in_time(_lifted(bump, samples.index, rise, rise, support_height))
+    swinging = samples.kind == PhaseKind.SINGLE
+    index = np.maximum(samples.index - (swinging | samples.last_stand), 0)
+    length = np.where(swinging, samples.length, np.inf)
+    rise, fall = (_early_rise(samples, share * length) for share in (_CLIMB_SHARE, _DESCENT_SHARE))
+    return samples.in_time(_lifted(bump, index, rise, fall, lower_levels(support_height)))
 
 
-def _early_rise(phase: Phase, share: float, sample_time: float) -> Array:
-    """Quintic rise within the first share of a phase and rest at 1 after it, shape (3, samples)."""
-    fraction = np.arange(phase.samples) / (share * phase.samples)
-    rate = np.where(fraction < 1.0, 1.0 / (share * phase.samples * sample_time), 0.0)
+def _early_rise(samples: PhaseSamples, length: Array) -> Array:
+    """Quintic rise within the first so many samples of each phase and rest at 1 after it, shape (3, n)."""
+    fraction = samples.elapsed / length
+    rate = np.where(fraction < 1.0, 1.0 / (length * samples.sample_time), 0.0)
     return quintic_rise(np.minimum(fraction, 1.0), rate)
 
 
@@ -238,11 +234,11 @@ def highest_apex(duration: float) -> float:
     return STEEPEST_FALL / 3.0 * (duration / math.pi) ** 2
 
 
-def _sine_cubed(phase: Phase, amplitude: float, sample_time: float) -> Array:
-    w = np.pi / (phase.samples * sample_time)
-    angle = np.pi * np.arange(phase.samples) / phase.samples
+def _sine_cubed(samples: PhaseSamples, amplitude: Array) -> Array:
+    w = np.pi / (samples.length * samples.sample_time)
+    angle = np.pi * samples.elapsed / samples.length
     s, c = np.sin(angle), np.cos(angle)
-    return amplitude * np.stack((s**3, 3.0 * w * s**2 * c, 3.0 * w**2 * s * (2.0 * c**2 - s**2)))
+    return np.asarray(amplitude * np.stack((s**3, 3.0 * w * s**2 * c, 3.0 * w**2 * s * (2.0 * c**2 - s**2))))
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,48 +255,49 @@ class HeightPreview:
 
 
 def preview_height(
-    shape: HeightShape, start: int, count: int, support_height: Array, zmp_height: Array
+    profile: HeightProfile, gait: GaitParameters, samples: PhaseSamples, support_height: Array, zmp_height: Array
 ) -> HeightPreview:
-    """CoM height and pendulum stiffness of a window.
+    """CoM height and pendulum stiffness of a window, but for the first and the last of its samples.
 
     λ counts the height above the ZMP, z - p_z; the paper's equation leaves p_z out, which is wrong on stairs. Measured
     footholds of a falling robot may lie anywhere: λ stays finite and positive.
 
     Args:
-        shape: height of the walk.
-        start: first sample of the window.
-        count: its length.
-        support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
-        zmp_height: height of the ground under the ZMP reference over the window, shape (count,) [m].
+        profile: law of the height.
+        gait: the walk.
+        samples: its phases over the window, shape (n + 2,).
+        support_height: heights of the support points in sight, shape (m,) [m].
+        zmp_height: height of the ground under the ZMP reference, shape (n,) [m].
     """
-    height = shape.height(slice(start, start + count), support_height)
-    limit = _IMPULSE_LIMIT if shape.impulsive else _FALL_LIMIT
+    height = profile.height(gait, samples, support_height)[:, 1:-1]
+    limit = _IMPULSE_LIMIT if profile.impulsive else _FALL_LIMIT
     pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
     return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT))
 
 
-def check_height(shape: HeightShape, schedule: Schedule, support_height: Array) -> None:
+def check_height(profile: HeightProfile, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> None:
     """Refuse a height that the body could only follow by nearly free fall, or that goes into the ground.
 
     Args:
-        shape: height of the walk.
-        schedule: its phases.
-        support_height: heights of the support points 0..n+1, shape (n + 2,) [m].
+        profile: law of the height.
+        gait: the walk.
+        samples: its phases over a window.
+        support_height: heights of the support points in sight, shape (m,) [m].
 
     Raises:
-        ParameterError: names the acceleration or the height that is out of bounds. The impulses of an impulsive shape
+        ParameterError: names the acceleration or the height that is out of bounds. The impulses of an impulsive law
             last a sample and depend on its length; they are not refused.
     """
-    step = np.append(np.diff(support_height), 0.0)[schedule.index]
-    ground = support_height[schedule.index] + schedule.fraction * step
-    height = shape.height(slice(0, len(ground)), support_height)
-    lowest = float(np.min(height[0] - ground))
+    step = np.append(np.diff(support_height), 0.0)[samples.index]
+    ground = support_height[samples.index] + samples.fraction * step
+    height = profile.height(gait, samples, support_height)[:, 1:-1]
+    lowest = float(np.min(height[0] - ground[1:-1]))
     if lowest <= 0.0:
         what = f"the CoM comes within {lowest:.2f} m of the ground under it"
         raise ParameterError(("gait", "com_height"), what, "it must stay above it")
     fall = float(np.min(height[2]))
-    if fall < -STEEPEST_FALL and not shape.impulsive:
-        in_double = shape.levels is own_levels
+    if fall < -STEEPEST_FALL and not profile.impulsive:
+        in_double = getattr(profile, "rise", Rise.DOUBLE) is Rise.DOUBLE
         support = "double_support" if in_double else "single_support"
         remedy = f"give {support.replace('_', ' ')} more time" + in_double * ", or let the CoM rise in single support"
         what = f"the CoM falls off with {-fall:.1f} m/s^2 where two footsteps differ in height"

@@ -17,21 +17,18 @@ c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP less the k
 Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surefoot.planner.model.dcm import NominalMotion
 from surefoot.planner.model.leg_chain import LegChain
-from surefoot.planner.parameters import LegInertia, PlannerParameters
+from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
-from surefoot.planner.swing.heel_off import RollPlan
-from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.swing.heel_off import bump
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
-from surefoot.planner.walk.clock import Schedule
-from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.walk.phases import PhaseSamples
+from surefoot.planner.walk.queue import StepQueue
 
 
 def softening(leg: LegInertia) -> float:
@@ -56,72 +53,42 @@ class Feet:
     toe: float
 
 
-@dataclass(frozen=True, slots=True)
-class SwingShape:
-    """Where both feet are in a whole walk, for unit steps. K samples.
-
-    Attributes:
-        row: row of a foot that stands, shape (K,); the other foot goes from the row before to the row after.
-        progress: share of that way done, shape (K,).
-        height: of its sole above the row before, shape (K,) [m].
-        pitch: of its sole about the toe edge, shape (K,) [rad].
-        toe: toe edge from the sole's centre [m].
-    """
-
-    row: NDArray[np.intp]
-    progress: Array
-    height: Array
-    pitch: Array
-    toe: float
-
-
-def swing_shape(
-    schedule: Schedule,
-    footsteps: FootstepPlan,
-    courses: Sequence[SwingCourse],
-    rolls: RollPlan,
-    parameters: PlannerParameters,
-) -> SwingShape:
-    """Tabulate the swings of a schedule to nominal footsteps, each on its course."""
-    count = len(schedule.phase_index)
-    rows = np.empty(count, dtype=np.intp)
-    values = np.zeros((2, count))
-    tables: dict[tuple[int, float, SwingCourse], Array] = {}
-    for phase in schedule.phases:
-        span = slice(phase.start, phase.end if phase.samples else count)
-        rows[span] = phase.step + (phase.kind is not PhaseKind.SINGLE)
-        if phase.kind is PhaseKind.SINGLE:
-            climb = float(footsteps.position[phase.step + 1, 2] - footsteps.position[phase.step - 1, 2])
-            key = (phase.samples, round(climb, 6), courses[phase.step - 1])
-            if key not in tables:
-                tables[key] = _unit_swing(*key, parameters)
-            values[:, span] = tables[key]
-    progress, height = values
-    return SwingShape(rows, progress, height, rolls.pitch(schedule), rolls.toe)
-
-
-def nominal_feet(
-    shape: SwingShape, footsteps: FootstepPlan, frame: tuple[Array, Array], samples: NDArray[np.intp]
-) -> Feet:
+def nominal_feet(samples: PhaseSamples, queue: StepQueue, frame: tuple[Array, Array], toe: float) -> Feet:
     """Nominal feet in the plan frame.
 
     Args:
-        shape: swing motion of the walk.
-        footsteps: footholds in the world frame.
+        samples: the phases over a window.
+        queue: the steps in sight.
         frame: the plan frame's rotation to the world, shape (2, 2), and origin, shape (2,) [m].
-        samples: which, shape (n,).
+        toe: toe edge from the sole's centre [m].
     """
-    rotation, origin = frame
+    (rotation, origin), footsteps = frame, queue.footsteps
     points = np.column_stack(((footsteps.position[:, :2] - origin) @ rotation, footsteps.position[:, 2], footsteps.yaw))
-    row, progress = shape.row[samples], shape.progress[samples, None]
+    row = np.array([phase.row for phase in samples.phases])[samples.which] - footsteps.first
+    progress, height, rolled = _swings(samples, queue)
     before, after = points[row - 1], points[np.minimum(row + 1, len(points) - 1)]
-    stance, swing = points[row], before + progress * (after - before)
-    swing[:, 2] = before[:, 2] + shape.height[samples]
+    stance, swing = points[row], before + progress[:, None] * (after - before)
+    swing[:, 2] = before[:, 2] + height
     left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
-    pitch = shape.pitch[samples] * np.stack((~left, left))
+    pitch = rolled * np.stack((~left, left))
     turned = 0.5 * (stance[:, 3] + swing[:, 3]) - np.arctan2(rotation[1, 0], rotation[0, 0])
-    return Feet(soles[..., :3], pitch, turned, shape.toe)
+    return Feet(soles[..., :3], pitch, turned, toe)
+
+
+def _swings(samples: PhaseSamples, queue: StepQueue) -> tuple[Array, Array, Array]:
+    """Progress of the swing foot [-], height of its sole above lift-off [m] and its pitch [rad], shape (n,) each."""
+    progress, height, pitch = np.zeros((3, len(samples.which)))
+    for number in np.unique(samples.which).tolist():
+        phase, here = samples.phases[number], samples.which == number
+        if phase.kind is PhaseKind.SINGLE:
+            way = queue.steps[phase.step].swing.positions(samples.elapsed[here] * samples.sample_time)
+            progress[here], height[here] = way[:, 0], way[:, 2]
+        if phase.roll is not None:
+            start, end, angle = phase.roll
+            share = (samples.flow.clock[here] - start) / (end - start)
+            pitch[here] = [angle * bump(s)[0] for s in share.tolist()]
+    return progress, height, pitch
 
 
 def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: HeightPreview, softened: Array) -> Array:
@@ -154,12 +121,3 @@ def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: Heigh
 def _before(state: Array, time: float) -> Array:
     """Position some time before a state of position, velocity and acceleration."""
     return np.asarray(state[0] - state[1] * time + 0.5 * state[2] * time**2)
-
-
-def _unit_swing(samples: int, climb: float, course: SwingCourse, parameters: PlannerParameters) -> Array:
-    """Progress of the sole and its height above lift-off at the samples of a swing, shape (2, samples)."""
-    times = swing_times(0.0, samples, course, parameters)
-    swing: SwingTrajectory = start_swing(
-        Foot.LEFT, np.zeros(6), np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), times, course.height, parameters
-    )
-    return np.array([swing.evaluate(k * parameters.sample_time)[0, [0, 2]] for k in range(samples)]).T

@@ -1,18 +1,21 @@
 """What is known of horizon and preview before the motion is planned."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.planner.model.dcm import natural_frequency, nominal_motion
 from surefoot.planner.model.leg_chain import LegChain
 from surefoot.planner.parameters import LegInertia
-from surefoot.planner.references.com_height import HeightPreview, HeightShape, preview_height
-from surefoot.planner.references.leg_offset import SwingShape, nominal_feet, softening, zmp_offset
-from surefoot.planner.references.zmp_reference import Support, SupportKey, ZmpReference, zmp_reference
+from surefoot.planner.references.com_height import HeightPreview, HeightProfile, preview_height
+from surefoot.planner.references.leg_offset import Feet, nominal_feet, softening, zmp_offset
+from surefoot.planner.references.zmp_reference import Support, SupportKey, ZmpReference, load_left, zmp_reference
 from surefoot.planner.types import Array
-from surefoot.planner.walk.clock import Schedule
-from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.walk.clock import Stepper
+from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.phases import PhaseSamples
 
 _TICKS = 5
 """Ticks for which an offset of the legs serves; making it costs more than the rest of a plan."""
@@ -27,26 +30,31 @@ class OffsetTable:
     them in this as well.
 
     Attributes:
-        start: first sample.
+        start: first sample, on the clock [samples].
         key: of the support then, whose plan frame is that of the values.
         values: shape (m, 2) [m].
     """
 
-    start: int
+    start: float
     key: SupportKey
     values: Array
 
-    def holds(self, sample: int, key: SupportKey, last: int) -> bool:
+    def holds(self, clock: float, key: SupportKey, last: float) -> bool:
         """Whether it still serves: the same support and footholds, a later sample, and few of them later.
 
-        In the final standing, where the walk's clock rests, it does not: its values go on with time.
+        In the final standing, where the walk's clock does not matter, it does not: its values go on with time.
 
         Args:
-            sample: now.
+            clock: now [samples].
             key: of the support now.
-            last: first sample of the final standing.
+            last: begin of a standing of which no end is known, infinite if none is in sight [samples].
         """
-        return self.key == key and self.start < sample < min(self.start + _TICKS, last)
+        return self.key == key and self.start < clock < min(self.start + _TICKS, last)
+
+    def since(self, clock: float, count: int) -> Array:
+        """So many offsets from a sample at which it holds, shape (count, 2) [m]."""
+        passed = round(clock - self.start)
+        return self.values[passed : passed + count]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,23 +62,25 @@ class Window:
     """References over the window of one tick, in the plan frame.
 
     Attributes:
-        start: first sample.
         reference: ZMP reference that the footsteps define.
         driving: what of it drives the pendulum: the reference less `offset`.
         offset: what the swing leg adds to the ZMP, shape (n, 2) [m].
         height: CoM height.
         stiffness: λ of the pendulum, softened by the legs' masses, shape (n,) [1/s^2].
         omega: ω of its DCM, shape (n,) [1/s].
+        load_left: planned share of the weight on the left foot, shape (n,) [-].
+        contacts: planned contacts (left, right), shape (n, 2).
         table: where the offset comes from; None without legs.
     """
 
-    start: int
     reference: ZmpReference
     driving: ZmpReference
     offset: Array
     height: HeightPreview
     stiffness: Array
     omega: Array
+    load_left: Array
+    contacts: NDArray[np.bool_]
     table: OffsetTable | None
 
 
@@ -79,77 +89,102 @@ class Outlook:
     """Looks ahead along a walk.
 
     Attributes:
-        schedule: its phases.
-        height: its CoM height.
-        swing: its swings.
+        gait: the walk.
+        profile: law of its CoM height.
         leg: the reduced leg.
+        toe: toe edge from the sole's centre [m].
         count: samples of a window, N + M + 1.
+        sample_time: length of one [s].
     """
 
-    schedule: Schedule
-    height: HeightShape
-    swing: SwingShape
+    gait: GaitParameters
+    profile: HeightProfile
     leg: LegInertia
+    toe: float
     count: int
+    sample_time: float
 
-    def zmp(self, sample: int, support: Support, count: int | None = None) -> ZmpReference:
-        """The ZMP that the footsteps define, from a sample on: the paper's ZMP planner.
+    @property
+    def reach(self) -> int:
+        """Samples that are looked at: offsets serve for some ticks, at the last of which they are to cover a window."""
+        return self.count + _TICKS - 1
+
+    def zmp(self, samples: PhaseSamples, support: Support) -> ZmpReference:
+        """The ZMP that the footsteps define: the paper's ZMP planner.
 
         Args:
-            sample: the first.
+            samples: the phases from the sample before now to the one after the last of interest.
             support: what carries the robot now, with the plan frame.
-            count: samples, those of a window by default.
         """
-        return zmp_reference(self.schedule, support.table, sample, count or self.count)
+        return zmp_reference(samples, support.table).part(slice(1, -1))
 
-    def com_height(self, sample: int, support: Support, reference: ZmpReference) -> HeightPreview:
+    def com_height(self, samples: PhaseSamples, support: Support, reference: ZmpReference) -> HeightPreview:
         """CoM height and stiffness over the samples of a reference: the paper's vertical motion planner."""
-        return preview_height(self.height, sample, len(reference.point), support.heights, reference.height)
+        return preview_height(self.profile, self.gait, samples, support.heights, reference.height)
 
     def window(
         self,
-        sample: int,
+        stepper: Stepper,
+        samples: PhaseSamples,
         support: Support,
         reference: ZmpReference,
         height: HeightPreview,
-        footsteps: FootstepPlan,
         position: Array,
         table: OffsetTable | None = None,
     ) -> Window:
-        """The window that begins at a sample.
+        """The window that begins now.
 
         Args:
-            sample: the first.
+            stepper: the clock and the steps in sight.
+            samples: the phases.
             support: what carries the robot now, with the plan frame.
-            reference: ZMP from there on.
-            height: CoM height from there on.
-            footsteps: footholds in the world frame.
+            reference: ZMP.
+            height: CoM height.
             position: CoM now in the plan frame, shape (2,) [m].
             table: offsets of the tick before, used again while they hold.
         """
+        count, last = self.count, samples.phases[-1]
+        standing = last.start if math.isinf(last.samples) else math.inf
         stiffness = softening(self.leg) * height.stiffness
-        omega = natural_frequency(stiffness, self.schedule.sample_time)
+        seen = reference.part(slice(count))
         if self.leg.chain is None:
-            table, offset = None, np.zeros_like(reference.point)
+            table, offset = None, np.zeros_like(seen.point)
         else:
-            if table is None or not table.holds(sample, support.key, self.schedule.last):
-                table = self._offsets(self.leg.chain, sample, support, footsteps, position)
-            offset = table.values[sample - table.start :][: self.count]
-        driving = replace(reference, point=reference.point - offset)
-        return Window(sample, reference, driving, offset, height, stiffness, omega, table)
+            if table is None or not table.holds(stepper.tick, support.key, standing):
+                frame = support.rotation, support.origin
+                # No longer than until the robot stands will they serve.
+                more = min(_TICKS - 1, max(int(standing - stepper.tick), 0) + 1) if standing < math.inf else _TICKS - 1
+                feet = nominal_feet(samples.part(count + more + 1), stepper.queue, frame, self.toe)
+                values = self._offsets(self.leg.chain, feet, reference, height, stiffness, position, count + more)
+                table = OffsetTable(stepper.tick, support.key, values)
+            offset = table.since(stepper.tick, count)
+        return Window(
+            reference=seen,
+            driving=replace(seen, point=seen.point - offset),
+            offset=offset,
+            height=HeightPreview(height.height[:, :count], height.stiffness[:count]),
+            stiffness=stiffness[:count],
+            omega=natural_frequency(stiffness[:count], samples.sample_time),
+            load_left=load_left(samples, support)[1 : count + 1],
+            contacts=samples.contacts[1 : count + 1],
+            table=table,
+        )
 
     def _offsets(
-        self, chain: LegChain, sample: int, support: Support, footsteps: FootstepPlan, position: Array
-    ) -> OffsetTable:
+        self,
+        chain: LegChain,
+        feet: Feet,
+        reference: ZmpReference,
+        height: HeightPreview,
+        stiffness: Array,
+        position: Array,
+        count: int,
+    ) -> Array:
         """Offsets for a CoM on the nominal motion, which itself depends on them: two passes leave a millimetre."""
-        count = min(self.count + _TICKS - 1, len(self.schedule.index) - sample)
-        reference = self.zmp(sample, support, count)
-        height = self.com_height(sample, support, reference)
-        stiffness = softening(self.leg) * height.stiffness
-        samples = np.maximum(np.arange(sample - 1, sample + count), 0)
-        feet = nominal_feet(self.swing, footsteps, (support.rotation, support.origin), samples)
-        offset = np.zeros_like(reference.point)
+        point, softened = reference.point[:count], stiffness[:count]
+        height = HeightPreview(height.height[:, :count], height.stiffness[:count])
+        offset = np.zeros_like(point)
         for _ in range(2):
-            motion = nominal_motion(position, reference.point - offset, stiffness, self.schedule.sample_time)
-            offset = zmp_offset(chain, feet, motion, height, stiffness)
-        return OffsetTable(sample, support.key, offset)
+            motion = nominal_motion(position, point - offset, softened, self.sample_time)
+            offset = zmp_offset(chain, feet, motion, height, softened)
+        return offset

@@ -7,13 +7,14 @@ import numpy as np
 
 from surefoot.planner.geometry import convex_hull, frame_rotation, sole_corners
 from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
-from surefoot.planner.walk.clock import Schedule, Stepper
+from surefoot.planner.walk.clock import Stepper
 from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.walk.phases import PhaseSamples
 
 
 @dataclass(frozen=True, slots=True)
 class SupportTable:
-    """Support points (see `Schedule`) seen from the plan frame, with what each of them does to reference and box.
+    """Support points (see `PhaseSamples`) seen from the plan frame, with what each of them does to reference and box.
 
     Attributes:
         values: columns x, y [m], gain of the next two footstep shifts [-], box half sizes x, y [m], height [m];
@@ -43,6 +44,10 @@ class ZmpReference:
     half_size: Array
     height: Array
 
+    def part(self, samples: slice) -> "ZmpReference":
+        """The reference over some of its samples."""
+        return ZmpReference(self.point[samples], self.gain[samples], self.half_size[samples], self.height[samples])
+
 
 def support_table(plan: FootstepPlan, stance_row: int, free: tuple[bool, bool], half_size: Array) -> SupportTable:
     """Tabulate the support points in the plan frame (origin and planned heading of the stance row).
@@ -71,19 +76,16 @@ def support_table(plan: FootstepPlan, stance_row: int, free: tuple[bool, bool], 
     return SupportTable(values, steps)
 
 
-def zmp_reference(schedule: Schedule, table: SupportTable, start: int, count: int) -> ZmpReference:
+def zmp_reference(samples: PhaseSamples, table: SupportTable) -> ZmpReference:
     """ZMP reference of a window: the stance foot in single support, linear to the next one in double support.
 
     It is eq. (12) in vector form: the paper's scalar S_L is f_{i+1} - f_i, and its t starts anew at each step.
 
     Args:
-        schedule: phases of the walk.
-        table: support points.
-        start: first sample of the window.
-        count: its length.
+        samples: the phases over the window.
+        table: support points in sight.
     """
-    index = schedule.index[start : start + count]
-    fraction = schedule.fraction[start : start + count]
+    index, fraction = samples.index, samples.fraction
     rows = table.values.take(index, axis=0) + fraction[:, None] * table.steps.take(index, axis=0)
     return ZmpReference(rows[:, :2], rows[:, 2:4], rows[:, 4:6], rows[:, 6])
 
@@ -100,14 +102,14 @@ class SupportKey(NamedTuple):
 
     Attributes:
         revision: of the footholds (see `planner.walk.clock.Stepper`).
-        row: of the foot that landed last.
-        phase_start: first sample of the phase.
+        landed: number of the step that landed last.
+        phase_start: begin of the phase on the clock [samples].
         free: whether the next two footsteps may be shifted.
     """
 
     revision: int
-    row: int
-    phase_start: int
+    landed: int
+    phase_start: float
     free: tuple[bool, bool]
 
 
@@ -119,8 +121,9 @@ class Support:
         key: what it follows from.
         rotation: plan frame to world, shape (2, 2).
         origin: origin of the plan frame, shape (2,) [m].
-        table: support points of the walk in the plan frame.
+        table: support points in sight, in the plan frame.
         heights: heights of the support points, shape (m,) [m].
+        on_left: share of the weight on the left foot at the support points, shape (m,) [-].
         outer: support polygon of the planned soles, shape (v, 2) [m].
         inner: support polygon of the soles shrunk to the ZMP margin, shape (v, 2) [m].
         footholds: where the left and the right foot stand, or stood last.
@@ -131,9 +134,16 @@ class Support:
     origin: Array
     table: SupportTable
     heights: Array
+    on_left: Array
     outer: Array
     inner: Array
     footholds: tuple[Footstep, Footstep]
+
+
+def load_left(samples: PhaseSamples, support: Support) -> Array:
+    """Planned share of the weight on the left foot over a window, shape (n,) [-]; it goes with the ZMP reference."""
+    index, fraction, share = samples.index, samples.fraction, support.on_left
+    return np.asarray((1.0 - fraction) * share[index] + fraction * share[np.minimum(index + 1, len(share) - 1)])
 
 
 def present_support(last: Support | None, stepper: Stepper, half_size: Array, margin: float) -> Support:
@@ -146,7 +156,7 @@ def present_support(last: Support | None, stepper: Stepper, half_size: Array, ma
         margin: share of the sole in which the ZMP must stay [-].
     """
     steps, row, phase = stepper.footsteps, stepper.row, stepper.phase
-    key = SupportKey(stepper.revision, row, phase.start, stepper.free)
+    key = SupportKey(stepper.revision, stepper.landed, phase.start, stepper.free)
     if last is not None and last.key == key:
         return last
     latest, before = steps.footstep(row), steps.footstep(row - 1)
@@ -161,6 +171,7 @@ def present_support(last: Support | None, stepper: Stepper, half_size: Array, ma
         origin=latest.position[:2],
         table=support_table(steps, row, stepper.free, margin * half_size),
         heights=steps.support_points()[:, 2],
+        on_left=steps.between_rows(np.array([float(foot is Foot.LEFT) for foot in steps.feet])),
         outer=outer,
         inner=inner,
         footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),

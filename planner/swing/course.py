@@ -12,9 +12,7 @@ from surefoot.planner.geometry import sole_pose, sole_rotation
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing, swing_times
-from surefoot.planner.types import Array, Foot, PhaseKind
-from surefoot.planner.walk.clock import Schedule
-from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.types import Array, Foot, Footstep
 
 EDGE_CLEARANCE = 0.02
 """Height of every part of the sole above ground that is neither its lift-off nor its landing place [m]."""
@@ -31,48 +29,46 @@ _INSTANTS = 200
 _LEVEL = 1e-3
 
 
-def swing_courses(
-    footsteps: FootstepPlan,
-    schedule: Schedule,
+def swing_course(
+    number: int,
+    leaving: Footstep,
+    landing: Footstep,
+    samples: float,
     terrain: Terrain,
     half_size: Array,
     clearance: float,
     parameters: PlannerParameters,
-) -> tuple[SwingCourse, ...]:
-    """Courses of all steps of a plan, in their order.
+) -> SwingCourse:
+    """Course of a step.
 
     On level ground the foot glides all the time and is highest when the parameters say. Where edges are in the way it
     takes the gentlest course that clears them: the one with the least sum of peak accelerations.
 
     Args:
-        footsteps: footholds.
-        schedule: gives the time for each swing.
+        number: of the step, from 1.
+        leaving: foothold that its foot leaves.
+        landing: where it lands.
+        samples: duration of single support [samples].
         terrain: the ground as the planner believes it to be.
         half_size: half of the sole's length and width, shape (2,) [m].
         clearance: least height of the apex above lift-off and touchdown [m].
         parameters: give the apex of a swing over level ground.
 
     Raises:
-        ParameterError: no course clears the edges of a step.
+        ParameterError: no course clears the edges of the step.
     """
     plain = SwingCourse(parameters.apex_share, 0.0, 1.0, clearance)
     if not terrain.has_edges:
-        return (plain,) * footsteps.steps
-    courses = []
-    for phase in schedule.phases:
-        if phase.kind is not PhaseKind.SINGLE:
-            continue
-        row = phase.step + 1
-        start, end = (sole_pose(footsteps.position[r], footsteps.yaw[r], footsteps.normal[r]) for r in (row - 2, row))
-        ground = _ground(start, end, terrain, half_size + EDGE_DISTANCE)
-        course: SwingCourse | None = plain
-        if np.ptp(ground) > _LEVEL:
-            course = _gentlest(start, end, ground, clearance, phase.samples, parameters)
-        if course is None:
-            what = f"footstep {phase.step} cannot be swung {EDGE_CLEARANCE:g} m clear of the edges before it"
-            raise ParameterError(("terrain", "depth"), what, "give the treads more depth, or the swing more height")
-        courses.append(course)
-    return tuple(courses)
+        return plain
+    start, end = (sole_pose(place.position, place.yaw, place.normal) for place in (leaving, landing))
+    ground = _ground(start, end, terrain, half_size + EDGE_DISTANCE)
+    if np.ptp(ground) <= _LEVEL:
+        return plain
+    course = _gentlest(start, end, ground, clearance, samples, parameters)
+    if course is None:
+        what = f"footstep {number} cannot be swung {EDGE_CLEARANCE:g} m clear of the edges before it"
+        raise ParameterError(("terrain", "depth"), what, "give the treads more depth, or the swing more height")
+    return course
 
 
 def _ground(start: Array, end: Array, terrain: Terrain, half_size: Array) -> Array:
@@ -100,7 +96,7 @@ def _on_face(points: Array, heights: Array, pose: Array) -> NDArray[np.bool_]:
 
 
 def _gentlest(
-    start: Array, end: Array, ground: Array, clearance: float, samples: int, parameters: PlannerParameters
+    start: Array, end: Array, ground: Array, clearance: float, samples: float, parameters: PlannerParameters
 ) -> SwingCourse | None:
     """The gentlest course above the ground, None if there is none.
 
@@ -122,14 +118,14 @@ def _gentlest(
 
 
 @lru_cache(maxsize=4)
-def _shares(samples: int, parameters: PlannerParameters) -> Array:
+def _shares(samples: float, parameters: PlannerParameters) -> Array:
     """Share of the way over the ground that each glide has done, of any step, shape (64, 200)."""
     ahead = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
     courses = [SwingCourse(_APEXES[0], *glide, 0.0) for glide in _GLIDES]
     return np.array([_flown(np.zeros(6), ahead, course, samples, parameters)[:, 0] for course in courses])
 
 
-def _flown(start: Array, end: Array, course: SwingCourse, samples: int, parameters: PlannerParameters) -> Array:
+def _flown(start: Array, end: Array, course: SwingCourse, samples: float, parameters: PlannerParameters) -> Array:
     """Positions of a swing on a course from its lift-off to its touchdown, shape (200, 6).
 
     It comes to rest there, as if the touchdown had no speed: with it the sole is higher by part of a millimetre.

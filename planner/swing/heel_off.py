@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, sole_rates, sole_rotation
-from surefoot.planner.types import Array, Foot, PhaseKind
-from surefoot.planner.walk.clock import Schedule
-from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.types import Array, Foot, Footstep
+from surefoot.planner.walk.phases import Phase, RollSpan
 
 _BEGIN = 0.25
 """Share of the weight shift after which the heel leaves the ground [-]."""
@@ -80,63 +79,21 @@ def bump(s: float) -> tuple[float, float, float]:
     return 64.0 * w**3, 192.0 * w**2 * (1.0 - 2.0 * s), 384.0 * w * ((1.0 - 2.0 * s) ** 2 - w)
 
 
-@dataclass(frozen=True, slots=True)
-class RollPlan:
-    """The rolls of a whole walk on the planner's clock.
-
-    Attributes:
-        start: first instant of the roll before step i + 1, in samples, shape (n,).
-        end: its last, shape (n,).
-        angle: its greatest pitch, zero where the foot stays flat, shape (n,) [rad].
-        toe: toe edge from the sole's centre [m].
-    """
-
-    start: Array
-    end: Array
-    angle: Array
-    toe: float
-
-    def of_step(self, step: int, foot: Foot, time: float, sample: int, sample_time: float) -> FootRoll | None:
-        """The roll before or in a step at a sample, None if there is none any more.
-
-        Args:
-            step: number of the step.
-            foot: the foot that takes it.
-            time: now [s].
-            sample: now on the planner's clock.
-            sample_time: [s].
-        """
-        if not 1 <= step <= len(self.angle) or self.angle[step - 1] == 0.0 or sample >= self.end[step - 1]:
-            return None
-        begin, end = (time + (float(at[step - 1]) - sample) * sample_time for at in (self.start, self.end))
-        return FootRoll(foot, begin, end, float(self.angle[step - 1]), self.toe)
-
-    def pitch(self, schedule: Schedule) -> Array:
-        """Pitch at every sample of the foot that swings or is the next to do so, shape (K,) [rad]."""
-        values = np.zeros(len(schedule.phase_index))
-        for start, end, angle in zip(self.start, self.end, self.angle, strict=True):
-            samples = np.arange(int(start), int(end) + 1)
-            values[samples] += [angle * bump((k - start) / (end - start))[0] for k in samples]
-        return values
-
-
-def roll_plan(schedule: Schedule, footsteps: FootstepPlan, angle: float, half_length: float) -> RollPlan:
-    """Lay the rolls on the clock.
+def roll_span(
+    before: Phase, single: float, leaving: Footstep, stance: Footstep, angle: float, half_length: float
+) -> RollSpan | None:
+    """When the foot of a step rolls, and how far; None for one that stays flat.
 
     Args:
-        schedule: phases.
-        footsteps: nominal footsteps.
+        before: the double support before the step.
+        single: duration of its single support [samples].
+        leaving: nominal foothold that the foot leaves.
+        stance: that of the other foot.
         angle: greatest pitch [rad].
         half_length: of the sole [m].
     """
-    start, end, angles = [], [], []
-    for before, phase in zip(schedule.phases, schedule.phases[1:], strict=False):
-        if phase.kind is not PhaseKind.SINGLE:
-            continue
-        ramp = np.count_nonzero(schedule.fraction_rate[before.start : before.end])
-        start.append(phase.start - (1.0 - _BEGIN) * ramp)
-        end.append(phase.start + _END * phase.samples)
-        row = phase.step
-        ahead = (footsteps.position[row] - footsteps.position[row - 1])[:2] @ frame_rotation(float(footsteps.yaw[row]))
-        angles.append(angle if ahead[0] > _LEAST_STEP * half_length else 0.0)
-    return RollPlan(np.array(start), np.array(end), np.array(angles), half_length)
+    ahead = (stance.position - leaving.position)[:2] @ frame_rotation(stance.yaw)
+    if angle == 0.0 or ahead[0] <= _LEAST_STEP * half_length:
+        return None
+    ramp, lift_off = before.samples - before.rest, before.end
+    return RollSpan(lift_off - (1.0 - _BEGIN) * ramp, lift_off + _END * single, angle)

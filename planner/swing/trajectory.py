@@ -82,7 +82,7 @@ class SwingTrajectory:
         return np.asarray(self.coefficients(time)[:3] * _FACTORIAL)
 
     def positions(self, times: Array) -> Array:
-        """Position at instants from the start up to the touchdown, shape (n, 6).
+        """Position at instants from the start on, shape (n, 6).
 
         Args:
             times: shape (n,) [s].
@@ -92,6 +92,9 @@ class SwingTrajectory:
         result[:, _GLIDING] = gliding[:, None] ** _EXPONENTS @ self.level
         rising, falling = ((times - start)[:, None] ** _EXPONENTS for start in (self.rise_start, self.fall_start))
         result[:, 2] = np.where(times < self.apex_time - _NOW, (rising @ self.rise)[:, 0], (falling @ self.fall)[:, 0])
+        for k in np.flatnonzero(times >= self.touchdown_time - _NOW):
+            result[k] = self.target
+            result[k, 2] -= self.search.motion(float(times[k]) - self.touchdown_time)[0]
         return result
 
     def retargeted(self, time: float, target: Array) -> "SwingTrajectory":
@@ -155,7 +158,7 @@ class SwingTimes:
     touchdown: float
 
 
-def swing_times(start: float, samples: int, course: SwingCourse, parameters: PlannerParameters) -> SwingTimes:
+def swing_times(start: float, samples: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTimes:
     """Times [s] of a swing in a single support of so many samples that begins at `start`."""
     t = parameters.sample_time
     touchdown = start + samples * t - min(parameters.touchdown_lead, 0.25 * samples * t)

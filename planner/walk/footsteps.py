@@ -8,24 +8,79 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array, FeetState, Foot, Footstep
-from surefoot.planner.walk.gait import GaitParameters, support_rows
+from surefoot.planner.walk.gait import GaitParameters, Stride, support_rows
 from surefoot.planner.walk.reach import Landing
 
 
 @dataclass(frozen=True, slots=True)
-class FootstepPlan:
-    """Footholds of a whole walk in the world frame.
+class Path:
+    """Where the nominal path of a walk has come to.
 
-    Row 0 is the start foothold of the foot that moves first, row 1 that of the other foot (the stance foot of step 1),
-    row i + 1 is footstep i. A row that has landed holds the measured foothold.
+    Each stride advances it by (`length`, `lateral`) along the mean of its old and new heading and turns it; the foot
+    lands beside the path's new point, half the stride's width to its side. Where the width changes, the path first
+    moves to lie half the new width beside the stance foot: so where a foot lands from its stance foot is a matter of
+    the stride alone.
 
     Attributes:
-        feet: which foot each row belongs to, length n + 2.
-        position: sole centres, shape (n + 2, 3) [m].
-        yaw: planned headings, unwrapped, shape (n + 2,) [rad]; landing errors do not enter, so heading does not drift.
-        normal: unit normals of the ground, shape (n + 2, 3) [-].
-        increment: nominal displacement from the row before, shape (n + 2, 2) [m].
+        middle: its last point, shape (2,) [m].
+        start_yaw: heading at its start [rad].
+        turned: since then [rad].
+        width: of the last stride [m].
+    """
+
+    middle: Array
+    start_yaw: float
+    turned: float
+    width: float
+
+    @property
+    def yaw(self) -> float:
+        """Its heading now [rad]."""
+        return self.start_yaw + self.turned
+
+    def advanced(self, stride: Stride, foot: Foot) -> tuple["Path", Array]:
+        """The path after a stride, and where the foot lands that makes it, shape (2,) [m]."""
+        turned, side = self.turned + stride.turn, 0.5 if foot is Foot.LEFT else -0.5
+        yaw = self.start_yaw + turned
+        middle = self.middle + frame_rotation(self.yaw) @ (0.0, side * (stride.width - self.width))
+        middle = middle + frame_rotation(0.5 * (self.yaw + yaw)) @ (stride.length, stride.lateral)
+        place = middle + frame_rotation(yaw) @ (0.0, side * stride.width)
+        return Path(middle, self.start_yaw, turned, stride.width), place
+
+    @classmethod
+    def begin(cls, feet: FeetState, terrain: Terrain, width: float) -> "Path":
+        """It starts midway between the feet with their mean heading, or where the terrain says.
+
+        Its heading is unwrapped from the right foot's.
+        """
+        right = float(feet.yaw[Foot.RIGHT])
+        if terrain.path_start is not None:
+            x, y, yaw = terrain.path_start
+            return cls(np.array([x, y]), right + wrap_angle(yaw - right), 0.0, width)
+        middle = 0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2])
+        yaw = right + 0.5 * wrap_angle(float(feet.yaw[Foot.LEFT]) - right)
+        return cls(np.asarray(middle), yaw, 0.0, width)
+
+
+@dataclass(frozen=True, slots=True)
+class FootstepPlan:
+    """Footholds of a walk, or of the part of it that is in sight, in the world frame.
+
+    Of a whole walk, row 0 is the start foothold of the foot that moves first, row 1 that of the other foot (the stance
+    foot of step 1), row i + 1 is footstep i; a part begins at row `first`. A row that has landed holds the measured
+    foothold.
+
+    Attributes:
+        feet: which foot each row belongs to, length n.
+        position: sole centres, shape (n, 3) [m].
+        yaw: planned headings, unwrapped, shape (n,) [rad]; landing errors do not enter, so heading does not drift.
+        normal: unit normals of the ground, shape (n, 3) [-].
+        increment: nominal displacement from the row before, shape (n, 2) [m].
         supports: rows between which each support point lies, shape (m, 2) (see `planner.walk.gait.support_rows`).
+        first: row of the walk that its first one is.
+        first_support: support point of the walk that its first one is.
+        moved_to: where a row was moved and how far the last row lies from there nominally, shape (2,) each [m]; None
+            before any was.
     """
 
     feet: tuple[Foot, ...]
@@ -34,11 +89,14 @@ class FootstepPlan:
     normal: Array
     increment: Array
     supports: NDArray[np.intp]
+    first: int = 0
+    first_support: int = 0
+    moved_to: tuple[Array, Array] | None = None
 
     @property
     def steps(self) -> int:
-        """Number of steps n."""
-        return len(self.feet) - 2
+        """Number of steps of the walk up to the last row."""
+        return self.first + len(self.feet) - 2
 
     def footstep(self, row: int) -> Footstep:
         """The foothold of a row."""
@@ -64,62 +122,99 @@ class FootstepPlan:
         moved[row] = position
         if not terrain.free_footholds:
             return replace(self, position=moved)
-        following = position[:2] + np.cumsum(self.increment[row + 1 :], axis=0)
+        way = np.cumsum(self.increment[row + 1 :], axis=0)
+        following = position[:2] + way
         moved[row + 1 :, :2] = following
         moved[row + 1 :, 2] = terrain.heights(following)
+        anchor = (position[:2], way[-1] if len(way) else np.zeros(2))
         if not terrain.has_edges:
-            return replace(self, position=moved)
+            return replace(self, position=moved, moved_to=anchor)
         normal = self.normal.copy()
         normal[row:] = terrain.normals(moved[row:, :2])
-        return replace(self, position=moved, normal=normal)
+        return replace(self, position=moved, normal=normal, moved_to=anchor)
+
+    def followed(self, place: Footstep, increment: Array, terrain: Terrain) -> "FootstepPlan":
+        """The plan with one more footstep, moved by as much as those before it.
+
+        Args:
+            place: where it nominally is.
+            increment: its displacement from the nominal one before, shape (2,) [m].
+            terrain: gives its height where it is moved.
+        """
+        position, normal, anchor = place.position, place.normal, self.moved_to
+        if anchor is not None:
+            way = anchor[1] + increment
+            anchor, xy = (anchor[0], way), (anchor[0] + way)[None]
+            position = np.append(xy[0], terrain.heights(xy))
+            normal = terrain.normals(xy)[0] if terrain.has_edges else normal
+        return replace(
+            self,
+            feet=(*self.feet, place.foot),
+            position=np.concatenate((self.position, position[None])),
+            yaw=np.append(self.yaw, place.yaw),
+            normal=np.concatenate((self.normal, normal[None])),
+            increment=np.concatenate((self.increment, increment[None])),
+            moved_to=anchor,
+        )
+
+    def supported(self, row: int, other: int) -> "FootstepPlan":
+        """The plan with one more support point, between two rows of the walk."""
+        point = np.array([[row - self.first, other - self.first]])
+        return replace(self, supports=np.concatenate((self.supports, point)))
+
+    def since(self, row: int, support: int) -> "FootstepPlan":
+        """What of the plan begins at a row and a support point of the walk, or what there is from there on."""
+        rows, points = max(row - self.first, 0), max(support - self.first_support, 0)
+        return replace(
+            self,
+            feet=self.feet[rows:],
+            position=self.position[rows:],
+            yaw=self.yaw[rows:],
+            normal=self.normal[rows:],
+            increment=self.increment[rows:],
+            supports=self.supports[points:] - rows,
+            first=self.first + rows,
+            first_support=self.first_support + points,
+        )
 
     def support_points(self) -> Array:
-        """Support points of the ZMP reference (see `Schedule`), shape (m, 3) [m]."""
+        """Support points of the ZMP reference (see `planner.walk.queue`), shape (m, 3) [m]."""
         return np.asarray(self.between_rows(self.position))
 
     def between_rows(self, values: Array) -> Array:
-        """What rows of values, shape (n + 2, k), are at the support points: means of two rows, shape (m, k)."""
+        """What rows of values, shape (n, k), are at the support points: means of two rows, shape (m, k)."""
         return np.asarray(0.5 * (values[self.supports[:, 0]] + values[self.supports[:, 1]]))
 
 
-def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
-    """Footsteps of a gait from where the feet stand.
+def start_footholds(gait: GaitParameters, feet: FeetState, path: Path, terrain: Terrain) -> FootstepPlan:
+    """The two start feet, the one that moves first in front, and the support point between them."""
+    rows = (gait.step_foot(-1), gait.step_foot(0))
+    position = feet.position[list(rows)]
+    increment = np.zeros((2, 2))
+    increment[1] = position[1, :2] - position[0, :2]
+    yaw = np.full(2, path.yaw)
+    return FootstepPlan(rows, position, yaw, terrain.normals(position[:, :2]), increment, np.array([[0, 1]]))
 
-    The path starts midway between the feet with their mean heading, or where the terrain says. Each stride advances it
-    by (`length`, `lateral`) along the mean of its old and new heading and turns it; the foot lands beside the path's
-    new point, half the stride's width to its side. Where the width changes, the path first moves to lie half the new
-    width beside the stance foot: so where a foot lands from its stance foot is a matter of the stride alone.
+
+def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
+    """Footsteps of a whole gait from where the feet stand.
 
     Args:
         gait: the gait.
         feet: start feet in the world frame.
         terrain: gives heights and normals of the footsteps, and the start of the path where they belong on treads.
     """
-    n, strides = gait.steps, gait.strides
-    rows = tuple(gait.step_foot(i - 1) for i in range(n + 2))
-    path, start_yaw = _path_start(feet, terrain)
-    yaw = start_yaw + np.cumsum([0.0, 0.0, *(stride.turn for stride in strides)])
-    width = gait.step_width
-    position = np.empty((n + 2, 3))
-    position[0], position[1] = feet.position[rows[0]], feet.position[rows[1]]
-    for row, stride in enumerate(strides, 2):
-        side = 0.5 if rows[row] is Foot.LEFT else -0.5
-        path = path + frame_rotation(yaw[row - 1]) @ (0.0, side * (stride.width - width))
-        path = path + frame_rotation(0.5 * (yaw[row - 1] + yaw[row])) @ (stride.length, stride.lateral)
-        width = stride.width
-        position[row, :2] = path + frame_rotation(yaw[row]) @ (0.0, side * width)
-    position[2:, 2] = terrain.heights(position[2:, :2])
-    increment = np.zeros((n + 2, 2))
-    increment[1:] = np.diff(position[:, :2], axis=0)
-    normal = terrain.normals(position[:, :2])
-    return FootstepPlan(rows, position, yaw, normal, increment, support_rows(gait.walk))
-
-
-def _path_start(feet: FeetState, terrain: Terrain) -> tuple[Array, float]:
-    """Where the path starts, shape (2,) [m], and its heading there, unwrapped from the right foot's [rad]."""
-    right = float(feet.yaw[Foot.RIGHT])
-    if terrain.path_start is not None:
-        x, y, yaw = terrain.path_start
-        return np.array([x, y]), right + wrap_angle(yaw - right)
-    middle = 0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2])
-    return np.asarray(middle), right + 0.5 * wrap_angle(float(feet.yaw[Foot.LEFT]) - right)
+    path = Path.begin(feet, terrain, gait.step_width)
+    start = start_footholds(gait, feet, path, terrain)
+    rows, yaw, places = list(start.feet), [path.yaw, path.yaw], list(start.position[:, :2])
+    for number, stride in enumerate(gait.strides, 1):
+        rows.append(gait.step_foot(number))
+        path, place = path.advanced(stride, rows[-1])
+        places.append(place)
+        yaw.append(path.yaw)
+    level = np.array(places)
+    position = np.column_stack((level, terrain.heights(level)))
+    position[:2] = start.position
+    increment = np.diff(level, axis=0, prepend=level[:1])
+    supports = support_rows(gait.walk)
+    return FootstepPlan(tuple(rows), position, np.array(yaw), terrain.normals(level), increment, supports)

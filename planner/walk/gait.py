@@ -204,20 +204,8 @@ def support_rows(walk: tuple[Bout, ...]) -> NDArray[np.intp]:
     return np.array([*rows, (step, step + 1)], dtype=np.intp)
 
 
-def samples(key: tuple[str, str], duration: float, sample_time: float) -> int:
-    """Number of planner samples in a duration.
-
-    Args:
-        key: of the duration, for the error.
-        duration: duration [s].
-        sample_time: planner sample time [s].
-
-    Raises:
-        ParameterError: the duration is no multiple of the sample time; the message names the nearest that is.
-    """
-    count = round(duration / sample_time)
-    if abs(count * sample_time - duration) > 1e-9 * max(1.0, duration):
-        nearest = max(count, 1) * sample_time
-        what = f"{key[-1]} is {duration:g} s, no multiple of the planner's sample time of {sample_time:g} s"
-        raise ParameterError(key, what, f"the nearest is {nearest:g} s")
-    return count
+def in_samples(duration: float, sample_time: float) -> float:
+    """A duration [s] in planner samples [s], a real number; a multiple up to rounding is a whole number."""
+    count = duration / sample_time
+    whole = round(count)
+    return float(whole) if abs(whole * sample_time - duration) <= 1e-9 * max(1.0, duration) else count

@@ -11,7 +11,7 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.parameters import LegInertia, PlannerParameters
 from surefoot.planner.plan import Planner
-from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.planner import WalkingPlanner, check_walk
 from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.types import Array, FeetState
 from surefoot.planner.walk.gait import GaitParameters
@@ -122,9 +122,12 @@ class Walk:
         Raises:
             ParameterError: it cannot plan this gait.
         """
-        make = self.profile.planner or WalkingPlanner
         parameters = replace(self.parameters, leg=leg)
-        return make(self.gait, feet, *self.sole, self.terrain, parameters, self.heights, self.profile)
+        given = (self.gait, feet, *self.sole, self.terrain, parameters, self.heights)
+        if self.profile.planner is not None:
+            return self.profile.planner(*given, self.profile)
+        check_walk(*given)
+        return WalkingPlanner(*given, self.profile)
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:

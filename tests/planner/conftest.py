@@ -1,12 +1,17 @@
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from surefoot.planner.ground.terrain import flat
+from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PendulumTrace, walk_pendulum
-from surefoot.planner.types import FeetState
+from surefoot.planner.types import FeetState, Foot
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.phases import Flow
+from surefoot.planner.walk.queue import Ground, StepQueue
 
 
 def stand(width: float = 0.2, origin: tuple[float, float] = (0.0, 0.0), yaw: float = 0.0) -> FeetState:
@@ -21,9 +26,38 @@ def walk(
 ) -> tuple[WalkingPlanner, PendulumTrace]:
     planner = WalkingPlanner(gait, stand(gait.step_width), *foot)
     com = np.array([0.0, 0.0, gait.com_height])
-    duration = planner.schedule.last * planner.parameters.sample_time + 2.0
+    duration = gait.duration + 2.0
     options = {"substeps": 3, "duration": duration, "com": com} | options
     return planner, walk_pendulum(planner, stand(gait.step_width), **options)
+
+
+def schedule(
+    gait: GaitParameters,
+    sample_time: float = 0.02,
+    after: int = 150,
+) -> SimpleNamespace:
+    """All steps of a gait in one queue, and its phases at every sample until some after its end."""
+    ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(sample_time=sample_time, reach_length=0.8))
+    queue = StepQueue(gait, stand(gait.step_width), ground)
+    queue.extend(np.inf)
+    last = round(queue.phases[-1].start)
+    samples = queue.samples(Flow(np.arange(last + after, dtype=np.float64)))
+    steps = queue.footsteps
+    on_left = steps.between_rows(np.array([float(foot is Foot.LEFT) for foot in steps.feet]))
+    following = on_left[np.minimum(samples.index + 1, len(on_left) - 1)]
+    return SimpleNamespace(
+        queue=queue,
+        phases=queue.phases,
+        samples=samples,
+        steps=steps,
+        last=last,
+        load_left=(1.0 - samples.fraction) * on_left[samples.index] + samples.fraction * following,
+    )
+
+
+@pytest.fixture(name="schedule", scope="session")
+def schedule_fixture() -> Callable[..., SimpleNamespace]:
+    return schedule
 
 
 @pytest.fixture(name="stand", scope="session")

@@ -9,10 +9,9 @@ from surefoot.planner.ground.blocks import LEVEL_STEPS, Blocks
 from surefoot.planner.ground.slope import Slope
 from surefoot.planner.ground.terrain import Site, flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.course import swing_courses
+from surefoot.planner.swing.course import swing_course
 from surefoot.planner.swing.trajectory import start_swing, swing_times
 from surefoot.planner.types import Foot
-from surefoot.planner.walk.clock import schedule
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
 
@@ -97,10 +96,10 @@ def test_the_turning_sole_clears_all_blocks_and_lands_flat(stand, seed):
     """The whole sole is above the ground all the time, and away from home by the clearance of edges."""
     plan, terrain = field(stand, seed)
     samples, parameters = 35, PlannerParameters()
-    clock = schedule(GaitParameters(steps=plan.steps, single_support=0.02 * samples), 0.02, 10)
-    courses = swing_courses(plan, clock, terrain, HALF_SOLE, 0.05, parameters)
     outline = np.array([(x, y, 0.0) for x in np.linspace(-0.11, 0.11, 9) for y in (-0.055, 0.055)])
-    for row, course in enumerate(courses, start=2):
+    for row in range(2, plan.steps + 2):
+        ends = plan.footstep(row - 2), plan.footstep(row)
+        course = swing_course(row - 1, *ends, samples, terrain, HALF_SOLE, 0.05, parameters)
         start, end = (sole_pose(plan.position[r], plan.yaw[r], plan.normal[r]) for r in (row - 2, row))
         times = swing_times(0.0, samples, course, parameters)
         swing = start_swing(Foot.LEFT, start, end, times, course.height, parameters)

@@ -31,7 +31,7 @@ def walks(stand):
             return plan
 
         planner.update = observed
-        duration = planner.schedule.last * 0.02 + 1.0
+        duration = gait.duration + 1.0
         com = np.array([0.0, 0.0, gait.com_height])
         return walk_pendulum(planner, stand(), duration, com=com, pushes=pushes, substeps=2), qps
 

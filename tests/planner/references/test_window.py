@@ -17,7 +17,7 @@ pytestmark = pytest.mark.unit
 
 LINK = Link(0.4, 0.08, 0.45, 0.003)
 LEG = LegInertia(0.06, LegChain(0.1, (0.0, 0.0, 0.25), LINK, LINK, 0.02, (0.03, 0.0, -0.05), (0.0, 0.0, 0.1)))
-KEY = SupportKey(3, 2, 100, (True, False))
+KEY = SupportKey(3, 2, 100.0, (True, False))
 
 
 def test_a_table_holds_for_few_later_samples_of_an_equal_key():
@@ -26,7 +26,7 @@ def test_a_table_holds_for_few_later_samples_of_an_equal_key():
     assert [sample for sample in range(105, 120) if table.holds(sample, KEY, 112)] == [111]
 
 
-@pytest.mark.parametrize("change", [{"revision": 4}, {"row": 3}, {"phase_start": 101}, {"free": (True, True)}])
+@pytest.mark.parametrize("change", [{"revision": 4}, {"landed": 3}, {"phase_start": 101.0}, {"free": (True, True)}])
 def test_a_table_does_not_hold_for_another_support(change):
     assert not OffsetTable(110, KEY, np.zeros((200, 2))).holds(111, KEY._replace(**change), 500)
 
@@ -44,7 +44,7 @@ def test_plans_depend_on_values_and_not_on_objects(stand, copied):
                 stepper.fix(stepper.footsteps.position[2])
             if change and tick == 2:
                 if copied:
-                    stepper.footsteps = replace(stepper.footsteps)
+                    stepper.queue.footsteps = replace(stepper.footsteps)
                 else:
                     stepper.fix(stepper.footsteps.position[2] + (0.05, 0.0, 0.0))
             state = CentroidalState(0.02 * tick, np.array([0.001 * tick, 0.0, 1.0]), np.zeros(3))

@@ -4,23 +4,32 @@ import pytest
 from surefoot.planner.geometry import convex_hull, frame_rotation, signed_distance, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.references.zmp_reference import support_table, zmp_reference
-from surefoot.planner.walk.clock import schedule
-from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.phases import Flow
 
 pytestmark = pytest.mark.unit
 
 HALF = np.array([0.11, 0.055])
 
 
-def setup(stand, **options):
-    gait = GaitParameters(initial_stand=0.0, **options)
-    return plan_footsteps(gait, stand(gait.step_width), flat()), schedule(gait, 0.02, 150)
+@pytest.fixture(scope="session")
+def setup(schedule):
+    """The footsteps of a walk, its phases, and its ZMP reference from a sample on with a table of support points."""
+
+    def of(**options):
+        plan = schedule(GaitParameters(initial_stand=0.0, **options))
+
+        def reference(table, start, count):
+            return zmp_reference(plan.queue.samples(Flow(start + np.arange(count, dtype=float))), table)
+
+        return plan.steps, plan, reference
+
+    return of
 
 
-def test_reference_is_the_papers_zmp_equation(stand):
-    steps, plan = setup(stand, step_length=0.2, lateral_step=0.1)
-    reference = zmp_reference(plan, support_table(steps, 1, (True, True), HALF), 50, 101)
+def test_reference_is_the_papers_zmp_equation(setup):
+    steps, _, refer = setup(step_length=0.2, lateral_step=0.1)
+    reference = refer(support_table(steps, 1, (True, True), HALF), 50, 101)
     world = reference.point @ frame_rotation(0.0).T + steps.position[1, :2]
     foot, following = steps.position[1, :2], steps.position[2, :2]
     time = 0.02 * np.arange(100)
@@ -29,35 +38,35 @@ def test_reference_is_the_papers_zmp_equation(stand):
 
 
 @pytest.mark.parametrize("row", [1, 3, 4])
-def test_gain_is_the_derivative_of_the_reference(stand, row):
-    steps, plan = setup(stand, steps=4, single_support=0.6, double_support=0.2)
+def test_gain_is_the_derivative_of_the_reference(setup, row):
+    steps, plan, refer = setup(steps=4, single_support=0.6, double_support=0.2)
     start = next(p.start for p in plan.phases if p.step == row and p.stance is not None)
     table = support_table(steps, row, (True, True), HALF)
-    base = zmp_reference(plan, table, start, 151)
+    base = refer(table, start, 151)
     for j in range(2):
         moved = (
             steps.moved(row + 1 + j, steps.position[row + 1 + j] + [0.01, 0.0, 0.0], flat()) if row + j < 5 else steps
         )
-        shifted = zmp_reference(plan, support_table(moved, row, (True, True), HALF), start, 151)
+        shifted = refer(support_table(moved, row, (True, True), HALF), start, 151)
         np.testing.assert_allclose((shifted.point - base.point)[:, 0] / 0.01, base.gain[:, j], atol=1e-9)
 
 
-def test_a_fixed_footstep_has_no_gain(stand):
-    steps, plan = setup(stand)
-    reference = zmp_reference(plan, support_table(steps, 1, (False, False), HALF), 0, 151)
+def test_a_fixed_footstep_has_no_gain(setup):
+    steps, _, refer = setup()
+    reference = refer(support_table(steps, 1, (False, False), HALF), 0, 151)
     assert not reference.gain.any()
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.25])
-def test_moving_box_lies_in_the_support_polygon(stand, turn):
-    steps, plan = setup(stand, steps=3, single_support=0.6, double_support=0.2, step_length=0.15, turn=turn)
-    reference = zmp_reference(plan, support_table(steps, 1, (True, True), HALF), 0, 151)
+def test_moving_box_lies_in_the_support_polygon(setup, turn):
+    steps, plan, refer = setup(steps=3, single_support=0.6, double_support=0.2, step_length=0.15, turn=turn)
+    reference = refer(support_table(steps, 1, (True, True), HALF), 0, 151)
     world = steps.position[1, :2] + reference.point @ frame_rotation(steps.yaw[1]).T
     for k in range(150):
-        i = plan.index[k]
+        i = plan.samples.index[k]
         if not 1 <= i < steps.steps:
             continue
-        soles = [sole_corners(steps.footstep(row), HALF) for row in ((i, i + 1) if plan.fraction[k] else (i,))]
+        soles = [sole_corners(steps.footstep(row), HALF) for row in ((i, i + 1) if plan.samples.fraction[k] else (i,))]
         hull = convex_hull(np.concatenate(soles))
         corners = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]]) * reference.half_size[k]
         for corner in corners @ frame_rotation(steps.yaw[1]).T:

@@ -6,10 +6,9 @@ from surefoot.planner.geometry import sole_corners, sole_pose
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site, flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.course import EDGE_CLEARANCE, swing_courses
+from surefoot.planner.swing.course import EDGE_CLEARANCE, swing_course
 from surefoot.planner.swing.trajectory import start_swing, swing_times
 from surefoot.planner.types import FeetState, Foot, Footstep
-from surefoot.planner.walk.clock import schedule
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
 
@@ -27,8 +26,9 @@ def walk_plan(direction, riser, tread, steps=6):
 
 
 def courses_of(plan, terrain, half_size, samples=75):
-    gait = GaitParameters(steps=plan.steps, single_support=0.02 * samples)
-    return swing_courses(plan, schedule(gait, 0.02, 10), terrain, np.array(half_size), 0.05, PARAMETERS)
+    ends = [(plan.footstep(row - 2), plan.footstep(row)) for row in range(2, plan.steps + 2)]
+    steps, size = enumerate(ends, 1), np.array(half_size)
+    return [swing_course(step, *of, samples, terrain, size, 0.05, PARAMETERS) for step, of in steps]
 
 
 def swings(plan, courses, samples):

@@ -3,15 +3,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from surefoot.planner.geometry import sole_rotation
-from surefoot.planner.ground.terrain import flat
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
-from surefoot.planner.swing.heel_off import FootRoll, bump, roll_plan
+from surefoot.planner.references.leg_offset import nominal_feet
+from surefoot.planner.swing.heel_off import FootRoll, bump
 from surefoot.planner.types import CentroidalState, Foot, PhaseKind
-from surefoot.planner.walk.clock import schedule
-from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
@@ -22,10 +20,8 @@ GAIT = GaitParameters(
 
 
 @pytest.fixture
-def walk(stand):
-    phases = schedule(GAIT, 0.02, 150)
-    footsteps = plan_footsteps(GAIT, stand(), flat())
-    return phases, roll_plan(phases, footsteps, GAIT.heel_off, 0.11)
+def walk(schedule):
+    return schedule(GAIT)
 
 
 def test_bump_starts_and_ends_at_rest_with_one_in_the_middle():
@@ -57,28 +53,27 @@ def test_the_centre_of_a_rolled_sole_keeps_the_toe_edge_where_it_was():
 
 
 def test_a_roll_begins_in_double_support_and_ends_before_touchdown(walk):
-    phases, rolls = walk
-    singles = [phase for phase in phases.phases if phase.kind is PhaseKind.SINGLE]
-    for phase, start, end in zip(singles, rolls.start, rolls.end, strict=True):
+    singles = [phase for phase in walk.phases if phase.roll is not None and phase.kind is PhaseKind.SINGLE]
+    for phase in singles:
+        start, end, _ = phase.roll
         assert phase.start - 5 < start < phase.start < end < phase.end
         # By then the ZMP has left the sole behind that is to roll.
-        assert phases.fraction[int(np.ceil(start))] * GAIT.step_length > 0.09
+        assert walk.samples.fraction[int(np.ceil(start))] * GAIT.step_length > 0.09
+        assert walk.phases[walk.phases.index(phase) - 1].roll == phase.roll
 
 
 def test_only_feet_that_are_left_behind_roll(walk):
-    _, rolls = walk
-    assert list(rolls.angle > 0.0) == [False, True, True, True]
+    singles = [phase for phase in walk.phases if phase.kind is PhaseKind.SINGLE]
+    assert [phase.roll is not None for phase in singles] == [False, True, True, True]
 
 
-def test_pitch_at_the_samples_is_that_of_the_rolls(walk):
-    phases, rolls = walk
-    pitch = rolls.pitch(phases)
-    roll = rolls.of_step(2, Foot.RIGHT, 0.0, 0, 0.02)
-    for sample in range(int(rolls.start[1]), int(rolls.end[1]) + 2):
-        assert pitch[sample] == pytest.approx(roll.evaluate(0.02 * sample)[0], abs=1e-12)
-    assert pitch.max() <= 0.5
-    assert rolls.of_step(1, Foot.LEFT, 0.0, 0, 0.02) is None
-    assert rolls.of_step(2, Foot.RIGHT, 0.0, int(rolls.end[1]) + 1, 0.02) is None
+def test_pitch_over_a_window_is_that_of_the_rolls(walk):
+    feet = nominal_feet(walk.samples, walk.queue, (np.eye(2), np.zeros(2)), 0.11)
+    start, end, angle = next(phase.roll for phase in walk.phases if phase.roll is not None)
+    roll = FootRoll(Foot.RIGHT, 0.02 * start, 0.02 * end, angle, 0.11)
+    for sample in range(int(start), int(end) + 2):
+        assert feet.pitch[Foot.RIGHT, sample] == pytest.approx(roll.evaluate(0.02 * sample)[0], abs=1e-12)
+    assert 0.4 < feet.pitch.max() <= 0.5
 
 
 def test_plans_of_a_walk_carry_the_roll_of_the_foot_that_leaves(stand):

@@ -9,7 +9,6 @@ from surefoot.errors import ParameterError
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import FeetState, Foot, Footstep, PhaseKind
-from surefoot.planner.walk.clock import schedule
 from surefoot.planner.walk.commands import (
     Twist,
     VelocityCommand,
@@ -52,12 +51,12 @@ def test_the_command_at_lift_off_gives_the_stride_and_zero_closes_the_stance():
     assert bout.stand == 1.0
 
 
-def test_a_zero_longer_than_a_step_stands_and_goes_on_when_commanded():
+def test_a_zero_longer_than_a_step_stands_and_goes_on_when_commanded(schedule):
     gait = walk((0.0, 0.3), (3.0,), (6.0, 0.3), (8.0,))
     first, second = gait.walk
     stopped = 1.0 + 0.32 + PERIOD * len(first.strides)
     assert stopped + second.stand == pytest.approx(6.0)
-    plan = schedule(gait, 0.02, 150)
+    plan = schedule(gait)
     stands = [phase for phase in plan.phases if phase.kind is PhaseKind.STAND]
     assert [phase.step for phase in stands] == [0, len(first.strides), gait.steps]
     assert stands[1].end * 0.02 == pytest.approx(6.0)
@@ -174,7 +173,7 @@ TWISTS = st.builds(Twist, st.floats(-1, 1), st.floats(-0.5, 0.5), st.floats(-1, 
 
 @settings(max_examples=60, deadline=None)
 @given(data=st.data())
-def test_any_velocity_command_within_limits_gives_a_sound_walk(data):
+def test_any_velocity_command_within_limits_gives_a_sound_walk(schedule, data):
     """Whatever follows whatever: every foot lands in reach and apart from the other, and the schedule is consistent."""
     ticks = sorted(data.draw(st.sets(st.integers(0, 400), min_size=1, max_size=6)))
     twists = [data.draw(st.just(Twist()) | TWISTS) for _ in ticks[1:]]
@@ -189,9 +188,9 @@ def test_any_velocity_command_within_limits_gives_a_sound_walk(data):
         x, y = steps.increment[row] @ np.array([[c, -s], [s, c]])
         beside = float(y if steps.feet[row] is Foot.LEFT else -y)
         assert REGION.why_not(Landing(float(x), beside, float(steps.yaw[row] - steps.yaw[row - 1]))) is None
-    plan = schedule(gait, 0.02, 150)
+    plan = schedule(gait)
     assert [phase.kind for phase in plan.phases].count(PhaseKind.SINGLE) == gait.steps
     assert all(a.end == b.start for a, b in zip(plan.phases, plan.phases[1:], strict=False))
-    assert np.diff(plan.index + plan.fraction).max(initial=0.0) <= 1 / 8 + 1e-12
+    assert np.diff(plan.samples.index + plan.samples.fraction).max(initial=0.0) <= 1 / 8 + 1e-12
     assert np.abs(np.diff(plan.load_left)).max(initial=0.0) <= 1 / 8 + 1e-12
-    assert plan.index[-1] == len(steps.support_points()) - 1
+    assert plan.samples.index[-1] == len(steps.support_points()) - 1

@@ -1,0 +1,223 @@
+"""The steps in sight: a short queue that a source fills and the walk's clock empties."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from surefoot.planner.ground.terrain import Terrain
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.course import swing_course
+from surefoot.planner.swing.heel_off import roll_span
+from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseKind
+from surefoot.planner.walk.footsteps import Path, start_footholds
+from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
+from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Phase, PhaseSamples, PhaseTable
+from surefoot.planner.walk.reach import check_reach
+from surefoot.planner.walk.source import GaitSource, StepSource
+
+_MORE_STEPS = 3
+"""Steps in sight beyond a window: its last support points depend on the ones after them, and a plan tells three."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step in sight.
+
+    Attributes:
+        number: in the walk, from 1.
+        stride: what it does to the path.
+        path: where the nominal path comes to with it.
+        place: its nominal footstep.
+        climb: height of that above where its foot nominally stood before [m].
+        course: of its swing over the ground.
+        swing: that swing to a footstep one metre ahead, in its own time.
+    """
+
+    number: int
+    stride: Stride
+    path: Path
+    place: Footstep
+    climb: float
+    course: SwingCourse
+    swing: SwingTrajectory
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """What a queue needs to lay steps.
+
+    Attributes:
+        terrain: the ground as the planner believes it to be.
+        half_size: half of the sole's length and width, shape (2,) [m].
+        parameters: of the planner.
+    """
+
+    terrain: Terrain
+    half_size: Array
+    parameters: PlannerParameters
+
+
+class StepQueue:
+    """The steps in sight, with the phases of which they are made and their footholds.
+
+    Each bout: stand, a first double support of `WEIGHT_SHIFT` times the usual length that rests for all but the last of
+    them, then single and double supports in turn. The last double support brings the ZMP back between the feet, where
+    the robot stands until the next bout.
+
+    Args:
+        gait: gives the durations and what else all steps have in common.
+        feet: where the feet stand at the start.
+        ground: to lay steps on.
+        source: of the steps; those of the gait by default.
+
+    Attributes:
+        phases: those in sight in order, without gaps, the one before the present first.
+        steps: those in sight by their numbers.
+        footsteps: footholds in sight, landed ones as measured.
+        revision: how often what was in sight has changed.
+
+    Raises:
+        ParameterError: a footstep is out of reach, or no swing clears the edges before it.
+    """
+
+    def __init__(self, gait: GaitParameters, feet: FeetState, ground: Ground, source: StepSource | None = None) -> None:
+        self._gait, self._ground, self._source = gait, ground, source or GaitSource(gait)
+        path = Path.begin(feet, ground.terrain, gait.step_width)
+        self.footsteps = start_footholds(gait, feet, path, ground.terrain)
+        start = [self.footsteps.footstep(row) for row in (0, 1)]
+        zero, course = Stride(0.0, 0.0, 0.0, gait.step_width), SwingCourse(0.5, 0.0, 1.0, 0.0)
+        single = in_samples(gait.single_support, ground.parameters.sample_time)
+        swing = unit_swing(single, 0.0, course, ground.parameters)
+        # The start feet count as footsteps -1 and 0, so that the first steps are laid as all others.
+        self.steps = {number: Step(number, zero, path, start[number + 1], 0.0, course, swing) for number in (-1, 0)}
+        self.phases: list[Phase] = [Phase(PhaseKind.STAND, 0.0, np.inf, 0, None, 0)]
+        self.revision = 0
+        self._standing = True
+        self._table = PhaseTable.of(self.phases)
+
+    @property
+    def _last(self) -> Step:
+        """The last step in sight."""
+        return self.steps[max(self.steps)]
+
+    @property
+    def support_heights(self) -> Array:
+        """Heights of the support points in sight, shape (m,) [m]."""
+        return self.footsteps.support_points()[:, 2]
+
+    def extend(self, clock: float) -> None:
+        """Ask for steps until all is known up to an instant on the clock, and three steps more.
+
+        Args:
+            clock: the instant [samples].
+        """
+        before = len(self.phases), self.phases[-1]
+        while self._lift_offs_after(clock) < _MORE_STEPS and self._ask():
+            pass
+        if before != (len(self.phases), self.phases[-1]):
+            self._table = PhaseTable.of(self.phases)
+
+    def _lift_offs_after(self, clock: float) -> int:
+        return sum(phase.kind is PhaseKind.SINGLE and phase.start >= clock for phase in self.phases[-2 * _MORE_STEPS :])
+
+    def _ask(self) -> bool:
+        """Lay what comes next; says whether there is anything."""
+        step, phases, t = self._last.number, self.phases, self._ground.parameters.sample_time
+        if self._standing:
+            stand = phases[-1]
+            order = self._source.order(step + 1, stand.start * t, None)
+            if order is None:
+                return False
+            self._begin_bout(stand, in_samples(order.stand, t))
+        else:
+            order = self._source.order(step + 1, phases[-1].end * t, self._last.stride)
+            if order is None:
+                self._end_bout()
+                return True
+        self._lay(order.stride)
+        return True
+
+    def _begin_bout(self, stand: Phase, samples: float) -> None:
+        double = in_samples(self._gait.double_support, self._ground.parameters.sample_time)
+        self.phases[-1:] = [replace(stand, samples=samples)] if samples else []
+        shift, rest = WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double
+        self.phases.append(Phase(PhaseKind.DOUBLE, stand.start + samples, shift, stand.step, None, stand.support, rest))
+        self._standing = False
+
+    def _end_bout(self) -> None:
+        last = self.phases[-1]
+        self.footsteps = self.footsteps.supported(last.step, last.step + 1)
+        self.phases.append(Phase(PhaseKind.STAND, last.end, np.inf, last.step, None, last.support + 1))
+        self._standing = True
+
+    def _lay(self, stride: Stride) -> None:
+        """Lay a step: its foothold, its single support and the double support that follows."""
+        gait, t = self._gait, self._ground.parameters.sample_time
+        single, double = (in_samples(duration, t) for duration in (gait.single_support, gait.double_support))
+        step = self._next(stride, single)
+        increment = step.place.position[:2] - self._last.place.position[:2]
+        self.footsteps = self.footsteps.followed(step.place, increment, self._ground.terrain)
+        check_reach(step.number, self.footsteps.landing(len(self.footsteps.feet) - 1), self._ground.parameters)
+        self.footsteps = self.footsteps.supported(step.number, step.number)
+        self.steps[step.number] = step
+        before = self.phases[-1]
+        support, number = before.support + 1, step.number
+        ends = (self.steps[number - 2].place, self.steps[number - 1].place)
+        roll = roll_span(before, single, *ends, gait.heel_off, float(self._ground.half_size[0]))
+        self.phases[-1] = replace(before, roll=roll)
+        stance = gait.step_foot(number).other
+        swing = Phase(PhaseKind.SINGLE, before.end, single, number, stance, support, roll=roll)
+        self.phases += [swing, Phase(PhaseKind.DOUBLE, swing.end, double, number, None, support)]
+
+    def _next(self, stride: Stride, single: float) -> Step:
+        """The step after the last one."""
+        ground, number = self._ground, self._last.number + 1
+        foot = self._gait.step_foot(number)
+        path, xy = self._last.path.advanced(stride, foot)
+        point = xy[None]
+        position, normal = np.append(xy, ground.terrain.heights(point)), ground.terrain.normals(point)[0]
+        start, place = self.steps[number - 2].place, Footstep(foot, position, path.yaw, normal)
+        course = swing_course(
+            number, start, place, single, ground.terrain, ground.half_size, self._gait.swing_height, ground.parameters
+        )
+        # The start feet are measured, which may be a few nanometres off the ground.
+        climb = round(float(position[2] - start.position[2]), 6)
+        return Step(number, stride, path, place, climb, course, unit_swing(single, climb, course, ground.parameters))
+
+    def enter(self, clock: float) -> None:
+        """Let go of what lies behind an instant on the clock, but for the phase of the sample before it.
+
+        Args:
+            clock: the instant [samples].
+        """
+        phases, gone = self.phases, 0
+        while phases[gone].end <= clock - 1.0 + CLOCK_ROUNDING:
+            gone += 1
+        if not gone:
+            return
+        del phases[:gone]
+        first = phases[0]
+        self.steps = {number: step for number, step in self.steps.items() if number >= first.step - 2}
+        self.footsteps = self.footsteps.since(first.step - 2, first.support - 2)
+        self._table = PhaseTable.of(phases)
+
+    def phase(self, clock: float) -> Phase:
+        """The phase at an instant on the clock, the first in sight if it lies before."""
+        return next((p for p in reversed(self.phases) if p.start <= clock + CLOCK_ROUNDING), self.phases[0])
+
+    def samples(self, flow: Flow) -> PhaseSamples:
+        """The phases at the samples of a window."""
+        return self._table.at(flow, self._ground.parameters.sample_time, self.footsteps.first_support)
+
+    def lift_off(self, step: int) -> Phase:
+        """The single support of a step in sight."""
+        return next(p for p in self.phases if p.kind is PhaseKind.SINGLE and p.step == step)
+
+
+def unit_swing(samples: float, climb: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTrajectory:
+    """A swing of so many samples from the origin at time 0 to a footstep one metre ahead that lies higher [m]."""
+    end = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0])
+    return start_swing(
+        Foot.LEFT, np.zeros(6), end, swing_times(0.0, samples, course, parameters), course.height, parameters
+    )

@@ -199,12 +199,26 @@ class WalkingPlanner:
         self._offsets: OffsetTable | None = None
         self._swing: SwingTrajectory | None = None
         self._plan: WalkPlan | None = None
+        self._durations: tuple[float, float] | None = None
         self.motion: Motion | None = None
 
     @property
     def footsteps(self) -> FootstepPlan:
         """Footholds in sight: landed ones as measured, the others as nominally planned from them."""
         return self._stepper.footsteps
+
+    def retime(self, single_support: float, double_support: float) -> None:
+        """Take other durations from the next plan on; what is left of the present phase changes in proportion.
+
+        Args:
+            single_support: of every step to come, and of the one being swung [s].
+            double_support: likewise [s].
+
+        Raises:
+            ParameterError: a duration is not positive or not finite.
+        """
+        replace(self.gait, single_support=single_support, double_support=double_support)
+        self._durations = single_support, double_support
 
     def update(self, state: CentroidalState, feet: FeetState) -> WalkPlan:
         """Plan from a measurement; call it once per sample time.
@@ -220,6 +234,11 @@ class WalkingPlanner:
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         p, stepper = self.parameters, self._stepper
         stepper.advance(feet)
+        if self._durations is not None:
+            delay = stepper.retime(*self._durations)
+            self._durations = None
+            if self._swing is not None and stepper.swing_foot is not None and delay:
+                self._swing = self._swing.retimed(state.time, delay, p.sample_time)
         self._fix_imminent_footstep(state.time)
         # ZMP planner: what carries the robot now, and the ZMP that the footsteps define.
         support = self._support = present_support(self._support, stepper, self._half_size, p.foot_margin)
@@ -318,7 +337,7 @@ class WalkingPlanner:
             return None
         foot = self.gait.step_foot(stepper.phase.row)
         start, end = (time + (at - stepper.tick) * t for at in span[:2])
-        return FootRoll(foot, start, end, span.angle, float(self._half_size[0]))
+        return FootRoll(foot, start, end, span.angle, float(self._half_size[0]), (time, *stepper.flow))
 
     def _status(self, motion: Motion) -> PlanStatus:
         age = 0

@@ -150,7 +150,7 @@ class Outlook:
         if self.leg.chain is None:
             table, offset = None, np.zeros_like(seen.point)
         else:
-            if table is None or not table.holds(stepper.tick, support.key, standing):
+            if table is None or not stepper.steady or not table.holds(stepper.tick, support.key, standing):
                 frame = support.rotation, support.origin
                 # No longer than until the robot stands will they serve.
                 more = min(_TICKS - 1, max(int(standing - stepper.tick), 0) + 1) if standing < math.inf else _TICKS - 1

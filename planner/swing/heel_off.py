@@ -33,10 +33,12 @@ class FootRoll:
 
     Attributes:
         foot: which.
-        start: begin [s].
-        end: end [s].
+        start: begin, by the clock of the gait [s].
+        end: end, likewise [s].
         angle: A, the greatest pitch [rad].
         toe: toe edge from the sole's centre [m].
+        flow: an instant at which that clock shows the time [s], its rate by time [-] and the derivative of that [1/s]
+            around it.
     """
 
     foot: Foot
@@ -44,12 +46,26 @@ class FootRoll:
     end: float
     angle: float
     toe: float
+    flow: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+    def rolling(self, time: float) -> bool:
+        """Whether the foot is not level."""
+        return self.start < self._clock(time)[0] < self.end
+
+    def _clock(self, time: float) -> tuple[float, float]:
+        """The clock of the gait [s] and its rate [-]."""
+        now, rate, bend = self.flow
+        if rate == 1.0 and bend == 0.0:
+            return time, 1.0
+        passed = time - now
+        return now + passed * (rate + 0.5 * bend * passed), rate + bend * passed
 
     def evaluate(self, time: float) -> tuple[float, float, float]:
         """Pitch, its rate and its acceleration [rad, rad/s, rad/s^2]."""
-        span = self.end - self.start
-        value, slope, bend = bump((time - self.start) / span)
-        return self.angle * value, self.angle * slope / span, self.angle * bend / span**2
+        span, (clock, rate) = self.end - self.start, self._clock(time)
+        value, slope, bend = bump((clock - self.start) / span)
+        speed = self.angle * slope / span
+        return self.angle * value, speed * rate, self.angle * bend / span**2 * rate**2 + speed * self.flow[2]
 
     def centre(self, time: float, level: Array, rates: Array) -> tuple[Array, Array]:
         """Where the sole's centre is and how it moves, with the foot turned about its toe edge.
@@ -95,5 +111,10 @@ def roll_span(
     ahead = (stance.position - leaving.position)[:2] @ frame_rotation(stance.yaw)
     if angle == 0.0 or ahead[0] <= _LEAST_STEP * half_length:
         return None
+    return roll_times(before, single, angle)
+
+
+def roll_times(before: Phase, single: float, angle: float) -> RollSpan:
+    """When a foot rolls that does; arguments as of `roll_span`."""
     ramp, lift_off = before.samples - before.rest, before.end
     return RollSpan(lift_off - (1.0 - _BEGIN) * ramp, lift_off + _END * single, angle)

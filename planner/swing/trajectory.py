@@ -117,6 +117,41 @@ class SwingTrajectory:
         fall = _fall(state[:, 2:3], float(target[2]), self.search.touchdown_speed, self.touchdown_time - time)
         return replace(moved, fall_start=time, fall=fall)
 
+    def retimed(self, time: float, delay: float, grid: float) -> "SwingTrajectory":
+        """The trajectory that goes on from its own state at `time` to the same target and apex at other times.
+
+        What is left until each instant changes in proportion; but for the touchdown they stay on a grid from now on.
+
+        Args:
+            time: instant of the change [s].
+            delay: by which the touchdown is put off [s].
+            grid: sample time of the plans [s].
+        """
+        left = self.touchdown_time - time
+        if left < _LEAST_CHANGE * grid or left + delay < _LEAST_CHANGE * grid:
+            return self
+        share, touchdown = 1.0 + delay / left, self.touchdown_time + delay
+
+        def put_off(instant: float) -> float:
+            return instant if instant < time + _NOW else time + round(share * (instant - time) / grid) * grid
+
+        state = self.evaluate(time)
+        start, end = max(put_off(self.start_time), time), min(put_off(self.glide_end), touchdown)
+        moved = replace(self, touchdown_time=touchdown, start_time=start, glide_end=end)
+        if time < self.glide_end - _NOW:
+            end = max(end, min(start + grid, touchdown))
+            level = _to_rest(state[:, _GLIDING], self.target[_GLIDING], end - start)
+            moved = replace(moved, glide_end=end, level=level)
+        if time < self.apex_time - _NOW:
+            top = float((self.apex_time - self.rise_start) ** _EXPONENTS @ self.rise[:, 0])
+            apex = min(max(put_off(self.apex_time), time + grid), touchdown - grid)
+            return _with_height(replace(moved, apex_time=apex), time, state[:, 2:3], top)
+        fall = _fall(state[:, 2:3], float(self.target[2]), self.search.touchdown_speed, touchdown - time)
+        return replace(moved, fall_start=time, fall=fall)
+
+
+_LEAST_CHANGE = 3.0
+"""Samples of a swing that must be left, before and after, for its times to be changed."""
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 _EXPONENTS = np.arange(6)

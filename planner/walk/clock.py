@@ -6,7 +6,7 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
 from surefoot.planner.walk.footsteps import FootstepPlan
-from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, PhaseSamples
+from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Pace, PhaseSamples
 from surefoot.planner.walk.queue import Step, StepQueue
 
 _SAME_GROUND = 1e-3
@@ -46,6 +46,9 @@ class Stepper:
         self.early = False
         self.fixed = False
         self._terrain, self._window = terrain, window
+        self._pace: Pace | None = None
+        self._paced = 0.0
+        self._began = 0.0
         self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and terrain.free_footholds
         self.sample_time = parameters.sample_time
         self._patience = round(parameters.late_touchdown / parameters.sample_time)
@@ -86,8 +89,8 @@ class Stepper:
 
     @property
     def time_left(self) -> float:
-        """Time by the clock until the present phase ends [s]."""
-        return (self.phase.end - self.tick) * self.sample_time
+        """Time until the present phase ends [s]."""
+        return self._until(self.phase.end)
 
     @property
     def transfer_time(self) -> float:
@@ -98,12 +101,56 @@ class Stepper:
         return self.queue.phase(phase.end).samples * self.sample_time
 
     def time_to_touchdown(self, step: int) -> float:
-        """Time by the clock until a step in sight lands [s]."""
-        return (self.queue.lift_off(step).end - self.tick) * self.sample_time
+        """Time until a step in sight lands [s]."""
+        return self._until(self.queue.lift_off(step).end)
+
+    def _until(self, clock: float) -> float:
+        """Time until an instant on the clock that no pace goes beyond [s]."""
+        if self._pace is None:
+            return (clock - self.tick) * self.sample_time
+        beyond = clock - self._began - self._pace.way
+        return (self._pace.length - self._paced + beyond) * self.sample_time
+
+    @property
+    def steady(self) -> bool:
+        """Whether the clock goes by itself, and every sample is one on."""
+        return self._pace is None
+
+    @property
+    def flow(self) -> tuple[float, float]:
+        """The rate of the clock by time now [-], and the derivative of that [1/s]."""
+        if self._pace is None:
+            return 1.0, 0.0
+        _, rate, bend = self._pace.at(np.array([self._paced]))
+        return float(rate[0]), float(bend[0]) / self.sample_time
 
     def samples(self, count: int) -> PhaseSamples:
         """The phases at `count` samples from now on, with one more before them and one after."""
-        return self.queue.samples(Flow(np.maximum(self.tick + np.arange(-1, count + 1), 0.0)))
+        ahead = np.arange(-1.0, count + 1)
+        if self._pace is None:
+            return self.queue.samples(Flow(np.maximum(self.tick + ahead, 0.0)))
+        way, rate, bend = self._pace.at(self._paced + ahead)
+        return self.queue.samples(Flow(self._began + way, (rate, bend / self.sample_time)))
+
+    def retime(self, single_support: float, double_support: float) -> float:
+        """Take other durations from now on; what is left of the present phase changes in proportion.
+
+        Args:
+            single_support: of every step to come, and of this one [s].
+            double_support: likewise [s].
+
+        Returns:
+            By how much the end of the present phase is put off [s].
+        """
+        left, phase, (rate, bend) = self.time_left, self.phase, self.flow
+        length = self.queue.retime(single_support, double_support, phase, self.tick)
+        if phase.kind is not PhaseKind.STAND:
+            way = phase.end - self.tick
+            self._pace = Pace.over(way, length * way / phase.samples, rate, bend * self.sample_time)
+            self._began, self._paced = self.tick, 0.0
+        self.revision += 1
+        self._look_ahead(self.tick)
+        return self.time_left - left if phase.kind is not PhaseKind.STAND else 0.0
 
     def advance(self, feet: FeetState) -> None:
         """Go on by one tick.
@@ -111,7 +158,7 @@ class Stepper:
         Args:
             feet: the measured feet.
         """
-        following = self.tick + 1.0
+        following, paced = self._following()
         phase, swing = self.phase, self.swing_foot
         if swing is not None and self.tick >= 0.0:
             contact = feet.contact[swing]
@@ -123,10 +170,19 @@ class Stepper:
             elif contact and not self.early and 2.0 * (following - phase.start) > phase.samples:
                 self.early = True
                 self.fix(feet.position[swing])
-        self.tick = following
+        self.tick, self._paced = following, paced
+        if self._pace is not None and paced >= self._pace.length - CLOCK_ROUNDING:
+            self._pace = None
         if following >= phase.end - CLOCK_ROUNDING:
             self.queue.enter(following)
             self._look_ahead(following)
+
+    def _following(self) -> tuple[float, float]:
+        """The clock at the next tick, and the time since the present pace began then [samples]."""
+        if self._pace is None:
+            return self.tick + 1.0, 0.0
+        paced = self._paced + 1.0
+        return self._began + float(self._pace.at(np.array([paced]))[0][0]), paced
 
     def _look_ahead(self, clock: float) -> None:
         """See as far as any plan of the phase at an instant on the clock looks; a step ordered may end a stand."""

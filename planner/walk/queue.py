@@ -7,7 +7,7 @@ import numpy as np
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.course import swing_course
-from surefoot.planner.swing.heel_off import roll_span
+from surefoot.planner.swing.heel_off import roll_span, roll_times
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseKind
 from surefoot.planner.walk.footsteps import Path, start_footholds
@@ -87,8 +87,7 @@ class StepQueue:
         self.footsteps = start_footholds(gait, feet, path, ground.terrain)
         start = [self.footsteps.footstep(row) for row in (0, 1)]
         zero, course = Stride(0.0, 0.0, 0.0, gait.step_width), SwingCourse(0.5, 0.0, 1.0, 0.0)
-        single = in_samples(gait.single_support, ground.parameters.sample_time)
-        swing = unit_swing(single, 0.0, course, ground.parameters)
+        swing = unit_swing(self._durations[0], 0.0, course, ground.parameters)
         # The start feet count as footsteps -1 and 0, so that the first steps are laid as all others.
         self.steps = {number: Step(number, zero, path, start[number + 1], 0.0, course, swing) for number in (-1, 0)}
         self.phases: list[Phase] = [Phase(PhaseKind.STAND, 0.0, np.inf, 0, None, 0)]
@@ -139,7 +138,7 @@ class StepQueue:
         return True
 
     def _begin_bout(self, stand: Phase, samples: float) -> None:
-        double = in_samples(self._gait.double_support, self._ground.parameters.sample_time)
+        double = self._durations[1]
         self.phases[-1:] = [replace(stand, samples=samples)] if samples else []
         shift, rest = WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double
         self.phases.append(Phase(PhaseKind.DOUBLE, stand.start + samples, shift, stand.step, None, stand.support, rest))
@@ -153,8 +152,7 @@ class StepQueue:
 
     def _lay(self, stride: Stride) -> None:
         """Lay a step: its foothold, its single support and the double support that follows."""
-        gait, t = self._gait, self._ground.parameters.sample_time
-        single, double = (in_samples(duration, t) for duration in (gait.single_support, gait.double_support))
+        gait, (single, double) = self._gait, self._durations
         step = self._next(stride, single)
         increment = step.place.position[:2] - self._last.place.position[:2]
         self.footsteps = self.footsteps.followed(step.place, increment, self._ground.terrain)
@@ -202,6 +200,51 @@ class StepQueue:
         self.footsteps = self.footsteps.since(first.step - 2, first.support - 2)
         self._table = PhaseTable.of(phases)
 
+    def retime(self, single_support: float, double_support: float, present: Phase, clock: float) -> float:
+        """Give all steps to come other durations; phases that have begun keep theirs on the clock.
+
+        Args:
+            single_support: [s].
+            double_support: [s].
+            present: the phase now.
+            clock: now [samples].
+
+        Returns:
+            How long the present phase would last with these durations [samples].
+
+        Raises:
+            ParameterError: a duration is not positive or not finite.
+        """
+        self._gait = replace(self._gait, single_support=single_support, double_support=double_support)
+        single, double = self._durations
+        at = self.phases.index(present)
+        for number in range(at + 1, len(self.phases)):
+            phase, before = self.phases[number], self.phases[number - 1]
+            samples, rest = _lasting(phase, single, double)
+            phase = replace(phase, start=before.end, samples=samples, rest=rest)
+            if phase.kind is PhaseKind.SINGLE:
+                phase = self._retimed_roll(number, phase, clock)
+                step = self.steps[phase.step]
+                swing = unit_swing(single, step.climb, step.course, self._ground.parameters)
+                self.steps[phase.step] = replace(step, swing=swing)
+            self.phases[number] = phase
+        self._table = PhaseTable.of(self.phases)
+        return _lasting(present, single, double)[0]
+
+    def _retimed_roll(self, number: int, phase: Phase, clock: float) -> Phase:
+        """A single support with its roll and that of the double support before it; one that has begun stays."""
+        if phase.roll is None or clock >= phase.roll.start:
+            return phase
+        roll = roll_times(self.phases[number - 1], phase.samples, phase.roll.angle)
+        self.phases[number - 1] = replace(self.phases[number - 1], roll=roll)
+        return replace(phase, roll=roll)
+
+    @property
+    def _durations(self) -> tuple[float, float]:
+        """Single and double support of the steps to come [samples]."""
+        t = self._ground.parameters.sample_time
+        return in_samples(self._gait.single_support, t), in_samples(self._gait.double_support, t)
+
     def phase(self, clock: float) -> Phase:
         """The phase at an instant on the clock, the first in sight if it lies before."""
         return next((p for p in reversed(self.phases) if p.start <= clock + CLOCK_ROUNDING), self.phases[0])
@@ -213,6 +256,15 @@ class StepQueue:
     def lift_off(self, step: int) -> Phase:
         """The single support of a step in sight."""
         return next(p for p in self.phases if p.kind is PhaseKind.SINGLE and p.step == step)
+
+
+def _lasting(phase: Phase, single: float, double: float) -> tuple[float, float]:
+    """How long a phase lasts and, of a double support, rests with these durations [samples]."""
+    if phase.kind is PhaseKind.SINGLE:
+        return single, 0.0
+    if phase.kind is PhaseKind.STAND:
+        return phase.samples, 0.0
+    return (WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double) if phase.rest else (double, 0.0)
 
 
 def unit_swing(samples: float, climb: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTrajectory:

@@ -146,7 +146,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         swing_angular_velocity=turning,
         swing_angular_acceleration=bending,
         ground_normal=normal,
-        rolling_foot=-1 if roll is None or not roll.start < sample.time < roll.end else int(roll.foot),
+        rolling_foot=-1 if roll is None or not roll.rolling(sample.time) else int(roll.foot),
         roll=(0.0, 0.0, 0.0) if roll is None else roll.evaluate(sample.time),
     )
 
@@ -156,6 +156,6 @@ def _lifting_foot(plan: WalkPlan) -> int:
     phase = plan.phase
     if phase.kind is not PhaseKind.DOUBLE or not plan.footsteps:
         return -1
-    end = round((phase.duration - phase.elapsed) / plan.sample_time)
+    end = math.ceil((phase.duration - phase.elapsed) / plan.sample_time - 1e-6)
     stands = end < len(plan.contacts) and bool(plan.contacts[end].all())
     return -1 if stands else int(plan.footsteps[0].footstep.foot)

@@ -71,7 +71,7 @@ def _rates(draft: Draft) -> Iterator[Problem]:
 
 def _durations(draft: Draft) -> Iterator[Problem]:
     if swing_too_short(draft):
-        what = f"gait.single_support {draft.asked.gait.single_support} s is too short for a swing of the foot"
+        what = f"gait.single_support {draft.keys.gait.single_support} s is too short for a swing of the foot"
         right = f"use at least {FEWEST_SWING_SAMPLES * draft.keys.planner.sample_time:g} s"
         yield Problem(("gait", "single_support"), what, right)
 
@@ -213,7 +213,7 @@ _POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
 
 def notes(draft: Draft) -> tuple[str, ...]:
     """List them, one sentence each."""
-    return (*draft.moved, *_unlikely(draft), *_without_effect(draft), *_cut_short(draft))
+    return (*_unlikely(draft), *_without_effect(draft), *_cut_short(draft))
 
 
 _LONG = 60.0

@@ -30,7 +30,6 @@ from surefoot.scenarios.setup.gait import (
     fitted_to,
     gait_of,
     longest_landing,
-    on_samples,
     step_region,
 )
 from surefoot.scenarios.setup.terrain import KINDS, TerrainKind
@@ -52,15 +51,11 @@ class Draft:
     where the planner refuses the keys.
 
     Attributes:
-        asked: the scenario as the user wrote it; nobody below this room sees it.
-        keys: the same with the gait on the planner's grid of time.
-        moved: what of the gait was moved to that grid, one sentence each.
+        keys: the scenario as the user wrote it; nobody below this room sees it.
     """
 
     def __init__(self, keys: Scenario) -> None:
-        gait, self.moved = on_samples(keys.gait, keys.planner.sample_time)
-        self.asked = keys
-        self.keys = keys.model_copy(update={"gait": gait}) if self.moved else keys
+        self.keys = keys
 
     @cached_property
     def commanded(self) -> bool:

@@ -29,47 +29,6 @@ FINAL_STAND = 2.5
 """Standing after the last double support that ends a run whose duration is not given [s]."""
 
 
-DURATIONS = ("single_support", "double_support", "initial_stand")
-"""Durations that the planner lays out in samples."""
-
-
-def on_samples(keys: Gait, sample_time: float) -> tuple[Gait, tuple[str, ...]]:
-    """The gait with its durations and the times of its commands on the planner's grid, and what was moved to it.
-
-    Args:
-        keys: as asked for; what is on the grid stays as it is, to the bit.
-        sample_time: of the planner [s].
-    """
-    moved: dict[str, float] = {}
-    for name in DURATIONS:
-        value = getattr(keys, name)
-        if not _is_multiple(value, sample_time):
-            moved[name] = _nearest_multiple(value, sample_time, 0 if name == "initial_stand" else 1)
-    times = [command.time for command in keys.velocity]
-    walked = [time if _is_multiple(time, sample_time) else _nearest_multiple(time, sample_time, 0) for time in times]
-    if not moved and walked == times:
-        return keys, ()
-    pairs = [(name, getattr(keys, name), value) for name, value in moved.items()]
-    pairs += [
-        (f"velocity.{i}.time", *both) for i, both in enumerate(zip(times, walked, strict=True)) if both[0] != both[1]
-    ]
-    commands = zip(keys.velocity, walked, strict=True)
-    velocity = tuple(command.model_copy(update={"time": time}) for command, time in commands)
-    grid = f"the nearest multiple of planner.sample_time {sample_time:g} s"
-    notes = (f"gait.{name} {asked:g} s is walked as {value:g} s, {grid}" for name, asked, value in pairs)
-    return keys.model_copy(update={**moved, "velocity": velocity}), tuple(notes)
-
-
-def _is_multiple(value: float, unit: float) -> bool:
-    """Whether a time is a whole number of units, to a billionth of a unit per unit."""
-    ratio = value / unit
-    return math.isclose(ratio, round(ratio), rel_tol=1e-9, abs_tol=1e-9)
-
-
-def _nearest_multiple(value: float, unit: float, least: int) -> float:
-    return float(f"{max(least, round(value / unit)) * unit:.12g}")
-
-
 def commanded(keys: Gait) -> bool:
     """Whether the gait is given by a velocity or by footsteps."""
     return bool(keys.velocity or keys.footsteps)

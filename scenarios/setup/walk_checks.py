@@ -21,7 +21,7 @@ from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot import RobotFacts
 
 MOST_SAMPLES = 1_000_000
-"""Planner samples of a gait, which are laid out in memory before it starts."""
+"""Planner samples of a gait."""
 
 FEWEST_SWING_SAMPLES = 4
 """Planner samples of a single support: lift-off, apex, descent and touchdown."""
@@ -158,8 +158,7 @@ def _times(draft: Draft) -> Iterator[Problem]:
     commands = draft.keys.gait.velocity
     for index, (before, command) in enumerate(pairwise(commands), start=1):
         if command.time <= before.time:
-            asked = draft.asked.gait.velocity[index].time
-            what = f"gait.velocity.{index}.time {asked} s does not come after the command before it"
+            what = f"gait.velocity.{index}.time {command.time} s does not come after the command before it"
             yield Problem((*_VELOCITY, index, "time"), what, f"use more than {before.time} s")
     if commands and not twist_of(commands[-1]).is_zero:
         what = "the last velocity command does not stop"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from surefoot.planner.parameters import LegInertia
-from surefoot.planner.types import CentroidalState, FeetState, PhaseKind
+from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.pendulum import PointMass
@@ -43,8 +43,7 @@ def planned_touchdown(walk):
     """When the first foot is to land [s], and the planner's period [s]."""
     planner = walk.planner(walk.stance, LegInertia())
     period = planner.parameters.sample_time
-    end = next(phase.end for phase in planner.schedule.phases if phase.kind is PhaseKind.SINGLE)
-    return end * period, period
+    return walk.gait.lift_off(1) + walk.gait.single_support, period
 
 
 def booked(landing, until, offset=OFFSET):

@@ -337,7 +337,7 @@ class WalkingPlanner:
             return None
         foot = self.gait.step_foot(stepper.phase.row)
         start, end = (time + (at - stepper.tick) * t for at in span[:2])
-        return FootRoll(foot, start, end, span.angle, float(self._half_size[0]), (time, *stepper.flow))
+        return FootRoll(foot, start, end, span.angle, float(self._half_size[0]), stepper.hurry(time))
 
     def _status(self, motion: Motion) -> PlanStatus:
         age = 0

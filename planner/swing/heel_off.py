@@ -12,7 +12,7 @@ import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, sole_rates, sole_rotation
 from surefoot.planner.types import Array, Foot, Footstep
-from surefoot.planner.walk.phases import Phase, RollSpan
+from surefoot.planner.walk.phases import Hurry, Phase, RollSpan
 
 _BEGIN = 0.25
 """Share of the weight shift after which the heel leaves the ground [-]."""
@@ -37,8 +37,7 @@ class FootRoll:
         end: end, likewise [s].
         angle: A, the greatest pitch [rad].
         toe: toe edge from the sole's centre [m].
-        flow: an instant at which that clock shows the time [s], its rate by time [-] and the derivative of that [1/s]
-            around it.
+        hurry: how that clock goes meanwhile; None where it goes as the time does.
     """
 
     foot: Foot
@@ -46,26 +45,22 @@ class FootRoll:
     end: float
     angle: float
     toe: float
-    flow: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    hurry: Hurry | None = None
 
     def rolling(self, time: float) -> bool:
         """Whether the foot is not level."""
         return self.start < self._clock(time)[0] < self.end
 
-    def _clock(self, time: float) -> tuple[float, float]:
-        """The clock of the gait [s] and its rate [-]."""
-        now, rate, bend = self.flow
-        if rate == 1.0 and bend == 0.0:
-            return time, 1.0
-        passed = time - now
-        return now + passed * (rate + 0.5 * bend * passed), rate + bend * passed
+    def _clock(self, time: float) -> tuple[float, float, float]:
+        """The clock of the gait [s], its rate [-] and the derivative of that [1/s]."""
+        return (time, 1.0, 0.0) if self.hurry is None else self.hurry.at(time)
 
     def evaluate(self, time: float) -> tuple[float, float, float]:
         """Pitch, its rate and its acceleration [rad, rad/s, rad/s^2]."""
-        span, (clock, rate) = self.end - self.start, self._clock(time)
+        span, (clock, rate, change) = self.end - self.start, self._clock(time)
         value, slope, bend = bump((clock - self.start) / span)
         speed = self.angle * slope / span
-        return self.angle * value, speed * rate, self.angle * bend / span**2 * rate**2 + speed * self.flow[2]
+        return self.angle * value, speed * rate, self.angle * bend / span**2 * rate**2 + speed * change
 
     def centre(self, time: float, level: Array, rates: Array) -> tuple[Array, Array]:
         """Where the sole's centre is and how it moves, with the foot turned about its toe edge.

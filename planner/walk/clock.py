@@ -6,8 +6,11 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
 from surefoot.planner.walk.footsteps import FootstepPlan
-from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Pace, PhaseSamples
+from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Hurry, Pace, PhaseSamples
 from surefoot.planner.walk.queue import Step, StepQueue
+
+_LEAST_LEFT = 0.1
+"""A phase of which less is left keeps its pace when durations change [s]."""
 
 _SAME_GROUND = 1e-3
 """Footstep shift up to which the ground height is not looked up again [m]."""
@@ -116,13 +119,12 @@ class Stepper:
         """Whether the clock goes by itself, and every sample is one on."""
         return self._pace is None
 
-    @property
-    def flow(self) -> tuple[float, float]:
-        """The rate of the clock by time now [-], and the derivative of that [1/s]."""
+    def hurry(self, time: float) -> Hurry | None:
+        """How the clock goes, which shows a time [s] now; None while it goes by itself."""
         if self._pace is None:
-            return 1.0, 0.0
-        _, rate, bend = self._pace.at(np.array([self._paced]))
-        return float(rate[0]), float(bend[0]) / self.sample_time
+            return None
+        t = self.sample_time
+        return Hurry(self._pace, time - self._paced * t, time + (self._began - self.tick) * t, t)
 
     def samples(self, count: int) -> PhaseSamples:
         """The phases at `count` samples from now on, with one more before them and one after."""
@@ -142,11 +144,11 @@ class Stepper:
         Returns:
             By how much the end of the present phase is put off [s].
         """
-        left, phase, (rate, bend) = self.time_left, self.phase, self.flow
+        left, phase, (_, rate, bend) = self.time_left, self.phase, self._following(0.0)
         length = self.queue.retime(single_support, double_support, phase, self.tick)
-        if phase.kind is not PhaseKind.STAND:
-            way = phase.end - self.tick
-            self._pace = Pace.over(way, length * way / phase.samples, rate, bend * self.sample_time)
+        way = phase.end - self.tick
+        if phase.kind is not PhaseKind.STAND and way * self.sample_time >= _LEAST_LEFT:
+            self._pace = Pace.over(way, length * way / phase.samples, rate, bend)
             self._began, self._paced = self.tick, 0.0
         self.revision += 1
         self._look_ahead(self.tick)
@@ -158,7 +160,7 @@ class Stepper:
         Args:
             feet: the measured feet.
         """
-        following, paced = self._following()
+        following, _, _ = self._following(1.0)
         phase, swing = self.phase, self.swing_foot
         if swing is not None and self.tick >= 0.0:
             contact = feet.contact[swing]
@@ -170,19 +172,20 @@ class Stepper:
             elif contact and not self.early and 2.0 * (following - phase.start) > phase.samples:
                 self.early = True
                 self.fix(feet.position[swing])
-        self.tick, self._paced = following, paced
-        if self._pace is not None and paced >= self._pace.length - CLOCK_ROUNDING:
+        self.tick = following
+        self._paced += 1.0
+        if self._pace is not None and self._paced >= self._pace.length - CLOCK_ROUNDING:
             self._pace = None
         if following >= phase.end - CLOCK_ROUNDING:
             self.queue.enter(following)
             self._look_ahead(following)
 
-    def _following(self) -> tuple[float, float]:
-        """The clock at the next tick, and the time since the present pace began then [samples]."""
+    def _following(self, samples: float) -> tuple[float, float, float]:
+        """The clock so many samples from now, its rate and the derivative of that by samples."""
         if self._pace is None:
-            return self.tick + 1.0, 0.0
-        paced = self._paced + 1.0
-        return self._began + float(self._pace.at(np.array([paced]))[0][0]), paced
+            return self.tick + samples, 1.0, 0.0
+        way, rate, bend = (float(value[0]) for value in self._pace.at(np.array([self._paced + samples])))
+        return self._began + way, rate, bend
 
     def _look_ahead(self, clock: float) -> None:
         """See as far as any plan of the phase at an instant on the clock looks; a step ordered may end a stand."""

@@ -117,6 +117,29 @@ class Pace:
         return way + (time - inside), np.where(over, 1.0, rate), np.where(over, 0.0, bend)
 
 
+@dataclass(frozen=True, slots=True)
+class Hurry:
+    """A pace on the axis of time.
+
+    Attributes:
+        pace: how the clock goes.
+        begin: when it began [s].
+        clock: what the clock showed then [s].
+        sample_time: length of a sample [s].
+    """
+
+    pace: Pace
+    begin: float
+    clock: float
+    sample_time: float
+
+    def at(self, time: float) -> tuple[float, float, float]:
+        """What the clock shows [s], its rate [-] and the derivative of that [1/s]."""
+        t = self.sample_time
+        way, rate, bend = (float(value[0]) for value in self.pace.at(np.array([(time - self.begin) / t])))
+        return self.clock + way * t, rate, bend / t
+
+
 _TRIES = 20
 _SLOWEST = 0.05
 """Rate of the clock below which no pace goes [-]."""

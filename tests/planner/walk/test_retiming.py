@@ -27,7 +27,7 @@ def plans_of(stand, gait, changes=(), rise=Rise.SINGLE):
     planner = WalkingPlanner(gait, stand(), 0.2, 0.1, parameters=PARAMETERS, height_profile=SmoothHeight(rise))
     com, velocity, ideal, made = np.array([0.0, 0.0, gait.com_height]), np.zeros(3), IdealFeet(stand()), []
     changes, slowest = dict(changes), max([1.0, *(ratio for _, ratio in changes)])
-    for tick in range(round(gait.duration * slowest / T) + 10):
+    for tick in range(round(gait.duration * slowest / T) + 30):
         if tick in changes:
             planner.retime(changes[tick] * gait.single_support, changes[tick] * gait.double_support)
         made.append(planner.update(CentroidalState(T * tick, com, velocity), ideal.state))
@@ -48,12 +48,12 @@ def assert_continuous(plans):
             ends = [plan.swing.evaluate(after.time) for plan in (before, after)]
             np.testing.assert_allclose(ends[1][:2], ends[0][:2], atol=1e-7)
         if before.roll is not None and after.roll is not None and before.roll.foot is after.roll.foot:
-            np.testing.assert_allclose(after.roll.evaluate(after.time), before.roll.evaluate(after.time), atol=2e-2)
+            np.testing.assert_allclose(after.roll.evaluate(after.time), before.roll.evaluate(after.time), atol=1e-7)
     for plan in plans:
         z, speed, bend = plan.com[:, 2], plan.com_velocity[:, 2], plan.com_acceleration[:, 2]
         rise = 0.5 * T * (speed[1:] + speed[:-1]) - T * T / 12.0 * np.diff(bend)
-        np.testing.assert_allclose(np.diff(z), rise, atol=2e-5)
-        np.testing.assert_allclose(np.diff(speed), 0.5 * T * (bend[1:] + bend[:-1]), atol=1e-2)
+        np.testing.assert_allclose(np.diff(z), rise, atol=5e-5)
+        np.testing.assert_allclose(np.diff(speed), 0.5 * T * (bend[1:] + bend[:-1]), atol=2e-2)
 
 
 def assert_walked(plans, steps):
@@ -85,7 +85,7 @@ def test_durations_that_are_multiples_of_nothing_keep_time(stand):
         assert 0.0 <= time - GAIT.lift_off(step) < T
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(data=st.data())
 def test_durations_may_change_at_any_moment(stand, data):
     ticks = data.draw(st.sets(st.integers(1, 170), min_size=1, max_size=5))

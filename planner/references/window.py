@@ -143,19 +143,21 @@ class Outlook:
             position: CoM now in the plan frame, shape (2,) [m].
             table: offsets of the tick before, used again while they hold.
         """
-        count, last = self.count, samples.phases[-1]
-        standing = last.start if math.isinf(last.samples) else math.inf
+        count = self.count
         stiffness = softening(self.leg) * height.stiffness
         seen = reference.part(slice(count))
         if self.leg.chain is None:
             table, offset = None, np.zeros_like(seen.point)
         else:
+            last = samples.phases[-1]
+            standing = last.start if math.isinf(last.samples) else math.inf
             if table is None or not stepper.steady or not table.holds(stepper.tick, support.key, standing):
-                frame = support.rotation, support.origin
                 # No longer than until the robot stands will they serve.
-                more = min(_TICKS - 1, max(int(standing - stepper.tick), 0) + 1) if standing < math.inf else _TICKS - 1
+                more = int(min(_TICKS - 1, max(standing - stepper.tick, 0.0) + 1))
+                heights = HeightPreview(height.height[:, : count + more], height.stiffness[: count + more])
+                frame = support.rotation, support.origin
                 feet = nominal_feet(samples.part(count + more + 1), stepper.queue, frame, self.toe)
-                values = self._offsets(self.leg.chain, feet, reference, height, stiffness, position, count + more)
+                values = self._offsets(self.leg.chain, feet, reference.point[: count + more], heights, position)
                 table = OffsetTable(stepper.tick, support.key, values)
             offset = table.since(stepper.tick, count)
         return Window(
@@ -170,21 +172,10 @@ class Outlook:
             table=table,
         )
 
-    def _offsets(
-        self,
-        chain: LegChain,
-        feet: Feet,
-        reference: ZmpReference,
-        height: HeightPreview,
-        stiffness: Array,
-        position: Array,
-        count: int,
-    ) -> Array:
+    def _offsets(self, chain: LegChain, feet: Feet, point: Array, height: HeightPreview, position: Array) -> Array:
         """Offsets for a CoM on the nominal motion, which itself depends on them: two passes leave a millimetre."""
-        point, softened = reference.point[:count], stiffness[:count]
-        height = HeightPreview(height.height[:, :count], height.stiffness[:count])
-        offset = np.zeros_like(point)
+        stiffness, offset = softening(self.leg) * height.stiffness, np.zeros_like(point)
         for _ in range(2):
-            motion = nominal_motion(position, point - offset, softened, self.sample_time)
-            offset = zmp_offset(chain, feet, motion, height, softened)
+            motion = nominal_motion(position, point - offset, stiffness, self.sample_time)
+            offset = zmp_offset(chain, feet, motion, height, stiffness)
         return offset

@@ -75,7 +75,6 @@ class StepQueue:
         phases: those in sight in order, without gaps, the one before the present first.
         steps: those in sight by their numbers.
         footsteps: footholds in sight, landed ones as measured.
-        revision: how often what was in sight has changed.
 
     Raises:
         ParameterError: a footstep is out of reach, or no swing clears the edges before it.
@@ -91,7 +90,6 @@ class StepQueue:
         # The start feet count as footsteps -1 and 0, so that the first steps are laid as all others.
         self.steps = {number: Step(number, zero, path, start[number + 1], 0.0, course, swing) for number in (-1, 0)}
         self.phases: list[Phase] = [Phase(PhaseKind.STAND, 0.0, np.inf, 0, None, 0)]
-        self.revision = 0
         self._standing = True
         self._table = PhaseTable.of(self.phases)
 

@@ -74,6 +74,10 @@ def _durations(draft: Draft) -> Iterator[Problem]:
         what = f"gait.single_support {draft.keys.gait.single_support} s is too short for a swing of the foot"
         right = f"use at least {FEWEST_SWING_SAMPLES * draft.keys.planner.sample_time:g} s"
         yield Problem(("gait", "single_support"), what, right)
+    double, sample = draft.keys.gait.double_support, draft.keys.planner.sample_time
+    if double < (1.0 - 1e-9) * sample:
+        what = f"gait.double_support {double} s is shorter than a sample of the planner"
+        yield Problem(("gait", "double_support"), what, f"use at least {sample:g} s")
 
 
 def _pushes(draft: Draft) -> Iterator[Problem]:

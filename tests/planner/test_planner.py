@@ -3,13 +3,15 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.ground.terrain import Box, Terrain
+from surefoot.planner.ground.terrain import Box, Terrain, flat
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
-from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.planner import WalkingPlanner, check_walk
 from surefoot.planner.plants import PointPush, walk_pendulum
+from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, SolverStatus
-from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
 
 pytestmark = pytest.mark.unit
 
@@ -205,3 +207,14 @@ def test_stairs_are_climbed_with_the_previewed_stiffness(stand):
     assert_walks(planner, trace, rms=2e-3, step_error=1e-3)
     assert trace.com[-1, 2] == pytest.approx(1.3)
     assert min(plan.stiffness.min() for plan in trace.plans) < 8.0
+
+
+def test_a_step_that_is_not_in_sight_is_refused_before_the_walk(stand):
+    good, far = Stride(0.2, 0.0, 0.0, 0.2), Stride(0.7, 0.0, 0.0, 0.2)
+    gait = GaitParameters(steps=13, bouts=(Bout(1.0, (*(good,) * 11, far, good)),))
+    given = (gait, stand(), *HUMAN, flat(), PlannerParameters())
+    WalkingPlanner(*given)
+    with pytest.raises(ParameterError, match="footstep 12 would land") as refused:
+        check_walk(*given, SmoothHeight())
+    assert refused.value.key == ("footsteps", 11, "ahead")
+    check_walk(GaitParameters(steps=10**6), *given[1:], SmoothHeight())

@@ -1,8 +1,15 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from surefoot.planner.ground.terrain import flat
+from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import PhaseKind
 from surefoot.planner.walk.gait import Bout, GaitParameters, Stride, support_rows
+from surefoot.planner.walk.phases import Flow
+from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.source import GaitSource
 
 pytestmark = pytest.mark.unit
 
@@ -92,3 +99,68 @@ def test_one_bout_of_equal_strides_is_the_plain_gait(schedule):
     same = GaitParameters(steps=4, bouts=plain.walk)
     assert same.walk == plain.walk
     assert schedule(same).phases == schedule(plain).phases
+
+
+GROUND = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
+
+
+class Counted(GaitSource):
+    """The steps of a gait, counting those that were asked for."""
+
+    asked = 0
+
+    def order(self, step, time, before):
+        self.asked = max(self.asked, step)
+        return super().order(step, time, before)
+
+
+@pytest.mark.parametrize("single", [0.3, 0.637])
+def test_a_short_queue_says_what_the_whole_walk_says(schedule, stand, stop_and_go, single):
+    """Whatever has been let go of and is not there yet, no window of a plan sees a difference."""
+    for gait in (
+        GaitParameters(steps=12, single_support=single, turn=0.1),
+        replace(stop_and_go, single_support=single),
+    ):
+        whole, short = schedule(gait), StepQueue(gait, stand(gait.step_width), GROUND)
+        for clock in range(0, whole.last + 20, 7):
+            short.extend(clock + 160)
+            short.enter(clock)
+            flow = Flow(np.maximum(clock + np.arange(-1.0, 155.0), 0.0))
+            seen, all_of_it = short.samples(flow), whole.queue.samples(flow)
+            np.testing.assert_array_equal(seen.index + seen.first, all_of_it.index)
+            for name in ("fraction", "fraction_rate", "elapsed", "length", "kind", "contacts"):
+                np.testing.assert_array_equal(getattr(seen, name), getattr(all_of_it, name))
+            for beyond in (0, 1):
+                points = short.footsteps.support_points(), whole.steps.support_points()
+                here, there = (
+                    of[np.minimum(samples.index + beyond, len(of) - 1)]
+                    for of, samples in zip(points, (seen, all_of_it), strict=True)
+                )
+                np.testing.assert_allclose(here, there, atol=1e-12)
+
+
+def test_a_queue_stays_as_long_as_what_a_plan_sees(stand):
+    gait, sizes = GaitParameters(steps=10**6, single_support=0.5, double_support=0.12, initial_stand=0.0), []
+    source = Counted(gait)
+    queue = StepQueue(gait, stand(gait.step_width), GROUND, source)
+    for clock in range(0, 60 * 31, 31):
+        queue.extend(clock + 160)
+        queue.enter(clock)
+        sizes.append((len(queue.phases), len(queue.steps), len(queue.footsteps.feet), len(queue.footsteps.supports)))
+    assert max(map(max, sizes)) <= 24
+    assert sizes[20:40] == sizes[40:]
+    assert source.asked <= 60 + 10
+
+
+def test_footholds_in_sight_shift_with_the_one_that_landed_elsewhere(stand):
+    """Those that come into sight later too, by the increments of the nominal path."""
+    gait, offset = GaitParameters(steps=20, single_support=0.5, double_support=0.12, initial_stand=0.0), (0.03, -0.02)
+    plain, moved = (StepQueue(gait, stand(gait.step_width), GROUND) for _ in range(2))
+    moved.extend(160.0)
+    place = moved.footsteps.position[2] + np.array([*offset, 0.0])
+    moved.footsteps = moved.footsteps.moved(2, place, flat())
+    for queue in (plain, moved):
+        queue.extend(400.0)
+    shift = moved.footsteps.position[2:, :2] - plain.footsteps.position[2:, :2]
+    assert len(shift) > 10
+    np.testing.assert_allclose(shift, np.tile(offset, (len(shift), 1)), atol=1e-12)

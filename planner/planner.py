@@ -31,7 +31,6 @@ from surefoot.planner.types import (
 from surefoot.planner.walk.clock import Stepper
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.phases import Flow
 from surefoot.planner.walk.queue import Ground, StepQueue
 from surefoot.planner.walk.source import StepSource
 
@@ -99,40 +98,6 @@ def world_plan(time: float, stepper: Stepper, support: Support, window: Window, 
     )
 
 
-_AT_ONCE = 2000
-"""Samples of a walk that are checked together."""
-
-_DISTINCT = 6
-"""Equal steps on bare ground after which all that follow are as those before: the first, one of each foot, the last."""
-
-
-def check_walk(
-    gait: GaitParameters,
-    feet: FeetState,
-    foot_length: float,
-    foot_width: float,
-    terrain: Terrain,
-    parameters: PlannerParameters,
-    height_profile: HeightProfile,
-) -> None:
-    """Refuse a gait of which `WalkingPlanner` would refuse a step while it walks; arguments as there.
-
-    Raises:
-        ParameterError: see `WalkingPlanner`.
-    """
-    if not gait.bouts and not terrain.has_edges:
-        gait = replace(gait, steps=min(gait.steps, _DISTINCT))
-    queue = StepQueue(gait, feet, Ground(terrain, 0.5 * np.array([foot_length, foot_width]), parameters))
-    clock, last = 0, 0.0
-    while clock <= last:
-        queue.extend(clock + _AT_ONCE)
-        samples = queue.samples(Flow(np.arange(clock, clock + _AT_ONCE, dtype=np.float64)))
-        check_height(height_profile, gait, samples, queue.support_heights)
-        clock += _AT_ONCE - 2
-        last = queue.phases[-1].start
-        queue.enter(clock)
-
-
 _SAME_TARGET = 1e-4
 """Difference of touchdown pose that is not worth a new swing trajectory [m, rad]."""
 
@@ -163,7 +128,8 @@ class WalkingPlanner:
 
     Raises:
         ParameterError: of the steps in sight, a footstep is out of reach, the CoM would fall almost freely, or no swing
-            clears the edges before a footstep; `check_walk` looks at all steps of a walk.
+            clears the edges before a footstep; `planner.check.check_walk` looks at all
+            of a walk.
     """
 
     def __init__(

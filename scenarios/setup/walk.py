@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import yaml
 
+from surefoot.planner.check import check_walk
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.parameters import LegInertia, PlannerParameters
 from surefoot.planner.plan import Planner
-from surefoot.planner.planner import WalkingPlanner, check_walk
+from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.types import Array, FeetState
 from surefoot.planner.walk.gait import GaitParameters

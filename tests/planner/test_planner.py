@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from surefoot.errors import ParameterError
+from surefoot.planner.check import check_walk
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import Box, Terrain, flat
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
-from surefoot.planner.planner import WalkingPlanner, check_walk
+from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, SolverStatus

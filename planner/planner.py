@@ -128,8 +128,7 @@ class WalkingPlanner:
 
     Raises:
         ParameterError: of the steps in sight, a footstep is out of reach, the CoM would fall almost freely, or no swing
-            clears the edges before a footstep; `planner.check.check_walk` looks at all
-            of a walk.
+            clears the edges before a footstep; `planner.check.check_walk` looks at all of a walk.
     """
 
     def __init__(

@@ -288,7 +288,7 @@ class WalkingPlanner:
             yaw += wrap_angle(float(feet.yaw[foot]) - yaw)
             pose = sole_pose(feet.position[foot], yaw, stepper.footsteps.normal[stepper.row - 1])
             course = stepper.swinging.course
-            times = swing_times(time, stepper.phase.end - stepper.tick, course, self.parameters)
+            times = swing_times(time, stepper.left, course, self.parameters)
             self._swing = start_swing(foot, pose, target, times, course.height, self.parameters)
             return
         decided = stepper.fixed or solver is SolverStatus.HELD

@@ -91,9 +91,14 @@ class Stepper:
         return (self._adapts and remaining >= 1 and not self.fixed, self._adapts and remaining >= 2)
 
     @property
+    def left(self) -> float:
+        """Time until the present phase ends [samples]."""
+        return self._until(self.phase.end)
+
+    @property
     def time_left(self) -> float:
         """Time until the present phase ends [s]."""
-        return self._until(self.phase.end)
+        return self.left * self.sample_time
 
     @property
     def transfer_time(self) -> float:
@@ -105,14 +110,13 @@ class Stepper:
 
     def time_to_touchdown(self, step: int) -> float:
         """Time until a step in sight lands [s]."""
-        return self._until(self.queue.lift_off(step).end)
+        return self._until(self.queue.lift_off(step).end) * self.sample_time
 
     def _until(self, clock: float) -> float:
-        """Time until an instant on the clock that no pace goes beyond [s]."""
+        """Time until an instant on the clock that no pace goes beyond [samples]."""
         if self._pace is None:
-            return (clock - self.tick) * self.sample_time
-        beyond = clock - self._began - self._pace.way
-        return (self._pace.length - self._paced + beyond) * self.sample_time
+            return clock - self.tick
+        return self._pace.length - self._paced + clock - self._began - self._pace.way
 
     @property
     def steady(self) -> bool:

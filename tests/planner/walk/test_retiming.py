@@ -85,6 +85,14 @@ def test_durations_that_are_multiples_of_nothing_keep_time(stand):
         assert 0.0 <= time - GAIT.lift_off(step) < T
 
 
+def test_durations_may_change_as_a_foot_leaves_the_ground(stand):
+    tick = 64
+    plans = plans_of(stand, GAIT, [(tick, 0.75)], Rise.DOUBLE)
+    assert (plans[tick - 1].phase.kind, plans[tick].phase.kind) == (PhaseKind.DOUBLE, PhaseKind.SINGLE)
+    assert_continuous(plans)
+    assert_walked(plans, 4)
+
+
 @settings(max_examples=8, deadline=None)
 @given(data=st.data())
 def test_durations_may_change_at_any_moment(stand, data):

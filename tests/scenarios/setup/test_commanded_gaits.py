@@ -35,7 +35,7 @@ REFUSED = {
     VELOCITY % "v_z: 1": "unknown key 'v_z'; did you mean 'v_y'?",
     "gait: {velocity: [{time: 0, v_x: 0.1}]}": "the last velocity command does not stop; end gait.velocity with",
     "gait: {velocity: [{time: 3}, {time: 2}]}": "f.yaml:1:37: gait.velocity.1.time 2.0 s does not come after the",
-    "gait: {velocity: [{time: 0.011}, {time: 0.019}]}": "velocity.1.time 0.019 s does not come after the command befor",
+    "gait: {velocity: [{time: 0.011}, {time: 0.011}]}": "velocity.1.time 0.011 s does not come after the command befor",
     "gait: {velocity: [{v_x: 0}]}": "gait.velocity.0 lacks element time; give 'time'",
     "gait: {single_support: .3, double_support: .1, velocity: [{time: 0}, {time: 80000}]}": "lasts 80000 s; 40000 s",
     FOOTSTEPS % "{foot: left, x: 0.2, y: 0.1}, {foot: left, x: 0.4, y: 0.1}": "gait.footsteps.1 moves the left foot a",

@@ -11,8 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from surefoot.scenarios.setup.load import Written
-from surefoot.scenarios.sweep.spec import SCENARIO, SEARCH, Bisect, Campaign, Draw
+from surefoot.scenarios.sweep.spec import SCENARIO, SEARCH, Base, Bisect, Campaign, Draw
 
 Status = Literal["pass", "fail", "refused", "broken"]
 """Criteria met; missed; a scenario that cannot be run; a run without a result, which is tried again."""
@@ -29,7 +28,7 @@ class Point:
         name: of the folder of its log, unique in its campaign.
     """
 
-    base: Written
+    base: Base
     settings: Mapping[str, Any]
     labels: Mapping[str, Any]
     name: str
@@ -37,16 +36,15 @@ class Point:
     @cached_property
     def id(self) -> str:
         """Digest of what is run."""
-        text = json.dumps([self.base.text, self.base.stem, list(self.settings.items())], default=str)
+        text = json.dumps([self.base.written.text, self.base.written.stem, list(self.settings.items())], default=str)
         return hashlib.sha256(text.encode()).hexdigest()[:20]
 
     @property
     def command(self) -> str:
         """The command that makes this run alone."""
-        reference = self.base.place if self.base.place.endswith(f"/{self.base.stem}.yaml") else self.base.stem
-        reference = self.base.stem if self.base.place.startswith("catalogue/") else reference
         values = (f"{key}={_yaml(value)}" for key, value in self.settings.items())
-        return f"surefoot run {shlex.quote(reference)} " + " ".join(f"--set {shlex.quote(text)}" for text in values)
+        settings = " ".join(f"--set {shlex.quote(text)}" for text in values)
+        return f"surefoot run {shlex.quote(self.base.reference)} {settings}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,12 @@
 """What is run: every combination once, values drawn apart from each other, and searches that find thresholds."""
 
+import shlex
+
 import numpy as np
 import pytest
 
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.sweep.points import Record, Threshold, cells, draw_value
 from surefoot.scenarios.sweep.spec import Draw, read_campaign
 
@@ -16,6 +20,10 @@ def campaign(tmp_path):
         return read_campaign(str(tmp_path / name))
 
     return make
+
+
+SHORT = {"fidelity": "pendulum", "gait.steps": 1, "gait.single_support": 0.6, "gait.initial_stand": 0.2,
+         "rates.control": 100}  # fmt: skip
 
 
 def walked(cell, passes=lambda point: True, status="fail"):
@@ -43,6 +51,27 @@ def test_every_combination_has_every_seed_once(campaign):
         points[0].command
         == "surefoot run walk --set gait.turn=0.1 --set gait.steps=3 --set errors.friction=0 --set seed=0"
     )
+
+
+MINE = "gait: {steps: 1, single_support: 0.6}\nfidelity: pendulum\nrates: {control: 100}\n"
+
+
+@pytest.mark.parametrize("name", ["walk", "mine.yaml", "mine.yml", "it's mine/mine.yaml", "log.mcap"])
+@pytest.mark.parametrize("place", ["c.yaml", "below/c.yaml"])
+def test_the_command_makes_the_run_wherever_its_scenario_is(tmp_path, monkeypatch, name, place):
+    monkeypatch.chdir(tmp_path)
+    spec, scenario = tmp_path / place, (tmp_path / place).parent / name
+    scenario.parent.mkdir(parents=True, exist_ok=True)
+    if name.endswith(".mcap"):
+        run_scenario(load("paper-walk", {**SHORT, "gait.turn": 0.1}), tmp_path / "run").log.rename(scenario)
+    elif name != "walk":
+        scenario.write_text(MINE)
+    spec.write_text(f'scenario: "{name}"\nset: {{gait.step_length: 0.11}}\n')
+    (cell,) = cells(read_campaign(place))
+    (point,), _ = walked(cell)
+    program, verb, reference, *settings = shlex.split(point.command)
+    assert (program, verb, settings[::2]) == ("surefoot", "run", ["--set"] * 2)
+    assert load(reference, settings[1::2]) == read_scenario(*point.base.written, point.settings)
 
 
 def test_the_same_run_has_the_same_name_and_another_scenario_another(campaign):

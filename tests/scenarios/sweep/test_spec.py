@@ -106,7 +106,7 @@ sample: {terrain.friction: {uniform: [0.5, 1]}}
 def test_a_scenario_beside_the_specification(tmp_path, campaign):
     (tmp_path / "mine.yaml").write_text("gait: {steps: 2}")
     made = campaign("scenario: mine.yaml")
-    assert made.bases["mine.yaml"].text == "gait: {steps: 2}"
+    assert made.bases["mine.yaml"].written.text == "gait: {steps: 2}"
 
 
 @pytest.mark.parametrize("name", shipped())

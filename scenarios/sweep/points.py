@@ -136,9 +136,8 @@ class Cell:
         settings = {**own, **drawn, **searched}
         base = self.campaign.bases[str(settings.pop(SCENARIO, spec.scenario))]
         told = {**self.labels, **searched, "seed": seed}
-        name = ",".join(f"{name.rpartition('.')[2]}={_short(value)}" for name, value in told.items())
         labels = {**self.labels, **drawn, **searched, "seed": seed}
-        return Point(base, {**settings, "seed": seed}, labels, _file_name(name))
+        return Point(base, {**settings, "seed": seed}, labels, _folder(told))
 
 
 def cells(campaign: Campaign) -> Iterator[Cell]:
@@ -205,11 +204,15 @@ def _yaml(value: Any) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
-def _short(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+def _folder(labels: Mapping[str, Any]) -> str:
+    """A name of a folder that every file system takes; where it does not tell all of the labels, their digest does."""
+    told = [(name.rpartition(".")[2], str(value)) for name, value in labels.items()]
+    safe = [(_safe(name), _safe(value)) for name, value in told]
+    text = ",".join(f"{name}={value}" for name, value in safe)
+    if safe == told and len(text) <= 120:
+        return text
+    return f"{text[:100]}-{hashlib.sha256(str(told).encode()).hexdigest()[:12]}"
 
 
-def _file_name(name: str) -> str:
-    """A name that every file system takes; a long one is told apart by its digest."""
-    safe = "".join(sign if sign.isalnum() or sign in "=.,_-+" else "_" for sign in name)
-    return safe if len(safe) <= 120 else f"{safe[:100]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
+def _safe(text: str) -> str:
+    return "".join(sign if sign.isascii() and (sign.isalnum() or sign in "._-+") else "_" for sign in text)

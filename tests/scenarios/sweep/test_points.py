@@ -175,3 +175,22 @@ def test_folders_have_names_that_file_systems_take(campaign):
     made = campaign("scenario: walk\ngrid: {a: {'x/../: y': {gait.steps: 3}, " + "z" * 300 + ": {gait.steps: 4}}}")
     names = [walked(cell)[0][0].name for cell in cells(made)]
     assert all(len(name) <= 120 and "/" not in name and ":" not in name for name in names)
+
+
+@pytest.mark.parametrize(
+    "grid",
+    [
+        pytest.param("errors.friction: [0.1, 0.1000000001]", id="last digits"),
+        pytest.param("a: {x y: {gait.steps: 3}, x_y: {gait.steps: 4}, x/y: {gait.steps: 5}}", id="replaced"),
+        pytest.param("a: {ä: {gait.steps: 3}, ö: {gait.steps: 4}, 高: {gait.steps: 5}}", id="letters"),
+        pytest.param(
+            "a: {'1,b=2': {gait.steps: 3}, '1': {gait.steps: 4}}, b: {'3': {gait.turn: 0}, '2,b=3': {gait.turn: 0.1}}",
+            id="separators",
+        ),
+    ],
+)
+def test_no_two_runs_have_the_same_folder(campaign, grid):
+    made = campaign(f"scenario: walk\ngrid: {{{grid}}}")
+    points = [walked(cell)[0][0] for cell in cells(made)]
+    assert len({point.name for point in points}) == len({point.id for point in points}) == len(points)
+    assert all(point.name.isascii() for point in points)

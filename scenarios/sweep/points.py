@@ -78,8 +78,8 @@ class Threshold:
     """Where a search ended.
 
     Attributes:
-        value: largest value up to which everything passed (ladder), or the middle of the last range (halving); None
-            where the whole range lies on one side.
+        value: largest value up to which everything passed (ladder), or the end of the last range that passed (halving);
+            None where the whole range lies on one side.
         side: whether the threshold is inside the range, below it or above it.
     """
 

@@ -32,11 +32,9 @@ from surefoot.scenarios.setup.gait import (
     commanded,
     fitted_to,
     gait_of,
-    leg_span,
     longest_landing,
     step_region,
 )
-from surefoot.scenarios.setup.robot import RobotFacts
 from surefoot.scenarios.setup.terrain import KINDS, TerrainKind
 
 _STREAM = 2
@@ -228,10 +226,9 @@ class Draft:
             **{name: value for name, value in chosen.items() if value is not None},
         )
 
-    def region(self, facts: RobotFacts) -> StepRegion:
-        """Where steps of a robot may land."""
-        sole, span = (facts.foot_length, facts.foot_width), leg_span(self.keys.gait.com_height, facts)
-        return step_region(self.parameters, sole, facts.shank_spacing, span, facts.hip_width)
+    def region(self, sole: tuple[float, float], shank_spacing: float) -> StepRegion:
+        """Where steps may land, for soles of this length and width, and shanks that keep this distance [m]."""
+        return step_region(self.parameters, sole, shank_spacing)
 
     @property
     def waypoints(self) -> tuple[Pose, ...]:

@@ -21,7 +21,7 @@ from surefoot.planner.walk.reach import StepRegion
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
 from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.gait import push_time, timed_command
+from surefoot.scenarios.setup.gait import leg_span, push_time, step_region, timed_command
 from surefoot.scenarios.setup.robot import describe, facts_of, true_robot
 from surefoot.sim.pushes import Push
 from surefoot.wbc.parameters import WbcParameters
@@ -70,7 +70,6 @@ class Walk:
         filter: filter of the planner's state: none, kalman or zmp_only.
         waypoints: places to go to from the start on.
         commands: that the walk hears while it goes on.
-        region: where a step that is commanded may land.
         pushes: on bodies, world frame.
         faults: injected.
         pendulum: the plant of fidelity pendulum.
@@ -106,7 +105,6 @@ class Walk:
     filter: str
     waypoints: tuple[Pose, ...]
     commands: tuple[TimedCommand, ...]
-    region: StepRegion
     pushes: tuple[Push, ...]
     faults: tuple[Fault, ...]
     pendulum: PendulumSettings
@@ -120,6 +118,13 @@ class Walk:
     def sole(self) -> tuple[float, float]:
         """Length and width of the soles [m]."""
         return self.robot.sole_length, self.robot.sole_width
+
+    @property
+    def region(self) -> StepRegion:
+        """Where a step that is commanded may land: within reach of planner and legs."""
+        facts = facts_of(self.robot)
+        span = leg_span(self.gait.com_height, facts)
+        return step_region(self.parameters, self.sole, facts.shank_spacing, span, facts.hip_width)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
         """The planner of this walk: the profile's own, or the walking planner with the profile's law.
@@ -158,7 +163,8 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         draft.profile = profile
     robot = robot or describe(keys.robot, keys.robot_options)
     near, far = draft.parameters.reach_width
-    region = draft.region(facts_of(robot))
+    sole = (robot.sole_length, robot.sole_width)
+    region = draft.region(sole, robot.shank_spacing)
     apart = max(near, robot.sole_width + 0.5 * region.gap)
     true = true_robot(keys.errors, robot, keys.seed)
     return Walk(
@@ -193,7 +199,6 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         filter=_filter(draft),
         waypoints=draft.waypoints,
         commands=tuple(timed_command(settings) for settings in keys.commands),
-        region=region,
         pushes=_pushes(draft, robot, float(true.mass)),
         faults=keys.faults,
         pendulum=keys.pendulum,

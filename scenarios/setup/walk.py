@@ -122,9 +122,9 @@ class Walk:
 
     @property
     def region(self) -> StepRegion:
-        """Where a step that is commanded may land: within reach of planner and legs."""
+        """Where a step that is commanded while it walks may land: within reach of planner and, with some left, legs."""
         facts = facts_of(self.robot)
-        span = leg_span(self.gait.com_height, facts)
+        span = LEG_SHARE * leg_span(self.gait.com_height, facts)
         return step_region(self.parameters, self.sole, facts.shank_spacing, span, facts.hip_width)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:

@@ -11,6 +11,7 @@ FOLDER = Path(__file__).parents[2] / "examples"
 TOLD = {
     "run_and_read": "ZMP error",
     "step_and_push": "stands at",
+    "live_commands": "walked again the same: True",
     "planner_alone": "next footsteps",
     "controller_alone": "status SOLVED",
     "weights_and_gains": "of the limit",

@@ -30,6 +30,10 @@ from surefoot.wbc.parameters import WbcParameters
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
 
+LEG_SHARE = 0.9
+"""Share of the span of the legs that steps on command make use of: with all of it both are straight at touchdown, and a
+push that any shorter step takes fells the robot [-]."""
+
 LEAST_BELIEVED_FRICTION = 0.05
 """The controller counts on at least this friction, so that its wrench cones keep an inside."""
 

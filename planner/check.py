@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from surefoot.errors import ParameterError
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.references.com_height import HeightProfile, check_height
+from surefoot.planner.references.com_height import HeightProfile, check_height, shortest_support
+from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.planner.types import FeetState
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import Flow
@@ -44,3 +46,23 @@ def check_walk(
         clock += _AT_ONCE - 2
         last = queue.phases[-1].start
         queue.enter(clock)
+
+
+def check_durations(gait: GaitParameters, sample_time: float) -> None:
+    """Refuse durations in which no foot swings, or in which the CoM would fall too fast from its apexes.
+
+    Args:
+        gait: the walk.
+        sample_time: of the planner [s].
+
+    Raises:
+        ParameterError: a duration is too short; its key is ("command", "single_support" or "double_support").
+    """
+    shortest = {
+        "single_support": max(FEWEST_SWING_SAMPLES * sample_time, shortest_support(gait.apex_ss)),
+        "double_support": max(sample_time, shortest_support(gait.apex_ds)),
+    }
+    for name, least in shortest.items():
+        value = getattr(gait, name)
+        if value < (1.0 - 1e-9) * least:
+            raise ParameterError(("command", name), f"{name} {value:g} s is too short", f"{least:.2g} s is the least")

@@ -1,11 +1,12 @@
 """The walking planner: the four modules of the paper, put together once per tick."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from surefoot.errors import ParameterError
+from surefoot.planner.check import check_durations
 from surefoot.planner.geometry import sole_pose, wrap_angle
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.planner.laws.constraints import StepContext
@@ -14,7 +15,11 @@ from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.model.jerk import Trajectory, block_moves, predict, trajectory
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.references.com_height import HeightProfile, SmoothHeight, check_height
+from surefoot.planner.references.com_height import (
+    HeightProfile,
+    SmoothHeight,
+    check_height,
+)
 from surefoot.planner.references.window import OffsetTable, Outlook, Window
 from surefoot.planner.references.zmp_reference import Support, present_support
 from surefoot.planner.swing.heel_off import FootRoll
@@ -29,10 +34,12 @@ from surefoot.planner.types import (
     SolverStatus,
 )
 from surefoot.planner.walk.clock import Stepper
+from surefoot.planner.walk.commands import Command, Orders, Twist
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.queue import Ground, StepQueue
-from surefoot.planner.walk.source import StepSource
+from surefoot.planner.walk.reach import StepRegion
+from surefoot.planner.walk.source import CommandSource
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +126,7 @@ class WalkingPlanner:
         parameters: the planner's own parameters; those of the profile by default.
         height_profile: vertical CoM motion; that of the profile, or else the smooth one, by default.
         profile: formulation of the planner; the robust one by default.
-        source: of the steps; those of the gait by default.
+        region: where a step that is commanded may land; where the parameters let it by default.
 
     Attributes:
         gait: the walk.
@@ -141,7 +148,7 @@ class WalkingPlanner:
         parameters: PlannerParameters | None = None,
         height_profile: HeightProfile | None = None,
         profile: Profile = PROFILES["default"],
-        source: StepSource | None = None,
+        region: StepRegion | None = None,
     ) -> None:
         self.gait = gait
         self.parameters = parameters or profile.parameters
@@ -155,7 +162,7 @@ class WalkingPlanner:
         self._outlook = Outlook(
             gait, profile_height, p.leg, float(self._half_size[0]), p.horizon + p.preview + 1, p.sample_time
         )
-        queue = StepQueue(gait, feet, Ground(terrain, self._half_size, p), source)
+        queue = StepQueue(gait, feet, Ground(terrain, self._half_size, p))
         self._stepper = Stepper(queue, terrain, p, self._outlook.reach + 1)
         check_height(profile_height, gait, self._stepper.samples(self._outlook.reach), queue.support_heights)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
@@ -164,7 +171,9 @@ class WalkingPlanner:
         self._offsets: OffsetTable | None = None
         self._swing: SwingTrajectory | None = None
         self._plan: WalkPlan | None = None
-        self._durations: tuple[float, float] | None = None
+        region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width))
+        self._source, self._takes_commands = CommandSource(gait, region), not terrain.has_edges
+        self._command: Command | None = None
         self.motion: Motion | None = None
 
     @property
@@ -172,18 +181,59 @@ class WalkingPlanner:
         """Footholds in sight: landed ones as measured, the others as nominally planned from them."""
         return self._stepper.footsteps
 
-    def retime(self, single_support: float, double_support: float) -> None:
-        """Take other durations from the next plan on; what is left of the present phase changes in proportion.
+    @property
+    def orders(self) -> Orders:
+        """What the walk does of what it has been told."""
+        source, gait = self._source, self._stepper.queue.gait
+        place = source.places[-1] if source.places else None
+        durations = gait.single_support, gait.double_support
+        return Orders(source.twist, source.followed(gait.period), place, *durations, gait.swing_height)
+
+    def command(self, command: Command) -> None:
+        """Do something else from the next plan on; of two commands before it the later one holds.
+
+        A step that is being swung, or to which the weight is being shifted, is taken as it was planned. What is left of
+        the present phase changes in proportion to its duration.
 
         Args:
-            single_support: of every step to come, and of the one being swung [s].
-            double_support: likewise [s].
+            command: what changes.
 
         Raises:
-            ParameterError: a duration is not positive or not finite.
+            ParameterError: the ground has edges, on which footsteps would have to keep to treads, or the CoM would fall
+                almost freely in phases that short.
         """
-        replace(self.gait, single_support=single_support, double_support=double_support)
-        self._durations = single_support, double_support
+        if not self._takes_commands and (command.twist or command.places):
+            what = "a velocity or a place to go to on ground with edges, whose treads the footsteps would not keep to"
+            raise ParameterError(("command",), what, "command a walk on bare ground")
+        given = {entry.name: getattr(command, entry.name) for entry in fields(command)}
+        given = {name: value for name, value in given.items() if value is not None}
+        before = self._command or Command()
+        if "twist" in given or "places" in given:
+            before = replace(before, twist=None, places=None)
+        command = replace(before, **given)
+        check_durations(self._commanded_gait(command), self.parameters.sample_time)
+        self._command = command
+
+    def _commanded_gait(self, command: Command) -> GaitParameters:
+        """The gait of the steps to come with what a command changes of it."""
+        changed = {name: getattr(command, name) for name in ("single_support", "double_support", "swing_height")}
+        given = {name: value for name, value in changed.items() if value is not None}
+        return replace(self._stepper.queue.gait, **given)
+
+    def _obey(self, command: Command, time: float) -> None:
+        """Do what has been commanded since the last plan."""
+        stepper, gait = self._stepper, self._commanded_gait(command)
+        before = stepper.queue.gait
+        if (gait.single_support, gait.double_support) != (before.single_support, before.double_support):
+            delay = stepper.retime(gait)
+            if self._swing is not None and stepper.swing_foot is not None and delay:
+                self._swing = self._swing.retimed(time, delay, self.parameters.sample_time)
+        stepper.queue.gait = gait
+        if command.twist is not None or command.places is not None:
+            self._source.twist, self._source.places = command.twist or Twist(), command.places or ()
+            stepper.reorder(self._source)
+        elif gait.swing_height != before.swing_height:
+            stepper.reorder()
 
     def update(self, state: CentroidalState, feet: FeetState) -> WalkPlan:
         """Plan from a measurement; call it once per sample time.
@@ -199,11 +249,9 @@ class WalkingPlanner:
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         p, stepper = self.parameters, self._stepper
         stepper.advance(feet)
-        if self._durations is not None:
-            delay = stepper.retime(*self._durations)
-            self._durations = None
-            if self._swing is not None and stepper.swing_foot is not None and delay:
-                self._swing = self._swing.retimed(state.time, delay, p.sample_time)
+        if self._command is not None:
+            self._obey(self._command, state.time)
+            self._command = None
         self._fix_imminent_footstep(state.time)
         # ZMP planner: what carries the robot now, and the ZMP that the footsteps define.
         support = self._support = present_support(self._support, stepper, self._half_size, p.foot_margin)

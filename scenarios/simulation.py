@@ -7,23 +7,26 @@ from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from pydantic import ValidationError
 
 from surefoot.errors import ParameterError
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.plan import Planner, PlanSample, WalkPlan
 from surefoot.planner.types import PhaseKind
+from surefoot.planner.walk.commands import Orders
 from surefoot.scenarios.errors import LogError, nearest
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.schema import CommandSettings, Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
 from surefoot.scenarios.loop.full import Parts, SimulatedRobot
 from surefoot.scenarios.loop.planning import RunFault
 from surefoot.scenarios.loop.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.loop.skeleton import ClosedLoop, End, refusing
-from surefoot.scenarios.record.provenance import PUSH_RECORD
+from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD
+from surefoot.scenarios.setup.gait import timed_command
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.sim.measurement import Measurement
@@ -125,7 +128,7 @@ class Simulation:
         self._path = None if log is None else Path(log)
         self._writer: LogWriter
         self._loop: ClosedLoop
-        self._pushes, self._closed = 0, False
+        self._pushes, self._told, self._closed = 0, 0, False
         self._threads = one_thread()
         self._begin()
 
@@ -204,6 +207,70 @@ class Simulation:
             measurement=deepcopy(seen.measurement),
         )
 
+    def command(
+        self,
+        v_x: float | None = None,
+        v_y: float | None = None,
+        yaw_rate: float | None = None,
+        *,
+        single_support: float | None = None,
+        double_support: float | None = None,
+        swing_height: float | None = None,
+    ) -> None:
+        """Tell the walk something, from the next plan on; what is None stays as it is.
+
+        A step that is being swung, or to which the weight is being shifted, is taken as it was planned. A velocity that
+        is out of reach is bent to the fastest in its direction that is not; see `orders`.
+
+        Args:
+            v_x: forward velocity of the path, held until the next one; 0 if another of the three is given [m/s].
+            v_y: to the left, likewise [m/s].
+            yaw_rate: rate of the heading, likewise, positive to the left [rad/s].
+            single_support: duration; what is left of the present phase changes in proportion [s].
+            double_support: likewise [s].
+            swing_height: clearance of the steps to come [m].
+
+        Raises:
+            ParameterError: a number is out of bounds, the ground has edges, or the planner takes no commands.
+        """
+        velocity = {"v_x": v_x, "v_y": v_y, "yaw_rate": yaw_rate}
+        gait = {"single_support": single_support, "double_support": double_support, "swing_height": swing_height}
+        self._tell({name: value for name, value in {**velocity, **gait}.items() if value is not None})
+
+    def go_to(self, x: float, y: float, yaw: float) -> None:
+        """Walk to a place and stand there, from the next plan on.
+
+        Args:
+            x: where the middle of the stance shall be, in the world frame [m].
+            y: likewise [m].
+            yaw: heading there [rad].
+
+        Raises:
+            ParameterError: as of `command`.
+        """
+        self._tell({"place": {"x": x, "y": y, "yaw": yaw}})
+
+    def _tell(self, keys: dict[str, Any]) -> None:
+        try:
+            settings = CommandSettings.model_validate({"time": self.time, **keys})
+        except ValidationError as error:
+            fault = error.errors(include_url=False)[0]
+            what = f"a command with {fault['loc'][-1]} {fault['input']!r}"
+            raise ParameterError(("command", *map(str, fault["loc"])), what, fault["msg"]) from None
+        self._loop.planning.command(timed_command(settings).command)
+        self._told += 1
+        record = json.dumps(settings.model_dump(mode="json", exclude_none=True))
+        self._writer.add_metadata(f"{COMMAND_RECORD}{self._told}", {"command": record})
+
+    @property
+    def orders(self) -> Orders:
+        """What the walk does of what it has been told, in its last plan.
+
+        Raises:
+            ParameterError: the planner takes no commands.
+        """
+        return self._loop.planning.orders
+
     def push(self, force: ArrayLike, duration: float = 0.1, body: str | None = None) -> None:
         """Push the robot, from the next tick on.
 
@@ -231,14 +298,14 @@ class Simulation:
         self._writer.add_metadata(f"{PUSH_RECORD}{self._pushes}", {"push": json.dumps(keys)})
 
     def reset(self) -> None:
-        """Begin anew, without the pushes that were given from outside.
+        """Begin anew, without the pushes and commands that were given from outside.
 
         Raises:
             LogError: a log is written, which holds one run only.
         """
         if self._path is not None:
             raise LogError(f"{self._path}: a log holds one run; make another Simulation with a file of its own")
-        self._pushes = 0
+        self._pushes, self._told = 0, 0
         self._begin()
 
     def close(self) -> None:

@@ -234,6 +234,11 @@ def highest_apex(duration: float) -> float:
     return STEEPEST_FALL / 3.0 * (duration / math.pi) ** 2
 
 
+def shortest_support(apex: float) -> float:
+    """The duration of a support phase for which an apex [m] is the highest [s]."""
+    return math.pi * math.sqrt(3.0 * apex / STEEPEST_FALL)
+
+
 def _sine_cubed(samples: PhaseSamples, amplitude: Array) -> Array:
     w = np.pi / (samples.length * samples.sample_time)
     angle = np.pi * samples.elapsed / samples.length

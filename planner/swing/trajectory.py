@@ -11,6 +11,9 @@ from surefoot.planner.types import Array, Foot
 _NOW = 1e-9
 """Times of ticks carry rounding; a piece begins this much early [s]."""
 
+FEWEST_SWING_SAMPLES = 4
+"""Planner samples of a single support: lift-off, apex, descent and touchdown."""
+
 _GLIDING = [0, 1, 3, 4, 5]
 """Columns of all but z."""
 

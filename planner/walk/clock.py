@@ -6,8 +6,10 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
 from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Hurry, Pace, PhaseSamples
 from surefoot.planner.walk.queue import Step, StepQueue
+from surefoot.planner.walk.source import StepSource
 
 _LEAST_LEFT = 0.1
 """A phase of which less is left keeps its pace when durations change [s]."""
@@ -138,18 +140,17 @@ class Stepper:
         way, rate, bend = self._pace.at(self._paced + ahead)
         return self.queue.samples(Flow(self._began + way, (rate, bend / self.sample_time)))
 
-    def retime(self, single_support: float, double_support: float) -> float:
-        """Take other durations from now on; what is left of the present phase changes in proportion.
+    def retime(self, gait: GaitParameters) -> float:
+        """Take the durations of a gait from now on; what is left of the present phase changes in proportion.
 
         Args:
-            single_support: of every step to come, and of this one [s].
-            double_support: likewise [s].
+            gait: gives the durations of every step to come, and of this one.
 
         Returns:
             By how much the end of the present phase is put off [s].
         """
         left, phase, (_, rate, bend) = self.time_left, self.phase, self._following(0.0)
-        length = self.queue.retime(single_support, double_support, phase, self.tick)
+        length = self.queue.retime(gait, phase, self.tick)
         way = phase.end - self.tick
         if phase.kind is not PhaseKind.STAND and way * self.sample_time >= _LEAST_LEFT:
             self._pace = Pace.over(way, length * way / phase.samples, rate, bend)
@@ -157,6 +158,12 @@ class Stepper:
         self.revision += 1
         self._look_ahead(self.tick)
         return self.time_left - left if phase.kind is not PhaseKind.STAND else 0.0
+
+    def reorder(self, source: StepSource | None = None) -> None:
+        """Take the steps to come from another source, or ask the present one anew; see `StepQueue.reorder`."""
+        self.queue.reorder(self.phase, source)
+        self.revision += 1
+        self._look_ahead(self.tick)
 
     def advance(self, feet: FeetState) -> None:
         """Go on by one tick.
@@ -182,6 +189,7 @@ class Stepper:
             self._pace = None
         if following >= phase.end - CLOCK_ROUNDING:
             self.queue.enter(following)
+        if following >= phase.end - CLOCK_ROUNDING or phase.samples == np.inf:
             self._look_ahead(following)
 
     def _following(self, samples: float) -> tuple[float, float, float]:
@@ -193,10 +201,11 @@ class Stepper:
 
     def _look_ahead(self, clock: float) -> None:
         """See as far as any plan of the phase at an instant on the clock looks; a step ordered may end a stand."""
-        self.queue.extend(clock + self._window)
+        more = self.queue.extend(clock + self._window, clock)
         self.phase = self.queue.phase(clock)
         if self.phase.samples < np.inf:
-            self.queue.extend(self.phase.end + self._window)
+            more |= self.queue.extend(self.phase.end + self._window, clock)
+        self.revision += more
 
     def upcoming(self, time: float, shifts: Array) -> tuple[PlannedFootstep, ...]:
         """The next footsteps, at most three.

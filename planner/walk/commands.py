@@ -4,6 +4,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -73,6 +74,88 @@ class VelocityCommand:
                 raise ParameterError(key, what, "it must be finite")
             if name == "time" and value < 0.0:
                 raise ParameterError(key, what, "it must not be negative")
+
+
+class Pose(NamedTuple):
+    """A place on the ground with a heading, in the world frame.
+
+    Attributes:
+        x: [m].
+        y: [m].
+        yaw: [rad].
+    """
+
+    x: float
+    y: float
+    yaw: float
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """What a walk is told while it goes on; what is None stays as it is.
+
+    Attributes:
+        twist: the velocity to follow from now on.
+        places: where to go now, one after another, to stand at the last one.
+        single_support: duration from now on [s].
+        double_support: likewise [s].
+        swing_height: clearance of the steps to come [m].
+
+    Raises:
+        ParameterError: a value is not finite, or a duration or the height is not positive.
+    """
+
+    twist: Twist | None = None
+    places: tuple[Pose, ...] | None = None
+    single_support: float | None = None
+    double_support: float | None = None
+    swing_height: float | None = None
+
+    def __post_init__(self) -> None:
+        twist, places = self.twist or Twist(), self.places or ()
+        numbers = [(name, getattr(twist, name)) for name in ("v_x", "v_y", "yaw_rate")]
+        numbers += [(name, getattr(place, name)) for place in places for name in Pose._fields]
+        positive = [(name, getattr(self, name)) for name in ("single_support", "double_support", "swing_height")]
+        for name, value in numbers:
+            if not math.isfinite(value):
+                raise ParameterError(("command", name), f"a command's {name} is {value:g}", "it must be finite")
+        for name, value in positive:
+            if value is not None and not 0.0 < value < math.inf:
+                what = f"a command's {name} is {value:g}"
+                raise ParameterError(("command", name), what, "it must be finite and greater than 0")
+
+
+class TimedCommand(NamedTuple):
+    """A command of which a walk hears at a time.
+
+    Attributes:
+        time: [s].
+        command: what it is told.
+    """
+
+    time: float
+    command: Command
+
+
+@dataclass(frozen=True, slots=True)
+class Orders:
+    """What a walk does of what it has been told.
+
+    Attributes:
+        twist: the velocity asked for.
+        followed: the one that is followed in its place, whose steps are in reach.
+        place: where it goes to stand; None while it follows a velocity.
+        single_support: duration of the steps to come [s].
+        double_support: likewise [s].
+        swing_height: their clearance [m].
+    """
+
+    twist: Twist
+    followed: Twist
+    place: Pose | None
+    single_support: float
+    double_support: float
+    swing_height: float
 
 
 class VelocityTimeline:

@@ -177,6 +177,21 @@ class FootstepPlan:
             first_support=self.first_support + points,
         )
 
+    def until(self, row: int, support: int) -> "FootstepPlan":
+        """What of the plan ends with a row and a support point of the walk."""
+        rows, points = row + 1 - self.first, support + 1 - self.first_support
+        moved_to = self.moved_to and (self.position[rows - 1, :2], np.zeros(2))
+        return replace(
+            self,
+            feet=self.feet[:rows],
+            position=self.position[:rows],
+            yaw=self.yaw[:rows],
+            normal=self.normal[:rows],
+            increment=self.increment[:rows],
+            supports=self.supports[:points],
+            moved_to=moved_to,
+        )
+
     def support_points(self) -> Array:
         """Support points of the ZMP reference (see `planner.walk.queue`), shape (m, 3) [m]."""
         return np.asarray(self.between_rows(self.position))

@@ -10,11 +10,12 @@ from surefoot.planner.swing.course import swing_course
 from surefoot.planner.swing.heel_off import roll_span, roll_times
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseKind
+from surefoot.planner.walk.commands import Pose
 from surefoot.planner.walk.footsteps import Path, start_footholds
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Phase, PhaseSamples, PhaseTable
 from surefoot.planner.walk.reach import check_reach
-from surefoot.planner.walk.source import GaitSource, StepSource
+from surefoot.planner.walk.source import GaitSource, Request, StepSource
 
 _MORE_STEPS = 3
 """Steps in sight beyond a window: its last support points depend on the ones after them, and a plan tells three."""
@@ -72,6 +73,7 @@ class StepQueue:
         source: of the steps; those of the gait by default.
 
     Attributes:
+        gait: what all steps to come have in common.
         phases: those in sight in order, without gaps, the one before the present first.
         steps: those in sight by their numbers.
         footsteps: footholds in sight, landed ones as measured.
@@ -81,7 +83,7 @@ class StepQueue:
     """
 
     def __init__(self, gait: GaitParameters, feet: FeetState, ground: Ground, source: StepSource | None = None) -> None:
-        self._gait, self._ground, self._source = gait, ground, source or GaitSource(gait)
+        self.gait, self._ground, self._source = gait, ground, source or GaitSource(gait)
         path = Path.begin(feet, ground.terrain, gait.step_width)
         self.footsteps = start_footholds(gait, feet, path, ground.terrain)
         start = [self.footsteps.footstep(row) for row in (0, 1)]
@@ -103,37 +105,47 @@ class StepQueue:
         """Heights of the support points in sight, shape (m,) [m]."""
         return self.footsteps.support_points()[:, 2]
 
-    def extend(self, clock: float) -> None:
+    def extend(self, clock: float, now: float = 0.0) -> bool:
         """Ask for steps until all is known up to an instant on the clock, and three steps more.
 
         Args:
             clock: the instant [samples].
+            now: the robot has stood until then, if it stands [samples].
+
+        Returns:
+            Whether there are more than before.
         """
         before = len(self.phases), self.phases[-1]
-        while self._lift_offs_after(clock) < _MORE_STEPS and self._ask():
+        while self._lift_offs_after(clock) < _MORE_STEPS and self._ask(now):
             pass
-        if before != (len(self.phases), self.phases[-1]):
+        if more := before != (len(self.phases), self.phases[-1]):
             self._table = PhaseTable.of(self.phases)
+        return more
 
     def _lift_offs_after(self, clock: float) -> int:
         return sum(phase.kind is PhaseKind.SINGLE and phase.start >= clock for phase in self.phases[-2 * _MORE_STEPS :])
 
-    def _ask(self) -> bool:
+    def _ask(self, now: float) -> bool:
         """Lay what comes next; says whether there is anything."""
-        step, phases, t = self._last.number, self.phases, self._ground.parameters.sample_time
-        if self._standing:
-            stand = phases[-1]
-            order = self._source.order(step + 1, stand.start * t, None)
-            if order is None:
-                return False
-            self._begin_bout(stand, in_samples(order.stand, t))
-        else:
-            order = self._source.order(step + 1, phases[-1].end * t, self._last.stride)
-            if order is None:
+        last, phases, t = self._last, self.phases, self._ground.parameters.sample_time
+        time, before = (phases[-1].start, None) if self._standing else (phases[-1].end, last.stride)
+        order = self._source.order(Request(last.number + 1, time * t, before, self._pose, self.gait.period))
+        if order is None:
+            if not self._standing:
                 self._end_bout()
                 return True
+            return False
+        if self._standing:
+            self._begin_bout(phases[-1], max(in_samples(order.stand, t), now - phases[-1].start))
         self._lay(order.stride)
         return True
+
+    @property
+    def _pose(self) -> Pose:
+        """Where the path is that the footsteps in sight go along."""
+        path, astray = self._last.path, self.footsteps.position[-1, :2] - self._last.place.position[:2]
+        x, y = path.middle + astray
+        return Pose(float(x), float(y), path.yaw)
 
     def _begin_bout(self, stand: Phase, samples: float) -> None:
         double = self._durations[1]
@@ -150,7 +162,7 @@ class StepQueue:
 
     def _lay(self, stride: Stride) -> None:
         """Lay a step: its foothold, its single support and the double support that follows."""
-        gait, (single, double) = self._gait, self._durations
+        gait, (single, double) = self.gait, self._durations
         step = self._next(stride, single)
         increment = step.place.position[:2] - self._last.place.position[:2]
         self.footsteps = self.footsteps.followed(step.place, increment, self._ground.terrain)
@@ -169,17 +181,39 @@ class StepQueue:
     def _next(self, stride: Stride, single: float) -> Step:
         """The step after the last one."""
         ground, number = self._ground, self._last.number + 1
-        foot = self._gait.step_foot(number)
+        foot = self.gait.step_foot(number)
         path, xy = self._last.path.advanced(stride, foot)
         point = xy[None]
         position, normal = np.append(xy, ground.terrain.heights(point)), ground.terrain.normals(point)[0]
         start, place = self.steps[number - 2].place, Footstep(foot, position, path.yaw, normal)
         course = swing_course(
-            number, start, place, single, ground.terrain, ground.half_size, self._gait.swing_height, ground.parameters
+            number, start, place, single, ground.terrain, ground.half_size, self.gait.swing_height, ground.parameters
         )
         # The start feet are measured, which may be a few nanometres off the ground.
         climb = round(float(position[2] - start.position[2]), 6)
         return Step(number, stride, path, place, climb, course, unit_swing(single, climb, course, ground.parameters))
+
+    def reorder(self, present: Phase, source: StepSource | None = None) -> None:
+        """Ask anew for all steps but the one being swung and the one to which the weight is being shifted.
+
+        Args:
+            present: the phase now.
+            source: of the steps from now on; that of those before by default.
+        """
+        self._source = source or self._source
+        # Kept is up to the double support after the last step that is, or to the stand that has begun or will.
+        kept = self.phases.index(present) + (1 if present.kind is PhaseKind.SINGLE else 0)
+        if present.kind is PhaseKind.DOUBLE:
+            kept += 2 if self.phases[kept + 1].kind is PhaseKind.SINGLE else 1
+        last = replace(self.phases[kept], roll=None)
+        if last.kind is PhaseKind.STAND:
+            last = replace(last, samples=np.inf)
+        del self.phases[kept:]
+        self.phases.append(last)
+        self._standing = last.kind is PhaseKind.STAND
+        self.steps = {number: step for number, step in self.steps.items() if number <= last.step}
+        self.footsteps = self.footsteps.until(last.step + 1, last.support)
+        self._table = PhaseTable.of(self.phases)
 
     def enter(self, clock: float) -> None:
         """Let go of what lies behind an instant on the clock, but for the phase of the sample before it.
@@ -198,22 +232,18 @@ class StepQueue:
         self.footsteps = self.footsteps.since(first.step - 2, first.support - 2)
         self._table = PhaseTable.of(phases)
 
-    def retime(self, single_support: float, double_support: float, present: Phase, clock: float) -> float:
-        """Give all steps to come other durations; phases that have begun keep theirs on the clock.
+    def retime(self, gait: GaitParameters, present: Phase, clock: float) -> float:
+        """Give all steps to come the durations of a gait; phases that have begun keep theirs on the clock.
 
         Args:
-            single_support: [s].
-            double_support: [s].
+            gait: what all steps to come have in common.
             present: the phase now.
             clock: now [samples].
 
         Returns:
             How long the present phase would last with these durations [samples].
-
-        Raises:
-            ParameterError: a duration is not positive or not finite.
         """
-        self._gait = replace(self._gait, single_support=single_support, double_support=double_support)
+        self.gait = gait
         single, double = self._durations
         at = self.phases.index(present)
         for number in range(at + 1, len(self.phases)):
@@ -241,7 +271,7 @@ class StepQueue:
     def _durations(self) -> tuple[float, float]:
         """Single and double support of the steps to come [samples]."""
         t = self._ground.parameters.sample_time
-        return in_samples(self._gait.single_support, t), in_samples(self._gait.double_support, t)
+        return in_samples(self.gait.single_support, t), in_samples(self.gait.double_support, t)
 
     def phase(self, clock: float) -> Phase:
         """The phase at an instant on the clock, the first in sight if it lies before."""

@@ -115,6 +115,37 @@ class FootstepSettings(Group):
     )
 
 
+class PlaceSettings(Group):
+    """A place to go to, with the heading there."""
+
+    x: Place = Field(description="middle of the stance, forward")
+    y: Place = Field(description="middle of the stance, to the left")
+    yaw: Annotated[float, Field(ge=-1e3, le=1e3, allow_inf_nan=False), RADIAN] = Field(
+        default=0.0, description="heading"
+    )
+
+
+class CommandSettings(Group):
+    """What the walk is told while it goes on; the planner does not know of it before."""
+
+    time: Instant = Field(description="when")
+    v_x: Annotated[Speed, METRE_PER_SECOND] | None = Field(
+        default=None, description="forward velocity from then on, null: 0, or as it was if no velocity is given"
+    )
+    v_y: Annotated[Speed, METRE_PER_SECOND] | None = Field(default=None, description="velocity to the left, likewise")
+    yaw_rate: Annotated[Speed, RADIAN_PER_SECOND] | None = Field(
+        default=None, description="rate of the heading, likewise"
+    )
+    place: PlaceSettings | None = Field(
+        default=None, description="where to go, in the world frame, in place of a velocity"
+    )
+    single_support: Support | None = Field(default=None, description="duration from then on, null: as it was")
+    double_support: Support | None = Field(default=None, description="duration from then on, null: as it was")
+    swing_height: Annotated[float, Field(gt=0, le=0.5, allow_inf_nan=False), METRE] | None = Field(
+        default=None, description="apex of the swing foot from then on, null: as it was"
+    )
+
+
 class Gait(Group):
     """The walk that is asked for; defaults are the paper's table."""
 
@@ -142,6 +173,11 @@ class Gait(Group):
     )
     footsteps: Annotated[tuple[FootstepSettings, ...], BeforeValidator(as_tuple)] = Field(
         default=(), description="every footstep, in place of equal steps"
+    )
+    waypoints: Annotated[tuple[PlaceSettings, ...], BeforeValidator(as_tuple)] = Field(
+        default=(),
+        description="places to go to one after another and to stand at the last one, with strides of at most "
+        "step_length, in the frame between the start feet; in place of equal steps",
     )
     heel_off: Annotated[float, Field(ge=0, le=1.0, allow_inf_nan=False), RADIAN] = Field(
         default=0.0, description="greatest pitch of a foot about its toes after its stance, 0: feet stay level"
@@ -340,6 +376,9 @@ class Scenario(Group):
     pendulum: PendulumSettings = Field(default=PendulumSettings(), description="the plant of fidelity pendulum")
     pushes: Annotated[tuple[PushSettings, ...], BeforeValidator(as_tuple)] = Field(
         default=(), description="disturbances"
+    )
+    commands: Annotated[tuple[CommandSettings, ...], BeforeValidator(as_tuple)] = Field(
+        default=(), description="what the walk is told while it goes on"
     )
     faults: Annotated[tuple[Fault, ...], BeforeValidator(as_tuple)] = Field(default=(), description="injected faults")
     rates: Rates = Field(default=Rates(), description="the clock")

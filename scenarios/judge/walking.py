@@ -42,10 +42,43 @@ def duration(run: RunView) -> float:
     return float(run.time[-1] - run.time[0]) + 1 / run.constants.control_rate
 
 
-@metric(least=0.0)
+@metric(reads={"/command": (), "/reference": ("step", "phase")}, least=0.0)
 def steps_planned(run: RunView) -> int:
-    """Footsteps asked for."""
-    return run.constants.steps_planned
+    """Footsteps asked for; of a walk that is told while it goes on where to go, those that have begun."""
+    if not run.has("/command"):
+        return run.constants.steps_planned
+    return int(run.field("/reference", "step")[run.single_support].max(initial=0))
+
+
+_PLACE_READS: Reads = {"/truth": ("left_sole", "right_sole"), "/command": ("place", "heading")}
+
+
+@metric(
+    unit="m", needs=("/truth", "/command"), shown=(1e3, "mm"), reads=_PLACE_READS, least=0.0, tolerance=(0.001, 0.0)
+)
+def place_error(run: RunView) -> float | None:
+    """Distance at the end from the middle of the stance to the place where the robot was told to go last [m]."""
+    place = _last_place(run)
+    if place is None:
+        return None
+    return float(np.hypot(*(0.5 * run.soles[-1, :, :2].sum(axis=0) - place[:2])))
+
+
+@metric(unit="rad", needs=("/truth", "/command"), reads=_PLACE_READS, least=0.0, tolerance=(0.002, 0.0))
+def heading_error(run: RunView) -> float | None:
+    """Difference at the end of the mean heading of the soles from the one that the robot was told to have [rad]."""
+    place = _last_place(run)
+    if place is None:
+        return None
+    turned = run.sole_yaw[-1] - place[2]
+    return float(abs(np.angle(np.exp(1j * turned).sum())))
+
+
+def _last_place(run: RunView) -> tuple[float, float, float] | None:
+    """Where the robot was told to go last; None if it was told to follow a velocity then."""
+    log = run.log["/command"]
+    (x, y), yaw = log.field("place")[-1], log.field("heading")[-1]
+    return None if np.isnan(x) else (float(x), float(y), float(yaw))
 
 
 @metric(needs=("/truth",), reads={**FALL_READS, "/footstep": ()}, least=0.0)

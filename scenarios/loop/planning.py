@@ -1,19 +1,26 @@
 """The planner inside a closed loop, on its own clock and logged, and what it asks of the whole-body controller."""
 
 import math
+from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import sole_rates, sole_rotation
 from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
+from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, PlannedFootstep
+from surefoot.planner.walk.commands import Command, Orders, TimedCommand
 from surefoot.scenarios.file.schema import Fault, Rates
 from surefoot.scenarios.loop.sensing import PlannerSensing
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.setup.events import FaultWindow
 from surefoot.wbc.types import WbcReference
+
+_ROUNDING = 1e-6
+"""Times of commands are compared with those of ticks with this tolerance [ticks]."""
 
 
 class RunFault(Exception):  # noqa: N818  the event, not a mistake of the caller
@@ -35,6 +42,8 @@ class FaultSchedule:
 class Planning:
     """Planner, its sensing, its latest plan, and the record of all.
 
+    A command is taken by the first plan at or after its time.
+
     Attributes:
         planner: what plans.
         plan: the latest plan; there is none before the first `update`.
@@ -48,12 +57,15 @@ class Planning:
         recorder: WalkRecorder,
         faults: FaultSchedule,
         rates: Rates,
+        commands: Sequence[TimedCommand] = (),
     ) -> None:
         self.planner, self._sensing, self._recorder, self._faults = planner, sensing, recorder, faults
-        self._every = rates.control // rates.planner
+        self._every, self._rate = rates.control // rates.planner, rates.control
         self.plan: WalkPlan
         self.sampler: PlanSampler
         self._started = False
+        self._commands = deque(sorted(commands, key=lambda timed: timed.time))
+        self._told = False
         self._aim: PlannedFootstep | None = None
         self._landing: PlannedFootstep | None = None
 
@@ -76,11 +88,45 @@ class Planning:
         self._recorder.planner_state(now_ns, sensed)
         if self._started and self._faults.active("planner_freeze", tick):
             return
+        self._tell(tick)
         self.plan = plan = self.planner.update(sensed.given, feet)
         self.sampler = PlanSampler(plan)
         self._started = True
         self._recorder.plan(now_ns, plan)
+        if self._told:
+            self._recorder.command(now_ns, self.orders)
+            self._told = False
         self._book(now_ns, before, feet)
+
+    def command(self, command: Command) -> None:
+        """Tell the planner something, from the next plan on.
+
+        Raises:
+            ParameterError: it is a planner that takes no commands, or cannot do this.
+        """
+        self._commanded.command(command)
+        self._told = True
+
+    @property
+    def orders(self) -> Orders:
+        """What the walk does of what it has been told.
+
+        Raises:
+            ParameterError: it is a planner that takes no commands.
+        """
+        return self._commanded.orders
+
+    @property
+    def _commanded(self) -> WalkingPlanner:
+        if not isinstance(self.planner, WalkingPlanner):
+            what = f"a command to {type(self.planner).__name__}, which takes none"
+            raise ParameterError(("commands",), what, "use a profile with surefoot's own walking planner")
+        return self.planner
+
+    def _tell(self, tick: int) -> None:
+        """Tell the planner what it is to hear at a control tick or was to hear since its last plan."""
+        while self._commands and self._commands[0].time * self._rate <= tick + _ROUNDING:
+            self.command(self._commands.popleft().command)
 
     def _book(self, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
         """Record a footstep once its swing is over and its foot has touched down, which it may never do.

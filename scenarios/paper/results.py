@@ -16,6 +16,7 @@ from surefoot.scenarios.setup.load import written
 from surefoot.scenarios.sweep.engine import Single, Worker, run_cells
 from surefoot.scenarios.sweep.journal import Journal
 from surefoot.scenarios.sweep.points import Point, Record
+from surefoot.scenarios.sweep.spec import Base
 from surefoot.scenarios.sweep.sweep import CampaignBar
 
 ENDED = ("completed", "fall")
@@ -71,7 +72,8 @@ def run_experiments(
 
 def point_of(experiment: Experiment) -> Point:
     """The run of an experiment."""
-    return Point(written(experiment.base), dict(map(setting, experiment.overrides)), {}, experiment.folder)
+    base = Base(experiment.base, written(experiment.base))
+    return Point(base, dict(map(setting, experiment.overrides)), {}, experiment.folder)
 
 
 def outcome_of(experiment: Experiment, record: Record, folder: Path) -> Outcome:

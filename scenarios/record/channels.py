@@ -226,6 +226,22 @@ def timing(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/timing", "Timing", fields, timing.__doc__ or "")
 
 
+def command(_: Sizes) -> ChannelSpec:
+    """What the walk was told while it went on, in the plan from which on it holds; NaN for what was not."""
+    fields = (
+        _real("velocity", 2, "m/s", "path", "asked for, forward and to the left"),
+        _scalar("yaw_rate", "rad/s", "of the heading, asked for"),
+        _real("followed_velocity", 2, "m/s", "path", "followed in its place, whose steps are in reach"),
+        _scalar("followed_yaw_rate", "rad/s", "likewise"),
+        _real("place", 2, "m", "world", "where to go last"),
+        _scalar("heading", "rad", "there"),
+        _scalar("single_support", "s", "duration from now on"),
+        _scalar("double_support", "s", "duration from now on"),
+        _scalar("swing_height", "m", "clearance of the steps to come"),
+    )
+    return ChannelSpec("/command", "Command", fields, command.__doc__ or "")
+
+
 def process(_: Sizes) -> ChannelSpec:
     """The process that makes the run, every simulated second; excluded from reproducibility."""
     fields = (_scalar("memory", "B", "resident memory"),)

@@ -32,6 +32,9 @@ END_RECORD = "end"
 PUSH_RECORD = "push "
 """Beginning of the names of metadata records that hold a push given while the run went on, each with its number."""
 
+COMMAND_RECORD = "command "
+"""Likewise of those that hold a command, in the words of a scenario's `commands`."""
+
 PARTS_RECORD = "parts"
 """Metadata record of what a user's program put in place of a part, which a log cannot carry."""
 

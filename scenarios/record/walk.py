@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, PlannedFootstep, SolverStatus
+from surefoot.planner.walk.commands import Orders
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes
@@ -69,6 +70,7 @@ class WalkRecorder:
         self._plan = writer.channel(channels.plan(sizes))
         self._footsteps = writer.channel(channels.footsteps(sizes))
         self._footstep = writer.channel(channels.footstep(sizes))
+        self._command = writer.channel(channels.command(sizes))
         timing = writer.channel(channels.timing(sizes))
         parts = [field.name for field in timing.spec.fields]
         self._timing = writer.rows((), ((timing, parts),))
@@ -112,6 +114,14 @@ class WalkRecorder:
         foot = planned.footstep.foot
         actual = np.append(feet.position[foot], feet.yaw[foot])
         self._footstep.append(time_ns, planned.step, int(foot), _pose(planned.footstep), actual)
+
+    def command(self, time_ns: int, orders: Orders) -> None:
+        """What the walk is told from now on."""
+        none = (math.nan,) * 3
+        pose, twists = orders.place or none, (orders.twist, orders.followed)
+        asked, followed = (none if orders.place else (twist.v_x, twist.v_y, twist.yaw_rate) for twist in twists)
+        gait = (orders.single_support, orders.double_support, orders.swing_height)
+        self._command.append(time_ns, asked[:2], asked[2], followed[:2], followed[2], pose[:2], pose[2], *gait)
 
     def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
         """The reference of a control tick and the gait's clock; the swing foot's sole is where its roll takes it."""

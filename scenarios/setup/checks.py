@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from surefoot.errors import ParameterError
+from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
@@ -15,7 +16,6 @@ from surefoot.scenarios.setup.events import idle_commands, never_act
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
 from surefoot.scenarios.setup.robot import RobotFacts, Robots
 from surefoot.scenarios.setup.walk_checks import (
-    FEWEST_SWING_SAMPLES,
     command_problems,
     commanded_step_problems,
     footstep_problems,

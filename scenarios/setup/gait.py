@@ -9,6 +9,9 @@ from surefoot.errors import ParameterError
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import Foot, Footstep
 from surefoot.planner.walk.commands import (
+    Command,
+    Pose,
+    TimedCommand,
     Twist,
     VelocityCommand,
     VelocityTimeline,
@@ -20,7 +23,8 @@ from surefoot.planner.walk.commands import (
 )
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import StepRegion, landing
-from surefoot.scenarios.file.schema import FootstepSettings, Gait, PushSettings, VelocitySettings
+from surefoot.scenarios.file.schema import CommandSettings, FootstepSettings, Gait, PushSettings, VelocitySettings
+from surefoot.scenarios.setup.robot import RobotFacts
 
 EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
@@ -46,7 +50,7 @@ def gait_of(keys: Gait) -> GaitParameters:
         ParameterError: velocity or footsteps cannot be walked.
     """
     plain = GaitParameters(
-        steps=0 if commanded(keys) else keys.steps,
+        steps=0 if commanded(keys) or keys.waypoints else keys.steps,
         step_length=keys.step_length,
         step_width=keys.step_width,
         lateral_step=keys.lateral_step,
@@ -85,6 +89,16 @@ def twist_of(command: VelocitySettings) -> Twist:
     return Twist(command.v_x, command.v_y, command.yaw_rate)
 
 
+def timed_command(settings: CommandSettings) -> TimedCommand:
+    """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
+    velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
+    twist = None if velocity == (None, None, None) else Twist(*(value or 0.0 for value in velocity))
+    place = settings.place
+    places = None if place is None else (Pose(place.x, place.y, place.yaw),)
+    gait = (settings.single_support, settings.double_support, settings.swing_height)
+    return TimedCommand(settings.time, Command(twist, places, *gait))
+
+
 def timeline_of(commands: Sequence[VelocitySettings]) -> VelocityTimeline:
     """Velocity commands in the planner's terms.
 
@@ -110,6 +124,17 @@ def step_region(
     near, far = parameters.reach_width
     width = (max(near, shank_spacing), far)
     return StepRegion(parameters.reach_length, width, sole, leg_span=leg_span, hip_width=hip_width)
+
+
+def leg_span(com_height: float, facts: RobotFacts) -> float:
+    """Largest distance between two soles with the hips over their middle, less the hip width sideways [m].
+
+    Args:
+        com_height: of the gait [m].
+        facts: of the robot.
+    """
+    span = longest_step(facts.leg_length, com_height - facts.com_above_hip, facts.hip_width, facts.hip_width)
+    return 0.0 if math.isnan(span) else span
 
 
 def longest_step(leg_length: float, hip_height: float, hip_width: float, step_width: float) -> float:

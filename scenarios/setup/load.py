@@ -19,7 +19,7 @@ from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.encoding import MAGIC
-from surefoot.scenarios.record.provenance import PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
+from surefoot.scenarios.record.provenance import COMMAND_RECORD, END_RECORD, PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria_checks import criteria_problems
 from surefoot.scenarios.setup.draft import Draft
@@ -58,7 +58,7 @@ def attached_scenario(path: str) -> tuple[str, str]:
     """
     try:
         log = read(path)
-        text = _with_pushes(decoded(BytesIO(log.attachments[SCENARIO_FILE]), f"{path}/{SCENARIO_FILE}"), log.metadata)
+        text = _as_run(decoded(BytesIO(log.attachments[SCENARIO_FILE]), f"{path}/{SCENARIO_FILE}"), log.metadata)
     except LogError as error:
         raise ScenarioError([str(error)]) from None
     except (KeyError, TypeError, ValueError, RecursionError):
@@ -71,13 +71,20 @@ def attached_scenario(path: str) -> tuple[str, str]:
     return text, f"{path}/{SCENARIO_FILE}"
 
 
-def _with_pushes(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
-    """The text of a scenario with the pushes that were given while it ran."""
-    given = [json.loads(record["push"]) for name, record in metadata.items() if name.startswith(PUSH_RECORD)]
-    if not given:
+def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
+    """The text of a scenario with the pushes and commands that were given while it ran, as long as it ran then."""
+    given = {
+        keys: [json.loads(record[kind.strip()]) for name, record in metadata.items() if name.startswith(kind)]
+        for keys, kind in (("pushes", PUSH_RECORD), ("commands", COMMAND_RECORD))
+    }
+    if not any(given.values()):
         return text
     keys = parse(text, SCENARIO_FILE).value
-    return yaml.safe_dump({**keys, "pushes": [*keys.get("pushes", []), *given]}, sort_keys=False)
+    keys |= {name: [*keys.get(name, []), *values] for name, values in given.items() if values}
+    end = metadata.get(END_RECORD, {})
+    if end.get("kind") == "interrupted":
+        keys["duration"] = float(end["time"])
+    return yaml.safe_dump(keys, sort_keys=False)
 
 
 def written(reference: str) -> Written:

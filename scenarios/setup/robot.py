@@ -1,6 +1,7 @@
 """The robot of a scenario: its description with the chosen options, what bounds its walk, and what it is in truth."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -61,16 +62,20 @@ class RegisteredRobots:
 
     def facts(self, name: str, options: RobotSettings) -> RobotFacts:
         """Facts of a robot with its options; which body carries the payload does not matter to them."""
-        description = describe(name, options.model_copy(update={"payload_body": None}))
-        return RobotFacts(
-            bodies=description.bodies,
-            leg_length=description.leg_length,
-            hip_width=description.hip_width,
-            com_above_hip=_straight_com_height(description) - description.leg_length,
-            foot_length=description.sole_length,
-            foot_width=description.sole_width,
-            shank_spacing=description.shank_spacing,
-        )
+        return facts_of(describe(name, options.model_copy(update={"payload_body": None})))
+
+
+def facts_of(description: "RobotDescription") -> RobotFacts:
+    """What of a robot bounds a scenario."""
+    return RobotFacts(
+        bodies=description.bodies,
+        leg_length=description.leg_length,
+        hip_width=description.hip_width,
+        com_above_hip=_straight_com_height(description.mjcf, description.sole_sites[0]) - description.leg_length,
+        foot_length=description.sole_length,
+        foot_width=description.sole_width,
+        shank_spacing=description.shank_spacing,
+    )
 
 
 def describe(name: str, options: RobotSettings) -> "RobotDescription":
@@ -113,12 +118,13 @@ def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "R
     return robot
 
 
-def _straight_com_height(description: "RobotDescription") -> float:
-    """CoM height above the soles with every joint at zero, which is straight legs [m]."""
+@lru_cache(maxsize=16)
+def _straight_com_height(mjcf: str, sole: str) -> float:
+    """CoM height above a sole's site with every joint at zero, which is straight legs [m]."""
     import mujoco
 
-    model = mujoco.MjModel.from_xml_string(description.mjcf)
+    model = mujoco.MjModel.from_xml_string(mjcf)
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
-    return float(data.subtree_com[0, 2] - data.site(description.sole_sites[0]).xpos[2])
+    return float(data.subtree_com[0, 2] - data.site(sole).xpos[2])

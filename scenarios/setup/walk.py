@@ -15,12 +15,14 @@ from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.types import Array, FeetState
+from surefoot.planner.walk.commands import Command, Pose, TimedCommand
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.reach import StepRegion
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
 from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.gait import push_time
-from surefoot.scenarios.setup.robot import describe, true_robot
+from surefoot.scenarios.setup.gait import push_time, timed_command
+from surefoot.scenarios.setup.robot import describe, facts_of, true_robot
 from surefoot.sim.pushes import Push
 from surefoot.wbc.parameters import WbcParameters
 
@@ -66,6 +68,9 @@ class Walk:
         tasks: of other packages in its QP, by name.
         sensing: noises of what is measured.
         filter: filter of the planner's state: none, kalman or zmp_only.
+        waypoints: places to go to from the start on.
+        commands: that the walk hears while it goes on.
+        region: where a step that is commanded may land.
         pushes: on bodies, world frame.
         faults: injected.
         pendulum: the plant of fidelity pendulum.
@@ -99,6 +104,9 @@ class Walk:
     tasks: tuple[str, ...]
     sensing: Sensing
     filter: str
+    waypoints: tuple[Pose, ...]
+    commands: tuple[TimedCommand, ...]
+    region: StepRegion
     pushes: tuple[Push, ...]
     faults: tuple[Fault, ...]
     pendulum: PendulumSettings
@@ -128,7 +136,10 @@ class Walk:
         if self.profile.planner is not None:
             return self.profile.planner(*given, self.profile)
         check_walk(*given)
-        return WalkingPlanner(*given, self.profile)
+        planner = WalkingPlanner(*given, self.profile, self.region)
+        if self.waypoints:
+            planner.command(Command(places=self.waypoints))
+        return planner
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:
@@ -146,9 +157,8 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
     if profile is not None:
         draft.profile = profile
     robot = robot or describe(keys.robot, keys.robot_options)
-    sole = (robot.sole_length, robot.sole_width)
     near, far = draft.parameters.reach_width
-    region = draft.region(sole, robot.shank_spacing)
+    region = draft.region(facts_of(robot))
     apart = max(near, robot.sole_width + 0.5 * region.gap)
     true = true_robot(keys.errors, robot, keys.seed)
     return Walk(
@@ -181,6 +191,9 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         tasks=keys.wbc.tasks if keys.wbc is not None else (),
         sensing=keys.sensing,
         filter=_filter(draft),
+        waypoints=draft.waypoints,
+        commands=tuple(timed_command(settings) for settings in keys.commands),
+        region=region,
         pushes=_pushes(draft, robot, float(true.mass)),
         faults=keys.faults,
         pendulum=keys.pendulum,

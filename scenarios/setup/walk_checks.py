@@ -9,6 +9,7 @@ from surefoot.errors import ParameterError
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import highest_apex
+from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.planner.walk.commands import Twist, fastest
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import Stride
@@ -16,15 +17,12 @@ from surefoot.planner.walk.reach import Landing, StepRegion, check_reach, landin
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.setup.draft import LONGEST_REACH, Draft
-from surefoot.scenarios.setup.gait import longest_step, step_region, twist_of
+from surefoot.scenarios.setup.gait import leg_span, step_region, twist_of
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot import RobotFacts
 
 MOST_SAMPLES = 1_000_000
 """Planner samples of a gait."""
-
-FEWEST_SWING_SAMPLES = 4
-"""Planner samples of a single support: lift-off, apex, descent and touchdown."""
 
 _PERIOD = 4
 """Footsteps after which a gait on flat ground only repeats itself: the first, one of each foot, the last."""
@@ -136,7 +134,7 @@ def command_problems(draft: Draft) -> list[Problem]:
 def commanded_step_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
     """Name velocities whose steps are out of reach with the fastest possible, or the first footstep that is."""
     gait = draft.keys.gait
-    sole, span = (facts.foot_length, facts.foot_width), _leg_span(gait, facts)
+    sole, span = (facts.foot_length, facts.foot_width), leg_span(gait.com_height, facts)
     parameters = PlannerParameters(reach_length=LONGEST_REACH)
     region = step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
     for index, command in enumerate(gait.velocity):
@@ -193,9 +191,3 @@ def _step_text(stride: Stride) -> str:
 def _toward_zero(value: float) -> float:
     """Three decimals, never faster."""
     return math.trunc(1000.0 * value) / 1000.0
-
-
-def _leg_span(gait: Gait, facts: RobotFacts) -> float:
-    """Largest distance between two soles with the hips over their middle, less the hip width sideways [m]."""
-    span = longest_step(facts.leg_length, gait.com_height - facts.com_above_hip, facts.hip_width, facts.hip_width)
-    return 0.0 if math.isnan(span) else span

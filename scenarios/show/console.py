@@ -11,7 +11,7 @@ from typing import Any, Self
 
 import numpy as np
 from rich.console import Console
-from rich.progress import BarColumn, TextColumn
+from rich.progress import BarColumn, ProgressColumn, TextColumn
 from rich.progress import Progress as RichProgress
 from rich.table import Table
 from rich.text import Text
@@ -30,13 +30,32 @@ WIDTH = 10_000
 """Columns that a table may have: as many as it needs. A narrow terminal wraps a line; it never loses what it says."""
 
 
-class ProgressLine:
-    """One line on standard error, only on a terminal: simulated time, phase, real-time factor."""
+class TerminalLine:
+    """One line on standard error for as long as its context, only on a terminal.
+
+    Args:
+        columns: that it shows.
+    """
+
+    def __init__(self, *columns: ProgressColumn) -> None:
+        console = Console(stderr=True)
+        self._bar = RichProgress(*columns, console=console, transient=True, disable=not console.is_terminal)
+
+    def __enter__(self) -> Self:
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bar.stop()
+
+
+class ProgressLine(TerminalLine):
+    """How far a run is: simulated time, phase, real-time factor."""
 
     def __init__(self, title: str) -> None:
-        console = Console(stderr=True)
-        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[state]}"))
-        self._bar = RichProgress(*columns, console=console, transient=True, disable=not console.is_terminal)
+        super().__init__(TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[state]}"))
         self._task = self._bar.add_task(title, total=1.0, state="starting")
         self._due = 0.0
 
@@ -49,15 +68,6 @@ class ProgressLine:
         speed = f"{progress.real_time_factor:.1f} x real time"
         state = f"{progress.time:6.2f} of {progress.duration:.2f} s  {progress.phase}  {speed}"
         self._bar.update(self._task, completed=progress.time / max(progress.duration, 1e-9), state=state)
-
-    def __enter__(self) -> Self:
-        self._bar.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._bar.stop()
 
 
 def print_result(name: str, verdict: Verdict, log: Path) -> None:

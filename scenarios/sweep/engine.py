@@ -95,7 +95,7 @@ def perform(point: Point, scratch: Path, kept: Path, keep_all: bool) -> Record:
     record = Record(point.id, "broken", made_by=made_by())
     try:
         shutil.rmtree(own, ignore_errors=True)
-        result = run_scenario(read_scenario(*point.base, point.settings), made_folder(own))
+        result = run_scenario(read_scenario(*point.base.written, point.settings), made_folder(own))
         verdict = result.verdict
         record = replace(
             record, status="pass" if verdict.passed else "fail", reasons=verdict.reasons, metrics=verdict.metrics

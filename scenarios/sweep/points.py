@@ -11,8 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from surefoot.scenarios.setup.load import Written
-from surefoot.scenarios.sweep.spec import SCENARIO, SEARCH, Bisect, Campaign, Draw
+from surefoot.scenarios.sweep.spec import SCENARIO, SEARCH, Base, Bisect, Campaign, Draw
 
 Status = Literal["pass", "fail", "refused", "broken"]
 """Criteria met; missed; a scenario that cannot be run; a run without a result, which is tried again."""
@@ -29,7 +28,7 @@ class Point:
         name: of the folder of its log, unique in its campaign.
     """
 
-    base: Written
+    base: Base
     settings: Mapping[str, Any]
     labels: Mapping[str, Any]
     name: str
@@ -37,16 +36,15 @@ class Point:
     @cached_property
     def id(self) -> str:
         """Digest of what is run."""
-        text = json.dumps([self.base.text, self.base.stem, list(self.settings.items())], default=str)
+        text = json.dumps([self.base.written.text, self.base.written.stem, list(self.settings.items())], default=str)
         return hashlib.sha256(text.encode()).hexdigest()[:20]
 
     @property
     def command(self) -> str:
         """The command that makes this run alone."""
-        reference = self.base.place if self.base.place.endswith(f"/{self.base.stem}.yaml") else self.base.stem
-        reference = self.base.stem if self.base.place.startswith("catalogue/") else reference
         values = (f"{key}={_yaml(value)}" for key, value in self.settings.items())
-        return f"surefoot run {shlex.quote(reference)} " + " ".join(f"--set {shlex.quote(text)}" for text in values)
+        settings = " ".join(f"--set {shlex.quote(text)}" for text in values)
+        return f"surefoot run {shlex.quote(self.base.reference)} {settings}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +78,8 @@ class Threshold:
     """Where a search ended.
 
     Attributes:
-        value: largest value up to which everything passed (ladder), or the middle of the last range (halving); None
-            where the whole range lies on one side.
+        value: largest value up to which everything passed (ladder), or the end of the last range that passed (halving);
+            None where the whole range lies on one side.
         side: whether the threshold is inside the range, below it or above it.
     """
 
@@ -138,9 +136,8 @@ class Cell:
         settings = {**own, **drawn, **searched}
         base = self.campaign.bases[str(settings.pop(SCENARIO, spec.scenario))]
         told = {**self.labels, **searched, "seed": seed}
-        name = ",".join(f"{name.rpartition('.')[2]}={_short(value)}" for name, value in told.items())
         labels = {**self.labels, **drawn, **searched, "seed": seed}
-        return Point(base, {**settings, "seed": seed}, labels, _file_name(name))
+        return Point(base, {**settings, "seed": seed}, labels, _folder(told))
 
 
 def cells(campaign: Campaign) -> Iterator[Cell]:
@@ -207,11 +204,15 @@ def _yaml(value: Any) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
-def _short(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+def _folder(labels: Mapping[str, Any]) -> str:
+    """A name of a folder that every file system takes; where it does not tell all of the labels, their digest does."""
+    told = [(name.rpartition(".")[2], str(value)) for name, value in labels.items()]
+    safe = [(_safe(name), _safe(value)) for name, value in told]
+    text = ",".join(f"{name}={value}" for name, value in safe)
+    if safe == told and len(text) <= 120:
+        return text
+    return f"{text[:100]}-{hashlib.sha256(str(told).encode()).hexdigest()[:12]}"
 
 
-def _file_name(name: str) -> str:
-    """A name that every file system takes; a long one is told apart by its digest."""
-    safe = "".join(sign if sign.isalnum() or sign in "=.,_-+" else "_" for sign in name)
-    return safe if len(safe) <= 120 else f"{safe[:100]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
+def _safe(text: str) -> str:
+    return "".join(sign if sign.isascii() and (sign.isalnum() or sign in "._-+") else "_" for sign in text)

@@ -112,6 +112,13 @@ class Setting(NamedTuple):
     keys: Mapping[str, Any]
 
 
+class Base(NamedTuple):
+    """A scenario that runs start from: what `surefoot run` finds it by, and how it is written."""
+
+    reference: str
+    written: Written
+
+
 @dataclass(frozen=True, slots=True)
 class Campaign:
     """A specification that can be run.
@@ -120,13 +127,13 @@ class Campaign:
         spec: as written, with what was set from outside.
         place: what to call its file in messages.
         axes: of the grid, by name.
-        bases: the scenarios that it names, by reference.
+        bases: the scenarios that it names, by name.
     """
 
     spec: Spec
     place: str
     axes: Mapping[str, tuple[Setting, ...]]
-    bases: Mapping[str, Written]
+    bases: Mapping[str, Base]
 
     @property
     def cells(self) -> int:
@@ -248,17 +255,18 @@ def _settings(name: str, axis: list[Any] | dict[str, dict[str, Any]]) -> tuple[S
     return tuple(Setting(plain_scalar(label), keys) for label, keys in axis.items())
 
 
-def _bases(campaign: Campaign, source: Source) -> dict[str, Written]:
+def _bases(campaign: Campaign, source: Source) -> dict[str, Base]:
     """The scenarios that are named."""
-    found: dict[str, Written] = {}
+    found: dict[str, Base] = {}
     for _, keys in campaign.combinations():
-        reference = str(keys.get(SCENARIO, campaign.spec.scenario))
-        if not reference:
+        name = str(keys.get(SCENARIO, campaign.spec.scenario))
+        if not name:
             problem = Problem((), "names no scenario", "give 'scenario: walk', or vary it in the grid")
             raise ScenarioError([source.describe(problem)])
-        if reference not in found:
-            beside = Path(campaign.place).parent / reference
-            found[reference] = written(str(beside) if beside.is_file() else reference)
+        if name not in found:
+            beside = Path(campaign.place).parent / name
+            reference = str(beside) if beside.is_file() else name
+            found[name] = Base(reference, written(reference))
     return found
 
 
@@ -326,7 +334,7 @@ def _of_point(campaign: Campaign, keys: Mapping[str, Any], places: Mapping[str, 
     keys = {key: value for key, value in keys.items() if not key.startswith(SEARCH)}
     base = campaign.bases[str(keys.pop(SCENARIO, campaign.spec.scenario))]
     try:
-        problems = key_problems(base, keys)
+        problems = key_problems(base.written, keys)
     except ScenarioError as error:
         for message in error.problems:
             name, _, rest = message.removeprefix("--set ").partition(": ")

@@ -51,13 +51,13 @@ def of_criteria(judged: Runs) -> Iterator[Spread]:
 def criteria(runs: Runs) -> dict[str, list[Bound]]:
     """Every bound on a metric in some runs; those of one scenario are asked once, and refused ones have none."""
     asked = {
-        (point.base.place, str([(k, v) for k, v in point.settings.items() if k.startswith("criteria")])): point
+        (point.base.reference, str([(k, v) for k, v in point.settings.items() if k.startswith("criteria")])): point
         for point, _ in runs
     }
     found: dict[str, list[Bound]] = {}
     for point in asked.values():
         try:
-            for name, bound in read_scenario(*point.base, point.settings).criteria.items():
+            for name, bound in read_scenario(*point.base.written, point.settings).criteria.items():
                 found.setdefault(name, []).append(bound)
         except ScenarioError:
             continue

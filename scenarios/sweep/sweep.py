@@ -4,15 +4,14 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self, get_args
+from typing import Any, get_args
 
 import yaml
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from surefoot.scenarios.errors import install_command
 from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.show.console import TerminalLine
 from surefoot.scenarios.sweep.engine import Outcome, Worker, local_workers, outcome_of, run_cells
 from surefoot.scenarios.sweep.journal import Journal
 from surefoot.scenarios.sweep.points import Record, Status, cells
@@ -23,8 +22,8 @@ SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", 
 STATUSES: tuple[Status, ...] = get_args(Status)
 
 
-class CampaignBar:
-    """One line on standard error, only on a terminal: how many are done, how many failed, how long the rest takes.
+class CampaignBar(TerminalLine):
+    """How far a campaign is: how many are done, how many failed, how long the rest takes.
 
     Args:
         total: number of cells.
@@ -32,12 +31,10 @@ class CampaignBar:
     """
 
     def __init__(self, total: int, what: str = "runs") -> None:
-        console = Console(stderr=True)
-        columns = (
+        super().__init__(
             *(TextColumn(what), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[state]}")),
             *(TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn()),
         )
-        self._bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
         self._task = self._bar.add_task("", total=total, state="")
         self._counts = dict.fromkeys(("fail", "refused", "broken"), 0)
         self._runs = 0
@@ -53,15 +50,6 @@ class CampaignBar:
     def cell(self) -> None:
         """Count a cell."""
         self._bar.advance(self._task)
-
-    def __enter__(self) -> Self:
-        self._bar.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._bar.stop()
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.com_height import Rise, SmoothHeight
 from surefoot.planner.types import CentroidalState, PhaseKind
+from surefoot.planner.walk.commands import Command
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import Pace
 
@@ -29,7 +30,9 @@ def plans_of(stand, gait, changes=(), rise=Rise.SINGLE):
     changes, slowest = dict(changes), max([1.0, *(ratio for _, ratio in changes)])
     for tick in range(round(gait.duration * slowest / T) + 30):
         if tick in changes:
-            planner.retime(changes[tick] * gait.single_support, changes[tick] * gait.double_support)
+            ratio = changes[tick]
+            durations = ratio * gait.single_support, ratio * gait.double_support
+            planner.command(Command(single_support=durations[0], double_support=durations[1]))
         made.append(planner.update(CentroidalState(T * tick, com, velocity), ideal.state))
         com, velocity = made[-1].com[1], made[-1].com_velocity[1]
         ideal.follow(PlanSampler(made[-1]), T * (tick + 1))

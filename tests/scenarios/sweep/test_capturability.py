@@ -101,7 +101,7 @@ def first_log(folder, phase="single"):
     path.write_text(SPEC.replace("PHASE", phase))
     (cell, *_) = cells(read_campaign(str(path)))
     point = cell.point(0, {"pushes.0.impulse": 0.01})
-    return run_scenario(read_scenario(*point.base, point.settings), folder / "run").log
+    return run_scenario(read_scenario(*point.base.written, point.settings), folder / "run").log
 
 
 def test_a_run_tells_the_moment_of_its_push(tmp_path):

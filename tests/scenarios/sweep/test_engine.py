@@ -22,15 +22,17 @@ from surefoot.scenarios.sweep.engine import (
 )
 from surefoot.scenarios.sweep.journal import JOURNAL, LOGS, SCRATCH, Journal, made_by
 from surefoot.scenarios.sweep.points import Point, Record
+from surefoot.scenarios.sweep.spec import Base
 
 pytestmark = pytest.mark.unit
 
 SHORT = {"fidelity": "pendulum", "gait.steps": 1, "gait.single_support": 0.6, "gait.initial_stand": 0.2,
          "rates.control": 100}  # fmt: skip
+BASE = Base("paper-walk", written("paper-walk"))
 
 
 def point(seed=0, **settings):
-    return Point(written("paper-walk"), {**SHORT, **settings, "seed": seed}, {"seed": seed}, f"run-{seed}")
+    return Point(BASE, {**SHORT, **settings, "seed": seed}, {"seed": seed}, f"run-{seed}")
 
 
 POINTS = tuple(point(seed) for seed in range(6))

@@ -1,8 +1,12 @@
 """What is run: every combination once, values drawn apart from each other, and searches that find thresholds."""
 
+import shlex
+
 import numpy as np
 import pytest
 
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.sweep.points import Record, Threshold, cells, draw_value
 from surefoot.scenarios.sweep.spec import Draw, read_campaign
 
@@ -16,6 +20,10 @@ def campaign(tmp_path):
         return read_campaign(str(tmp_path / name))
 
     return make
+
+
+SHORT = {"fidelity": "pendulum", "gait.steps": 1, "gait.single_support": 0.6, "gait.initial_stand": 0.2,
+         "rates.control": 100}  # fmt: skip
 
 
 def walked(cell, passes=lambda point: True, status="fail"):
@@ -43,6 +51,27 @@ def test_every_combination_has_every_seed_once(campaign):
         points[0].command
         == "surefoot run walk --set gait.turn=0.1 --set gait.steps=3 --set errors.friction=0 --set seed=0"
     )
+
+
+MINE = "gait: {steps: 1, single_support: 0.6}\nfidelity: pendulum\nrates: {control: 100}\n"
+
+
+@pytest.mark.parametrize("name", ["walk", "mine.yaml", "mine.yml", "it's mine/mine.yaml", "log.mcap"])
+@pytest.mark.parametrize("place", ["c.yaml", "below/c.yaml"])
+def test_the_command_makes_the_run_wherever_its_scenario_is(tmp_path, monkeypatch, name, place):
+    monkeypatch.chdir(tmp_path)
+    spec, scenario = tmp_path / place, (tmp_path / place).parent / name
+    scenario.parent.mkdir(parents=True, exist_ok=True)
+    if name.endswith(".mcap"):
+        run_scenario(load("paper-walk", {**SHORT, "gait.turn": 0.1}), tmp_path / "run").log.rename(scenario)
+    elif name != "walk":
+        scenario.write_text(MINE)
+    spec.write_text(f'scenario: "{name}"\nset: {{gait.step_length: 0.11}}\n')
+    (cell,) = cells(read_campaign(place))
+    (point,), _ = walked(cell)
+    program, verb, reference, *settings = shlex.split(point.command)
+    assert (program, verb, settings[::2]) == ("surefoot", "run", ["--set"] * 2)
+    assert load(reference, settings[1::2]) == read_scenario(*point.base.written, point.settings)
 
 
 def test_the_same_run_has_the_same_name_and_another_scenario_another(campaign):
@@ -146,3 +175,22 @@ def test_folders_have_names_that_file_systems_take(campaign):
     made = campaign("scenario: walk\ngrid: {a: {'x/../: y': {gait.steps: 3}, " + "z" * 300 + ": {gait.steps: 4}}}")
     names = [walked(cell)[0][0].name for cell in cells(made)]
     assert all(len(name) <= 120 and "/" not in name and ":" not in name for name in names)
+
+
+@pytest.mark.parametrize(
+    "grid",
+    [
+        pytest.param("errors.friction: [0.1, 0.1000000001]", id="last digits"),
+        pytest.param("a: {x y: {gait.steps: 3}, x_y: {gait.steps: 4}, x/y: {gait.steps: 5}}", id="replaced"),
+        pytest.param("a: {ä: {gait.steps: 3}, ö: {gait.steps: 4}, 高: {gait.steps: 5}}", id="letters"),
+        pytest.param(
+            "a: {'1,b=2': {gait.steps: 3}, '1': {gait.steps: 4}}, b: {'3': {gait.turn: 0}, '2,b=3': {gait.turn: 0.1}}",
+            id="separators",
+        ),
+    ],
+)
+def test_no_two_runs_have_the_same_folder(campaign, grid):
+    made = campaign(f"scenario: walk\ngrid: {{{grid}}}")
+    points = [walked(cell)[0][0] for cell in cells(made)]
+    assert len({point.name for point in points}) == len({point.id for point in points}) == len(points)
+    assert all(point.name.isascii() for point in points)

@@ -3,7 +3,9 @@
 import csv
 import io
 import re
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from html import unescape
 from html.parser import HTMLParser
 from urllib.parse import unquote
@@ -11,7 +13,7 @@ from urllib.parse import unquote
 import pytest
 
 from surefoot.scenarios.sweep import report
-from surefoot.scenarios.sweep.engine import LocalWorker, Outcome, outcome_of, run_cells
+from surefoot.scenarios.sweep.engine import LocalWorker, outcome_of, run_cells
 from surefoot.scenarios.sweep.journal import Journal
 from surefoot.scenarios.sweep.points import Record, cells
 from surefoot.scenarios.sweep.spec import read_campaign
@@ -55,25 +57,28 @@ class Page(HTMLParser):
             self.within = False
 
 
-def outcome(cell, rule):
-    """What becomes of a cell whose runs end by a rule."""
-    runs, search = [], cell.search()
-    try:
-        point = next(search)
-        while (record := rule(point)) is not None:
-            runs.append((point, record))
-            point = search.send(record)
-    except StopIteration as end:
-        whole = all(record.status != "broken" for _, record in runs)
-        return Outcome(cell, tuple(runs), end.value if whole else None, whole)
-    return Outcome(cell, tuple(runs), complete=False)
+@dataclass
+class Ruled:
+    """A worker whose runs end by a rule: from a point to a record."""
+
+    rule: Callable
+
+    def __call__(self, point):
+        return self.rule(point)
+
+    def close(self):
+        pass
 
 
 def swept(folder, text, rule):
-    """A campaign whose runs end by a rule: from a point to a record, or None for no result yet."""
+    """A campaign whose runs end by a rule; of which none has a result yet, where that is None."""
     (folder / "spec.yaml").write_text(text)
     campaign = read_campaign(str(folder / "spec.yaml"))
-    return Swept(campaign, folder, tuple(outcome(cell, rule) for cell in cells(campaign)))
+    every = tuple(cells(campaign))
+    with Journal(folder / "journal") as journal:
+        if rule is not None:
+            run_cells(every, journal, [Ruled(rule)])
+        return Swept(campaign, folder, tuple(outcome_of(cell, journal) for cell in every))
 
 
 def passed(point, **metrics):
@@ -158,7 +163,7 @@ def test_links_lead_to_logs_that_are_there(tmp_path):
 @pytest.mark.parametrize(
     "rule",
     [
-        pytest.param(lambda _: None, id="empty"),
+        pytest.param(None, id="empty"),
         pytest.param(passed, id="passed"),
         pytest.param(failed, id="failed"),
         pytest.param(lambda point: Record(point.id, "refused", ("no; yes",)), id="refused"),

@@ -128,6 +128,7 @@ class Simulation:
         self._path = None if log is None else Path(log)
         self._writer: LogWriter
         self._loop: ClosedLoop
+        self._last: tuple[float, PlanSample]
         self._pushes, self._told, self._closed = 0, 0, False
         self._threads = one_thread()
         self._begin()
@@ -187,12 +188,22 @@ class Simulation:
         Raises:
             RunFault: the run is over; says since when and why. `reset` begins anew.
         """
+        self.advance()
+        return self.look()
+
+    def advance(self) -> None:
+        """Go through one control tick without a look at it, which saves a tenth of the time; errors as of `step`."""
         loop = self._loop
         if loop.done:
             raise RunFault(f"the run is over at {loop.end.time:.3f} s, {loop.end.kind}; reset() begins anew")
         time, sample = loop.time, loop.step()
         if sample is None:
             raise RunFault(f"{loop.end.reason}; reset() begins anew")
+        self._last = (time, sample)
+
+    def look(self) -> Tick:
+        """The last tick; there is none before the first step."""
+        loop, (time, sample) = self._loop, self._last
         seen = loop.walker.look()
         return Tick(
             time=time,

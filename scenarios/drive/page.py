@@ -102,7 +102,7 @@ class DrivePage:
                 self._scene = self._staged(picture)
             self._scene.replace(picture)
             self._scene.show(0, follow=self._follow)
-        followed = getattr(self._robot, "followed", status.wanted)
+        followed = self._robot.orders.followed
         pull = self._pull
         news = {
             **asdict(status),

@@ -96,8 +96,11 @@ class Robot(Protocol):
     def end(self) -> End:
         """How the run ended."""
 
-    def step(self) -> Tick:
+    def advance(self) -> None:
         """Go through one control tick."""
+
+    def look(self) -> Tick:
+        """The last tick."""
 
     def push(self, force: Any, duration: float = ..., body: str | None = ...) -> None:
         """Push it."""
@@ -208,7 +211,7 @@ class Session:
         period = PICTURE_PERIOD if moving and lag < NO_TIME else SLOWEST_PICTURES
         if now - self._shown_at >= period - 1e-6:
             self._shown_at = now
-            self._page.show(self._tick, self._status(now))
+            self._page.show(self._robot.look(), self._status(now))
             return 0.0
         return 0.0 if lag > 0.0 else IDLE
 
@@ -220,7 +223,7 @@ class Session:
         self._over, self._note = False, ""
         self._slow_at = self._shown_at = -math.inf
         self._page.begin(self._robot)
-        self._tick = self._robot.step()
+        self._robot.advance()
         self._passed: deque[tuple[float, float]] = deque()
         self._anchor(self._clock())
 
@@ -252,7 +255,7 @@ class Session:
         while not (robot.done or self._paused) and robot.time < self._due(now) - 1e-9 and now < deadline:
             self._send()
             with suppress(RunFault):
-                self._tick = robot.step()
+                robot.advance()
             now = self._clock()
         if robot.done and not self._over:
             self._over, self._note = True, _ending(robot.end)

@@ -1,4 +1,4 @@
-"""A headless Chromium that is driven by the WebDriver protocol, with no way to any network."""
+"""A headless Chromium that is driven by the WebDriver protocol, with no way to any network but this machine."""
 
 import base64
 import json
@@ -78,10 +78,13 @@ class Browser:
             time.sleep(0.2)
         return value
 
-    def key(self, key: str, seconds: float) -> None:
-        """Hold a key."""
-        press, wait = {"type": "keyDown", "value": key}, {"type": "pause", "duration": round(1000 * seconds)}
-        self._act("key", [press, wait, {"type": "keyUp", "value": key}])
+    def press(self, key: str) -> None:
+        """Press a key and hold it."""
+        self._act("key", [{"type": "keyDown", "value": key}])
+
+    def release(self, key: str) -> None:
+        """Let go of a key."""
+        self._act("key", [{"type": "keyUp", "value": key}])
 
     def drag(self, *places: tuple[float, float]) -> None:
         """Press the mouse at the first place and release it at the last one [px]; a single one is a click."""

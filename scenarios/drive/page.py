@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from surefoot.errors import ParameterError
 from surefoot.scenarios import palette
 from surefoot.scenarios.drive.picture import Instant, Pictures
 from surefoot.scenarios.drive.server import PageServer
@@ -102,12 +103,11 @@ class DrivePage:
                 self._scene = self._staged(picture)
             self._scene.replace(picture)
             self._scene.show(0, follow=self._follow)
-        followed = self._robot.orders.followed
         pull = self._pull
         news = {
             **asdict(status),
             "wanted": _numbers(status.wanted),
-            "followed": _numbers(followed),
+            "followed": _numbers(self._followed()),
             "charts": self._pictures.values(tick),
             "alone": self._pictures.alone,
             "tick": tick.time,
@@ -119,6 +119,12 @@ class DrivePage:
     def close(self) -> None:
         """Stop serving."""
         self._server.close()
+
+    def _followed(self) -> Any:
+        try:
+            return self._robot.orders.followed
+        except ParameterError:  # of a planner that takes no commands
+            return Velocity()
 
     def _staged(self, picture: Instant) -> ViserScene:
         """The scene, whose robot can be clicked on and dragged."""
@@ -220,7 +226,9 @@ class _Page(Template):
 def _page(viewer: str, port: int, walk: Walk) -> str:
     """Viser's page, told where its server is, with the controls beside it."""
     gait = {key: float(getattr(walk.gait, key)) for key in GAIT_RANGES}
-    curves = [{"name": name, "color": palette.hexadecimal(color), "planned": dashed} for name, color, dashed, *_ in BALANCE]
+    curves = [
+        {"name": name, "color": palette.hexadecimal(color), "planned": dashed} for name, color, dashed, *_ in BALANCE
+    ]
     feet = [
         {"name": name, "color": palette.hexadecimal(color), "planned": False}
         for name, color in zip(FEET_NAMES, palette.FEET, strict=True)
@@ -242,7 +250,8 @@ def _page(viewer: str, port: int, walk: Walk) -> str:
     filled = _Page(column).substitute(title=title, data=json.dumps(data).replace("</", "<\\/"))
     before, after = viewer.split("<head>", 1)
     top, tail = after.rsplit("</body>", 1)
-    return f"{before}<head>{_Page(head).substitute(address=f'ws://{LOCALHOST}:{port}', title=title)}{top}{filled}</body>{tail}"
+    begin = _Page(head).substitute(address=f"ws://{LOCALHOST}:{port}", title=title)
+    return f"{before}<head>{begin}{top}{filled}</body>{tail}"
 
 
 @contextmanager

@@ -70,7 +70,8 @@ class PageServer:
         seen = -1
         while True:
             with self._news:
-                self._news.wait_for(lambda: self._number != seen or not self._open, _SILENCE)
+                if self._number == seen and self._open:
+                    self._news.wait(_SILENCE)
                 if not self._open:
                     return
                 seen, text = self._number, self._text

@@ -183,6 +183,7 @@ class Session:
         self._gait = Gait()
         self._runs = 0
         self._robot: Robot
+        self._shown_at = -math.inf
         self._begin()
 
     def run(self, stopped: Callable[[], bool], sleep: Callable[[float], None] = time.sleep) -> None:
@@ -213,6 +214,8 @@ class Session:
             self._shown_at = now
             self._page.show(self._robot.look(), self._status(now))
             return 0.0
+        if not moving:
+            return 5 * IDLE
         return 0.0 if lag > 0.0 else IDLE
 
     def _begin(self) -> None:

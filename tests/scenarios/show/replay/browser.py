@@ -40,7 +40,10 @@ class Browser:
         self._server = f"http://127.0.0.1:{port}"
         driver = [shutil.which("chromedriver") or "", f"--port={port}"]
         self._driver = subprocess.Popen(driver, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        options = {"args": [*FLAGS, f"--window-size={size[0]},{size[1]}", f"--user-data-dir={profile}"], "binary": shutil.which("chromium")}
+        options = {
+            "args": [*FLAGS, f"--window-size={size[0]},{size[1]}", f"--user-data-dir={profile}"],
+            "binary": shutil.which("chromium"),
+        }
         wanted = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": options}}
         self._session = ""
         try:

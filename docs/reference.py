@@ -15,9 +15,11 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from surefoot.scenarios.file.schema import (
+    CommandSettings,
     Fault,
     FootstepSettings,
     GroundError,
+    PlaceSettings,
     PushSettings,
     Scenario,
     VelocitySettings,
@@ -42,6 +44,7 @@ CHANNELS = (
         channels.wbc,
         channels.torque,
     ),
+    channels.command,
     channels.timing,
     channels.process,
 )
@@ -52,6 +55,8 @@ _LISTS: dict[str, type[BaseModel]] = {
     "faults": Fault,
     "gait.velocity": VelocitySettings,
     "gait.footsteps": FootstepSettings,
+    "gait.waypoints": PlaceSettings,
+    "commands": CommandSettings,
     "errors.ground": GroundError,
 }
 

@@ -127,6 +127,7 @@ class PhaseInfo:
         step: number of the step being swung (single support) or last landed (otherwise); 0 before the first.
         elapsed: time since the phase began, without the time for which the clock waited [s].
         duration: length of the phase, infinite for the final standing [s].
+        leads_to: number of the step being swung, or whose foot leaves the ground at its end; 0 for none.
     """
 
     kind: PhaseKind
@@ -134,6 +135,7 @@ class PhaseInfo:
     step: int
     elapsed: float
     duration: float
+    leads_to: int = 0
 
 
 @dataclass(frozen=True, slots=True)

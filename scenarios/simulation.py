@@ -26,7 +26,7 @@ from surefoot.scenarios.loop.planning import RunFault
 from surefoot.scenarios.loop.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.loop.skeleton import ClosedLoop, End, refusing
 from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD
-from surefoot.scenarios.setup.gait import timed_command
+from surefoot.scenarios.setup.commands import timed_command
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.sim.measurement import Measurement

@@ -130,10 +130,7 @@ class SwingTrajectory:
             delay: by which the touchdown is put off [s].
             grid: sample time of the plans [s].
         """
-        left = self.touchdown_time - time
-        if left < _LEAST_CHANGE * grid or left + delay < _LEAST_CHANGE * grid:
-            return self
-        share, touchdown = 1.0 + delay / left, self.touchdown_time + delay
+        share, touchdown = 1.0 + delay / (self.touchdown_time - time), self.touchdown_time + delay
 
         def put_off(instant: float) -> float:
             return instant if instant < time + _NOW else time + round(share * (instant - time) / grid) * grid
@@ -152,9 +149,6 @@ class SwingTrajectory:
         fall = _fall(state[:, 2:3], float(self.target[2]), self.search.touchdown_speed, touchdown - time)
         return replace(moved, fall_start=time, fall=fall)
 
-
-_LEAST_CHANGE = 3.0
-"""Samples of a swing that must be left, before and after, for its times to be changed."""
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 _EXPONENTS = np.arange(6)

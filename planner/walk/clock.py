@@ -11,8 +11,8 @@ from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Hurry, Pace, Phas
 from surefoot.planner.walk.queue import Step, StepQueue
 from surefoot.planner.walk.source import StepSource
 
-_LEAST_LEFT = 0.1
-"""A phase of which less is left keeps its pace when durations change [s]."""
+_LEAST_LEFT = 3.0
+"""A phase of which less is left, or would be, until its foot is to touch down keeps its pace [samples]."""
 
 _SAME_GROUND = 1e-3
 """Footstep shift up to which the ground height is not looked up again [m]."""
@@ -56,6 +56,7 @@ class Stepper:
         self._began = 0.0
         self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and terrain.free_footholds
         self.sample_time = parameters.sample_time
+        self._lead = parameters.touchdown_lead / parameters.sample_time
         self._patience = round(parameters.late_touchdown / parameters.sample_time)
         self._look_ahead(0.0)
 
@@ -73,7 +74,11 @@ class Stepper:
     def info(self) -> PhaseInfo:
         """The phase now, in seconds."""
         phase, t = self.phase, self.sample_time
-        return PhaseInfo(phase.kind, phase.stance, phase.step, (self.tick - phase.start) * t, phase.samples * t)
+        follows = phase if phase.stance is not None else self.queue.phase(phase.end)
+        leads_to = follows.step if follows.stance is not None else 0
+        return PhaseInfo(
+            phase.kind, phase.stance, phase.step, (self.tick - phase.start) * t, phase.samples * t, leads_to
+        )
 
     @property
     def swing_foot(self) -> Foot | None:
@@ -152,8 +157,9 @@ class Stepper:
         left, phase, (_, rate, bend) = self.time_left, self.phase, self._following(0.0)
         length = self.queue.retime(gait, phase, self.tick)
         way = phase.end - self.tick
-        if phase.kind is not PhaseKind.STAND and way * self.sample_time >= _LEAST_LEFT:
-            self._pace = Pace.over(way, length * way / phase.samples, rate, bend)
+        lasting = length * way / phase.samples
+        if phase.kind is not PhaseKind.STAND and min(way, lasting) >= _LEAST_LEFT + self._lead:
+            self._pace = Pace.over(way, lasting, rate, bend)
             self._began, self._paced = self.tick, 0.0
         self.revision += 1
         self._look_ahead(self.tick)

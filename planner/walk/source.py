@@ -95,7 +95,7 @@ class GaitSource:
 
 
 _SOFTLY = 0.4
-"""Most by which the length of a stride differs from that of the one before it, as a share of the reach [-]."""
+"""Most by which a stride is longer than the one before it, as a share of the reach [-]."""
 
 _SHARE = 0.6
 """Likewise its turn, as a share of the greatest; and what of both a walk to a place makes use of [-]."""
@@ -117,8 +117,7 @@ class CommandSource:
     """Steps that follow a velocity, or go to places one after another; either may be told anew at any time.
 
     What cannot be done is bent to the nearest that can: a velocity to the fastest in its direction whose steps are
-    within reach, a stride to the nearest one that differs from the one before it by no more than a robot can speed up
-    or slow down in a step.
+    within reach, a stride to one that is no more than a little longer than the one before it, nor leads the other way.
 
     Args:
         gait: gives the step width, the stride of a walk to a place, and the rest before the first step.
@@ -149,7 +148,10 @@ class CommandSource:
         """See `StepSource`."""
         before = np.zeros(3) if at.before is None else _way(at.before)
         wanted = self._onward(at) if self.places else _way(self.followed(at.period).stride(at.period, self._width))
-        way = before + np.clip(wanted - before, -self._change, self._change)
+        # It may stop at once, but neither turn round nor speed up by much in a step.
+        backward = np.where(before > 0.0, 0.0, before - self._change)
+        forward = np.where(before < 0.0, 0.0, before + self._change)
+        way = np.clip(wanted, backward, forward)
         if not way.any() and not before.any():
             return None
         return StepOrder(self._admitted(way), self._rest if at.step == 1 else 0.0)

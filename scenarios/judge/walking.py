@@ -42,7 +42,7 @@ def duration(run: RunView) -> float:
     return float(run.time[-1] - run.time[0]) + 1 / run.constants.control_rate
 
 
-@metric(reads={"/command": (), "/reference": ("step", "phase")}, least=0.0)
+@metric(needs=(), reads={"/command": (), "/reference": ("step", "phase")}, least=0.0)
 def steps_planned(run: RunView) -> int:
     """Footsteps asked for; of a walk that is told while it goes on where to go, those that have begun."""
     if not run.has("/command"):

@@ -106,7 +106,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     walker = SimulatedRobot(walk, world, controller, estimator, body_recorder, view)
     faults = FaultSchedule(walk.faults, walk.rates.control)
     planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands)
-    return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration)
+    return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
 
 
 class SimulatedRobot:

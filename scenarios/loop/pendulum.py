@@ -127,7 +127,7 @@ def pendulum_loop(walk: Walk, writer: LogWriter) -> ClosedLoop:
     faults = FaultSchedule(walk.faults, walk.rates.control)
     planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands)
     walker = PointMass(walk, point_recorder, view)
-    return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration)
+    return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
 
 
 class PointMass:

@@ -1,9 +1,9 @@
 """What every closed loop has in common: it goes tick by tick until its time is over, it falls or it meets a fault."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 import numpy as np
@@ -14,10 +14,14 @@ from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseK
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.loop.planning import Planning, RunFault
 from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
+from surefoot.scenarios.setup.gait import PushPoint
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.pushes import Push
 from surefoot.wbc.types import RobotState, WbcReport
+
+_ROUNDING = 1e-6
+"""Times are compared with this tolerance [ticks]."""
 
 AFTER_FALL = 0.3
 """How long a run goes on after a fall, so that the log shows it [s]."""
@@ -181,6 +185,7 @@ class ClosedLoop:
         recorder: gets the reference and the timing of every tick.
         rate: of the control ticks [Hz].
         duration: simulated time [s].
+        pushes: that begin at points of the gait; see `surefoot.scenarios.setup.walk.Walk`.
 
     Attributes:
         walker: what walks.
@@ -192,11 +197,20 @@ class ClosedLoop:
         done: whether the run is over: its time, a while after a fall, or a fault.
     """
 
-    def __init__(self, walker: Walker, planning: Planning, recorder: WalkRecorder, rate: int, duration: float) -> None:
+    def __init__(
+        self,
+        walker: Walker,
+        planning: Planning,
+        recorder: WalkRecorder,
+        rate: int,
+        duration: float,
+        pushes: Sequence[tuple[PushPoint, Push]] = (),
+    ) -> None:
         self.walker, self.planning = walker, planning
         self._recorder, self.rate = recorder, rate
         self._ticks = self._last = round(duration * rate)
         self.tick = 0
+        self._pushes = list(pushes)
         self.end = End("completed", self._ticks / rate)
         self.fell = False
         self.done = self._last == 0
@@ -230,6 +244,9 @@ class ClosedLoop:
             self._last = min(self._last, tick + round(AFTER_FALL * rate))
         self.tick = tick + 1
         self.done = self.tick >= self._last
+        if self.done and self._pushes and not self.fell:
+            point = self._pushes[0][0]
+            self.end = End("fault", self.tick / rate, f"a push never acted: the walk never came to {point}")
         return sample
 
     def _step(self, tick: int) -> tuple[PlanSample, bool]:
@@ -244,6 +261,8 @@ class ClosedLoop:
             planning.update(tick, now_ns, *walker.measured(now))
             planner_time = watch.lap()
         plan = planning.plan
+        if self._pushes:
+            self._push(now, plan)
         sample = planning.sampler.sample(now)
         build_time, solve_time = walker.act(tick, plan, sample)
         watch.lap()
@@ -257,6 +276,16 @@ class ClosedLoop:
         parts = (state_time, build_time, solve_time, planner_time, physics_time, log_time)
         self._recorder.timing(now_ns, TickTiming(*parts, watch.last - begin))
         return sample, fallen
+
+    def _push(self, now: float, plan: WalkPlan) -> None:
+        """Give the pushes whose point of the gait is reached before the next tick."""
+        waiting, self._pushes = self._pushes, []
+        for point, push in waiting:
+            begin = max(now, plan.time + point.left(plan.phase))
+            if begin < now + (1.0 - _ROUNDING) / self.rate:
+                self.walker.push(replace(push, time=begin))
+            else:
+                self._pushes.append((point, push))
 
 
 def run_loop(loop: ClosedLoop, on_progress: OnProgress) -> End:

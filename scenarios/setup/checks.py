@@ -11,6 +11,7 @@ from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
 from surefoot.scenarios.file.schema import Gait, Sensing, TerrainSettings
 from surefoot.scenarios.file.units import meant
+from surefoot.scenarios.setup.commands import told_problems
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import idle_commands, never_act
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
@@ -46,6 +47,7 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
         *commands,
         *clock,
         *_durations(draft),
+        *told_problems(draft),
         *(() if clock else never_act(draft, draft.duration)),
         *(() if commands else idle_commands(draft)),
         *_beliefs(draft),
@@ -88,7 +90,7 @@ def _pushes(draft: Draft) -> Iterator[Problem]:
             yield Problem(key, "a push with both a time and a point of the gait", "give one of them")
         elif push.time is None and (push.step is None or push.phase is None):
             yield Problem(key, "a push without a begin", "give time, or step, phase and fraction")
-        elif push.step is not None and push.step > draft.gait.steps:
+        elif push.step is not None and push.step > draft.gait.steps and not draft.told:
             what = f"a push in step {push.step} of a gait of {draft.gait.steps} steps"
             yield Problem((*key, "step"), what, f"give a step of at most {draft.gait.steps}")
         if push.impulse is not None and push.force is not None:
@@ -235,9 +237,11 @@ def _unlikely(draft: Draft) -> Iterator[str]:
 
 def _without_effect(draft: Draft) -> Iterator[str]:
     keys = draft.keys
-    for name in EQUAL_STEPS if draft.commanded else ():
-        if getattr(keys.gait, name) != Gait.model_fields[name].default:
-            yield f"gait.{name} has no effect beside gait.{'velocity' if keys.gait.velocity else 'footsteps'}"
+    instead = next((name for name in ("velocity", "footsteps", "waypoints") if getattr(keys.gait, name)), None)
+    for name in EQUAL_STEPS if instead else ():
+        means = instead == "waypoints" and name == "step_length"
+        if not means and getattr(keys.gait, name) != Gait.model_fields[name].default:
+            yield f"gait.{name} has no effect beside gait.{instead}"
     yield from _unshaped(draft)
     point = keys.fidelity == "pendulum"
     for group, name in _NO_CONTACT if point else _POINT_ONLY:

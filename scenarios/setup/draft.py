@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.ground.tiles import Tiles
 from surefoot.planner.laws.profiles import PROFILES, Profile
@@ -21,22 +20,19 @@ from surefoot.planner.references.com_height import (
     SmoothHeight,
 )
 from surefoot.planner.types import Array, FeetState
-from surefoot.planner.walk.commands import Pose
 from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
-from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters
+from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import StepRegion
-from surefoot.planner.walk.source import CommandSource, steps_ordered
 from surefoot.scenarios.file.schema import GroundError, Scenario
+from surefoot.scenarios.setup.commands import told_until
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
     commanded,
     fitted_to,
     gait_of,
-    leg_span,
     longest_landing,
     step_region,
 )
-from surefoot.scenarios.setup.robot import RobotFacts
 from surefoot.scenarios.setup.terrain import KINDS, TerrainKind
 
 _STREAM = 2
@@ -44,9 +40,6 @@ _STREAM = 2
 
 LONG_FOOT = 0.3
 """Feet are at most as long where the scenario says nothing about it [m]."""
-
-WIDE_FOOT = 0.15
-"""Likewise wide [m]."""
 
 SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
 """Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait [m]."""
@@ -70,6 +63,11 @@ class Draft:
         """Whether the gait is given by a velocity or by footsteps."""
         return commanded(self.keys.gait)
 
+    @property
+    def told(self) -> bool:
+        """Whether the walk hears while it goes on where to go, so that its steps are not known before."""
+        return bool(self.keys.gait.waypoints or self.keys.commands)
+
     @cached_property
     def gait(self) -> GaitParameters:
         """The gait in the planner's terms, its strides as wide as asked for."""
@@ -77,11 +75,8 @@ class Draft:
 
     @cached_property
     def gait_duration(self) -> float:
-        """Time from the start to the end of the last double support [s]."""
-        duration = self.gait.duration
-        if self.keys.gait.waypoints:
-            duration += WEIGHT_SHIFT * self.gait.double_support + self.waypoint_steps * self.gait.period
-        return max([duration, *(command.time for command in self.keys.commands)])
+        """Time from the start to the end of the last double support, or of all that the walk is told [s]."""
+        return max(self.gait.duration, told_until(self))
 
     @cached_property
     def duration(self) -> float:
@@ -228,26 +223,9 @@ class Draft:
             **{name: value for name, value in chosen.items() if value is not None},
         )
 
-    def region(self, facts: RobotFacts) -> StepRegion:
-        """Where steps of a robot may land."""
-        sole, span = (facts.foot_length, facts.foot_width), leg_span(self.keys.gait.com_height, facts)
-        return step_region(self.parameters, sole, facts.shank_spacing, span, facts.hip_width)
-
-    @property
-    def waypoints(self) -> tuple[Pose, ...]:
-        """Places to go to one after another, in the world frame."""
-        rotation, yaw = frame_rotation(self.keys.start.yaw), self.keys.start.yaw
-        places = ((self.origin + rotation @ (to.x, to.y), to.yaw + yaw) for to in self.keys.gait.waypoints)
-        return tuple(Pose(float(place[0]), float(place[1]), heading) for place, heading in places)
-
-    @cached_property
-    def waypoint_steps(self) -> int:
-        """Steps to the waypoints where nothing comes between; about as many as will be taken."""
-        start = self.keys.start
-        sole = (self.keys.robot_options.foot_length or LONG_FOOT, WIDE_FOOT)
-        source = CommandSource(self.gait, step_region(self.parameters, sole, sole[1]))
-        source.places = self.waypoints
-        return steps_ordered(source, self.gait, Pose(start.x, start.y, start.yaw))
+    def region(self, sole: tuple[float, float], shank_spacing: float) -> StepRegion:
+        """Where steps may land, for soles of this length and width, and shanks that keep this distance [m]."""
+        return step_region(self.parameters, sole, shank_spacing)
 
     def fitted_gait(self, region: StepRegion) -> GaitParameters:
         """The gait that is walked where feet may land in this region."""

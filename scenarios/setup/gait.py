@@ -2,16 +2,14 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.types import Foot, Footstep
+from surefoot.planner.types import Foot, Footstep, PhaseInfo, PhaseKind
 from surefoot.planner.walk.commands import (
-    Command,
-    Pose,
-    TimedCommand,
     Twist,
     VelocityCommand,
     VelocityTimeline,
@@ -23,7 +21,7 @@ from surefoot.planner.walk.commands import (
 )
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import StepRegion, landing
-from surefoot.scenarios.file.schema import CommandSettings, FootstepSettings, Gait, PushSettings, VelocitySettings
+from surefoot.scenarios.file.schema import FootstepSettings, Gait, PushSettings, VelocitySettings
 from surefoot.scenarios.setup.robot import RobotFacts
 
 EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
@@ -87,16 +85,6 @@ def longest_landing(gait: GaitParameters) -> float:
 def twist_of(command: VelocitySettings) -> Twist:
     """The velocity that a command asks for."""
     return Twist(command.v_x, command.v_y, command.yaw_rate)
-
-
-def timed_command(settings: CommandSettings) -> TimedCommand:
-    """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
-    velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
-    twist = None if velocity == (None, None, None) else Twist(*(value or 0.0 for value in velocity))
-    place = settings.place
-    places = None if place is None else (Pose(place.x, place.y, place.yaw),)
-    gait = (settings.single_support, settings.double_support, settings.swing_height)
-    return TimedCommand(settings.time, Command(twist, places, *gait))
 
 
 def timeline_of(commands: Sequence[VelocitySettings]) -> VelocityTimeline:
@@ -169,6 +157,37 @@ def push_time(gait: GaitParameters, push: PushSettings) -> float:
         raise ParameterError(("pushes",), "a push without a begin", "give time, or step, phase and fraction")
     start, duration = phase_of(gait, push.step, push.phase)
     return start + (push.fraction or 0.0) * duration
+
+
+@dataclass(frozen=True, slots=True)
+class PushPoint:
+    """The point of the gait at which a push begins, whenever that is reached.
+
+    Attributes:
+        step: number of the step.
+        kind: single support, or the double support before it.
+        fraction: of that phase that has gone by [-].
+    """
+
+    step: int
+    kind: PhaseKind
+    fraction: float
+
+    @classmethod
+    def of(cls, push: PushSettings) -> "PushPoint | None":
+        """The point of a push; None of one that begins at a time."""
+        if push.step is None or push.phase is None:
+            return None
+        return cls(push.step, PhaseKind.SINGLE if push.phase == "single" else PhaseKind.DOUBLE, push.fraction or 0.0)
+
+    def left(self, phase: PhaseInfo) -> float:
+        """Time until it is reached, on the clock of the gait; infinite in other phases [s]."""
+        here = phase.kind is self.kind and phase.leads_to == self.step
+        return self.fraction * phase.duration - phase.elapsed if here else math.inf
+
+    def __str__(self) -> str:
+        """In the words of a scenario."""
+        return f"fraction {self.fraction:g} of the {self.kind.name.lower()} support of step {self.step}"
 
 
 def phase_of(gait: GaitParameters, step: int, phase: str) -> tuple[float, float]:

@@ -20,8 +20,9 @@ from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import StepRegion
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
+from surefoot.scenarios.setup.commands import timed_command, waypoints
 from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.gait import push_time, timed_command
+from surefoot.scenarios.setup.gait import PushPoint, leg_span, step_region
 from surefoot.scenarios.setup.robot import describe, facts_of, true_robot
 from surefoot.sim.pushes import Push
 from surefoot.wbc.parameters import WbcParameters
@@ -70,8 +71,8 @@ class Walk:
         filter: filter of the planner's state: none, kalman or zmp_only.
         waypoints: places to go to from the start on.
         commands: that the walk hears while it goes on.
-        region: where a step that is commanded may land.
-        pushes: on bodies, world frame.
+        pushes: on bodies, world frame, that begin at a time.
+        gait_pushes: those that begin at a point of the gait, whenever it is reached.
         faults: injected.
         pendulum: the plant of fidelity pendulum.
     """
@@ -106,8 +107,8 @@ class Walk:
     filter: str
     waypoints: tuple[Pose, ...]
     commands: tuple[TimedCommand, ...]
-    region: StepRegion
     pushes: tuple[Push, ...]
+    gait_pushes: tuple[tuple[PushPoint, Push], ...]
     faults: tuple[Fault, ...]
     pendulum: PendulumSettings
 
@@ -120,6 +121,13 @@ class Walk:
     def sole(self) -> tuple[float, float]:
         """Length and width of the soles [m]."""
         return self.robot.sole_length, self.robot.sole_width
+
+    @property
+    def region(self) -> StepRegion:
+        """Where a step that is commanded may land: within reach of planner and legs."""
+        facts = facts_of(self.robot)
+        span = leg_span(self.gait.com_height, facts)
+        return step_region(self.parameters, self.sole, facts.shank_spacing, span, facts.hip_width)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
         """The planner of this walk: the profile's own, or the walking planner with the profile's law.
@@ -158,9 +166,11 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         draft.profile = profile
     robot = robot or describe(keys.robot, keys.robot_options)
     near, far = draft.parameters.reach_width
-    region = draft.region(facts_of(robot))
+    sole = (robot.sole_length, robot.sole_width)
+    region = draft.region(sole, robot.shank_spacing)
     apart = max(near, robot.sole_width + 0.5 * region.gap)
     true = true_robot(keys.errors, robot, keys.seed)
+    timed, pointed = _pushes(draft, robot, float(true.mass))
     return Walk(
         name=keys.name,
         text=scenario_yaml(keys),
@@ -191,10 +201,10 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         tasks=keys.wbc.tasks if keys.wbc is not None else (),
         sensing=keys.sensing,
         filter=_filter(draft),
-        waypoints=draft.waypoints,
+        waypoints=waypoints(draft),
         commands=tuple(timed_command(settings) for settings in keys.commands),
-        region=region,
-        pushes=_pushes(draft, robot, float(true.mass)),
+        pushes=timed,
+        gait_pushes=pointed,
         faults=keys.faults,
         pendulum=keys.pendulum,
     )
@@ -214,12 +224,22 @@ def _filter(draft: Draft) -> str:
     return draft.keys.planner.filter or ("kalman" if noisy else "none")
 
 
-def _pushes(draft: Draft, robot: "RobotDescription", mass: float) -> tuple[Push, ...]:
-    """The pushes with their times and bodies, on a robot of this true mass [kg]; without a body, on the torso."""
-    return tuple(
-        Push(push_time(draft.gait, push), push.duration, _force(push, mass), push.body or robot.torso_body)
-        for push in draft.keys.pushes
-    )
+def _pushes(
+    draft: Draft, robot: "RobotDescription", mass: float
+) -> tuple[tuple[Push, ...], tuple[tuple[PushPoint, Push], ...]]:
+    """The pushes at times and at points of the gait, on a robot of this true mass [kg]; without a body, on the torso.
+
+    Of the latter the time means nothing.
+    """
+    timed, pointed = [], []
+    for settings in draft.keys.pushes:
+        point, body = PushPoint.of(settings), settings.body or robot.torso_body
+        push = Push(settings.time or 0.0, settings.duration, _force(settings, mass), body)
+        if point is None:
+            timed.append(push)
+        else:
+            pointed.append((point, push))
+    return tuple(timed), tuple(pointed)
 
 
 def _force(push: PushSettings, mass: float) -> Array:

@@ -23,6 +23,7 @@ from surefoot.planner.walk.reach import reach_box
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import read
+from surefoot.scenarios.setup.gait import push_time
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.scenarios.show.logview import LogView, MissingError
@@ -119,7 +120,8 @@ def moment_of(log: Path, push: int) -> Moment | None:
 
 
 def _moment(scenario: Scenario, walk: Walk, view: LogView, push: int) -> Moment | None:
-    begin, gait = walk.pushes[push].time, walk.gait
+    gait = walk.gait
+    begin = push_time(gait, scenario.pushes[push])
     ends = ((step, gait.lift_off(step) + gait.single_support) for step in range(1, gait.steps + 1))
     step = next((step for step, end in ends if end > begin + _TICK), None)
     times = view.time("/reference")

@@ -62,7 +62,7 @@ def choose_frames(run: RunView, window: Window) -> Frames:
     Raises:
         LogError: the window holds no tick of the log.
     """
-    if run.ticks == 0:
+    if len(run.time) == 0:
         raise LogError(f"{run.log.path}: ends before the first control tick; there is nothing to replay")
     ticks = run.time
     first, last = float(ticks[0]), float(ticks[-1])

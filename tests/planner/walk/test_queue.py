@@ -109,9 +109,9 @@ class Counted(GaitSource):
 
     asked = 0
 
-    def order(self, step, time, before):
-        self.asked = max(self.asked, step)
-        return super().order(step, time, before)
+    def order(self, at):
+        self.asked = max(self.asked, at.step)
+        return super().order(at)
 
 
 @pytest.mark.parametrize("single", [0.3, 0.637])

@@ -12,7 +12,7 @@ from surefoot.scenarios.loop.run import run_scenario
 pytestmark = pytest.mark.unit
 
 NAMES = (
-    "fell fall_time duration steps_planned steps_taken touchdowns_missed standing_time_final "
+    "fell fall_time duration steps_planned place_error heading_error steps_taken touchdowns_missed standing_time_final "
     "standing_time_between zmp_inside_fraction "
     "zmp_excursion_max cop_ratio_p99 cop_ratio_max zmp_error_rms zmp_error_max com_error_rms dcm_error_rms "
     "footstep_error_max stair_edge_margin_min swing_clearance_min foot_slip_max stance_twist_max stance_tilt_max "
@@ -36,6 +36,8 @@ def test_all_names_of_the_contract_are_there(metrics, motion):
     assert " ".join(found) == NAMES
     assert [name for name, value in found.items() if value is None] == [
         "fall_time",
+        "place_error",
+        "heading_error",
         "stair_edge_margin_min",
         "memory_growth",
     ]

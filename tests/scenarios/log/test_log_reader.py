@@ -115,6 +115,18 @@ def test_flipped_bits_never_surprise(whole, tmp_path):
         touch(read(tmp_path / "recovered.mcap"))
 
 
+def test_a_chunk_that_states_an_absurd_size_is_lost_alone(whole, tmp_path):
+    first, second = read(whole).contents.chunks[:2]
+    data = bytearray(whole.read_bytes())
+    stated = data.index(first.size.to_bytes(8, "little"), first.position)
+    data[stated + 6] ^= 1 << 3
+    damaged = tmp_path / "damaged.mcap"
+    damaged.write_bytes(data)
+    log = read(damaged)
+    assert any("may hold" in loss for loss in log.losses())
+    assert log.time_range()[1] > second.start_ns / 1e9
+
+
 def test_a_flipped_bit_in_a_message_is_noticed(whole, tmp_path):
     data = bytearray(whole.read_bytes())
     chunk = read(whole).contents.chunks[3]

@@ -67,11 +67,12 @@ def test_what_cannot_be_walked_is_refused_with_one_message(robots, text):
     "twist",
     ["v_x: 0.82", "v_y: 0.23", "yaw_rate: -0.8", "v_x: -0.3, v_y: 0.1, yaw_rate: 0.3", "v_x: 0.7, yaw_rate: 0.8"],
 )
-def test_what_is_just_within_reach_is_accepted_and_reads_back_as_itself(robots, twist):
+def test_what_is_just_within_reach_is_accepted_and_reads_back_as_itself(robots, twist, monkeypatch):
     scenario = read(robots, FAST + VELOCITY % twist)
     assert Draft(scenario).gait.steps == 8
     assert read(robots, scenario_yaml(scenario)) == scenario
     robot = SimpleNamespace(sole_length=0.22, sole_width=0.11, mass=100.0, shank_spacing=0.11)
+    monkeypatch.setattr("surefoot.scenarios.setup.walk.facts_of", lambda _: robots.facts("", scenario.robot_options))
     walk = resolve(scenario, robot)
     planner = walk.planner(walk.stance, LegInertia())
     assert planner.gait.steps == 8

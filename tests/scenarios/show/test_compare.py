@@ -76,7 +76,7 @@ def test_other_fidelities_have_other_channels(logs, tmp_path, robot, motion, two
     body = run_scenario(two_steps, tmp_path, None, motion(duration=1.0), robot).log
     found, _, _ = compare(body, logs[0])
     assert {"/measurement", "/torque", "/wbc"} <= set(found.only_a)
-    assert found.only_b == ("/footsteps", "/process")
+    assert found.only_b == ("/footsteps", "/command", "/process")
     truth = next(one for one in found.channels if one.topic == "/truth")
     assert "q only in A" in truth.layout
     assert "external_force only in B" in truth.layout

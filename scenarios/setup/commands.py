@@ -1,0 +1,104 @@
+"""What a walk is told while it goes on, and the places that it goes to: in the planner's terms, and what is wrong."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from surefoot.errors import ParameterError
+from surefoot.planner.check import check_durations
+from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.walk.commands import Command, Pose, TimedCommand, Twist
+from surefoot.planner.walk.source import CommandSource, steps_ordered
+from surefoot.scenarios.errors import Key, Problem
+from surefoot.scenarios.file.schema import CommandSettings
+from surefoot.scenarios.setup.gait import step_region
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.setup.draft import Draft
+
+_STOPPING = 3.0
+"""Steps that a robot takes at most after it was told to stop [-]."""
+
+_LARGEST_SOLE = (0.3, 0.15)
+"""Length and width of soles where a scenario says nothing of them; smaller ones do not make strides shorter [m]."""
+
+
+def timed_command(settings: CommandSettings) -> TimedCommand:
+    """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
+    velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
+    twist = None if velocity == (None, None, None) else Twist(*(value or 0.0 for value in velocity))
+    place = settings.place
+    places = None if place is None else (Pose(place.x, place.y, place.yaw),)
+    gait = (settings.single_support, settings.double_support, settings.swing_height)
+    return TimedCommand(settings.time, Command(twist, places, *gait))
+
+
+def waypoints(draft: "Draft") -> tuple[Pose, ...]:
+    """The places of `gait.waypoints` in the world frame."""
+    yaw = draft.keys.start.yaw
+    rotation = frame_rotation(yaw)
+    places = ((draft.origin + rotation @ (to.x, to.y), to.yaw + yaw) for to in draft.keys.gait.waypoints)
+    return tuple(Pose(float(place[0]), float(place[1]), heading) for place, heading in places)
+
+
+def told_until(draft: "Draft") -> float:
+    """Time at which the robot stands after all that it is told, where nothing comes between, or a little later [s]."""
+    gait, start, end = draft.gait, draft.keys.start, 0.0
+    if draft.keys.gait.waypoints:
+        source = CommandSource(gait, step_region(draft.parameters, _LARGEST_SOLE, _LARGEST_SOLE[1]))
+        source.places = waypoints(draft)
+        steps = steps_ordered(source, gait, Pose(start.x, start.y, start.yaw))
+        end = gait.initial_stand + gait.double_support + (steps + 1) * gait.period
+    return max([end, *(command.time + _STOPPING * gait.period for command in draft.keys.commands)])
+
+
+def told_problems(draft: "Draft") -> Iterator[Problem]:
+    """List commands and waypoints that say nothing, say two things, or cannot be obeyed."""
+    keys = draft.keys
+    if keys.gait.waypoints and (keys.gait.velocity or keys.gait.footsteps):
+        what = f"waypoints beside gait.{'velocity' if keys.gait.velocity else 'footsteps'}"
+        yield Problem(("gait", "waypoints"), what, "give one of them", at_key=True)
+        return
+    for index, command in enumerate(keys.commands):
+        yield from _command_problems(draft, ("commands", index), command)
+    where: list[Key] = [("gait", "waypoints")] if keys.gait.waypoints else []
+    where += [("commands", index) for index, command in enumerate(keys.commands) if _leads(command)]
+    if where and keys.terrain.kind != "flat":
+        what = "a place to go to, or a velocity," if where[0][0] == "commands" else "gait.waypoints"
+        what = f"{what} on terrain.kind {keys.terrain.kind}, where footsteps are laid for the ground"
+        yield Problem(where[0], what, "use kind flat")
+    if where and draft.profile.planner is not None:
+        what = f"planner.profile {draft.profile.name}, whose planner takes no commands"
+        yield Problem(("planner", "profile"), what, "use a profile with surefoot's own walking planner")
+    if keys.commands and keys.duration is None and not _stops(max(keys.commands, key=lambda command: command.time)):
+        yield Problem(("commands",), "commands that do not end with a stop", "end them with v_x: 0, or give duration")
+
+
+def _command_problems(draft: "Draft", key: Key, command: CommandSettings) -> Iterator[Problem]:
+    given = {name for name in type(command).model_fields if getattr(command, name) is not None} - {"time"}
+    name = f"commands.{key[1]}"
+    if not given:
+        yield Problem(key, f"{name} says nothing", "give a velocity, a place, or what of the gait is to change")
+    if "place" in given and given & {"v_x", "v_y", "yaw_rate"}:
+        yield Problem(key, f"{name} has both a place and a velocity", "give one of them")
+    if draft.keys.duration is not None and command.time >= draft.keys.duration:
+        what = f"{name} comes at {command.time:g} s and never acts: the run ends at {draft.keys.duration:g} s"
+        yield Problem((*key, "time"), what, "let it come before")
+    durations = {entry: getattr(command, entry) for entry in ("single_support", "double_support")}
+    try:
+        given_durations = {entry: value for entry, value in durations.items() if value is not None}
+        check_durations(replace(draft.gait, **given_durations), draft.keys.planner.sample_time)
+    except ParameterError as fault:
+        if durations[str(fault.key[-1])] is not None:
+            yield Problem((*key, fault.key[-1]), f"{name}.{fault.what}", fault.right)
+
+
+def _leads(command: CommandSettings) -> bool:
+    """Whether it says where to walk."""
+    return any(getattr(command, name) is not None for name in ("v_x", "v_y", "yaw_rate", "place"))
+
+
+def _stops(command: CommandSettings) -> bool:
+    """Whether it asks to stand."""
+    twist = timed_command(command).command.twist
+    return twist is not None and twist.is_zero

@@ -46,7 +46,7 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Browser, 
         process.stdout.readline()  # the log, before the page is there
         for given in ({"kind": "pace", "paused": True}, {"kind": "click", "impulse": 5.0}):
             urllib.request.urlopen(f"{address}/input", json.dumps(given).encode(), timeout=30).close()
-        with Browser(address, folder / "profile", (800, 500)) as page:
+        with Browser(address, folder / "profile", (640, 420)) as page:
             page.wait_for(CANVAS)
             page.wait_for(TEXT % "clock" + ".includes('paused')")
             page.run(HIDE_NOTICE)

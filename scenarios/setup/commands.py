@@ -41,6 +41,13 @@ def waypoints(draft: "Draft") -> tuple[Pose, ...]:
     return tuple(Pose(float(place[0]), float(place[1]), heading) for place, heading in places)
 
 
+def told(draft: "Draft") -> tuple[TimedCommand, ...]:
+    """All that a walk hears while it goes on, the waypoints at its start."""
+    places = waypoints(draft)
+    start = (TimedCommand(0.0, Command(places=places)),) if places else ()
+    return (*start, *(timed_command(settings) for settings in draft.keys.commands))
+
+
 def told_until(draft: "Draft") -> float:
     """Time at which the robot stands after all that it is told, where nothing comes between, or a little later [s]."""
     gait, start, end = draft.gait, draft.keys.start, 0.0

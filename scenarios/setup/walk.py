@@ -15,12 +15,12 @@ from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.types import Array, FeetState
-from surefoot.planner.walk.commands import Command, Pose, TimedCommand
+from surefoot.planner.walk.commands import TimedCommand
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import StepRegion
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
-from surefoot.scenarios.setup.commands import timed_command, waypoints
+from surefoot.scenarios.setup.commands import told
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import PushPoint, leg_span, step_region
 from surefoot.scenarios.setup.robot import describe, facts_of, true_robot
@@ -69,7 +69,6 @@ class Walk:
         tasks: of other packages in its QP, by name.
         sensing: noises of what is measured.
         filter: filter of the planner's state: none, kalman or zmp_only.
-        waypoints: places to go to from the start on.
         commands: that the walk hears while it goes on.
         pushes: on bodies, world frame, that begin at a time.
         gait_pushes: those that begin at a point of the gait, whenever it is reached.
@@ -105,7 +104,6 @@ class Walk:
     tasks: tuple[str, ...]
     sensing: Sensing
     filter: str
-    waypoints: tuple[Pose, ...]
     commands: tuple[TimedCommand, ...]
     pushes: tuple[Push, ...]
     gait_pushes: tuple[tuple[PushPoint, Push], ...]
@@ -144,10 +142,7 @@ class Walk:
         if self.profile.planner is not None:
             return self.profile.planner(*given, self.profile)
         check_walk(*given)
-        planner = WalkingPlanner(*given, self.profile, self.region)
-        if self.waypoints:
-            planner.command(Command(places=self.waypoints))
-        return planner
+        return WalkingPlanner(*given, self.profile, self.region)
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:
@@ -201,8 +196,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         tasks=keys.wbc.tasks if keys.wbc is not None else (),
         sensing=keys.sensing,
         filter=_filter(draft),
-        waypoints=waypoints(draft),
-        commands=tuple(timed_command(settings) for settings in keys.commands),
+        commands=told(draft),
         pushes=timed,
         gait_pushes=pointed,
         faults=keys.faults,

@@ -25,7 +25,7 @@ from surefoot.scenarios.loop.full import Parts, SimulatedRobot
 from surefoot.scenarios.loop.planning import RunFault
 from surefoot.scenarios.loop.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.loop.skeleton import ClosedLoop, End, refusing
-from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD
+from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED
 from surefoot.scenarios.setup.commands import timed_command
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
@@ -324,7 +324,7 @@ class Simulation:
         if self._closed:
             return
         self._closed = True
-        end = self._loop.end if self._loop.done else End("interrupted", self.time, "stopped from outside")
+        end = self._loop.end if self._loop.done else End("interrupted", self.time, STOPPED)
         write_end(self._writer, end)
         self._writer.close()
         self._threads.restore_original_limits()

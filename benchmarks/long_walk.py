@@ -1,0 +1,71 @@
+"""What a long walk costs: a planner for it, a tick at its begin and at its end, and the memory meanwhile.
+
+    python benchmarks/long_walk.py [--steps N]
+
+The CoM and the feet do exactly what is planned. Run it with OMP_NUM_THREADS=1 on an idle core.
+"""
+
+import argparse
+import time
+
+import numpy as np
+
+from surefoot.planner.plan import PlanSampler
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import IdealFeet
+from surefoot.planner.types import CentroidalState, FeetState
+from surefoot.planner.walk.gait import GaitParameters
+from surefoot.scenarios.record.walk import resident_memory
+
+STANCE = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
+BLOCK = 1000
+"""Steps of which the ticks are taken together."""
+
+
+def planner_of(steps: int) -> WalkingPlanner:
+    gait = GaitParameters(steps=steps, step_length=0.3, single_support=0.5, double_support=0.16, com_height=0.99)
+    return WalkingPlanner(gait, STANCE, 0.22, 0.11)
+
+
+def print_construction() -> None:
+    print(f"{'steps':>7} {'planner, ms':>12}")
+    for steps in (20, 2000, 20_000):
+        spent = []
+        for _ in range(20):
+            start = time.perf_counter()
+            planner_of(steps)
+            spent.append(time.perf_counter() - start)
+        print(f"{steps:>7} {1e3 * np.median(spent):>12.2f}")
+
+
+def walk(steps: int) -> None:
+    planner = planner_of(steps)
+    t = planner.parameters.sample_time
+    com, velocity, feet = np.array([0.0, 0.0, 0.99]), np.zeros(3), IdealFeet(STANCE)
+    ticks = round(planner.gait.duration / t)
+    block = round(min(BLOCK, steps // 2) * planner.gait.period / t)
+    print(f"{'steps':>7} {'median, us':>11} {'mean, us':>9} {'memory, MB':>11}")
+    spent: list[float] = []
+    for tick in range(ticks):
+        state = CentroidalState(t * tick, com, velocity)
+        start = time.perf_counter()
+        plan = planner.update(state, feet.state)
+        spent.append(time.perf_counter() - start)
+        com, velocity = plan.com[1], plan.com_velocity[1]
+        feet.follow(PlanSampler(plan), t * (tick + 1))
+        if len(spent) == block:
+            numbers = f"{1e6 * np.median(spent):>11.1f} {1e6 * np.mean(spent):>9.1f} {resident_memory() / 1e6:>11.2f}"
+            print(f"{plan.phase.step:>7} {numbers}", flush=True)
+            spent.clear()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--steps", type=int, default=20_000)
+    steps = parser.parse_args().steps
+    print_construction()
+    walk(steps)
+
+
+if __name__ == "__main__":
+    main()

@@ -72,16 +72,16 @@ def test_a_drive(driven: tuple[Browser, subprocess.Popen[str], Path]) -> None:
     page.wait_for(TEXT % "clock" + ".includes('paused')")
     paused = page.run(TIME)
     assert all(old != new for old, new in zip(before, page.run(CHARTS), strict=True))
-    assert page.run(TEXT % "velocity").count("0.30") == 2  # asked for and done
+    page.wait_for(TEXT % "velocity" + ".includes('0.300.30')")  # asked for and done
 
     canvas = page.run(CANVAS)
     torso = TORSO[0] * canvas["width"], TORSO[1] * canvas["height"]
     page.drag(torso)
-    page.wait_for(TEXT % "push" + ".startsWith('pushed')", 10.0)
+    page.wait_for(TEXT % "push" + ".startsWith('pushed')")
     click = page.run(TEXT % "push")
     assert "5.0 N·s = 0.05 N·s/kg" in click
     page.drag(torso, (torso[0] + 6, torso[1]), (torso[0] + 12, torso[1]))
-    page.wait_for(f"{TEXT % 'push'} !== {click!r}", 10.0)
+    page.wait_for(f"{TEXT % 'push'} !== {click!r}")
     assert page.run(TIME) == paused
 
     page.press("p")
@@ -89,17 +89,17 @@ def test_a_drive(driven: tuple[Browser, subprocess.Popen[str], Path]) -> None:
     pass_time(page, 0.5)
     page.release("w")
     pass_time(page, 0.5)
-    assert "0.30" not in page.run(TEXT % "velocity")
+    page.wait_for("return !" + (TEXT % "velocity").removeprefix("return ") + ".includes('0.30')")
     process.send_signal(signal.SIGINT)
     assert process.wait(20) == 130
-    page.wait_for(TEXT % "note" + ".includes('has ended')", 10.0)
+    page.wait_for(TEXT % "note" + ".includes('has ended')")
 
     (path,) = folder.rglob("log.mcap")
     log = surefoot.read(path)
     pushed = log["/measurement"].field("external_force")
     assert np.linalg.norm(pushed, axis=1).max() > 49.0
     com = log["/truth"].field("com")
-    assert com[-1, 0] - com[0, 0] > 0.4
+    assert com[-1, 0] - com[0, 0] > 0.3
     assert log.metadata["end"]["kind"] == "interrupted"
     again = surefoot.run(surefoot.load(path), out=path.parent / "again")
     assert differing(log, surefoot.read(again.log)) == []

@@ -141,6 +141,41 @@ def run(
 
 
 @app.command()
+def drive(
+    scenario: Annotated[
+        str | None,
+        typer.Argument(help="Catalogue name, scenario file or log; stands by default.", autocompletion=_scenarios),
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Set a key; repeatable.", autocompletion=_settings),
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed, over that of the scenario.")] = None,
+    out: Annotated[Path, typer.Option(help="Directory that gets a folder for each run.")] = Path("runs"),
+    port: Annotated[
+        int | None, typer.Option(min=1, max=65534, help="Of the page; the first free one from 8080 on by default.")
+    ] = None,
+) -> None:
+    """Drive the robot in a browser: walk it, push it, until Ctrl-C."""
+    from surefoot.scenarios.drive.command import LONGEST, OWN
+    from surefoot.scenarios.drive.command import drive as drive_scenario
+    from surefoot.scenarios.errors import require
+    from surefoot.scenarios.setup.load import load as load_scenario
+    from surefoot.scenarios.setup.load import locate
+
+    require("viser", "replay", "surefoot drive")
+    reference = scenario or str(OWN)
+    overrides = [LONGEST, *(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
+    loaded = load_scenario(reference, overrides)
+    try:
+        drive_scenario(loaded, out, port, typer.echo)
+    except SetupError as refusal:
+        raise locate(reference, overrides, refusal) from None
+    typer.echo("ended; the logs are whole", err=True)
+    raise typer.Exit(INTERRUPTED)
+
+
+@app.command()
 def inspect(
     log: Annotated[Path, typer.Argument(help="A log, also a truncated one.")],
     topic: Annotated[str | None, typer.Option(help="Summarise or export one topic instead.")] = None,

@@ -136,22 +136,28 @@ def run_scenario(
     return Result(verdict, writer.path, end.kind == "interrupted" or interrupts.count > 0)
 
 
-@contextmanager
-def _own_folder(out: Path, walk: Walk) -> Iterator[Path]:
-    """A folder that no other run has or will have; it is taken away again if the run leaves nothing in it.
+def own_folder(out: Path, scenario: str, seed: int) -> Path:
+    """Make a folder that no other run of a scenario's name and seed has or will have.
 
     Raises:
         LogError: it cannot be made.
     """
     made_folder(out)
-    for folder in run_folders(out, walk.name, walk.seed):
+    for folder in run_folders(out, scenario, seed):
         try:
             folder.mkdir()
         except FileExistsError:
             continue
         except OSError as error:
             raise unmade(folder, error) from None
-        break
+        return folder
+    raise AssertionError("there is always another name")
+
+
+@contextmanager
+def _own_folder(out: Path, walk: Walk) -> Iterator[Path]:
+    """A run's own folder, which is taken away again if the run leaves nothing in it; errors as of `own_folder`."""
+    folder = own_folder(out, walk.name, walk.seed)
     try:
         yield folder
     finally:

@@ -29,6 +29,9 @@ SCENARIO_FILE = "scenario.yaml"
 END_RECORD = "end"
 """Metadata record written last: how the run ended."""
 
+STOPPED = "stopped from outside"
+"""Why a run ended that a program or a driver has closed: it is as long as they wanted it."""
+
 PUSH_RECORD = "push "
 """Beginning of the names of metadata records that hold a push given while the run went on, each with its number."""
 

@@ -19,7 +19,14 @@ from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.encoding import MAGIC
-from surefoot.scenarios.record.provenance import COMMAND_RECORD, END_RECORD, PARTS_RECORD, PUSH_RECORD, SCENARIO_FILE
+from surefoot.scenarios.record.provenance import (
+    COMMAND_RECORD,
+    END_RECORD,
+    PARTS_RECORD,
+    PUSH_RECORD,
+    SCENARIO_FILE,
+    STOPPED,
+)
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria_checks import criteria_problems
 from surefoot.scenarios.setup.draft import Draft
@@ -77,11 +84,11 @@ def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
         keys: [json.loads(record[kind.strip()]) for name, record in metadata.items() if name.startswith(kind)]
         for keys, kind in (("pushes", PUSH_RECORD), ("commands", COMMAND_RECORD))
     }
-    if not any(given.values()):
+    end = metadata.get(END_RECORD, {})
+    if not any(given.values()) and end.get("reason") != STOPPED:
         return text
     keys = parse(text, SCENARIO_FILE).value
     keys |= {name: [*keys.get(name, []), *values] for name, values in given.items() if values}
-    end = metadata.get(END_RECORD, {})
     if end.get("kind") == "interrupted":
         keys["duration"] = float(end["time"])
     return yaml.safe_dump(keys, sort_keys=False)

@@ -191,3 +191,13 @@ def test_a_law_of_ones_own_plans_and_its_log_cannot_be_run_again(scenario, tmp_p
     assert max(jerk) == 0.0
     with pytest.raises(surefoot.ScenarioError, match="parts of its own"):
         surefoot.load(path)
+
+
+def test_a_log_that_was_closed_is_walked_again_as_long_as_it_was(scenario, tmp_path):
+    log = tmp_path / "closed.mcap"
+    with surefoot.Simulation(scenario, log=log) as sim:
+        for _ in range(100):
+            sim.advance()
+        assert sim.look().time == pytest.approx(99 / 500)
+    again = surefoot.run(surefoot.load(str(log)), out=tmp_path)
+    assert same_content(log, again.log) == []

@@ -8,7 +8,7 @@ from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.show.replay.content import Replay
 from surefoot.scenarios.show.replay.overlays import (
-    balance_tracks,
+    balance,
     contact_forces,
     planned_footprints,
     push,
@@ -51,7 +51,7 @@ def extract(log: Log, window: Window | None = None) -> Replay:
         body_quaternion=quaternion,
         surfaces=surfaces(model),
         tracks=(
-            *balance_tracks(run, frames),
+            *balance(run, frames).tracks(),
             *planned_footprints(run, frames),
             *contact_forces(run, frames),
             push(log, run, frames, names, com),

@@ -2,7 +2,7 @@
 
 import html
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -60,37 +60,42 @@ class Chart:
     curves: tuple[Curve, ...]
 
 
+BALANCE = (
+    ("ZMP", ZMP, False, "/contact", "zmp", 3),
+    ("CoM", COM, False, "/truth", "com", 3),
+    ("DCM", DCM, False, "/estimate", "dcm", 2),
+    ("ZMP planned", ZMP_PLANNED, True, "/reference", "zmp", 2),
+    ("CoM planned", COM_PLANNED, True, "/reference", "com", 3),
+    ("DCM planned", DCM_PLANNED, True, "/reference", "dcm", 2),
+)
+"""Points seen from the stance foot: name, colour, whether planned, topic, field and its size."""
+
+AXES = (("forward of the stance foot [m]", 3), ("left of the stance foot [m]", 3), ("normal force [N]", 0))
+"""Label of each chart, and digits after the point."""
+
+FEET_NAMES = ("left foot", "right foot")
+
+
 def charts(view: LogView, time: Array) -> tuple[Chart, ...]:
     """Balance seen from the stance foot, and the forces under the feet, at the times of the frames."""
-    balance = (
-        ("ZMP", ZMP, False, "/contact", "zmp", 3),
-        ("CoM", COM, False, "/truth", "com", 3),
-        ("DCM", DCM, False, "/estimate", "dcm", 2),
-        ("ZMP planned", ZMP_PLANNED, True, "/reference", "zmp", 2),
-        ("CoM planned", COM_PLANNED, True, "/reference", "com", 3),
-        ("DCM planned", DCM_PLANNED, True, "/reference", "dcm", 2),
-    )
     forward, left = [], []
-    for name, color, planned, topic, field, size in balance:
+    for name, color, planned, topic, field, size in BALANCE:
         try:
             seen = view.from_stance(time, _sampled(view, topic, field, size, time)[:, :2])
         except MissingError:
             continue
         forward.append(Curve(name, color, planned, seen[:, 0]))
         left.append(Curve(name, color, planned, seen[:, 1]))
-    return (
-        Chart("forward of the stance foot [m]", 3, tuple(forward)),
-        Chart("left of the stance foot [m]", 3, tuple(left)),
-        Chart("normal force [N]", 0, tuple(_forces(view, time))),
-    )
+    drawn = (forward, left, _forces(view, time))
+    return tuple(Chart(label, digits, tuple(curves)) for (label, digits), curves in zip(AXES, drawn, strict=True))
 
 
-def _forces(view: LogView, time: Array) -> Iterable[Curve]:
+def _forces(view: LogView, time: Array) -> Iterator[Curve]:
     try:
         force = _sampled(view, "/contact", "normal_force", 2, time)
     except MissingError:
         return
-    for foot, name in enumerate(("left foot", "right foot")):
+    for foot, name in enumerate(FEET_NAMES):
         yield Curve(name, FEET[foot], False, force[:, foot])
 
 

@@ -19,14 +19,15 @@ class Mark:
     """A node that follows a track; `layer/name` is its place in the scene tree."""
 
     def __init__(self, node: Any) -> None:
-        self._node = node
+        self._node, self._last = node, np.empty(0)
         node.visible = False
 
     def show(self, track: Track, frame: int) -> None:
         """Move to a frame of its track, or out of sight."""
-        shown = track.shown(frame)
-        if shown:
-            self._move(track.vertices[frame])
+        shown, vertices = track.shown(frame), track.vertices[frame]
+        if shown and not np.array_equal(vertices, self._last):
+            self._move(vertices)
+            self._last = vertices.copy()
         self._node.visible = shown
 
     def _move(self, vertices: Array) -> None:
@@ -97,15 +98,18 @@ GROUND_DEPTH = np.array([0.0, 0.0, -0.002])
 
 
 @contextlib.contextmanager
-def serving() -> "Iterator[viser.ViserServer]":
+def serving(port: int = PORT) -> "Iterator[viser.ViserServer]":
     """A server of viser on this machine for as long as the context lasts; it says nothing on standard output.
+
+    Args:
+        port: the first to try.
 
     Raises:
         MissingExtraError: viser is not installed.
     """
     viser = require("viser", "replay", "the replay in a browser")
     with contextlib.redirect_stdout(io.StringIO()):
-        server = viser.ViserServer(host=LOCALHOST, port=PORT, verbose=False)
+        server = viser.ViserServer(host=LOCALHOST, port=port, verbose=False)
     try:
         yield server
     finally:
@@ -143,12 +147,19 @@ class ViserScene:
     The robot is followed by moving the world below a camera that stays, since the camera belongs to the user, who turns
     and zooms it meanwhile.
 
+    Args:
+        server: of the page.
+        replay: what is shown at first.
+        solid: whether the robot can be looked at without seeing through it, too.
+
     Attributes:
         layers: nodes that hide all that is below them, by name.
+        skin: names of bodies, and the nodes of the robot's surfaces on them.
     """
 
-    def __init__(self, server: "viser.ViserServer", replay: Replay) -> None:
-        self._scene = server.scene
+    def __init__(self, server: "viser.ViserServer", replay: Replay, solid: bool = True) -> None:
+        self._scene, self._solid = server.scene, solid
+        self.skin: list[tuple[str, Any]] = []
         self._ground, self._origin = set_stage(server, replay), replay.followed()[0]
         self.layers: dict[str, Any] = {}
         self._bodies = tuple(self._add_bodies(replay))
@@ -191,11 +202,12 @@ class ViserScene:
             node.visible = footprint.since <= replay.time[frame] + 1e-9
 
     def _add_bodies(self, replay: Replay) -> Iterator[tuple[int, Any]]:
-        """Terrain and robot; the robot twice, since forces and CoM are seen only through it."""
+        """Terrain and robot; the robot once more where it shall be solid: forces and CoM are seen only through it."""
         yield from self._add_branch(replay, "Terrain", lambda body: body == 0)
         yield from self._add_branch(replay, "Robot", lambda body: body > 0, opacity=SEE_THROUGH)
-        yield from self._add_branch(replay, "Robot, solid", lambda body: body > 0)
-        self.layers["Robot, solid"].visible = False
+        if self._solid:
+            yield from self._add_branch(replay, "Robot, solid", lambda body: body > 0)
+            self.layers["Robot, solid"].visible = False
 
     def _add_branch(
         self, replay: Replay, layer: str, wanted: Callable[[int], bool], **look: Any
@@ -208,7 +220,9 @@ class ViserScene:
             yield body, self._scene.add_frame(f"/{layer}/{replay.body_names[body]}", show_axes=False)
         for index, surface in enumerate(chosen):
             name, color = f"/{layer}/{replay.body_names[surface.body]}/{index}", rgb(surface.color)
-            self._scene.add_mesh_simple(name, surface.vertices, surface.faces, color=color, **look)
+            node = self._scene.add_mesh_simple(name, surface.vertices, surface.faces, color=color, **look)
+            if surface.body > 0:
+                self.skin.append((replay.body_names[surface.body], node))
 
     def _add_layer(self, name: str) -> None:
         if name not in self.layers:

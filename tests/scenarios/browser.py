@@ -1,4 +1,4 @@
-"""A headless Chromium that is driven by the WebDriver protocol, with no way to any network."""
+"""A headless Chromium that is driven by the WebDriver protocol, with no way to any network but this machine."""
 
 import base64
 import json
@@ -14,7 +14,7 @@ from typing import Any, Self
 FLAGS = (
     *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update", "--enable-unsafe-swiftshader"),
-    *("--window-size=560,400", "--proxy-server=127.0.0.1:9"),
+    "--proxy-server=127.0.0.1:9",
 )
 
 
@@ -25,20 +25,33 @@ def missing() -> str | None:
 
 
 class Browser:
-    """One page in one browser, as a context manager."""
+    """One page in one browser, as a context manager.
 
-    def __init__(self, page: Path, profile: Path) -> None:
+    Args:
+        page: its file or its address.
+        profile: folder of the browser.
+        size: of the window [px].
+    """
+
+    def __init__(self, page: Path | str, profile: Path, size: tuple[int, int] = (560, 400)) -> None:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
         self._server = f"http://127.0.0.1:{port}"
         driver = [shutil.which("chromedriver") or "", f"--port={port}"]
         self._driver = subprocess.Popen(driver, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        options = {"args": [*FLAGS, f"--user-data-dir={profile}"], "binary": shutil.which("chromium")}
+        options = {
+            "args": [*FLAGS, f"--window-size={size[0]},{size[1]}", f"--user-data-dir={profile}"],
+            "binary": shutil.which("chromium"),
+        }
         wanted = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": options}}
         self._session = ""
-        self._session = f"/session/{self._started(wanted)['sessionId']}"
-        self._call("POST", "/url", {"url": page.as_uri()})
+        try:
+            self._session = f"/session/{self._started(wanted)['sessionId']}"
+            self._call("POST", "/url", {"url": page if isinstance(page, str) else page.as_uri()})
+        except BaseException:
+            self.__exit__()
+            raise
 
     def _started(self, wanted: dict[str, Any]) -> Any:
         for _ in range(50):
@@ -68,6 +81,23 @@ class Browser:
             time.sleep(0.2)
         return value
 
+    def press(self, key: str) -> None:
+        """Press a key and hold it."""
+        self._act("key", [{"type": "keyDown", "value": key}])
+
+    def release(self, key: str) -> None:
+        """Let go of a key."""
+        self._act("key", [{"type": "keyUp", "value": key}])
+
+    def drag(self, *places: tuple[float, float]) -> None:
+        """Press the mouse at the first place and release it at the last one [px]; a single one is a click."""
+        moves = [{"type": "pointerMove", "duration": 200, "x": round(x), "y": round(y)} for x, y in places]
+        down, up = ({"type": name, "button": 0} for name in ("pointerDown", "pointerUp"))
+        self._act("pointer", [moves[0], {"type": "pause", "duration": 300}, down, *moves[1:], up])
+
+    def _act(self, kind: str, actions: list[dict[str, Any]]) -> None:
+        self._call("POST", "/actions", {"actions": [{"type": kind, "id": kind, "actions": actions}]})
+
     def screenshot(self) -> bytes:
         """A PNG picture of the page."""
         return base64.b64decode(self._call("GET", "/screenshot"))
@@ -77,7 +107,8 @@ class Browser:
 
     def __exit__(self, *_: object) -> None:
         try:
-            self._call("DELETE", "")
+            if self._session:
+                self._call("DELETE", "")
         finally:
             self._driver.terminate()
             self._driver.wait(timeout=20)

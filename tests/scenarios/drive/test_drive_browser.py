@@ -1,0 +1,111 @@
+"""A drive in a real browser: a key makes the robot walk, a click and a drag push it, and its log is walked again."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import browser
+import numpy as np
+import pytest
+from browser import Browser
+
+import surefoot
+from surefoot.scenarios.log import Log
+from surefoot.scenarios.show.compare.divergence import WALL_CLOCK
+
+pytestmark = [
+    pytest.mark.physics,
+    pytest.mark.skipif(browser.missing() is not None, reason=str(browser.missing())),
+]
+
+TIME = "return parseFloat(document.getElementById('drive-clock').textContent.split('·')[1])"
+TEXT = "return document.getElementById('drive-%s').textContent"
+CHARTS = "return [...document.querySelectorAll('#drive canvas')].map(canvas => canvas.toDataURL())"
+CANVAS = "return document.querySelector('canvas[data-engine]')?.getBoundingClientRect().toJSON()"
+HIDE_NOTICE = (
+    "document.head.insertAdjacentHTML('beforeend', '<style>.mantine-Notifications-root {display: none}</style>')"
+)
+TORSO = (0.495, 0.3)
+"""Where it is in the picture, from the left and from the top."""
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Browser, subprocess.Popen[str], Path]]:
+    pytest.importorskip("viser")
+    folder = tmp_path_factory.mktemp("drive")
+    command = [sys.executable, "-m", "surefoot", "drive", "--out", str(folder)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"})
+    try:
+        assert process.stdout is not None
+        address = process.stdout.readline().split()[0]
+        process.stdout.readline()  # the log, before the page is there
+        for given in ({"kind": "pace", "paused": True}, {"kind": "click", "impulse": 5.0}):
+            urllib.request.urlopen(f"{address}/input", json.dumps(given).encode(), timeout=30).close()
+        with Browser(address, folder / "profile", (640, 420)) as page:
+            page.wait_for(CANVAS)
+            page.wait_for(TEXT % "clock" + ".includes('paused')")
+            page.run(HIDE_NOTICE)
+            yield page, process, folder
+    finally:
+        process.kill()
+        process.wait()
+
+
+def pass_time(page: Browser, seconds: float) -> None:
+    page.wait_for(f"{TIME} > {page.run(TIME) + seconds}")
+
+
+def test_a_drive(driven: tuple[Browser, subprocess.Popen[str], Path]) -> None:
+    page, process, folder = driven
+    before = page.run(CHARTS)
+    page.press("w")
+    page.press("p")
+    page.release("p")
+    pass_time(page, 2.5)
+    page.press("p")
+    page.release("p")
+    page.wait_for(TEXT % "clock" + ".includes('paused')")
+    paused = page.run(TIME)
+    assert all(old != new for old, new in zip(before, page.run(CHARTS), strict=True))
+    page.wait_for(TEXT % "velocity" + ".includes('0.300.30')")  # asked for and done
+
+    canvas = page.run(CANVAS)
+    torso = TORSO[0] * canvas["width"], TORSO[1] * canvas["height"]
+    page.drag(torso)
+    page.wait_for(TEXT % "push" + ".startsWith('pushed')")
+    click = page.run(TEXT % "push")
+    assert "5.0 N·s = 0.05 N·s/kg" in click
+    page.drag(torso, (torso[0] + 6, torso[1]), (torso[0] + 12, torso[1]))
+    page.wait_for(f"{TEXT % 'push'} !== {click!r}")
+    assert page.run(TIME) == paused
+
+    page.press("p")
+    page.release("p")
+    pass_time(page, 0.5)
+    page.release("w")
+    pass_time(page, 0.5)
+    page.wait_for("return !" + (TEXT % "velocity").removeprefix("return ") + ".includes('0.30')")
+    process.send_signal(signal.SIGINT)
+    assert process.wait(20) == 130
+    page.wait_for(TEXT % "note" + ".includes('has ended')")
+
+    (path,) = folder.rglob("log.mcap")
+    log = surefoot.read(path)
+    pushed = log["/measurement"].field("external_force")
+    assert np.linalg.norm(pushed, axis=1).max() > 49.0
+    com = log["/truth"].field("com")
+    assert com[-1, 0] - com[0, 0] > 0.3
+    assert log.metadata["end"]["kind"] == "interrupted"
+    again = surefoot.run(surefoot.load(path), out=path.parent / "again")
+    assert differing(log, surefoot.read(again.log)) == []
+
+
+def differing(a: Log, b: Log) -> list[str]:
+    """Topics in which two logs differ, wall-clock times aside."""
+    assert a.topics == b.topics
+    return [topic for topic in a.numeric if topic not in WALL_CLOCK and a[topic].content() != b[topic].content()]

@@ -1,0 +1,160 @@
+"""The page's side of a drive: what it sends is checked, what it shows is what a log of the same run would show."""
+
+import json
+import socket
+import threading
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from http.client import HTTPConnection
+from typing import Any
+
+import numpy as np
+import pytest
+
+import surefoot
+from surefoot.scenarios.drive.page import LIMITS, read_input
+from surefoot.scenarios.drive.picture import Pictures
+from surefoot.scenarios.drive.server import LONGEST_INPUT, PageServer
+from surefoot.scenarios.drive.session import Gait, Pace, Push, Reset, Velocity
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.show.logview import LogView
+from surefoot.scenarios.show.replay.extract import extract
+from surefoot.scenarios.show.replay.page import charts
+from surefoot.scenarios.show.replay.poses import Window
+
+pytestmark = pytest.mark.unit
+
+BRIEF = {"duration": 0.6, "gait.initial_stand": 0.1, "gait.single_support": 0.4, "gait.double_support": 0.1}
+
+
+def test_inputs_are_read_and_bent_into_what_may_be_asked_for():
+    assert read_input("velocity", {"v_x": 0.3, "v_y": -9, "yaw_rate": 0}) == Velocity(0.3, -LIMITS.v_y, 0.0)
+    assert read_input("gait", {"swing_height": 0.07}) == Gait(swing_height=0.07)
+    assert read_input("pace", {"paused": True}) == Pace(paused=True)
+    assert read_input("pace", {"speed": 0.25}) == Pace(speed=0.25)
+    assert read_input("pace", {"speed": 0.0}) == Pace(speed=0.1)
+    assert read_input("reset", {}) == Reset()
+
+
+@pytest.mark.parametrize(
+    ("kind", "given"),
+    [
+        ("velocity", {"v_x": 0.3}),
+        ("velocity", {"v_x": "fast", "v_y": 0.0, "yaw_rate": 0.0}),
+        ("velocity", {"v_x": float("nan"), "v_y": 0.0, "yaw_rate": 0.0}),
+        ("gait", {"single_support": None}),
+        ("jump", {}),
+        (None, {}),
+    ],
+)
+def test_what_the_page_would_not_send_is_refused(kind: str | None, given: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=r"no number|no input"):
+        read_input(kind, given)
+
+
+class Served:
+    def __init__(self) -> None:
+        self.taken: list[str] = []
+        self.left = threading.Event()
+        self.server = PageServer(None, self._take, self.left.set)
+        self.server.page = "<p>it</p>"
+
+    def _take(self, text: str) -> None:
+        if text == "nonsense":
+            raise ValueError("that is nonsense")
+        self.taken.append(text)
+
+    def ask(self, method: str, path: str, body: str | None = None, **headers: str) -> tuple[int, str]:
+        request = urllib.request.Request(
+            self.server.address + path, None if body is None else body.encode(), headers, method=method
+        )
+        try:
+            with urllib.request.urlopen(request, timeout=10) as answer:
+                return answer.status, answer.read().decode()
+        except urllib.error.HTTPError as error:
+            return error.code, error.read().decode()
+
+
+@pytest.fixture
+def served() -> Iterator[Served]:
+    made = Served()
+    yield made
+    made.server.close()
+
+
+def test_the_page_is_served_and_inputs_are_taken_in_order(served: Served) -> None:
+    assert served.ask("GET", "/?websocket=elsewhere") == (200, "<p>it</p>")
+    assert served.ask("GET", "/etc/passwd")[0] == 404
+    for number in range(3):
+        assert served.ask("POST", "/input", str(number)) == (204, "")
+    assert served.taken == ["0", "1", "2"]
+    assert served.ask("POST", "/input", "nonsense") == (400, "that is nonsense")
+    assert served.ask("POST", "/input", "x" * (LONGEST_INPUT + 1))[0] == 413
+
+
+def test_pages_of_others_are_refused(served: Served) -> None:
+    assert served.ask("POST", "/input", "0", Origin="http://elsewhere.example")[0] == 403
+    assert served.ask("GET", "/", Host="elsewhere.example")[0] == 403
+    assert served.ask("POST", "/input", "0", Origin=served.server.address)[0] == 204
+    assert served.taken == ["0"]
+
+
+def test_news_are_told_until_nobody_looks(served: Served) -> None:
+    connection = HTTPConnection("127.0.0.1", served.server.port, timeout=10)
+    connection.request("GET", "/events")
+    answer = connection.getresponse()
+    assert answer.readline() == b"data: \n"
+    answer.readline()
+    served.server.tell(json.dumps({"time": 1.0}))
+    assert json.loads(answer.readline().removeprefix(b"data: ")) == {"time": 1.0}
+    assert not served.left.is_set()
+    answer.close()
+    connection.close()
+    for _ in range(100):
+        served.server.tell("{}")
+        if served.left.wait(0.05):
+            break
+    assert served.left.is_set()
+
+
+def test_a_port_that_is_taken_is_told_of() -> None:
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with pytest.raises(LogError, match=f"--port {port}: cannot be listened on"):
+            PageServer(port, lambda _: None, lambda: None)
+
+
+def test_a_picture_shows_what_a_replay_of_the_log_shows(tmp_path):
+    """Bodies, marks and charts in the single support of a walk, and a push."""
+    scenario = surefoot.load("walk", BRIEF)
+    log = tmp_path / "log.mcap"
+    with surefoot.Simulation(scenario, log=log) as sim:
+        pictures, seen = Pictures(sim.walk), []
+        while not sim.done:
+            if sim.time == 0.5:
+                sim.push((20.0, -10.0, 0.0), duration=0.1)
+                pictures.pushed(Push((2.0, -1.0, 0.0), sim.walk.robot.torso_body), sim.time)
+            tick = sim.step()
+            if round(1000 * tick.time) % 100 == 50:
+                seen.append((pictures.picture(tick), pictures.values(tick)))
+    opened = surefoot.read(log)
+    replay = extract(opened, Window(start=0.05, frame_rate=10.0))
+    assert len(seen) == len(replay) == 6
+    tracks = {(track.layer, track.name): track.vertices for track in replay.tracks}
+    for frame, (picture, _) in enumerate(seen):
+        assert picture.time[0] == pytest.approx(replay.time[frame])
+        np.testing.assert_allclose(picture.body_position[0], replay.body_position[frame], atol=1e-9)
+        np.testing.assert_allclose(picture.body_quaternion[0], replay.body_quaternion[frame], atol=1e-9)
+        for track in picture.tracks:
+            if track.layer != "Taken footprints":
+                np.testing.assert_allclose(
+                    track.vertices[0], tracks[track.layer, track.name][frame], atol=1e-6, err_msg=str(track)
+                )
+    assert np.isfinite(tracks["Pushes", "push"][-1]).all()
+    drawn = charts(LogView(opened), replay.time)
+    for frame in (-2, -1):
+        for chart, values in zip(drawn, seen[frame][1], strict=True):
+            assert [curve.values[frame] for curve in chart.curves] == pytest.approx(values, abs=1e-6)

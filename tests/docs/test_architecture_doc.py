@@ -8,6 +8,7 @@ from unittest.mock import MagicMock
 import pytest
 from dotted import named
 
+from surefoot.planner.types import Foot, PhaseInfo, PhaseKind
 from surefoot.scenarios.file.schema import PushSettings
 from surefoot.scenarios.loop.skeleton import ClosedLoop
 from surefoot.scenarios.setup.load import load
@@ -88,8 +89,9 @@ def test_the_push_of_the_page_becomes_what_the_page_says():
     assert f"`pushes: [{text}]`" in TEXT
     keys = PushSettings(step=step, phase="single", fraction=fraction, force=[40.0, 0.0, 0.0])
     walk = resolve(scenario.model_copy(update={"pushes": (keys,)}))
-    (push,) = walk.pushes
-    assert push.time == pytest.approx(walk.gait.lift_off(step) + fraction * walk.gait.single_support)
+    ((point, push),) = walk.gait_pushes
+    middle = PhaseInfo(PhaseKind.SINGLE, Foot.RIGHT, step, 0.2, 0.5, step)
+    assert point.left(middle) == pytest.approx(fraction * 0.5 - 0.2)
     assert push.body == walk.robot.torso_body
     assert push.force.tolist() == [40.0, 0.0, 0.0]
 

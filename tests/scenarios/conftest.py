@@ -2,17 +2,20 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+import surefoot
 from surefoot.scenarios.file.schema import RobotSettings, Scenario
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.loop.skeleton import End, Progress
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.setup.robot import RobotFacts
+from surefoot.scenarios.show.compare.divergence import WALL_CLOCK
 
 JOINTS = ("left_hip", "left_knee", "right_hip", "right_knee")
 SIZES = channels.Sizes(nj=4, nq=11, nv=10, horizon=50)
@@ -169,3 +172,16 @@ def motion() -> type[Motion]:
 @pytest.fixture
 def two_steps() -> Scenario:
     return Scenario(name="two-steps", gait={"steps": 2})
+
+
+def _same_content(a: str | Path, b: str | Path) -> list[str]:
+    """Topics in which two logs differ, wall-clock times aside."""
+    first, second = surefoot.read(a), surefoot.read(b)
+    assert first.topics == second.topics
+    topics = [topic for topic in first.numeric if topic not in WALL_CLOCK]
+    return [topic for topic in topics if first[topic].content() != second[topic].content()]
+
+
+@pytest.fixture(name="same_content")
+def same_content_fixture() -> Callable[..., list[str]]:
+    return _same_content

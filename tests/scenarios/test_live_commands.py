@@ -4,7 +4,6 @@ import random
 
 import numpy as np
 import pytest
-from test_simulation import same_content
 
 import surefoot
 from surefoot.planner.types import PhaseKind
@@ -56,7 +55,7 @@ def test_what_was_told_is_in_the_log_with_what_was_made_of_it(tmp_path):
 
 
 @pytest.mark.parametrize("until", [None, 2.5])
-def test_the_log_walks_the_same_run_again(tmp_path, until):
+def test_the_log_walks_the_same_run_again(tmp_path, until, same_content):
     r = random.Random(3)
     orders = {0.1: lambda sim: sim.command(0.2, 0.05)}
     for time in (0.4, 0.71, 1.003, 1.9, 2.2):

@@ -7,7 +7,6 @@ import surefoot
 from surefoot.planner.laws.law import Motion
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.scenarios.loop.sensing import TrueState
-from surefoot.scenarios.show.compare.divergence import WALL_CLOCK
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.types import RobotState
 
@@ -22,14 +21,6 @@ def scenario():
     return surefoot.load("walk", BRIEF)
 
 
-def same_content(a, b):
-    """Topics in which two logs differ, wall-clock times aside."""
-    first, second = surefoot.read(a), surefoot.read(b)
-    assert first.topics == second.topics
-    topics = [topic for topic in first.numeric if topic not in WALL_CLOCK]
-    return [topic for topic in topics if first[topic].content() != second[topic].content()]
-
-
 def stepped(scenario, log, push_at=None, **parts):
     with surefoot.Simulation(scenario, log=log, **parts) as sim:
         while not sim.done:
@@ -40,7 +31,7 @@ def stepped(scenario, log, push_at=None, **parts):
 
 
 @pytest.mark.parametrize("fidelity", ["full", "pendulum"])
-def test_a_stepped_walk_is_the_walk_that_run_makes(fidelity, tmp_path):
+def test_a_stepped_walk_is_the_walk_that_run_makes(fidelity, tmp_path, same_content):
     scenario = surefoot.load("walk", {**BRIEF, "fidelity": fidelity})
     made = surefoot.run(scenario, out=tmp_path)
     assert same_content(stepped(scenario, tmp_path / "stepped.mcap"), made.log) == []
@@ -63,7 +54,7 @@ def test_the_logged_forces_add_up_to_the_impulse_of_pushes_shorter_than_a_tick(f
 
 
 @pytest.mark.parametrize("fidelity", ["full", "pendulum"])
-def test_a_push_from_outside_acts_and_is_logged_as_a_scheduled_one(fidelity, tmp_path):
+def test_a_push_from_outside_acts_and_is_logged_as_a_scheduled_one(fidelity, tmp_path, same_content):
     scenario = surefoot.load("walk", {**BRIEF, "fidelity": fidelity})
     log = stepped(scenario, tmp_path / "pushed.mcap", push_at=0.3)
     scheduled = surefoot.load("walk", {
@@ -193,7 +184,7 @@ def test_a_law_of_ones_own_plans_and_its_log_cannot_be_run_again(scenario, tmp_p
         surefoot.load(path)
 
 
-def test_a_log_that_was_closed_is_walked_again_as_long_as_it_was(scenario, tmp_path):
+def test_a_log_that_was_closed_is_walked_again_as_long_as_it_was(scenario, tmp_path, same_content):
     log = tmp_path / "closed.mcap"
     with surefoot.Simulation(scenario, log=log) as sim:
         for _ in range(100):

@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import browser
@@ -15,8 +15,6 @@ import pytest
 from browser import Browser
 
 import surefoot
-from surefoot.scenarios.log import Log
-from surefoot.scenarios.show.compare.divergence import WALL_CLOCK
 
 pytestmark = [
     pytest.mark.physics,
@@ -60,7 +58,9 @@ def pass_time(page: Browser, seconds: float) -> None:
     page.wait_for(f"{TIME} > {page.run(TIME) + seconds}")
 
 
-def test_a_drive(driven: tuple[Browser, subprocess.Popen[str], Path]) -> None:
+def test_a_drive(
+    driven: tuple[Browser, subprocess.Popen[str], Path], same_content: Callable[[Path, Path], list[str]]
+) -> None:
     page, process, folder = driven
     before = page.run(CHARTS)
     page.press("w")
@@ -102,10 +102,4 @@ def test_a_drive(driven: tuple[Browser, subprocess.Popen[str], Path]) -> None:
     assert com[-1, 0] - com[0, 0] > 0.3
     assert log.metadata["end"]["kind"] == "interrupted"
     again = surefoot.run(surefoot.load(path), out=path.parent / "again")
-    assert differing(log, surefoot.read(again.log)) == []
-
-
-def differing(a: Log, b: Log) -> list[str]:
-    """Topics in which two logs differ, wall-clock times aside."""
-    assert a.topics == b.topics
-    return [topic for topic in a.numeric if topic not in WALL_CLOCK and a[topic].content() != b[topic].content()]
+    assert same_content(path, again.log) == []

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array, FeetState, Foot, Footstep
-from surefoot.planner.walk.gait import GaitParameters, Stride, support_rows
+from surefoot.planner.walk.gait import GaitParameters, Stride
 from surefoot.planner.walk.reach import Landing
 
 
@@ -76,7 +76,8 @@ class FootstepPlan:
         yaw: planned headings, unwrapped, shape (n,) [rad]; landing errors do not enter, so heading does not drift.
         normal: unit normals of the ground, shape (n, 3) [-].
         increment: nominal displacement from the row before, shape (n, 2) [m].
-        supports: rows between which each support point lies, shape (m, 2) (see `planner.walk.gait.support_rows`).
+        supports: rows between which each support point of the ZMP reference lies, shape (m, 2): two feet where the
+            robot stands, and one, given twice, while it stands on that.
         first: row of the walk that its first one is.
         first_support: support point of the walk that its first one is.
         moved_to: where a row was moved and how far the last row lies from there nominally, shape (2,) each [m]; None
@@ -212,7 +213,7 @@ def start_footholds(gait: GaitParameters, feet: FeetState, path: Path, terrain: 
 
 
 def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
-    """Footsteps of a whole gait from where the feet stand.
+    """Footsteps of a whole gait from where the feet stand, whenever they are taken: without support points of steps.
 
     Args:
         gait: the gait.
@@ -231,5 +232,4 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     position = np.column_stack((level, terrain.heights(level)))
     position[:2] = start.position
     increment = np.diff(level, axis=0, prepend=level[:1])
-    supports = support_rows(gait.walk)
-    return FootstepPlan(tuple(rows), position, np.array(yaw), terrain.normals(level), increment, supports)
+    return FootstepPlan(tuple(rows), position, np.array(yaw), terrain.normals(level), increment, start.supports)

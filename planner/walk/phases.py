@@ -155,8 +155,8 @@ def _derivatives(coefficients: Array) -> tuple[Array, Array, Array]:
 class PhaseSamples:
     """The phases at the n samples of a window.
 
-    The ZMP reference moves along the polyline of the support points (`planner.walk.gait.support_rows`): a point between
-    the feet before each bout and at the end, and the stance foot of each step. At sample k it is `fraction[k]` of the
+    The ZMP reference moves along the polyline of the support points (`FootstepPlan.supports`): a point between the feet
+    before each bout and at the end, and the stance foot of each step. At sample k it is `fraction[k]` of the
     way from point `index[k]` to the next. It rests while the robot stands, and on the stance foot in single
     support; in every double support it goes on to exactly the next point.
 

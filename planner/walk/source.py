@@ -62,36 +62,20 @@ class StepSource(Protocol):
 
 
 class GaitSource:
-    """The steps of a gait: equal strides of which the last closes the stance, or those of its bouts.
+    """The steps of a gait.
 
     Args:
         gait: the gait.
     """
 
     def __init__(self, gait: GaitParameters) -> None:
-        self._gait = gait
-        self._begins: dict[int, float] = {}
-        step = 1
-        for bout in gait.bouts:
-            self._begins[step] = bout.stand
-            step += len(bout.strides)
-        if not gait.bouts:
-            self._begins[1] = gait.initial_stand
-        self._strides = tuple(stride for bout in gait.bouts for stride in bout.strides)
+        self._strides, self._begins = gait.strides, gait.begins
 
     def order(self, at: Request) -> StepOrder | None:
         """See `StepSource`."""
-        if at.step > self._gait.steps or (at.before is not None and at.step in self._begins):
+        if at.step > len(self._strides) or (at.before is not None and at.step in self._begins):
             return None
-        return StepOrder(self._stride(at.step), self._begins.get(at.step, 0.0))
-
-    def _stride(self, step: int) -> Stride:
-        gait = self._gait
-        if self._strides:
-            return self._strides[step - 1]
-        if step == gait.steps:
-            return Stride(0.0, 0.0, 0.0, gait.step_width)
-        return Stride(gait.step_length, gait.lateral_step, gait.turn, gait.step_width)
+        return StepOrder(self._strides[at.step - 1], self._begins.get(at.step, 0.0))
 
 
 _SOFTLY = 0.4

@@ -193,4 +193,4 @@ def test_any_velocity_command_within_limits_gives_a_sound_walk(schedule, data):
     assert all(a.end == b.start for a, b in zip(plan.phases, plan.phases[1:], strict=False))
     assert np.diff(plan.samples.index + plan.samples.fraction).max(initial=0.0) <= 1 / 8 + 1e-12
     assert np.abs(np.diff(plan.load_left)).max(initial=0.0) <= 1 / 8 + 1e-12
-    assert plan.samples.index[-1] == len(steps.support_points()) - 1
+    assert plan.samples.index[-1] == len(plan.steps.support_points()) - 1

@@ -1,6 +1,6 @@
 """The sequence of footsteps: on level ground a step landed elsewhere shifts all that follow, on treads none."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,6 @@ from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array, FeetState, Foot, Footstep
 from surefoot.planner.walk.gait import GaitParameters, Stride
-from surefoot.planner.walk.reach import Landing
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,24 +74,21 @@ class FootstepPlan:
         position: sole centres, shape (n, 3) [m].
         yaw: planned headings, unwrapped, shape (n,) [rad]; landing errors do not enter, so heading does not drift.
         normal: unit normals of the ground, shape (n, 3) [-].
-        increment: nominal displacement from the row before, shape (n, 2) [m].
         supports: rows between which each support point of the ZMP reference lies, shape (m, 2): two feet where the
             robot stands, and one, given twice, while it stands on that.
         first: row of the walk that its first one is.
         first_support: support point of the walk that its first one is.
-        moved_to: where a row was moved and how far the last row lies from there nominally, shape (2,) each [m]; None
-            before any was.
+        shift: where the footsteps to come lie from their nominal places, shape (2,) [m].
     """
 
     feet: tuple[Foot, ...]
     position: Array
     yaw: Array
     normal: Array
-    increment: Array
     supports: NDArray[np.intp]
     first: int = 0
     first_support: int = 0
-    moved_to: tuple[Array, Array] | None = None
+    shift: Array = field(default_factory=lambda: np.zeros(2))
 
     @property
     def steps(self) -> int:
@@ -103,14 +99,8 @@ class FootstepPlan:
         """The foothold of a row."""
         return Footstep(self.feet[row], self.position[row], float(self.yaw[row]), self.normal[row])
 
-    def landing(self, row: int) -> Landing:
-        """Where the foot of a row lands nominally, seen from its stance foot, that of the row before."""
-        ahead, left = self.increment[row] @ frame_rotation(float(self.yaw[row - 1]))
-        beside = left if self.feet[row] is Foot.LEFT else -left
-        return Landing(float(ahead), float(beside), float(self.yaw[row] - self.yaw[row - 1]))
-
     def moved(self, row: int, position: Array, terrain: Terrain) -> "FootstepPlan":
-        """The plan with one foothold somewhere else and its successors at their nominal increments from it.
+        """The plan with one foothold somewhere else and its successors shifted by as much.
 
         Where footholds are not free the successors stay on the treads that were chosen for them.
 
@@ -119,43 +109,30 @@ class FootstepPlan:
             position: its new sole centre in the world frame, shape (3,) [m].
             terrain: gives the heights of the shifted successors, or keeps them where they are.
         """
-        moved = self.position.copy()
+        moved, normal, shift = self.position.copy(), self.normal, self.shift
         moved[row] = position
-        if not terrain.free_footholds:
-            return replace(self, position=moved)
-        way = np.cumsum(self.increment[row + 1 :], axis=0)
-        following = position[:2] + way
-        moved[row + 1 :, :2] = following
-        moved[row + 1 :, 2] = terrain.heights(following)
-        anchor = (position[:2], way[-1] if len(way) else np.zeros(2))
-        if not terrain.has_edges:
-            return replace(self, position=moved, moved_to=anchor)
-        normal = self.normal.copy()
-        normal[row:] = terrain.normals(moved[row:, :2])
-        return replace(self, position=moved, normal=normal, moved_to=anchor)
+        if terrain.free_footholds:
+            way = position[:2] - self.position[row, :2]
+            shift = shift + way
+            moved[row + 1 :, :2] += way
+            moved[row + 1 :, 2] = terrain.heights(moved[row + 1 :, :2])
+            normal = np.concatenate((normal[:row], terrain.normals(moved[row:, :2])))
+        return replace(self, position=moved, normal=normal, shift=shift)
 
-    def followed(self, place: Footstep, increment: Array, terrain: Terrain) -> "FootstepPlan":
-        """The plan with one more footstep, moved by as much as those before it.
+    def followed(self, place: Footstep, terrain: Terrain) -> "FootstepPlan":
+        """The plan with one more footstep, shifted as those before it.
 
         Args:
             place: where it nominally is.
-            increment: its displacement from the nominal one before, shape (2,) [m].
-            terrain: gives its height where it is moved.
+            terrain: gives its height where it is shifted to.
         """
-        position, normal, anchor = place.position, place.normal, self.moved_to
-        if anchor is not None:
-            way = anchor[1] + increment
-            anchor, xy = (anchor[0], way), (anchor[0] + way)[None]
-            position = np.append(xy[0], terrain.heights(xy))
-            normal = terrain.normals(xy)[0] if terrain.has_edges else normal
+        xy = place.position[None, :2] + self.shift
         return replace(
             self,
             feet=(*self.feet, place.foot),
-            position=np.concatenate((self.position, position[None])),
+            position=np.concatenate((self.position, np.column_stack((xy, terrain.heights(xy))))),
             yaw=np.append(self.yaw, place.yaw),
-            normal=np.concatenate((self.normal, normal[None])),
-            increment=np.concatenate((self.increment, increment[None])),
-            moved_to=anchor,
+            normal=np.concatenate((self.normal, terrain.normals(xy))),
         )
 
     def supported(self, row: int, other: int) -> "FootstepPlan":
@@ -166,32 +143,17 @@ class FootstepPlan:
     def since(self, row: int, support: int) -> "FootstepPlan":
         """What of the plan begins at a row and a support point of the walk, or what there is from there on."""
         rows, points = max(row - self.first, 0), max(support - self.first_support, 0)
-        return replace(
-            self,
-            feet=self.feet[rows:],
-            position=self.position[rows:],
-            yaw=self.yaw[rows:],
-            normal=self.normal[rows:],
-            increment=self.increment[rows:],
-            supports=self.supports[points:] - rows,
-            first=self.first + rows,
-            first_support=self.first_support + points,
-        )
+        supports, first, first_support = self.supports[points:] - rows, self.first + rows, self.first_support + points
+        return replace(self._part(slice(rows, None)), supports=supports, first=first, first_support=first_support)
 
     def until(self, row: int, support: int) -> "FootstepPlan":
         """What of the plan ends with a row and a support point of the walk."""
-        rows, points = row + 1 - self.first, support + 1 - self.first_support
-        moved_to = self.moved_to and (self.position[rows - 1, :2], np.zeros(2))
-        return replace(
-            self,
-            feet=self.feet[:rows],
-            position=self.position[:rows],
-            yaw=self.yaw[:rows],
-            normal=self.normal[:rows],
-            increment=self.increment[:rows],
-            supports=self.supports[:points],
-            moved_to=moved_to,
-        )
+        supports = self.supports[: support + 1 - self.first_support]
+        return replace(self._part(slice(row + 1 - self.first)), supports=supports)
+
+    def _part(self, rows: slice) -> "FootstepPlan":
+        arrays = {name: getattr(self, name)[rows] for name in ("feet", "position", "yaw", "normal")}
+        return replace(self, **arrays)
 
     def support_points(self) -> Array:
         """Support points of the ZMP reference (see `planner.walk.queue`), shape (m, 3) [m]."""
@@ -206,10 +168,7 @@ def start_footholds(gait: GaitParameters, feet: FeetState, path: Path, terrain: 
     """The two start feet, the one that moves first in front, and the support point between them."""
     rows = (gait.step_foot(-1), gait.step_foot(0))
     position = feet.position[list(rows)]
-    increment = np.zeros((2, 2))
-    increment[1] = position[1, :2] - position[0, :2]
-    yaw = np.full(2, path.yaw)
-    return FootstepPlan(rows, position, yaw, terrain.normals(position[:, :2]), increment, np.array([[0, 1]]))
+    return FootstepPlan(rows, position, np.full(2, path.yaw), terrain.normals(position[:, :2]), np.array([[0, 1]]))
 
 
 def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
@@ -222,7 +181,7 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     """
     path = Path.begin(feet, terrain, gait.step_width)
     start = start_footholds(gait, feet, path, terrain)
-    rows, yaw, places = list(start.feet), [path.yaw, path.yaw], list(start.position[:, :2])
+    rows, yaw, places = list(start.feet), start.yaw.tolist(), list(start.position[:, :2])
     for number, stride in enumerate(gait.strides, 1):
         rows.append(gait.step_foot(number))
         path, place = path.advanced(stride, rows[-1])
@@ -231,5 +190,4 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     level = np.array(places)
     position = np.column_stack((level, terrain.heights(level)))
     position[:2] = start.position
-    increment = np.diff(level, axis=0, prepend=level[:1])
-    return FootstepPlan(tuple(rows), position, np.array(yaw), terrain.normals(level), increment, start.supports)
+    return replace(start, feet=tuple(rows), position=position, yaw=np.array(yaw), normal=terrain.normals(level))

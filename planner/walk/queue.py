@@ -14,7 +14,7 @@ from surefoot.planner.walk.commands import Pose
 from surefoot.planner.walk.footsteps import Path, start_footholds
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Phase, PhaseSamples, PhaseTable
-from surefoot.planner.walk.reach import check_reach
+from surefoot.planner.walk.reach import Landing, check_reach
 from surefoot.planner.walk.source import GaitSource, Request, StepSource
 
 _MORE_STEPS = 3
@@ -143,8 +143,8 @@ class StepQueue:
     @property
     def _pose(self) -> Pose:
         """Where the path is that the footsteps in sight go along."""
-        path, astray = self._last.path, self.footsteps.position[-1, :2] - self._last.place.position[:2]
-        x, y = path.middle + astray
+        path = self._last.path
+        x, y = path.middle + self.footsteps.shift
         return Pose(float(x), float(y), path.yaw)
 
     def _begin_bout(self, stand: Phase, samples: float) -> None:
@@ -164,10 +164,9 @@ class StepQueue:
         """Lay a step: its foothold, its single support and the double support that follows."""
         gait, (single, double) = self.gait, self._durations
         step = self._next(stride, single)
-        increment = step.place.position[:2] - self._last.place.position[:2]
-        self.footsteps = self.footsteps.followed(step.place, increment, self._ground.terrain)
-        check_reach(step.number, self.footsteps.landing(len(self.footsteps.feet) - 1), self._ground.parameters)
-        self.footsteps = self.footsteps.supported(step.number, step.number)
+        check_reach(step.number, Landing.between(self._last.place, step.place), self._ground.parameters)
+        footsteps = self.footsteps.followed(step.place, self._ground.terrain)
+        self.footsteps = footsteps.supported(step.number, step.number)
         self.steps[step.number] = step
         before = self.phases[-1]
         support, number = before.support + 1, step.number

@@ -13,7 +13,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.errors import ParameterError
 from surefoot.planner.types import GRAVITY, Array, PhaseKind
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import PhaseSamples
@@ -278,32 +277,3 @@ def preview_height(
     limit = _IMPULSE_LIMIT if profile.impulsive else _FALL_LIMIT
     pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
     return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT))
-
-
-def check_height(profile: HeightProfile, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> None:
-    """Refuse a height that the body could only follow by nearly free fall, or that goes into the ground.
-
-    Args:
-        profile: law of the height.
-        gait: the walk.
-        samples: its phases over a window.
-        support_height: heights of the support points in sight, shape (m,) [m].
-
-    Raises:
-        ParameterError: names the acceleration or the height that is out of bounds. The impulses of an impulsive law
-            last a sample and depend on its length; they are not refused.
-    """
-    step = np.append(np.diff(support_height), 0.0)[samples.index]
-    ground = support_height[samples.index] + samples.fraction * step
-    height = profile.height(gait, samples, support_height)[:, 1:-1]
-    lowest = float(np.min(height[0] - ground[1:-1]))
-    if lowest <= 0.0:
-        what = f"the CoM comes within {lowest:.2f} m of the ground under it"
-        raise ParameterError(("gait", "com_height"), what, "it must stay above it")
-    fall = float(np.min(height[2]))
-    if fall < -STEEPEST_FALL and not profile.impulsive:
-        in_double = getattr(profile, "rise", Rise.DOUBLE) is Rise.DOUBLE
-        support = "double_support" if in_double else "single_support"
-        remedy = f"give {support.replace('_', ' ')} more time" + in_double * ", or let the CoM rise in single support"
-        what = f"the CoM falls off with {-fall:.1f} m/s^2 where two footsteps differ in height"
-        raise ParameterError(("gait", support), what, f"{STEEPEST_FALL:.1f} m/s^2 is the most; {remedy}")

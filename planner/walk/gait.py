@@ -177,7 +177,8 @@ class GaitParameters:
             ParameterError: the gait only stands.
         """
         if not self.steps:
-            raise ParameterError(("gait", "steps"), f"there is no step {step} of a gait that stands", "it must have steps")
+            what = f"there is no step {step} of a gait that stands"
+            raise ParameterError(("gait", "steps"), what, "it must have steps")
         shift = WEIGHT_SHIFT * self.double_support
         return sum(stand + shift for first, stand in self.begins.items() if first <= step) + (step - 1) * self.period
 

@@ -1,8 +1,4 @@
-"""Support phases on the gait's clock, and what follows from them at the samples of a window.
-
-The clock counts planner samples, as a real number: a phase may last any time. It usually goes on by one from tick to
-tick, faster or slower where the walk hurries or slows down within a phase (see `planner.walk.clock`).
-"""
+"""Support phases on the gait's clock, and what follows from them at the samples of a window."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,11 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import quintic
 from surefoot.planner.types import Array, Foot, PhaseKind
-
-CLOCK_ROUNDING = 1e-9
-"""Instants on the clock are sums of durations and are compared with this tolerance [samples]."""
+from surefoot.planner.walk.clock import CLOCK_ROUNDING, Flow
 
 
 class RollSpan(NamedTuple):
@@ -65,90 +58,6 @@ class Phase:
     def row(self) -> int:
         """Row of a footstep plan whose foot stands; the other foot goes from the row before to the row after."""
         return self.step + (self.kind is not PhaseKind.SINGLE)
-
-
-@dataclass(frozen=True, slots=True)
-class Flow:
-    """How the clock goes over a window; it goes by itself where it is not told otherwise.
-
-    Attributes:
-        clock: at each sample, shape (n,) [samples].
-        rate: of the clock over that of time, shape (n,) [-], and its rate, shape (n,) [1/s]; None for one and zero.
-    """
-
-    clock: Array
-    rate: tuple[Array, Array] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Pace:
-    """The clock while it hurries or slows down: a quintic from how it goes to its own rate at the end of a phase.
-
-    Attributes:
-        coefficients: of its way, shape (6, 1) [samples].
-        length: time that it takes [samples].
-        way: how far the clock goes meanwhile [samples].
-    """
-
-    coefficients: Array
-    length: float
-    way: float
-
-    @classmethod
-    def over(cls, way: float, length: float, rate: float, bend: float) -> "Pace":
-        """A way of the clock in a length of time, from a rate [-] and its derivative [1/sample] on.
-
-        Where the clock would stand still or go back it takes a length nearer to what it takes at its present rate.
-        """
-        for _ in range(_TRIES):
-            start, end = np.array([[0.0], [rate], [bend]]), np.array([[way], [1.0], [0.0]])
-            pace = cls(quintic(start, end, length), length, way)
-            if pace.at(np.linspace(0.0, length, 33))[1].min() > _SLOWEST:
-                break
-            length = 0.5 * (length + way / max(rate, _SLOWEST))
-        return pace
-
-    def at(self, time: Array) -> tuple[Array, Array, Array]:
-        """Way, rate and its derivative at times since it began, shape (n,) each; after it the clock goes by itself."""
-        inside = np.clip(time, 0.0, self.length)
-        powers = inside[:, None] ** np.arange(6)
-        way, rate, bend = (powers[:, : 6 - k] @ c for k, c in enumerate(_derivatives(self.coefficients[:, 0])))
-        over = time > self.length
-        return way + (time - inside), np.where(over, 1.0, rate), np.where(over, 0.0, bend)
-
-
-@dataclass(frozen=True, slots=True)
-class Hurry:
-    """A pace on the axis of time.
-
-    Attributes:
-        pace: how the clock goes.
-        begin: when it began [s].
-        clock: what the clock showed then [s].
-        sample_time: length of a sample [s].
-    """
-
-    pace: Pace
-    begin: float
-    clock: float
-    sample_time: float
-
-    def at(self, time: float) -> tuple[float, float, float]:
-        """What the clock shows [s], its rate [-] and the derivative of that [1/s]."""
-        t = self.sample_time
-        way, rate, bend = (float(value[0]) for value in self.pace.at(np.array([(time - self.begin) / t])))
-        return self.clock + way * t, rate, bend / t
-
-
-_TRIES = 20
-_SLOWEST = 0.05
-"""Rate of the clock below which no pace goes [-]."""
-
-
-def _derivatives(coefficients: Array) -> tuple[Array, Array, Array]:
-    order = np.arange(1.0, 6.0)
-    first = coefficients[1:] * order
-    return coefficients, first, first[1:] * order[:-1]
 
 
 @dataclass(frozen=True, slots=True)

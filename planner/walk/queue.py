@@ -10,10 +10,11 @@ from surefoot.planner.swing.course import swing_course
 from surefoot.planner.swing.heel_off import roll_span, roll_times
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseKind
+from surefoot.planner.walk.clock import CLOCK_ROUNDING, Flow
 from surefoot.planner.walk.commands import Pose
 from surefoot.planner.walk.footsteps import Path, start_footholds
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
-from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Phase, PhaseSamples, PhaseTable
+from surefoot.planner.walk.phases import Phase, PhaseSamples, PhaseTable
 from surefoot.planner.walk.reach import Landing, check_reach
 from surefoot.planner.walk.source import GaitSource, Request, StepSource
 
@@ -74,6 +75,7 @@ class StepQueue:
 
     Attributes:
         gait: what all steps to come have in common.
+        ground: to lay steps on.
         phases: those in sight in order, without gaps, the one before the present first.
         steps: those in sight by their numbers.
         footsteps: footholds in sight, landed ones as measured.
@@ -83,7 +85,7 @@ class StepQueue:
     """
 
     def __init__(self, gait: GaitParameters, feet: FeetState, ground: Ground, source: StepSource | None = None) -> None:
-        self.gait, self._ground, self._source = gait, ground, source or GaitSource(gait)
+        self.gait, self.ground, self._source = gait, ground, source or GaitSource(gait)
         path = Path.begin(feet, ground.terrain, gait.step_width)
         self.footsteps = start_footholds(gait, feet, path, ground.terrain)
         start = [self.footsteps.footstep(row) for row in (0, 1)]
@@ -127,7 +129,7 @@ class StepQueue:
 
     def _ask(self, now: float) -> bool:
         """Lay what comes next; says whether there is anything."""
-        last, phases, t = self._last, self.phases, self._ground.parameters.sample_time
+        last, phases, t = self._last, self.phases, self.ground.parameters.sample_time
         time, before = (phases[-1].start, None) if self._standing else (phases[-1].end, last.stride)
         order = self._source.order(Request(last.number + 1, time * t, before, self._pose, self.gait.period))
         if order is None:
@@ -164,14 +166,14 @@ class StepQueue:
         """Lay a step: its foothold, its single support and the double support that follows."""
         gait, (single, double) = self.gait, self._durations
         step = self._next(stride, single)
-        check_reach(step.number, Landing.between(self._last.place, step.place), self._ground.parameters)
-        footsteps = self.footsteps.followed(step.place, self._ground.terrain)
+        check_reach(step.number, Landing.between(self._last.place, step.place), self.ground.parameters)
+        footsteps = self.footsteps.followed(step.place, self.ground.terrain)
         self.footsteps = footsteps.supported(step.number, step.number)
         self.steps[step.number] = step
         before = self.phases[-1]
         support, number = before.support + 1, step.number
         ends = (self.steps[number - 2].place, self.steps[number - 1].place)
-        roll = roll_span(before, single, *ends, gait.heel_off, float(self._ground.half_size[0]))
+        roll = roll_span(before, single, *ends, gait.heel_off, float(self.ground.half_size[0]))
         self.phases[-1] = replace(before, roll=roll)
         stance = gait.step_foot(number).other
         swing = Phase(PhaseKind.SINGLE, before.end, single, number, stance, support, roll=roll)
@@ -179,7 +181,7 @@ class StepQueue:
 
     def _next(self, stride: Stride, single: float) -> Step:
         """The step after the last one."""
-        ground, number = self._ground, self._last.number + 1
+        ground, number = self.ground, self._last.number + 1
         foot = self.gait.step_foot(number)
         path, xy = self._last.path.advanced(stride, foot)
         point = xy[None]
@@ -252,7 +254,7 @@ class StepQueue:
             if phase.kind is PhaseKind.SINGLE:
                 phase = self._retimed_roll(number, phase, clock)
                 step = self.steps[phase.step]
-                swing = unit_swing(single, step.climb, step.course, self._ground.parameters)
+                swing = unit_swing(single, step.climb, step.course, self.ground.parameters)
                 self.steps[phase.step] = replace(step, swing=swing)
             self.phases[number] = phase
         self._table = PhaseTable.of(self.phases)
@@ -269,7 +271,7 @@ class StepQueue:
     @property
     def _durations(self) -> tuple[float, float]:
         """Single and double support of the steps to come [samples]."""
-        t = self._ground.parameters.sample_time
+        t = self.ground.parameters.sample_time
         return in_samples(self.gait.single_support, t), in_samples(self.gait.double_support, t)
 
     def phase(self, clock: float) -> Phase:
@@ -278,7 +280,7 @@ class StepQueue:
 
     def samples(self, flow: Flow) -> PhaseSamples:
         """The phases at the samples of a window."""
-        return self._table.at(flow, self._ground.parameters.sample_time, self.footsteps.first_support)
+        return self._table.at(flow, self.ground.parameters.sample_time, self.footsteps.first_support)
 
     def lift_off(self, step: int) -> Phase:
         """The single support of a step in sight."""

@@ -97,6 +97,9 @@ _FAR = 3.0
 """Strides to a place from which on the robot walks ahead towards it, and not as it will stand there [-]."""
 
 
+_STANDING = Twist()
+
+
 class CommandSource:
     """Steps that follow a velocity, or go to places one after another; either may be told anew at any time.
 
@@ -107,19 +110,22 @@ class CommandSource:
     Args:
         gait: gives the step width, the stride of a walk to a place, and the rest before the first step.
         region: where feet may land.
+        twist: the velocity to follow.
+        places: where to go in its place.
 
     Attributes:
         twist: the velocity to follow where there are no places to go to.
         places: where to go, in order; those that were reached are gone, but for the last one.
     """
 
-    def __init__(self, gait: GaitParameters, region: StepRegion) -> None:
+    def __init__(
+        self, gait: GaitParameters, region: StepRegion, twist: Twist = _STANDING, places: tuple[Pose, ...] = ()
+    ) -> None:
         self._width, self._rest, self._region = gait.step_width, gait.initial_stand, region
         side = 0.5 * (region.width[1] - region.nearest(0.0))
         self._change = np.array([_SOFTLY * region.length, side, _SHARE * region.turn])
         self._most = np.array([min(abs(gait.step_length), region.length), _SHARE * side, _SHARE * region.turn])
-        self.twist = Twist()
-        self.places: tuple[Pose, ...] = ()
+        self.twist, self.places = twist, places
 
     def followed(self, period: float) -> Twist:
         """The velocity that is followed for the one asked for.

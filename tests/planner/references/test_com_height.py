@@ -1,18 +1,18 @@
 import numpy as np
 import pytest
 
+from surefoot.planner.check import check_height
 from surefoot.planner.references.com_height import (
     BENT_KNEES,
     BentKneeHeight,
     PaperHeight,
     Rise,
     SmoothHeight,
-    check_height,
     preview_height,
 )
 from surefoot.planner.types import GRAVITY, PhaseKind
+from surefoot.planner.walk.clock import Flow
 from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
-from surefoot.planner.walk.phases import Flow
 
 pytestmark = pytest.mark.unit
 

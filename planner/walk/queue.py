@@ -145,8 +145,8 @@ class StepQueue:
     @property
     def _pose(self) -> Pose:
         """Where the path is that the footsteps in sight go along."""
-        path = self._last.path
-        x, y = path.middle + self.footsteps.shift
+        path, astray = self._last.path, self.footsteps.position[-1, :2] - self._last.place.position[:2]
+        x, y = path.middle + astray
         return Pose(float(x), float(y), path.yaw)
 
     def _begin_bout(self, stand: Phase, samples: float) -> None:
@@ -167,7 +167,8 @@ class StepQueue:
         gait, (single, double) = self.gait, self._durations
         step = self._next(stride, single)
         check_reach(step.number, Landing.between(self._last.place, step.place), self.ground.parameters)
-        footsteps = self.footsteps.followed(step.place, self.ground.terrain)
+        increment = step.place.position[:2] - self._last.place.position[:2]
+        footsteps = self.footsteps.followed(step.place, increment, self.ground.terrain)
         self.footsteps = footsteps.supported(step.number, step.number)
         self.steps[step.number] = step
         before = self.phases[-1]

@@ -97,37 +97,28 @@ class SmoothHeight:
         """See `HeightProfile`."""
         return gait.com_height
 
+    def apexes(self, gait: GaitParameters) -> tuple[float, float, float]:
+        """A in each kind of phase: standing, double and single support [m]."""
+        return (0.0, gait.apex_ds, gait.apex_ss)
+
     def height(self, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
         """See `HeightProfile`."""
-        bump = _sine_cubed(samples, samples.per_phase((0.0, gait.apex_ds, gait.apex_ss)))
+        bump = _sine_cubed(samples, samples.per_phase(self.apexes(gait)))
         bump[0] += self.standing(gait)
         return _on_levels(self.rise, samples, bump, support_height)
 
 
 @dataclass(frozen=True, slots=True)
-class BentKneeHeight:
-    """Constant height over the level, `BENT_KNEES` below the gait's: the crouched gait of most humanoids.
-
-    Attributes:
-        rise: where the level changes.
-    """
-
-    rise: Rise = Rise.DOUBLE
-
-    @property
-    def impulsive(self) -> bool:
-        """See `HeightProfile`."""
-        return False
+class BentKneeHeight(SmoothHeight):
+    """Constant height over the level, `BENT_KNEES` below the gait's: the crouched gait of most humanoids."""
 
     def standing(self, gait: GaitParameters) -> float:
         """See `HeightProfile`."""
         return gait.com_height - BENT_KNEES
 
-    def height(self, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
-        """See `HeightProfile`."""
-        bump = np.zeros((3, len(samples.kind)))
-        bump[0] = self.standing(gait)
-        return _on_levels(self.rise, samples, bump, support_height)
+    def apexes(self, gait: GaitParameters) -> tuple[float, float, float]:
+        """See `SmoothHeight`."""
+        return (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

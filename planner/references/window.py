@@ -185,7 +185,7 @@ class Outlook:
             count += int(min(_TICKS - 1, max(standing - clock.now, 0.0) + 1))
             heights = HeightPreview(height.height[:, :count], height.stiffness[:count])
             frame = support.rotation, support.origin
-            feet = nominal_feet(samples.part(count + 1), stepper.queue, frame, float(self._half_size[0]))
+            feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]))
             values = self._made_offset(chain, feet, point[:count], heights, position)
             self._offsets = OffsetTable(clock.now, support.key, values)
         return self._offsets.since(clock.now, self._count)

@@ -1,7 +1,7 @@
 """Support phases on the gait's clock, and what follows from them at the samples of a window."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -97,11 +97,31 @@ class PhaseSamples:
     first: int
     flow: Flow
 
-    def part(self, count: int) -> "PhaseSamples":
-        """The first so many samples."""
-        arrays = {name: getattr(self, name)[:count] for name in _PER_SAMPLE}
-        rate = self.flow.rate and (self.flow.rate[0][:count], self.flow.rate[1][:count])
-        return replace(self, **arrays, flow=Flow(self.flow.clock[:count], rate))
+    @classmethod
+    def of(cls, phases: Sequence[Phase], flow: Flow, sample_time: float, first: int) -> "PhaseSamples":
+        """The phases in sight where the clock goes over a window, counting support points from `first`."""
+        which = np.searchsorted([p.start for p in phases], flow.clock + CLOCK_ROUNDING, side="right") - 1
+        which = np.maximum(which, 0)
+        contacts = np.array([[p.stance in (None, foot) for foot in Foot] for p in phases])
+        columns = ([getattr(p, name) for p in phases] for name in ("kind", "start", "samples", "rest", "support"))
+        kind, start, length, rest, support = (np.array(column)[which] for column in columns)
+        elapsed = np.maximum(flow.clock - start, 0.0)
+        ramp = np.where(kind == PhaseKind.DOUBLE, length - rest, np.inf)
+        gone = elapsed - rest
+        return cls(
+            phases=tuple(phases),
+            which=which,
+            kind=kind,
+            elapsed=elapsed,
+            length=length,
+            index=support - first,
+            fraction=np.maximum(gone / ramp, 0.0),
+            fraction_rate=np.where(gone >= 0.0, 1.0 / (ramp * sample_time), 0.0),
+            contacts=contacts[which],
+            sample_time=sample_time,
+            first=first,
+            flow=flow,
+        )
 
     @property
     def last_stand(self) -> NDArray[np.bool_]:
@@ -118,60 +138,3 @@ class PhaseSamples:
             return values
         rate, bend = self.flow.rate
         return np.stack((values[0], values[1] * rate, values[2] * rate**2 + values[1] * bend))
-
-
-_PER_SAMPLE = ("which", "kind", "elapsed", "length", "index", "fraction", "fraction_rate", "contacts")
-
-
-@dataclass(frozen=True, slots=True)
-class PhaseTable:
-    """What `PhaseSamples` look up of the phases in sight, made when these change.
-
-    Attributes:
-        phases: those in sight.
-        starts: of the phases, shape (m,) [samples].
-        columns: their kinds, lengths, rests and support points, shape (4, m).
-        contacts: in each, shape (m, 2).
-    """
-
-    phases: tuple[Phase, ...]
-    starts: Array
-    columns: tuple[NDArray[np.intp], Array, Array, NDArray[np.intp]]
-    contacts: NDArray[np.bool_]
-
-    @classmethod
-    def of(cls, phases: Sequence[Phase]) -> "PhaseTable":
-        """The table of phases."""
-        contacts = np.ones((len(phases), 2), dtype=np.bool_)
-        for row, phase in zip(contacts, phases, strict=True):
-            if phase.stance is not None:
-                row[phase.stance.other] = False
-        kinds, supports = np.array([p.kind for p in phases]), np.array([p.support for p in phases])
-        lengths, rests = np.array([p.samples for p in phases]), np.array([p.rest for p in phases])
-        return cls(tuple(phases), np.array([p.start for p in phases]), (kinds, lengths, rests, supports), contacts)
-
-    def at(self, flow: Flow, sample_time: float, first: int) -> PhaseSamples:
-        """The phases at the samples of a window, counting support points from `first`."""
-        which = np.searchsorted(self.starts, flow.clock + CLOCK_ROUNDING, side="right") - 1
-        which = np.maximum(which, 0)
-        kinds, lengths, rests, supports = self.columns
-        kind, length, rest, support = kinds[which], lengths[which], rests[which], supports[which]
-        elapsed = np.maximum(flow.clock - self.starts[which], 0.0)
-        ramp = np.where(kind == PhaseKind.DOUBLE, length - rest, np.inf)
-        gone = elapsed - rest
-        fraction = np.maximum(gone / ramp, 0.0)
-        rate = np.where(gone >= 0.0, 1.0 / (ramp * sample_time), 0.0)
-        return PhaseSamples(
-            phases=self.phases,
-            which=which,
-            kind=kind,
-            elapsed=elapsed,
-            length=length,
-            index=support - first,
-            fraction=fraction,
-            fraction_rate=rate,
-            contacts=self.contacts[which],
-            sample_time=sample_time,
-            first=first,
-            flow=flow,
-        )

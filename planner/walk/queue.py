@@ -14,7 +14,7 @@ from surefoot.planner.walk.clock import CLOCK_ROUNDING, Flow
 from surefoot.planner.walk.commands import Pose
 from surefoot.planner.walk.footsteps import Path, start_footholds
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
-from surefoot.planner.walk.phases import Phase, PhaseSamples, PhaseTable
+from surefoot.planner.walk.phases import Phase, PhaseSamples
 from surefoot.planner.walk.reach import Landing, check_reach
 from surefoot.planner.walk.source import GaitSource, Request, StepSource
 
@@ -94,13 +94,16 @@ class StepQueue:
         # The start feet count as footsteps -1 and 0, so that the first steps are laid as all others.
         self.steps = {number: Step(number, zero, path, start[number + 1], 0.0, course, swing) for number in (-1, 0)}
         self.phases: list[Phase] = [Phase(PhaseKind.STAND, 0.0, np.inf, 0, None, 0)]
-        self._standing = True
-        self._table = PhaseTable.of(self.phases)
 
     @property
     def _last(self) -> Step:
         """The last step in sight."""
         return self.steps[max(self.steps)]
+
+    @property
+    def _standing(self) -> bool:
+        """Whether the last phase in sight is to stand until a step is ordered."""
+        return self.phases[-1].kind is PhaseKind.STAND
 
     @property
     def support_heights(self) -> Array:
@@ -120,9 +123,7 @@ class StepQueue:
         before = len(self.phases), self.phases[-1]
         while self._lift_offs_after(clock) < _MORE_STEPS and self._ask(now):
             pass
-        if more := before != (len(self.phases), self.phases[-1]):
-            self._table = PhaseTable.of(self.phases)
-        return more
+        return before != (len(self.phases), self.phases[-1])
 
     def _lift_offs_after(self, clock: float) -> int:
         return sum(phase.kind is PhaseKind.SINGLE and phase.start >= clock for phase in self.phases[-2 * _MORE_STEPS :])
@@ -154,13 +155,11 @@ class StepQueue:
         self.phases[-1:] = [replace(stand, samples=samples)] if samples else []
         shift, rest = WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double
         self.phases.append(Phase(PhaseKind.DOUBLE, stand.start + samples, shift, stand.step, None, stand.support, rest))
-        self._standing = False
 
     def _end_bout(self) -> None:
         last = self.phases[-1]
         self.footsteps = self.footsteps.supported(last.step, last.step + 1)
         self.phases.append(Phase(PhaseKind.STAND, last.end, np.inf, last.step, None, last.support + 1))
-        self._standing = True
 
     def _lay(self, stride: Stride) -> None:
         """Lay a step: its foothold, its single support and the double support that follows."""
@@ -212,10 +211,8 @@ class StepQueue:
             last = replace(last, samples=np.inf)
         del self.phases[kept:]
         self.phases.append(last)
-        self._standing = last.kind is PhaseKind.STAND
         self.steps = {number: step for number, step in self.steps.items() if number <= last.step}
         self.footsteps = self.footsteps.until(last.step + 1, last.support)
-        self._table = PhaseTable.of(self.phases)
 
     def enter(self, clock: float) -> None:
         """Let go of what lies behind an instant on the clock, but for the phase of the sample before it.
@@ -232,7 +229,6 @@ class StepQueue:
         first = phases[0]
         self.steps = {number: step for number, step in self.steps.items() if number >= first.step - 2}
         self.footsteps = self.footsteps.since(first.step - 2, first.support - 2)
-        self._table = PhaseTable.of(phases)
 
     def retime(self, gait: GaitParameters, present: Phase, clock: float) -> float:
         """Give all steps to come the durations of a gait; phases that have begun keep theirs on the clock.
@@ -258,7 +254,6 @@ class StepQueue:
                 swing = unit_swing(single, step.climb, step.course, self.ground.parameters)
                 self.steps[phase.step] = replace(step, swing=swing)
             self.phases[number] = phase
-        self._table = PhaseTable.of(self.phases)
         return _lasting(present, single, double)[0]
 
     def _retimed_roll(self, number: int, phase: Phase, clock: float) -> Phase:
@@ -281,7 +276,7 @@ class StepQueue:
 
     def samples(self, flow: Flow) -> PhaseSamples:
         """The phases at the samples of a window."""
-        return self._table.at(flow, self.ground.parameters.sample_time, self.footsteps.first_support)
+        return PhaseSamples.of(self.phases, flow, self.ground.parameters.sample_time, self.footsteps.first_support)
 
     def lift_off(self, step: int) -> Phase:
         """The single support of a step in sight."""

@@ -110,10 +110,6 @@ class Stepper:
             return 0.0
         return self.queue.phase(phase.end).samples * self.sample_time
 
-    def time_to_touchdown(self, step: int) -> float:
-        """Time until a step in sight lands [s]."""
-        return self.clock.until(self.queue.lift_off(step).end) * self.sample_time
-
     def samples(self, count: int) -> PhaseSamples:
         """The phases at `count` samples from now on, with one more before them and one after."""
         return self.queue.samples(self.clock.flow(np.arange(-1.0, count + 1)))
@@ -199,7 +195,8 @@ class Stepper:
                 normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
             footstep = Footstep(steps.feet[row], position, float(steps.yaw[row]), normal)
             step = self.landed + 1 + ahead
-            planned.append(PlannedFootstep(step, footstep, time + self.time_to_touchdown(step)))
+            left = self.clock.until(self.queue.lift_off(step).end)
+            planned.append(PlannedFootstep(step, footstep, time + left * self.sample_time))
         return tuple(planned)
 
     def fix(self, position: Array) -> None:

@@ -10,9 +10,8 @@ from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import STEEPEST_FALL, HeightProfile, Rise, shortest_support
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.planner.types import Array, FeetState
-from surefoot.planner.walk.clock import Flow
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.phases import PhaseSamples
+from surefoot.planner.walk.phases import Flow, PhaseSamples
 from surefoot.planner.walk.queue import Ground, StepQueue
 
 _AT_ONCE = 2000

@@ -50,11 +50,6 @@ class Rise(Enum):
     SINGLE = "single"
 
 
-def lower_levels(support_height: Array) -> Array:
-    """Base levels of `Rise.SINGLE`: the lower foot of each double support 0..n, and the last one again [m]."""
-    return np.append(np.minimum(support_height[:-1], support_height[1:]), support_height[-1])
-
-
 class HeightProfile(Protocol):
     """A law of the CoM height: a function of the phases and of the heights of the footholds."""
 
@@ -186,7 +181,9 @@ def _on_levels(place: Rise, samples: PhaseSamples, bump: Array, support_height: 
     index = np.maximum(samples.index - (swinging | samples.last_stand), 0)
     length = np.where(swinging, samples.length, np.inf)
     rise, fall = (_early_rise(samples, share * length) for share in (_CLIMB_SHARE, _DESCENT_SHARE))
-    return samples.in_time(_lifted(bump, index, rise, fall, lower_levels(support_height)))
+    # The lower foot of each double support, and the last one again.
+    lower = np.append(np.minimum(support_height[:-1], support_height[1:]), support_height[-1])
+    return samples.in_time(_lifted(bump, index, rise, fall, lower))
 
 
 def _early_rise(samples: PhaseSamples, length: Array) -> Array:

@@ -12,8 +12,7 @@ import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, sole_rates, sole_rotation
 from surefoot.planner.types import Array, Foot, Footstep
-from surefoot.planner.walk.clock import Hurry
-from surefoot.planner.walk.phases import Phase, RollSpan
+from surefoot.planner.walk.phases import Hurry, Phase, RollSpan
 
 _BEGIN = 0.25
 """Share of the weight shift after which the heel leaves the ground [-]."""

@@ -173,13 +173,14 @@ class FootstepPlan:
         return np.asarray(0.5 * (values[self.supports[:, 0]] + values[self.supports[:, 1]]))
 
 
-def start_footholds(gait: GaitParameters, feet: FeetState, path: Path, terrain: Terrain) -> FootstepPlan:
-    """The two start feet, the one that moves first in front, and the support point between them."""
+def start_footholds(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> tuple[Path, FootstepPlan]:
+    """Where the path begins; the two start feet, the one that moves first in front, with the support point between."""
+    path = Path.begin(feet, terrain, gait.step_width)
     rows = (gait.step_foot(-1), gait.step_foot(0))
     position = feet.position[list(rows)]
     increment = np.diff(position[:, :2], axis=0, prepend=position[:1, :2])
     normal = terrain.normals(position[:, :2])
-    return FootstepPlan(rows, position, np.full(2, path.yaw), normal, increment, np.array([[0, 1]]))
+    return path, FootstepPlan(rows, position, np.full(2, path.yaw), normal, increment, np.array([[0, 1]]))
 
 
 def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
@@ -190,8 +191,7 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
         feet: start feet in the world frame.
         terrain: gives heights and normals of the footsteps, and the start of the path where they belong on treads.
     """
-    path = Path.begin(feet, terrain, gait.step_width)
-    start = start_footholds(gait, feet, path, terrain)
+    path, start = start_footholds(gait, feet, terrain)
     rows, yaw, places = list(start.feet), start.yaw.tolist(), list(start.position[:, :2])
     for number, stride in enumerate(gait.strides, 1):
         rows.append(gait.step_foot(number))

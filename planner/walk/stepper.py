@@ -7,10 +7,9 @@ from surefoot.planner.parameters import StepAdaptation
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.trajectory import SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
-from surefoot.planner.walk.clock import CLOCK_ROUNDING, Clock
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.phases import PhaseSamples
+from surefoot.planner.walk.phases import CLOCK_ROUNDING, Clock, PhaseSamples
 from surefoot.planner.walk.queue import StepQueue
 from surefoot.planner.walk.source import StepSource
 
@@ -19,7 +18,6 @@ _LEAST_LEFT = 0.1
 
 _SAME_GROUND = 1e-3
 """Footstep shift up to which the ground height is not looked up again [m]."""
-
 
 _SAME_TARGET = 1e-4
 """Difference of touchdown pose that is not worth a new swing trajectory [m, rad]."""

@@ -9,8 +9,8 @@ from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PendulumTrace, walk_pendulum
 from surefoot.planner.types import FeetState, Foot
-from surefoot.planner.walk.clock import Flow
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.phases import Flow
 from surefoot.planner.walk.queue import Ground, StepQueue
 
 

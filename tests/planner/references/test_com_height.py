@@ -11,8 +11,8 @@ from surefoot.planner.references.com_height import (
     preview_height,
 )
 from surefoot.planner.types import GRAVITY, PhaseKind
-from surefoot.planner.walk.clock import Flow
 from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
+from surefoot.planner.walk.phases import Flow
 
 pytestmark = pytest.mark.unit
 

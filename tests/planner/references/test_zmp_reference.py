@@ -4,8 +4,8 @@ import pytest
 from surefoot.planner.geometry import convex_hull, frame_rotation, signed_distance, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.references.zmp_reference import support_table, zmp_reference
-from surefoot.planner.walk.clock import Flow
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.phases import Flow
 
 pytestmark = pytest.mark.unit
 

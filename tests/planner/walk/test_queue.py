@@ -6,8 +6,8 @@ import pytest
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import PhaseKind
-from surefoot.planner.walk.clock import Flow
 from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
+from surefoot.planner.walk.phases import Flow
 from surefoot.planner.walk.queue import Ground, StepQueue
 from surefoot.planner.walk.source import GaitSource
 

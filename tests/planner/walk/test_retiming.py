@@ -13,9 +13,9 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.com_height import Rise, SmoothHeight
 from surefoot.planner.types import CentroidalState, PhaseKind
-from surefoot.planner.walk.clock import Pace
 from surefoot.planner.walk.commands import Command
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.phases import Pace
 
 pytestmark = pytest.mark.unit
 

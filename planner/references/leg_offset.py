@@ -23,13 +23,12 @@ import numpy as np
 
 from surefoot.planner.model.dcm import NominalMotion
 from surefoot.planner.model.leg_chain import LegChain
-from surefoot.planner.parameters import LegInertia, PlannerParameters
+from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.swing.heel_off import bump
-from surefoot.planner.swing.trajectory import SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
 from surefoot.planner.walk.phases import PhaseSamples
-from surefoot.planner.walk.queue import Step, StepQueue
+from surefoot.planner.walk.queue import StepQueue
 
 
 def softening(leg: LegInertia) -> float:
@@ -83,20 +82,13 @@ def _swings(samples: PhaseSamples, queue: StepQueue) -> tuple[Array, Array, Arra
     for number in np.unique(samples.which).tolist():
         phase, here = samples.phases[number], samples.which == number
         if phase.kind is PhaseKind.SINGLE:
-            swing = _unit_swing(phase.samples, queue.steps[phase.step], queue.ground.parameters)
-            way = swing.positions(samples.elapsed[here] * samples.sample_time)
+            way = queue.steps[phase.step].swing.positions(samples.elapsed[here] * samples.sample_time)
             progress[here], height[here] = way[:, 0], way[:, 2]
         if phase.roll is not None:
             start, end, angle = phase.roll
             share = (samples.flow.clock[here] - start) / (end - start)
             pitch[here] = [angle * bump(s)[0] for s in share.tolist()]
     return progress, height, pitch
-
-
-def _unit_swing(samples: float, step: Step, parameters: PlannerParameters) -> SwingTrajectory:
-    """The swing of a step in so many samples, from the origin at time 0 to a footstep one metre ahead."""
-    end, times = np.array([1.0, 0.0, step.climb, 0.0, 0.0, 0.0]), swing_times(0.0, samples, step.course, parameters)
-    return start_swing(Foot.LEFT, np.zeros(6), end, times, step.course.height, parameters)
 
 
 def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: HeightPreview, softened: Array) -> Array:

@@ -255,7 +255,7 @@ class PhaseSamples:
         """The phases in sight where the clock goes over a window, counting support points from `first`."""
         which = np.searchsorted([p.start for p in phases], flow.clock + CLOCK_ROUNDING, side="right") - 1
         which = np.maximum(which, 0)
-        contacts = np.array([[p.stance in (None, foot) for foot in Foot] for p in phases])
+        contacts = np.array([(p.stance is not Foot.RIGHT, p.stance is not Foot.LEFT) for p in phases])
         columns = ([getattr(p, name) for p in phases] for name in ("kind", "start", "samples", "rest", "support"))
         kind, start, length, rest, support = (np.array(column)[which] for column in columns)
         elapsed = np.maximum(flow.clock - start, 0.0)

@@ -8,8 +8,8 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.course import swing_course
 from surefoot.planner.swing.heel_off import roll_span, roll_times
-from surefoot.planner.swing.trajectory import SwingCourse
-from surefoot.planner.types import Array, FeetState, Footstep, PhaseKind
+from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseKind
 from surefoot.planner.walk.commands import Pose
 from surefoot.planner.walk.footsteps import Path, start_footholds
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
@@ -32,6 +32,7 @@ class Step:
         place: its nominal footstep.
         climb: height of that above where its foot nominally stood before [m].
         course: of its swing over the ground.
+        swing: that swing to a footstep one metre ahead, in its own time.
     """
 
     number: int
@@ -40,6 +41,7 @@ class Step:
     place: Footstep
     climb: float
     course: SwingCourse
+    swing: SwingTrajectory
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +88,9 @@ class StepQueue:
         path, self.footsteps = start_footholds(gait, feet, ground.terrain)
         start = [self.footsteps.footstep(row) for row in (0, 1)]
         zero, course = Stride(0.0, 0.0, 0.0, gait.step_width), SwingCourse(0.5, 0.0, 1.0, 0.0)
+        swing = unit_swing(self._durations[0], 0.0, course, ground.parameters)
         # The start feet count as footsteps -1 and 0, so that the first steps are laid as all others.
-        self.steps = {number: Step(number, zero, path, start[number + 1], 0.0, course) for number in (-1, 0)}
+        self.steps = {number: Step(number, zero, path, start[number + 1], 0.0, course, swing) for number in (-1, 0)}
         self.phases: list[Phase] = [Phase(PhaseKind.STAND, 0.0, np.inf, 0, None, 0)]
 
     @property
@@ -187,7 +190,7 @@ class StepQueue:
         )
         # The start feet are measured, which may be a few nanometres off the ground.
         climb = round(float(position[2] - start.position[2]), 6)
-        return Step(number, stride, path, place, climb, course)
+        return Step(number, stride, path, place, climb, course, unit_swing(single, climb, course, ground.parameters))
 
     def reorder(self, present: Phase, source: StepSource | None = None) -> None:
         """Ask anew for all steps but the one being swung and the one to which the weight is being shifted.
@@ -245,6 +248,9 @@ class StepQueue:
             phase = replace(phase, start=before.end, samples=samples, rest=rest)
             if phase.kind is PhaseKind.SINGLE:
                 phase = self._retimed_roll(number, phase, clock)
+                step = self.steps[phase.step]
+                swing = unit_swing(single, step.climb, step.course, self.ground.parameters)
+                self.steps[phase.step] = replace(step, swing=swing)
             self.phases[number] = phase
         return _lasting(present, single, double)[0]
 
@@ -282,3 +288,9 @@ def _lasting(phase: Phase, single: float, double: float) -> tuple[float, float]:
     if phase.kind is PhaseKind.STAND:
         return phase.samples, 0.0
     return (WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double) if phase.rest else (double, 0.0)
+
+
+def unit_swing(samples: float, climb: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTrajectory:
+    """A swing of so many samples from the origin at time 0 to a footstep one metre ahead that lies higher [m]."""
+    end, times = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), swing_times(0.0, samples, course, parameters)
+    return start_swing(Foot.LEFT, np.zeros(6), end, times, course.height, parameters)

@@ -1,4 +1,4 @@
-"""What can be told of a walk before it begins: the rules that hold when a step comes into sight, for all of them."""
+"""What of a walk is refused before it is walked: heights and durations, and steps that are not yet in sight."""
 
 from dataclasses import replace
 
@@ -7,11 +7,11 @@ import numpy as np
 from surefoot.errors import ParameterError
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.references.com_height import HeightProfile, check_height, shortest_support
+from surefoot.planner.references.com_height import STEEPEST_FALL, HeightProfile, Rise, shortest_support
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
-from surefoot.planner.types import FeetState
+from surefoot.planner.types import Array, FeetState
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.phases import Flow
+from surefoot.planner.walk.phases import Flow, PhaseSamples
 from surefoot.planner.walk.queue import Ground, StepQueue
 
 _AT_ONCE = 2000
@@ -46,6 +46,35 @@ def check_walk(
         clock += _AT_ONCE - 2
         last = queue.phases[-1].start
         queue.enter(clock)
+
+
+def check_height(profile: HeightProfile, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> None:
+    """Refuse a height that the body could only follow by nearly free fall, or that goes into the ground.
+
+    Args:
+        profile: law of the height.
+        gait: the walk.
+        samples: its phases over a window.
+        support_height: heights of the support points in sight, shape (m,) [m].
+
+    Raises:
+        ParameterError: names the acceleration or the height that is out of bounds. The impulses of an impulsive law
+            last a sample and depend on its length; they are not refused.
+    """
+    step = np.append(np.diff(support_height), 0.0)[samples.index]
+    ground = support_height[samples.index] + samples.fraction * step
+    height = profile.height(gait, samples, support_height)[:, 1:-1]
+    lowest = float(np.min(height[0] - ground[1:-1]))
+    if lowest <= 0.0:
+        what = f"the CoM comes within {lowest:.2f} m of the ground under it"
+        raise ParameterError(("gait", "com_height"), what, "it must stay above it")
+    fall = float(np.min(height[2]))
+    if fall < -STEEPEST_FALL and not profile.impulsive:
+        in_double = getattr(profile, "rise", Rise.DOUBLE) is Rise.DOUBLE
+        support = "double_support" if in_double else "single_support"
+        remedy = f"give {support.replace('_', ' ')} more time" + in_double * ", or let the CoM rise in single support"
+        what = f"the CoM falls off with {-fall:.1f} m/s^2 where two footsteps differ in height"
+        raise ParameterError(("gait", support), what, f"{STEEPEST_FALL:.1f} m/s^2 is the most; {remedy}")
 
 
 def check_durations(gait: GaitParameters, sample_time: float) -> None:

@@ -47,11 +47,6 @@ def dcm(position: Array, velocity: Array, omega: Array | float) -> Array:
     return np.asarray(position + velocity / omega)
 
 
-def dcm_constant_zmp(start: Array, zmp: Array, omega: float, time: float) -> Array:
-    """Closed form at constant height and ZMP: ξ(t) = p + (ξ(0) - p) e^{ωt}."""
-    return np.asarray(zmp + (start - zmp) * np.exp(omega * time))
-
-
 def viability_weights(stiffness: Array, omega: Array, sample_time: float) -> Array:
     """Weights w with which the future ZMP fixes the DCM that stays bounded: ξ = Σ w_j p_j.
 

@@ -13,7 +13,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.errors import ParameterError
 from surefoot.planner.types import GRAVITY, Array, PhaseKind
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import PhaseSamples
@@ -49,11 +48,6 @@ class Rise(Enum):
 
     DOUBLE = "double"
     SINGLE = "single"
-
-
-def lower_levels(support_height: Array) -> Array:
-    """Base levels of `Rise.SINGLE`: the lower foot of each double support 0..n, and the last one again [m]."""
-    return np.append(np.minimum(support_height[:-1], support_height[1:]), support_height[-1])
 
 
 class HeightProfile(Protocol):
@@ -98,37 +92,28 @@ class SmoothHeight:
         """See `HeightProfile`."""
         return gait.com_height
 
+    def apexes(self, gait: GaitParameters) -> tuple[float, float, float]:
+        """A in each kind of phase: standing, double and single support [m]."""
+        return (0.0, gait.apex_ds, gait.apex_ss)
+
     def height(self, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
         """See `HeightProfile`."""
-        bump = _sine_cubed(samples, samples.per_phase((0.0, gait.apex_ds, gait.apex_ss)))
+        bump = _sine_cubed(samples, samples.per_phase(self.apexes(gait)))
         bump[0] += self.standing(gait)
         return _on_levels(self.rise, samples, bump, support_height)
 
 
 @dataclass(frozen=True, slots=True)
-class BentKneeHeight:
-    """Constant height over the level, `BENT_KNEES` below the gait's: the crouched gait of most humanoids.
-
-    Attributes:
-        rise: where the level changes.
-    """
-
-    rise: Rise = Rise.DOUBLE
-
-    @property
-    def impulsive(self) -> bool:
-        """See `HeightProfile`."""
-        return False
+class BentKneeHeight(SmoothHeight):
+    """Constant height over the level, `BENT_KNEES` below the gait's: the crouched gait of most humanoids."""
 
     def standing(self, gait: GaitParameters) -> float:
         """See `HeightProfile`."""
         return gait.com_height - BENT_KNEES
 
-    def height(self, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
-        """See `HeightProfile`."""
-        bump = np.zeros((3, len(samples.kind)))
-        bump[0] = self.standing(gait)
-        return _on_levels(self.rise, samples, bump, support_height)
+    def apexes(self, gait: GaitParameters) -> tuple[float, float, float]:
+        """See `SmoothHeight`."""
+        return (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +181,9 @@ def _on_levels(place: Rise, samples: PhaseSamples, bump: Array, support_height: 
     index = np.maximum(samples.index - (swinging | samples.last_stand), 0)
     length = np.where(swinging, samples.length, np.inf)
     rise, fall = (_early_rise(samples, share * length) for share in (_CLIMB_SHARE, _DESCENT_SHARE))
-    return samples.in_time(_lifted(bump, index, rise, fall, lower_levels(support_height)))
+    # The lower foot of each double support, and the last one again.
+    lower = np.append(np.minimum(support_height[:-1], support_height[1:]), support_height[-1])
+    return samples.in_time(_lifted(bump, index, rise, fall, lower))
 
 
 def _early_rise(samples: PhaseSamples, length: Array) -> Array:
@@ -278,32 +265,3 @@ def preview_height(
     limit = _IMPULSE_LIMIT if profile.impulsive else _FALL_LIMIT
     pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
     return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT))
-
-
-def check_height(profile: HeightProfile, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> None:
-    """Refuse a height that the body could only follow by nearly free fall, or that goes into the ground.
-
-    Args:
-        profile: law of the height.
-        gait: the walk.
-        samples: its phases over a window.
-        support_height: heights of the support points in sight, shape (m,) [m].
-
-    Raises:
-        ParameterError: names the acceleration or the height that is out of bounds. The impulses of an impulsive law
-            last a sample and depend on its length; they are not refused.
-    """
-    step = np.append(np.diff(support_height), 0.0)[samples.index]
-    ground = support_height[samples.index] + samples.fraction * step
-    height = profile.height(gait, samples, support_height)[:, 1:-1]
-    lowest = float(np.min(height[0] - ground[1:-1]))
-    if lowest <= 0.0:
-        what = f"the CoM comes within {lowest:.2f} m of the ground under it"
-        raise ParameterError(("gait", "com_height"), what, "it must stay above it")
-    fall = float(np.min(height[2]))
-    if fall < -STEEPEST_FALL and not profile.impulsive:
-        in_double = getattr(profile, "rise", Rise.DOUBLE) is Rise.DOUBLE
-        support = "double_support" if in_double else "single_support"
-        remedy = f"give {support.replace('_', ' ')} more time" + in_double * ", or let the CoM rise in single support"
-        what = f"the CoM falls off with {-fall:.1f} m/s^2 where two footsteps differ in height"
-        raise ParameterError(("gait", support), what, f"{STEEPEST_FALL:.1f} m/s^2 is the most; {remedy}")

@@ -96,7 +96,7 @@ def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: Heigh
 
     Args:
         chain: the body.
-        feet: at the window's n samples and the one before.
+        feet: at the sample before the window, at its n samples, and maybe more.
         motion: horizontal CoM motion, near the one to be planned.
         height: CoM height.
         softened: λ', shape (n,) [1/s^2].
@@ -110,7 +110,8 @@ def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: Heigh
     t = motion.sample_time
     com[0, :2] = _before(motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
     com[0, 2] = _before(height.height[:, 0], t)
-    rate = chain.momentum_rate(com, feet.soles, feet.heading, t, feet.pitch, feet.toe)
+    soles, heading, pitch = feet.soles[:, : n + 1], feet.heading[: n + 1], feet.pitch[:, : n + 1]
+    rate = chain.momentum_rate(com, soles, heading, t, pitch, feet.toe)
     pressing = GRAVITY + height.height[2]
     offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]
     offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / pressing[:-1, None])

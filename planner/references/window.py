@@ -8,14 +8,21 @@ from numpy.typing import NDArray
 
 from surefoot.planner.model.dcm import natural_frequency, nominal_motion
 from surefoot.planner.model.leg_chain import LegChain
-from surefoot.planner.parameters import LegInertia
+from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import HeightPreview, HeightProfile, preview_height
 from surefoot.planner.references.leg_offset import Feet, nominal_feet, softening, zmp_offset
-from surefoot.planner.references.zmp_reference import Support, SupportKey, ZmpReference, load_left, zmp_reference
+from surefoot.planner.references.zmp_reference import (
+    Support,
+    SupportKey,
+    ZmpReference,
+    load_left,
+    present_support,
+    zmp_reference,
+)
 from surefoot.planner.types import Array
-from surefoot.planner.walk.clock import Stepper
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import PhaseSamples
+from surefoot.planner.walk.stepper import Stepper
 
 _TICKS = 5
 """Ticks for which an offset of the legs serves; making it costs more than the rest of a plan."""
@@ -70,7 +77,6 @@ class Window:
         omega: ω of its DCM, shape (n,) [1/s].
         load_left: planned share of the weight on the left foot, shape (n,) [-].
         contacts: planned contacts (left, right), shape (n, 2).
-        table: where the offset comes from; None without legs.
     """
 
     reference: ZmpReference
@@ -81,33 +87,36 @@ class Window:
     omega: Array
     load_left: Array
     contacts: NDArray[np.bool_]
-    table: OffsetTable | None
 
 
-@dataclass(frozen=True, slots=True)
 class Outlook:
     """Looks ahead along a walk.
 
-    Attributes:
+    Args:
         gait: the walk.
         profile: law of its CoM height.
-        leg: the reduced leg.
-        toe: toe edge from the sole's centre [m].
-        count: samples of a window, N + M + 1.
-        sample_time: length of one [s].
+        parameters: of the planner.
+        half_size: half of the sole's length and width, shape (2,) [m].
     """
 
-    gait: GaitParameters
-    profile: HeightProfile
-    leg: LegInertia
-    toe: float
-    count: int
-    sample_time: float
+    def __init__(
+        self, gait: GaitParameters, profile: HeightProfile, parameters: PlannerParameters, half_size: Array
+    ) -> None:
+        self._gait, self._profile, self._half_size = gait, profile, half_size
+        self._leg, self._margin, self._sample_time = parameters.leg, parameters.foot_margin, parameters.sample_time
+        self._count = parameters.horizon + parameters.preview + 1
+        self._support: Support | None = None
+        self._offsets: OffsetTable | None = None
 
     @property
     def reach(self) -> int:
         """Samples that are looked at: offsets serve for some ticks, at the last of which they are to cover a window."""
-        return self.count + _TICKS - 1
+        return self._count + _TICKS - 1
+
+    def support(self, stepper: Stepper) -> Support:
+        """What carries the robot now."""
+        self._support = present_support(self._support, stepper, self._half_size, self._margin)
+        return self._support
 
     def zmp(self, samples: PhaseSamples, support: Support) -> ZmpReference:
         """The ZMP that the footsteps define: the paper's ZMP planner.
@@ -120,7 +129,7 @@ class Outlook:
 
     def com_height(self, samples: PhaseSamples, support: Support, reference: ZmpReference) -> HeightPreview:
         """CoM height and stiffness over the samples of a reference: the paper's vertical motion planner."""
-        return preview_height(self.profile, self.gait, samples, support.heights, reference.height)
+        return preview_height(self._profile, self._gait, samples, support.heights, reference.height)
 
     def window(
         self,
@@ -130,7 +139,6 @@ class Outlook:
         reference: ZmpReference,
         height: HeightPreview,
         position: Array,
-        table: OffsetTable | None = None,
     ) -> Window:
         """The window that begins now.
 
@@ -141,25 +149,11 @@ class Outlook:
             reference: ZMP.
             height: CoM height.
             position: CoM now in the plan frame, shape (2,) [m].
-            table: offsets of the tick before, used again while they hold.
         """
-        count = self.count
-        stiffness = softening(self.leg) * height.stiffness
+        count = self._count
+        stiffness = softening(self._leg) * height.stiffness
         seen = reference.part(slice(count))
-        if self.leg.chain is None:
-            table, offset = None, np.zeros_like(seen.point)
-        else:
-            last = samples.phases[-1]
-            standing = last.start if math.isinf(last.samples) else math.inf
-            if table is None or not stepper.steady or not table.holds(stepper.tick, support.key, standing):
-                # No longer than until the robot stands will they serve.
-                more = int(min(_TICKS - 1, max(standing - stepper.tick, 0.0) + 1))
-                heights = HeightPreview(height.height[:, : count + more], height.stiffness[: count + more])
-                frame = support.rotation, support.origin
-                feet = nominal_feet(samples.part(count + more + 1), stepper.queue, frame, self.toe)
-                values = self._offsets(self.leg.chain, feet, reference.point[: count + more], heights, position)
-                table = OffsetTable(stepper.tick, support.key, values)
-            offset = table.since(stepper.tick, count)
+        offset = self._offset(stepper, samples, support, reference.point, height, position)
         return Window(
             reference=seen,
             driving=replace(seen, point=seen.point - offset),
@@ -169,13 +163,37 @@ class Outlook:
             omega=natural_frequency(stiffness[:count], samples.sample_time),
             load_left=load_left(samples, support)[1 : count + 1],
             contacts=samples.contacts[1 : count + 1],
-            table=table,
         )
 
-    def _offsets(self, chain: LegChain, feet: Feet, point: Array, height: HeightPreview, position: Array) -> Array:
-        """Offsets for a CoM on the nominal motion, which itself depends on them: two passes leave a millimetre."""
-        stiffness, offset = softening(self.leg) * height.stiffness, np.zeros_like(point)
+    def _offset(
+        self,
+        stepper: Stepper,
+        samples: PhaseSamples,
+        support: Support,
+        point: Array,
+        height: HeightPreview,
+        position: Array,
+    ) -> Array:
+        """What the legs add to the ZMP, shape (n, 2) [m]; arguments as of `window`."""
+        chain, count, clock = self._leg.chain, self._count, stepper.clock
+        if chain is None:
+            return np.zeros((count, 2))
+        last = samples.phases[-1]
+        standing = last.start if math.isinf(last.samples) else math.inf
+        if self._offsets is None or not clock.steady or not self._offsets.holds(clock.now, support.key, standing):
+            # No longer than until the robot stands will they serve.
+            count += int(min(_TICKS - 1, max(standing - clock.now, 0.0) + 1))
+            heights = HeightPreview(height.height[:, :count], height.stiffness[:count])
+            frame = support.rotation, support.origin
+            feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]))
+            values = self._made_offset(chain, feet, point[:count], heights, position)
+            self._offsets = OffsetTable(clock.now, support.key, values)
+        return self._offsets.since(clock.now, self._count)
+
+    def _made_offset(self, chain: LegChain, feet: Feet, point: Array, height: HeightPreview, position: Array) -> Array:
+        """That for a CoM on the nominal motion, which itself depends on it: two passes leave a millimetre."""
+        stiffness, offset = softening(self._leg) * height.stiffness, np.zeros_like(point)
         for _ in range(2):
-            motion = nominal_motion(position, point - offset, stiffness, self.sample_time)
+            motion = nominal_motion(position, point - offset, stiffness, self._sample_time)
             offset = zmp_offset(chain, feet, motion, height, stiffness)
         return offset

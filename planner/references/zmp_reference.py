@@ -7,9 +7,9 @@ import numpy as np
 
 from surefoot.planner.geometry import convex_hull, frame_rotation, sole_corners
 from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
-from surefoot.planner.walk.clock import Stepper
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.phases import PhaseSamples
+from surefoot.planner.walk.stepper import Stepper
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ class SupportKey(NamedTuple):
     """What a support follows from in a walk: of two ticks with the same key it is the same, to the last digit.
 
     Attributes:
-        revision: of the footholds (see `planner.walk.clock.Stepper`).
+        revision: of the footholds (see `planner.walk.stepper.Stepper`).
         landed: number of the step that landed last.
         phase_start: begin of the phase on the clock [samples].
         free: whether the next two footsteps may be shifted.

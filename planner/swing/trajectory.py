@@ -114,11 +114,7 @@ class SwingTrajectory:
         moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target))
         if target[2] == self.target[2]:
             return moved
-        if time < self.apex_time - _NOW:
-            height = state[:, 2:3]
-            return _with_height(moved, time, height, max(float(height[0, 0]), float(target[2])) + self.clearance)
-        fall = _fall(state[:, 2:3], float(target[2]), self.search.touchdown_speed, self.touchdown_time - time)
-        return replace(moved, fall_start=time, fall=fall)
+        return moved._with_height(time, state[:, 2:3], max(float(state[0, 2]), float(target[2])) + self.clearance)
 
     def retimed(self, time: float, delay: float, grid: float) -> "SwingTrajectory":
         """The trajectory that goes on from its own state at `time` to the same target and apex at other times.
@@ -143,11 +139,23 @@ class SwingTrajectory:
             level = _to_rest(state[:, _GLIDING], self.target[_GLIDING], end - start)
             moved = replace(moved, glide_end=end, level=level)
         if time < self.apex_time - _NOW:
-            top = float((self.apex_time - self.rise_start) ** _EXPONENTS @ self.rise[:, 0])
-            apex = min(max(put_off(self.apex_time), time + grid), touchdown - grid)
-            return _with_height(replace(moved, apex_time=apex), time, state[:, 2:3], top)
-        fall = _fall(state[:, 2:3], float(self.target[2]), self.search.touchdown_speed, touchdown - time)
-        return replace(moved, fall_start=time, fall=fall)
+            moved = replace(moved, apex_time=min(max(put_off(self.apex_time), time + grid), touchdown - grid))
+        top = float((self.apex_time - self.rise_start) ** _EXPONENTS @ self.rise[:, 0])
+        return moved._with_height(time, state[:, 2:3], top)
+
+    def _with_height(self, time: float, state: Array, apex: float) -> "SwingTrajectory":
+        """Height from a state at `time` up to an apex, unless that is over, and down to the target.
+
+        4 h / t² at the apex keeps both monotone.
+        """
+        end = np.array([[self.target[2]], [-self.search.touchdown_speed], [0.0]])
+        if time >= self.apex_time - _NOW:
+            return replace(self, fall_start=time, fall=quintic(state, end, self.touchdown_time - time))
+        up, down = self.apex_time - time, self.touchdown_time - self.apex_time
+        bend = -4.0 * min((apex - state[0, 0]) / up**2, (apex - end[0, 0]) / down**2)
+        top = np.array([[apex], [0.0], [bend]])
+        rise, fall = quintic(state, top, up), quintic(top, end, down)
+        return replace(self, rise_start=time, rise=rise, fall_start=self.apex_time, fall=fall)
 
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
@@ -230,23 +238,7 @@ def start_swing(
         fall_start=times.apex,
         fall=np.zeros((6, 1)),
     )
-    return _with_height(trajectory, times.lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
-
-
-def _with_height(trajectory: SwingTrajectory, time: float, state: Array, apex: float) -> SwingTrajectory:
-    """Height from a state up to the apex height and down to the target; 4 h / t² at the apex keeps both monotone."""
-    up, down = trajectory.apex_time - time, trajectory.touchdown_time - trajectory.apex_time
-    end = float(trajectory.target[2])
-    bend = -4.0 * min((apex - float(state[0, 0])) / up**2, (apex - end) / down**2)
-    top = np.array([[apex], [0.0], [bend]])
-    fall = _fall(top, end, trajectory.search.touchdown_speed, down)
-    return replace(
-        trajectory, rise_start=time, rise=quintic(state, top, up), fall_start=trajectory.apex_time, fall=fall
-    )
-
-
-def _fall(state: Array, height: float, speed: float, duration: float) -> Array:
-    return quintic(state, np.array([[height], [-speed], [0.0]]), duration)
+    return trajectory._with_height(times.lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
 
 
 def _to_rest(state: Array, target: Array, duration: float) -> Array:

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array, FeetState, Foot, Footstep
-from surefoot.planner.walk.gait import GaitParameters, Stride, support_rows
-from surefoot.planner.walk.reach import Landing
+from surefoot.planner.walk.gait import GaitParameters, Stride
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +75,8 @@ class FootstepPlan:
         yaw: planned headings, unwrapped, shape (n,) [rad]; landing errors do not enter, so heading does not drift.
         normal: unit normals of the ground, shape (n, 3) [-].
         increment: nominal displacement from the row before, shape (n, 2) [m].
-        supports: rows between which each support point lies, shape (m, 2) (see `planner.walk.gait.support_rows`).
+        supports: rows between which each support point of the ZMP reference lies, shape (m, 2): two feet where the
+            robot stands, and one, given twice, while it stands on that.
         first: row of the walk that its first one is.
         first_support: support point of the walk that its first one is.
         moved_to: where a row was moved and how far the last row lies from there nominally, shape (2,) each [m]; None
@@ -102,12 +102,6 @@ class FootstepPlan:
         """The foothold of a row."""
         return Footstep(self.feet[row], self.position[row], float(self.yaw[row]), self.normal[row])
 
-    def landing(self, row: int) -> Landing:
-        """Where the foot of a row lands nominally, seen from its stance foot, that of the row before."""
-        ahead, left = self.increment[row] @ frame_rotation(float(self.yaw[row - 1]))
-        beside = left if self.feet[row] is Foot.LEFT else -left
-        return Landing(float(ahead), float(beside), float(self.yaw[row] - self.yaw[row - 1]))
-
     def moved(self, row: int, position: Array, terrain: Terrain) -> "FootstepPlan":
         """The plan with one foothold somewhere else and its successors at their nominal increments from it.
 
@@ -118,19 +112,14 @@ class FootstepPlan:
             position: its new sole centre in the world frame, shape (3,) [m].
             terrain: gives the heights of the shifted successors, or keeps them where they are.
         """
-        moved = self.position.copy()
+        moved, normal, anchor = self.position.copy(), self.normal, self.moved_to
         moved[row] = position
-        if not terrain.free_footholds:
-            return replace(self, position=moved)
-        way = np.cumsum(self.increment[row + 1 :], axis=0)
-        following = position[:2] + way
-        moved[row + 1 :, :2] = following
-        moved[row + 1 :, 2] = terrain.heights(following)
-        anchor = (position[:2], way[-1] if len(way) else np.zeros(2))
-        if not terrain.has_edges:
-            return replace(self, position=moved, moved_to=anchor)
-        normal = self.normal.copy()
-        normal[row:] = terrain.normals(moved[row:, :2])
+        if terrain.free_footholds:
+            way = np.cumsum(self.increment[row + 1 :], axis=0)
+            moved[row + 1 :, :2] = position[:2] + way
+            moved[row + 1 :, 2] = terrain.heights(moved[row + 1 :, :2])
+            normal = np.concatenate((normal[:row], terrain.normals(moved[row:, :2])))
+            anchor = (position[:2], way[-1] if len(way) else np.zeros(2))
         return replace(self, position=moved, normal=normal, moved_to=anchor)
 
     def followed(self, place: Footstep, increment: Array, terrain: Terrain) -> "FootstepPlan":
@@ -141,18 +130,16 @@ class FootstepPlan:
             increment: its displacement from the nominal one before, shape (2,) [m].
             terrain: gives its height where it is moved.
         """
-        position, normal, anchor = place.position, place.normal, self.moved_to
+        xy, anchor = place.position[None, :2], self.moved_to
         if anchor is not None:
-            way = anchor[1] + increment
-            anchor, xy = (anchor[0], way), (anchor[0] + way)[None]
-            position = np.append(xy[0], terrain.heights(xy))
-            normal = terrain.normals(xy)[0] if terrain.has_edges else normal
+            anchor = (anchor[0], anchor[1] + increment)
+            xy = (anchor[0] + anchor[1])[None]
         return replace(
             self,
             feet=(*self.feet, place.foot),
-            position=np.concatenate((self.position, position[None])),
+            position=np.concatenate((self.position, np.column_stack((xy, terrain.heights(xy))))),
             yaw=np.append(self.yaw, place.yaw),
-            normal=np.concatenate((self.normal, normal[None])),
+            normal=np.concatenate((self.normal, terrain.normals(xy))),
             increment=np.concatenate((self.increment, increment[None])),
             moved_to=anchor,
         )
@@ -165,32 +152,17 @@ class FootstepPlan:
     def since(self, row: int, support: int) -> "FootstepPlan":
         """What of the plan begins at a row and a support point of the walk, or what there is from there on."""
         rows, points = max(row - self.first, 0), max(support - self.first_support, 0)
-        return replace(
-            self,
-            feet=self.feet[rows:],
-            position=self.position[rows:],
-            yaw=self.yaw[rows:],
-            normal=self.normal[rows:],
-            increment=self.increment[rows:],
-            supports=self.supports[points:] - rows,
-            first=self.first + rows,
-            first_support=self.first_support + points,
-        )
+        supports, first, first_support = self.supports[points:] - rows, self.first + rows, self.first_support + points
+        return replace(self._part(slice(rows, None)), supports=supports, first=first, first_support=first_support)
 
     def until(self, row: int, support: int) -> "FootstepPlan":
         """What of the plan ends with a row and a support point of the walk."""
-        rows, points = row + 1 - self.first, support + 1 - self.first_support
-        moved_to = self.moved_to and (self.position[rows - 1, :2], np.zeros(2))
-        return replace(
-            self,
-            feet=self.feet[:rows],
-            position=self.position[:rows],
-            yaw=self.yaw[:rows],
-            normal=self.normal[:rows],
-            increment=self.increment[:rows],
-            supports=self.supports[:points],
-            moved_to=moved_to,
-        )
+        part, supports = self._part(slice(row + 1 - self.first)), self.supports[: support + 1 - self.first_support]
+        return replace(part, supports=supports, moved_to=self.moved_to and (part.position[-1, :2], np.zeros(2)))
+
+    def _part(self, rows: slice) -> "FootstepPlan":
+        arrays = {name: getattr(self, name)[rows] for name in ("feet", "position", "yaw", "normal", "increment")}
+        return replace(self, **arrays)
 
     def support_points(self) -> Array:
         """Support points of the ZMP reference (see `planner.walk.queue`), shape (m, 3) [m]."""
@@ -201,27 +173,26 @@ class FootstepPlan:
         return np.asarray(0.5 * (values[self.supports[:, 0]] + values[self.supports[:, 1]]))
 
 
-def start_footholds(gait: GaitParameters, feet: FeetState, path: Path, terrain: Terrain) -> FootstepPlan:
-    """The two start feet, the one that moves first in front, and the support point between them."""
+def start_footholds(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> tuple[Path, FootstepPlan]:
+    """Where the path begins; the two start feet, the one that moves first in front, with the support point between."""
+    path = Path.begin(feet, terrain, gait.step_width)
     rows = (gait.step_foot(-1), gait.step_foot(0))
     position = feet.position[list(rows)]
-    increment = np.zeros((2, 2))
-    increment[1] = position[1, :2] - position[0, :2]
-    yaw = np.full(2, path.yaw)
-    return FootstepPlan(rows, position, yaw, terrain.normals(position[:, :2]), increment, np.array([[0, 1]]))
+    increment = np.diff(position[:, :2], axis=0, prepend=position[:1, :2])
+    normal = terrain.normals(position[:, :2])
+    return path, FootstepPlan(rows, position, np.full(2, path.yaw), normal, increment, np.array([[0, 1]]))
 
 
 def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
-    """Footsteps of a whole gait from where the feet stand.
+    """Footsteps of a whole gait from where the feet stand, whenever they are taken: without support points of steps.
 
     Args:
         gait: the gait.
         feet: start feet in the world frame.
         terrain: gives heights and normals of the footsteps, and the start of the path where they belong on treads.
     """
-    path = Path.begin(feet, terrain, gait.step_width)
-    start = start_footholds(gait, feet, path, terrain)
-    rows, yaw, places = list(start.feet), [path.yaw, path.yaw], list(start.position[:, :2])
+    path, start = start_footholds(gait, feet, terrain)
+    rows, yaw, places = list(start.feet), start.yaw.tolist(), list(start.position[:, :2])
     for number, stride in enumerate(gait.strides, 1):
         rows.append(gait.step_foot(number))
         path, place = path.advanced(stride, rows[-1])
@@ -230,6 +201,5 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     level = np.array(places)
     position = np.column_stack((level, terrain.heights(level)))
     position[:2] = start.position
-    increment = np.diff(level, axis=0, prepend=level[:1])
-    supports = support_rows(gait.walk)
-    return FootstepPlan(tuple(rows), position, np.array(yaw), terrain.normals(level), increment, supports)
+    increment, normal = np.diff(level, axis=0, prepend=level[:1]), terrain.normals(level)
+    return replace(start, feet=tuple(rows), position=position, yaw=np.array(yaw), normal=normal, increment=increment)

@@ -2,9 +2,7 @@
 
 import math
 from dataclasses import dataclass, fields
-
-import numpy as np
-from numpy.typing import NDArray
+from itertools import accumulate, chain
 
 from surefoot.errors import ParameterError
 from surefoot.planner.types import Foot
@@ -150,7 +148,14 @@ class GaitParameters:
     @property
     def strides(self) -> tuple[Stride, ...]:
         """The strides of all bouts."""
-        return tuple(stride for bout in self.walk for stride in bout.strides)
+        return tuple(chain.from_iterable(bout.strides for bout in self.walk))
+
+    @property
+    def begins(self) -> dict[int, float]:
+        """The standing before each bout by the number of its first step [s]."""
+        walk = self.walk
+        firsts = accumulate((len(bout.strides) for bout in walk), initial=1)
+        return {first: bout.stand for first, bout in zip(firsts, walk, strict=False)}
 
     @property
     def period(self) -> float:
@@ -160,7 +165,7 @@ class GaitParameters:
     @property
     def duration(self) -> float:
         """Time from the start to the end of the last double support; of a gait that stands the rest before it [s]."""
-        return self.lift_off(self.steps + 1) if self.walk else self.initial_stand
+        return self.lift_off(self.steps + 1) if self.steps else self.initial_stand
 
     def lift_off(self, step: int) -> float:
         """Time at which a foot lifts off; of a step after the last one when it would if the walk went on [s].
@@ -171,37 +176,19 @@ class GaitParameters:
         Raises:
             ParameterError: the gait only stands.
         """
-        begin, before, walk = 0.0, 0, self.walk
-        for number, bout in enumerate(walk, start=1):
-            first = begin + bout.stand + WEIGHT_SHIFT * self.double_support
-            if step <= before + len(bout.strides) or number == len(walk):
-                return first + (step - before - 1) * self.period
-            begin, before = first + len(bout.strides) * self.period, before + len(bout.strides)
-        raise ParameterError(("gait", "steps"), f"there is no step {step} of a gait that stands", "it must have steps")
+        if not self.steps:
+            what = f"there is no step {step} of a gait that stands"
+            raise ParameterError(("gait", "steps"), what, "it must have steps")
+        shift = WEIGHT_SHIFT * self.double_support
+        return sum(stand + shift for first, stand in self.begins.items() if first <= step) + (step - 1) * self.period
 
     def support_before(self, step: int) -> float:
         """Duration of the double support before a step [s]."""
-        counts = [len(bout.strides) for bout in self.walk]
-        begins_bout = step in [1 + sum(counts[:i]) for i in range(len(counts))]
-        return self.double_support * (WEIGHT_SHIFT if begins_bout else 1)
+        return self.double_support * (WEIGHT_SHIFT if step in self.begins else 1)
 
     def step_foot(self, step: int) -> Foot:
         """The foot that step number `step` moves; steps count from 1, number 0 and -1 are the start feet."""
         return self.first_foot if step % 2 == 1 else Foot(self.first_foot).other
-
-
-def support_rows(walk: tuple[Bout, ...]) -> NDArray[np.intp]:
-    """The rows of a footstep plan between which each support point of the ZMP reference lies, shape (m, 2).
-
-    The reference stands between two feet before every bout and at the end, and on one foot, given twice, during each
-    step: with B bouts of n strides in all there are m = n + B + 1 support points. The stance foot of step i is row i.
-    """
-    rows, step = [], 0
-    for bout in walk:
-        rows.append((step, step + 1))
-        rows += [(step + i, step + i) for i in range(1, len(bout.strides) + 1)]
-        step += len(bout.strides)
-    return np.array([*rows, (step, step + 1)], dtype=np.intp)
 
 
 def in_samples(duration: float, sample_time: float) -> float:

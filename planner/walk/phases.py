@@ -1,11 +1,11 @@
-"""Support phases on the gait's clock, and what follows from them at the samples of a window.
+"""The gait's clock, support phases on it, and what follows from them at the samples of a window.
 
 The clock counts planner samples, as a real number: a phase may last any time. It usually goes on by one from tick to
-tick, faster or slower where the walk hurries or slows down within a phase (see `planner.walk.clock`).
+tick, faster or slower where the walk hurries or slows down within a phase.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -16,55 +16,6 @@ from surefoot.planner.types import Array, Foot, PhaseKind
 
 CLOCK_ROUNDING = 1e-9
 """Instants on the clock are sums of durations and are compared with this tolerance [samples]."""
-
-
-class RollSpan(NamedTuple):
-    """When a foot rolls about its toe edge, and how far (see `planner.swing.heel_off`).
-
-    Attributes:
-        start: when it begins to [samples].
-        end: when it is level again [samples].
-        angle: its greatest pitch [rad].
-    """
-
-    start: float
-    end: float
-    angle: float
-
-
-@dataclass(frozen=True, slots=True)
-class Phase:
-    """One support phase; it covers the clock from `start` to `end`.
-
-    Attributes:
-        kind: stand, double or single support.
-        start: when it begins [samples].
-        samples: how long it lasts, infinite for standing of which no end is known [samples].
-        step: number of the step that this phase swings (single support) or has just landed (otherwise); 0 before.
-        stance: the only supporting foot of a single support, otherwise None.
-        support: support point on which the ZMP reference stands, or which it leaves.
-        rest: part of a double support before it leaves [samples].
-        roll: of the foot that leaves the ground in it or after it; None for one that stays level.
-    """
-
-    kind: PhaseKind
-    start: float
-    samples: float
-    step: int
-    stance: Foot | None
-    support: int
-    rest: float = 0.0
-    roll: RollSpan | None = None
-
-    @property
-    def end(self) -> float:
-        """When it is over."""
-        return self.start + self.samples
-
-    @property
-    def row(self) -> int:
-        """Row of a footstep plan whose foot stands; the other foot goes from the row before to the row after."""
-        return self.step + (self.kind is not PhaseKind.SINGLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,12 +102,123 @@ def _derivatives(coefficients: Array) -> tuple[Array, Array, Array]:
     return coefficients, first, first[1:] * order[:-1]
 
 
+class Clock:
+    """What the clock shows, and how it goes on.
+
+    Args:
+        sample_time: length of a sample [s].
+
+    Attributes:
+        now: what it shows [samples], -1 before the first tick.
+    """
+
+    def __init__(self, sample_time: float) -> None:
+        self.now = -1.0
+        self._sample_time = sample_time
+        self._pace: Pace | None = None
+        self._began = 0.0
+        self._paced = 0.0
+
+    @property
+    def steady(self) -> bool:
+        """Whether it goes by itself, and every sample is one on."""
+        return self._pace is None
+
+    def after(self, samples: float) -> tuple[float, float, float]:
+        """What it shows so many samples from now, its rate and the derivative of that by samples."""
+        if self._pace is None:
+            return self.now + samples, 1.0, 0.0
+        way, rate, bend = (float(value[0]) for value in self._pace.at(np.array([self._paced + samples])))
+        return self._began + way, rate, bend
+
+    def until(self, instant: float) -> float:
+        """Time until it shows an instant that no pace goes beyond [samples]."""
+        if self._pace is None:
+            return instant - self.now
+        return self._pace.length - self._paced + instant - self._began - self._pace.way
+
+    def flow(self, ahead: Array) -> Flow:
+        """How it goes at samples from now on, shape (n,)."""
+        if self._pace is None:
+            return Flow(np.maximum(self.now + ahead, 0.0))
+        way, rate, bend = self._pace.at(self._paced + ahead)
+        return Flow(self._began + way, (rate, bend / self._sample_time))
+
+    def hurry(self, time: float) -> Hurry | None:
+        """How it goes, which shows a time [s] now; None while it goes by itself."""
+        if self._pace is None:
+            return None
+        t = self._sample_time
+        return Hurry(self._pace, time - self._paced * t, time + (self._began - self.now) * t, t)
+
+    def take(self, way: float, length: float) -> None:
+        """Go a way in a length of time from now on, as far as `Pace.over` lets it [samples]."""
+        _, rate, bend = self.after(0.0)
+        self._pace, self._began, self._paced = Pace.over(way, length, rate, bend), self.now, 0.0
+
+    def advance(self) -> None:
+        """Go on by one tick."""
+        self.now, _, _ = self.after(1.0)
+        self._paced += 1.0
+        if self._pace is not None and self._paced >= self._pace.length - CLOCK_ROUNDING:
+            self._pace = None
+
+
+class RollSpan(NamedTuple):
+    """When a foot rolls about its toe edge, and how far (see `planner.swing.heel_off`).
+
+    Attributes:
+        start: when it begins to [samples].
+        end: when it is level again [samples].
+        angle: its greatest pitch [rad].
+    """
+
+    start: float
+    end: float
+    angle: float
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """One support phase; it covers the clock from `start` to `end`.
+
+    Attributes:
+        kind: stand, double or single support.
+        start: when it begins [samples].
+        samples: how long it lasts, infinite for standing of which no end is known [samples].
+        step: number of the step that this phase swings (single support) or has just landed (otherwise); 0 before.
+        stance: the only supporting foot of a single support, otherwise None.
+        support: support point on which the ZMP reference stands, or which it leaves.
+        rest: part of a double support before it leaves [samples].
+        roll: of the foot that leaves the ground in it or after it; None for one that stays level.
+    """
+
+    kind: PhaseKind
+    start: float
+    samples: float
+    step: int
+    stance: Foot | None
+    support: int
+    rest: float = 0.0
+    roll: RollSpan | None = None
+
+    @property
+    def end(self) -> float:
+        """When it is over."""
+        return self.start + self.samples
+
+    @property
+    def row(self) -> int:
+        """Row of a footstep plan whose foot stands; the other foot goes from the row before to the row after."""
+        return self.step + (self.kind is not PhaseKind.SINGLE)
+
+
 @dataclass(frozen=True, slots=True)
 class PhaseSamples:
     """The phases at the n samples of a window.
 
-    The ZMP reference moves along the polyline of the support points (`planner.walk.gait.support_rows`): a point between
-    the feet before each bout and at the end, and the stance foot of each step. At sample k it is `fraction[k]` of the
+    The ZMP reference moves along the polyline of the support points (`FootstepPlan.supports`): a point between the feet
+    before each bout and at the end, and the stance foot of each step. At sample k it is `fraction[k]` of the
     way from point `index[k]` to the next. It rests while the robot stands, and on the stance foot in single
     support; in every double support it goes on to exactly the next point.
 
@@ -188,11 +250,31 @@ class PhaseSamples:
     first: int
     flow: Flow
 
-    def part(self, count: int) -> "PhaseSamples":
-        """The first so many samples."""
-        arrays = {name: getattr(self, name)[:count] for name in _PER_SAMPLE}
-        rate = self.flow.rate and (self.flow.rate[0][:count], self.flow.rate[1][:count])
-        return replace(self, **arrays, flow=Flow(self.flow.clock[:count], rate))
+    @classmethod
+    def of(cls, phases: Sequence[Phase], flow: Flow, sample_time: float, first: int) -> "PhaseSamples":
+        """The phases in sight where the clock goes over a window, counting support points from `first`."""
+        which = np.searchsorted([p.start for p in phases], flow.clock + CLOCK_ROUNDING, side="right") - 1
+        which = np.maximum(which, 0)
+        contacts = np.array([(p.stance is not Foot.RIGHT, p.stance is not Foot.LEFT) for p in phases])
+        columns = ([getattr(p, name) for p in phases] for name in ("kind", "start", "samples", "rest", "support"))
+        kind, start, length, rest, support = (np.array(column)[which] for column in columns)
+        elapsed = np.maximum(flow.clock - start, 0.0)
+        ramp = np.where(kind == PhaseKind.DOUBLE, length - rest, np.inf)
+        gone = elapsed - rest
+        return cls(
+            phases=tuple(phases),
+            which=which,
+            kind=kind,
+            elapsed=elapsed,
+            length=length,
+            index=support - first,
+            fraction=np.maximum(gone / ramp, 0.0),
+            fraction_rate=np.where(gone >= 0.0, 1.0 / (ramp * sample_time), 0.0),
+            contacts=contacts[which],
+            sample_time=sample_time,
+            first=first,
+            flow=flow,
+        )
 
     @property
     def last_stand(self) -> NDArray[np.bool_]:
@@ -209,60 +291,3 @@ class PhaseSamples:
             return values
         rate, bend = self.flow.rate
         return np.stack((values[0], values[1] * rate, values[2] * rate**2 + values[1] * bend))
-
-
-_PER_SAMPLE = ("which", "kind", "elapsed", "length", "index", "fraction", "fraction_rate", "contacts")
-
-
-@dataclass(frozen=True, slots=True)
-class PhaseTable:
-    """What `PhaseSamples` look up of the phases in sight, made when these change.
-
-    Attributes:
-        phases: those in sight.
-        starts: of the phases, shape (m,) [samples].
-        columns: their kinds, lengths, rests and support points, shape (4, m).
-        contacts: in each, shape (m, 2).
-    """
-
-    phases: tuple[Phase, ...]
-    starts: Array
-    columns: tuple[NDArray[np.intp], Array, Array, NDArray[np.intp]]
-    contacts: NDArray[np.bool_]
-
-    @classmethod
-    def of(cls, phases: Sequence[Phase]) -> "PhaseTable":
-        """The table of phases."""
-        contacts = np.ones((len(phases), 2), dtype=np.bool_)
-        for row, phase in zip(contacts, phases, strict=True):
-            if phase.stance is not None:
-                row[phase.stance.other] = False
-        kinds, supports = np.array([p.kind for p in phases]), np.array([p.support for p in phases])
-        lengths, rests = np.array([p.samples for p in phases]), np.array([p.rest for p in phases])
-        return cls(tuple(phases), np.array([p.start for p in phases]), (kinds, lengths, rests, supports), contacts)
-
-    def at(self, flow: Flow, sample_time: float, first: int) -> PhaseSamples:
-        """The phases at the samples of a window, counting support points from `first`."""
-        which = np.searchsorted(self.starts, flow.clock + CLOCK_ROUNDING, side="right") - 1
-        which = np.maximum(which, 0)
-        kinds, lengths, rests, supports = self.columns
-        kind, length, rest, support = kinds[which], lengths[which], rests[which], supports[which]
-        elapsed = np.maximum(flow.clock - self.starts[which], 0.0)
-        ramp = np.where(kind == PhaseKind.DOUBLE, length - rest, np.inf)
-        gone = elapsed - rest
-        fraction = np.maximum(gone / ramp, 0.0)
-        rate = np.where(gone >= 0.0, 1.0 / (ramp * sample_time), 0.0)
-        return PhaseSamples(
-            phases=self.phases,
-            which=which,
-            kind=kind,
-            elapsed=elapsed,
-            length=length,
-            index=support - first,
-            fraction=fraction,
-            fraction_rate=rate,
-            contacts=self.contacts[which],
-            sample_time=sample_time,
-            first=first,
-            flow=flow,
-        )

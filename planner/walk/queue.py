@@ -13,8 +13,8 @@ from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseKind
 from surefoot.planner.walk.commands import Pose
 from surefoot.planner.walk.footsteps import Path, start_footholds
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
-from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Phase, PhaseSamples, PhaseTable
-from surefoot.planner.walk.reach import check_reach
+from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Phase, PhaseSamples
+from surefoot.planner.walk.reach import Landing, check_reach
 from surefoot.planner.walk.source import GaitSource, Request, StepSource
 
 _MORE_STEPS = 3
@@ -74,6 +74,7 @@ class StepQueue:
 
     Attributes:
         gait: what all steps to come have in common.
+        ground: to lay steps on.
         phases: those in sight in order, without gaps, the one before the present first.
         steps: those in sight by their numbers.
         footsteps: footholds in sight, landed ones as measured.
@@ -83,22 +84,24 @@ class StepQueue:
     """
 
     def __init__(self, gait: GaitParameters, feet: FeetState, ground: Ground, source: StepSource | None = None) -> None:
-        self.gait, self._ground, self._source = gait, ground, source or GaitSource(gait)
-        path = Path.begin(feet, ground.terrain, gait.step_width)
-        self.footsteps = start_footholds(gait, feet, path, ground.terrain)
+        self.gait, self.ground, self._source = gait, ground, source or GaitSource(gait)
+        path, self.footsteps = start_footholds(gait, feet, ground.terrain)
         start = [self.footsteps.footstep(row) for row in (0, 1)]
         zero, course = Stride(0.0, 0.0, 0.0, gait.step_width), SwingCourse(0.5, 0.0, 1.0, 0.0)
         swing = unit_swing(self._durations[0], 0.0, course, ground.parameters)
         # The start feet count as footsteps -1 and 0, so that the first steps are laid as all others.
         self.steps = {number: Step(number, zero, path, start[number + 1], 0.0, course, swing) for number in (-1, 0)}
         self.phases: list[Phase] = [Phase(PhaseKind.STAND, 0.0, np.inf, 0, None, 0)]
-        self._standing = True
-        self._table = PhaseTable.of(self.phases)
 
     @property
     def _last(self) -> Step:
         """The last step in sight."""
         return self.steps[max(self.steps)]
+
+    @property
+    def _standing(self) -> bool:
+        """Whether the last phase in sight is to stand until a step is ordered."""
+        return self.phases[-1].kind is PhaseKind.STAND
 
     @property
     def support_heights(self) -> Array:
@@ -118,16 +121,14 @@ class StepQueue:
         before = len(self.phases), self.phases[-1]
         while self._lift_offs_after(clock) < _MORE_STEPS and self._ask(now):
             pass
-        if more := before != (len(self.phases), self.phases[-1]):
-            self._table = PhaseTable.of(self.phases)
-        return more
+        return before != (len(self.phases), self.phases[-1])
 
     def _lift_offs_after(self, clock: float) -> int:
         return sum(phase.kind is PhaseKind.SINGLE and phase.start >= clock for phase in self.phases[-2 * _MORE_STEPS :])
 
     def _ask(self, now: float) -> bool:
         """Lay what comes next; says whether there is anything."""
-        last, phases, t = self._last, self.phases, self._ground.parameters.sample_time
+        last, phases, t = self._last, self.phases, self.ground.parameters.sample_time
         time, before = (phases[-1].start, None) if self._standing else (phases[-1].end, last.stride)
         order = self._source.order(Request(last.number + 1, time * t, before, self._pose, self.gait.period))
         if order is None:
@@ -152,27 +153,25 @@ class StepQueue:
         self.phases[-1:] = [replace(stand, samples=samples)] if samples else []
         shift, rest = WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double
         self.phases.append(Phase(PhaseKind.DOUBLE, stand.start + samples, shift, stand.step, None, stand.support, rest))
-        self._standing = False
 
     def _end_bout(self) -> None:
         last = self.phases[-1]
         self.footsteps = self.footsteps.supported(last.step, last.step + 1)
         self.phases.append(Phase(PhaseKind.STAND, last.end, np.inf, last.step, None, last.support + 1))
-        self._standing = True
 
     def _lay(self, stride: Stride) -> None:
         """Lay a step: its foothold, its single support and the double support that follows."""
         gait, (single, double) = self.gait, self._durations
         step = self._next(stride, single)
+        check_reach(step.number, Landing.between(self._last.place, step.place), self.ground.parameters)
         increment = step.place.position[:2] - self._last.place.position[:2]
-        self.footsteps = self.footsteps.followed(step.place, increment, self._ground.terrain)
-        check_reach(step.number, self.footsteps.landing(len(self.footsteps.feet) - 1), self._ground.parameters)
-        self.footsteps = self.footsteps.supported(step.number, step.number)
+        footsteps = self.footsteps.followed(step.place, increment, self.ground.terrain)
+        self.footsteps = footsteps.supported(step.number, step.number)
         self.steps[step.number] = step
         before = self.phases[-1]
         support, number = before.support + 1, step.number
         ends = (self.steps[number - 2].place, self.steps[number - 1].place)
-        roll = roll_span(before, single, *ends, gait.heel_off, float(self._ground.half_size[0]))
+        roll = roll_span(before, single, *ends, gait.heel_off, float(self.ground.half_size[0]))
         self.phases[-1] = replace(before, roll=roll)
         stance = gait.step_foot(number).other
         swing = Phase(PhaseKind.SINGLE, before.end, single, number, stance, support, roll=roll)
@@ -180,7 +179,7 @@ class StepQueue:
 
     def _next(self, stride: Stride, single: float) -> Step:
         """The step after the last one."""
-        ground, number = self._ground, self._last.number + 1
+        ground, number = self.ground, self._last.number + 1
         foot = self.gait.step_foot(number)
         path, xy = self._last.path.advanced(stride, foot)
         point = xy[None]
@@ -210,10 +209,8 @@ class StepQueue:
             last = replace(last, samples=np.inf)
         del self.phases[kept:]
         self.phases.append(last)
-        self._standing = last.kind is PhaseKind.STAND
         self.steps = {number: step for number, step in self.steps.items() if number <= last.step}
         self.footsteps = self.footsteps.until(last.step + 1, last.support)
-        self._table = PhaseTable.of(self.phases)
 
     def enter(self, clock: float) -> None:
         """Let go of what lies behind an instant on the clock, but for the phase of the sample before it.
@@ -230,7 +227,6 @@ class StepQueue:
         first = phases[0]
         self.steps = {number: step for number, step in self.steps.items() if number >= first.step - 2}
         self.footsteps = self.footsteps.since(first.step - 2, first.support - 2)
-        self._table = PhaseTable.of(phases)
 
     def retime(self, gait: GaitParameters, present: Phase, clock: float) -> float:
         """Give all steps to come the durations of a gait; phases that have begun keep theirs on the clock.
@@ -253,10 +249,9 @@ class StepQueue:
             if phase.kind is PhaseKind.SINGLE:
                 phase = self._retimed_roll(number, phase, clock)
                 step = self.steps[phase.step]
-                swing = unit_swing(single, step.climb, step.course, self._ground.parameters)
+                swing = unit_swing(single, step.climb, step.course, self.ground.parameters)
                 self.steps[phase.step] = replace(step, swing=swing)
             self.phases[number] = phase
-        self._table = PhaseTable.of(self.phases)
         return _lasting(present, single, double)[0]
 
     def _retimed_roll(self, number: int, phase: Phase, clock: float) -> Phase:
@@ -270,7 +265,7 @@ class StepQueue:
     @property
     def _durations(self) -> tuple[float, float]:
         """Single and double support of the steps to come [samples]."""
-        t = self._ground.parameters.sample_time
+        t = self.ground.parameters.sample_time
         return in_samples(self.gait.single_support, t), in_samples(self.gait.double_support, t)
 
     def phase(self, clock: float) -> Phase:
@@ -279,7 +274,7 @@ class StepQueue:
 
     def samples(self, flow: Flow) -> PhaseSamples:
         """The phases at the samples of a window."""
-        return self._table.at(flow, self._ground.parameters.sample_time, self.footsteps.first_support)
+        return PhaseSamples.of(self.phases, flow, self.ground.parameters.sample_time, self.footsteps.first_support)
 
     def lift_off(self, step: int) -> Phase:
         """The single support of a step in sight."""
@@ -297,7 +292,5 @@ def _lasting(phase: Phase, single: float, double: float) -> tuple[float, float]:
 
 def unit_swing(samples: float, climb: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTrajectory:
     """A swing of so many samples from the origin at time 0 to a footstep one metre ahead that lies higher [m]."""
-    end = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0])
-    return start_swing(
-        Foot.LEFT, np.zeros(6), end, swing_times(0.0, samples, course, parameters), course.height, parameters
-    )
+    end, times = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), swing_times(0.0, samples, course, parameters)
+    return start_swing(Foot.LEFT, np.zeros(6), end, times, course.height, parameters)

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from surefoot.errors import ParameterError
+from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.types import Array, Foot
+from surefoot.planner.types import Array, Foot, Footstep
 from surefoot.planner.walk.gait import Stride
 
 _ROUNDING = 1e-9
@@ -28,6 +29,12 @@ class Landing:
     ahead: float
     beside: float
     turn: float
+
+    @classmethod
+    def between(cls, stance: Footstep, place: Footstep) -> "Landing":
+        """That of a footstep."""
+        ahead, left = (place.position - stance.position)[:2] @ frame_rotation(stance.yaw)
+        return cls(float(ahead), float(left if place.foot is Foot.LEFT else -left), place.yaw - stance.yaw)
 
 
 def landing(stride: Stride, foot: Foot) -> Landing:

@@ -62,36 +62,20 @@ class StepSource(Protocol):
 
 
 class GaitSource:
-    """The steps of a gait: equal strides of which the last closes the stance, or those of its bouts.
+    """The steps of a gait.
 
     Args:
         gait: the gait.
     """
 
     def __init__(self, gait: GaitParameters) -> None:
-        self._gait = gait
-        self._begins: dict[int, float] = {}
-        step = 1
-        for bout in gait.bouts:
-            self._begins[step] = bout.stand
-            step += len(bout.strides)
-        if not gait.bouts:
-            self._begins[1] = gait.initial_stand
-        self._strides = tuple(stride for bout in gait.bouts for stride in bout.strides)
+        self._strides, self._begins = gait.strides, gait.begins
 
     def order(self, at: Request) -> StepOrder | None:
         """See `StepSource`."""
-        if at.step > self._gait.steps or (at.before is not None and at.step in self._begins):
+        if at.step > len(self._strides) or (at.before is not None and at.step in self._begins):
             return None
-        return StepOrder(self._stride(at.step), self._begins.get(at.step, 0.0))
-
-    def _stride(self, step: int) -> Stride:
-        gait = self._gait
-        if self._strides:
-            return self._strides[step - 1]
-        if step == gait.steps:
-            return Stride(0.0, 0.0, 0.0, gait.step_width)
-        return Stride(gait.step_length, gait.lateral_step, gait.turn, gait.step_width)
+        return StepOrder(self._strides[at.step - 1], self._begins.get(at.step, 0.0))
 
 
 _SOFTLY = 0.4
@@ -113,6 +97,9 @@ _FAR = 3.0
 """Strides to a place from which on the robot walks ahead towards it, and not as it will stand there [-]."""
 
 
+_STANDING = Twist()
+
+
 class CommandSource:
     """Steps that follow a velocity, or go to places one after another; either may be told anew at any time.
 
@@ -122,19 +109,22 @@ class CommandSource:
     Args:
         gait: gives the step width, the stride of a walk to a place, and the rest before the first step.
         region: where feet may land.
+        twist: the velocity to follow.
+        places: where to go in its place.
 
     Attributes:
         twist: the velocity to follow where there are no places to go to.
         places: where to go, in order; those that were reached are gone, but for the last one.
     """
 
-    def __init__(self, gait: GaitParameters, region: StepRegion) -> None:
+    def __init__(
+        self, gait: GaitParameters, region: StepRegion, twist: Twist = _STANDING, places: tuple[Pose, ...] = ()
+    ) -> None:
         self._width, self._rest, self._region = gait.step_width, gait.initial_stand, region
         side = 0.5 * (region.width[1] - region.nearest(0.0))
         self._change = np.array([_SOFTLY * region.length, side, _SHARE * region.turn])
         self._most = np.array([min(abs(gait.step_length), region.length), _SHARE * side, _SHARE * region.turn])
-        self.twist = Twist()
-        self.places: tuple[Pose, ...] = ()
+        self.twist, self.places = twist, places
 
     def followed(self, period: float) -> Twist:
         """The velocity that is followed for the one asked for.

@@ -83,7 +83,7 @@ def _landings(draft: Draft) -> Iterator[tuple[int, Landing]]:
     gait = replace(draft.gait, steps=min(draft.keys.gait.steps, _PERIOD))
     footsteps = plan_footsteps(gait, draft.stance, flat())
     for row in range(2, footsteps.steps + 2):
-        yield row - 1, footsteps.landing(row)
+        yield row - 1, Landing.between(footsteps.footstep(row - 1), footsteps.footstep(row))
 
 
 def _footstep_problem(draft: Draft, facts: RobotFacts, number: int, place: Landing) -> Problem | None:

@@ -1,17 +1,17 @@
 import numpy as np
 import pytest
 
+from surefoot.planner.check import check_height
 from surefoot.planner.references.com_height import (
     BENT_KNEES,
     BentKneeHeight,
     PaperHeight,
     Rise,
     SmoothHeight,
-    check_height,
     preview_height,
 )
 from surefoot.planner.types import GRAVITY, PhaseKind
-from surefoot.planner.walk.gait import Bout, GaitParameters, Stride, support_rows
+from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
 from surefoot.planner.walk.phases import Flow
 
 pytestmark = pytest.mark.unit
@@ -142,7 +142,7 @@ def test_a_stop_on_a_tread_leaves_the_level_alone(schedule, place):
     gait = GaitParameters(steps=5, bouts=(Bout(1.0, (stride, stride, closing)), Bout(1.0, (stride, closing))))
     plan = schedule(gait)
     feet = np.array([0.0, 0.0, 0.1, 0.2, 0.2, 0.3, 0.3])
-    supports = feet[support_rows(gait.walk)].mean(axis=1)
+    supports = feet[plan.steps.supports].mean(axis=1)
     height = SmoothHeight(place).height(gait, plan.samples, supports)
     assert np.abs(np.diff(height[0])).max() < 0.02 * 0.4
     assert np.abs(np.diff(height[1])).max() < 0.02 * 5.0

@@ -183,14 +183,17 @@ def test_any_velocity_command_within_limits_gives_a_sound_walk(schedule, data):
     gait = fitted(walk_of(GAIT, bouts, leading_foot(bouts)), REGION)
     steps = plan_footsteps(gait, FEET, flat())
     for row in range(2, gait.steps + 2):
-        check_reach(row - 1, steps.landing(row), PlannerParameters())
+        place = Landing.between(steps.footstep(row - 1), steps.footstep(row))
+        check_reach(row - 1, place, PlannerParameters())
         c, s = np.cos(steps.yaw[row - 1]), np.sin(steps.yaw[row - 1])
-        x, y = steps.increment[row] @ np.array([[c, -s], [s, c]])
+        x, y = np.diff(steps.position[row - 1 : row + 1, :2], axis=0)[0] @ np.array([[c, -s], [s, c]])
         beside = float(y if steps.feet[row] is Foot.LEFT else -y)
-        assert REGION.why_not(Landing(float(x), beside, float(steps.yaw[row] - steps.yaw[row - 1]))) is None
+        assert (place.ahead, place.beside) == pytest.approx((x, beside), abs=1e-12)
+        assert place.turn == pytest.approx(steps.yaw[row] - steps.yaw[row - 1])
+        assert REGION.why_not(place) is None
     plan = schedule(gait)
     assert [phase.kind for phase in plan.phases].count(PhaseKind.SINGLE) == gait.steps
     assert all(a.end == b.start for a, b in zip(plan.phases, plan.phases[1:], strict=False))
     assert np.diff(plan.samples.index + plan.samples.fraction).max(initial=0.0) <= 1 / 8 + 1e-12
     assert np.abs(np.diff(plan.load_left)).max(initial=0.0) <= 1 / 8 + 1e-12
-    assert plan.samples.index[-1] == len(steps.support_points()) - 1
+    assert plan.samples.index[-1] == len(plan.steps.support_points()) - 1

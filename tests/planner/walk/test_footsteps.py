@@ -58,9 +58,9 @@ def test_a_change_of_width_leaves_the_stance_foot_alone(stand):
         np.testing.assert_allclose(steps.increment[row], rotation @ alone.increment[2], atol=1e-12)
 
 
-def test_support_points_of_a_stop_lie_between_the_feet(stand):
+def test_support_points_of_a_stop_lie_between_the_feet(schedule):
     bout = Bout(1.0, (Stride(0.2, 0.0, 0.0, 0.2), Stride(0.0, 0.0, 0.0, 0.2)))
-    steps = plan_footsteps(GaitParameters(steps=4, bouts=(bout, bout)), stand(), flat())
+    steps = schedule(GaitParameters(steps=4, bouts=(bout, bout))).steps
     np.testing.assert_allclose(
         steps.support_points()[:, :2],
         [[0, 0], [0, -0.1], [0.2, 0.1], [0.2, 0], [0.2, -0.1], [0.4, 0.1], [0.4, 0]],

@@ -6,7 +6,7 @@ import pytest
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import PhaseKind
-from surefoot.planner.walk.gait import Bout, GaitParameters, Stride, support_rows
+from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
 from surefoot.planner.walk.phases import Flow
 from surefoot.planner.walk.queue import Ground, StepQueue
 from surefoot.planner.walk.source import GaitSource
@@ -61,7 +61,7 @@ def test_first_double_support_rests_for_half_of_it(schedule):
 
 def test_bouts_stand_between_the_feet_and_start_again_with_a_long_double_support(schedule, stop_and_go):
     plan = schedule(stop_and_go)
-    rows = support_rows(stop_and_go.walk)
+    rows = plan.steps.supports
     kinds = "".join("SDs"[phase.kind] for phase in plan.phases)
     assert kinds == "SD" + 3 * "sD" + "SD" + 2 * "sD" + "D" + "sD" + "SD" + 2 * "sD" + "S"
     assert rows[:, 0].tolist() == [0, 1, 2, 3, 3, 4, 5, 5, 6, 6, 7, 8, 8]
@@ -88,7 +88,7 @@ def test_progress_and_load_stay_continuous_over_stops(schedule, stop_and_go):
     progress = plan.samples.index + plan.samples.fraction
     assert np.diff(progress).min() >= 0.0
     assert np.diff(progress).max() == pytest.approx(0.02 / 0.5)
-    assert progress[-1] == len(support_rows(stop_and_go.walk)) - 1
+    assert progress[-1] == len(plan.steps.supports) - 1
     assert np.abs(np.diff(plan.load_left)).max() <= 0.04 + 1e-12
     assert np.all(plan.samples.contacts.any(axis=1))
     assert np.all(plan.samples.contacts[plan.samples.fraction > 0.0])

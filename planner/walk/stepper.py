@@ -1,14 +1,16 @@
-"""The walk's clock, and its way through the phases in sight."""
+"""The way of a walk through the phases in sight, and its swing foot."""
 
 import numpy as np
 
-from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.geometry import sole_pose, wrap_angle
+from surefoot.planner.parameters import StepAdaptation
+from surefoot.planner.swing.heel_off import FootRoll
+from surefoot.planner.swing.trajectory import SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Hurry, Pace, PhaseSamples
-from surefoot.planner.walk.queue import Step, StepQueue
+from surefoot.planner.walk.phases import CLOCK_ROUNDING, Clock, PhaseSamples
+from surefoot.planner.walk.queue import StepQueue
 from surefoot.planner.walk.source import StepSource
 
 _LEAST_LEFT = 3.0
@@ -16,6 +18,9 @@ _LEAST_LEFT = 3.0
 
 _SAME_GROUND = 1e-3
 """Footstep shift up to which the ground height is not looked up again [m]."""
+
+_SAME_TARGET = 1e-4
+"""Difference of touchdown pose that is not worth a new swing trajectory [m, rad]."""
 
 
 class Stepper:
@@ -26,8 +31,6 @@ class Stepper:
 
     Args:
         queue: the steps in sight.
-        terrain: the ground as the planner believes it to be.
-        parameters: of the planner.
         window: how far a plan looks ahead [samples].
 
     Attributes:
@@ -35,28 +38,28 @@ class Stepper:
         revision: how often the footholds have changed.
         landed: number of the step that landed last.
         sample_time: length of a sample [s].
+        clock: the gait's.
         phase: the phase now.
-        tick: the gait's clock [samples], -1 before the first tick.
+        swing: trajectory of the swing foot; None without one.
         waited: ticks for which the clock has waited for the present touchdown.
         early: the swing foot has landed before its time.
         fixed: the next footstep may not be shifted any more.
     """
 
-    def __init__(self, queue: StepQueue, terrain: Terrain, parameters: PlannerParameters, window: int) -> None:
+    def __init__(self, queue: StepQueue, window: int) -> None:
         self.queue = queue
+        self._window, self._terrain, self._parameters = window, queue.ground.terrain, queue.ground.parameters
+        parameters = self._parameters
         self.revision = 0
         self.landed = 0
-        self.tick = -1.0
+        self.swing: SwingTrajectory | None = None
         self.waited = 0
         self.early = False
         self.fixed = False
-        self._terrain, self._window = terrain, window
-        self._pace: Pace | None = None
-        self._paced = 0.0
-        self._began = 0.0
-        self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and terrain.free_footholds
+        self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and self._terrain.free_footholds
         self.sample_time = parameters.sample_time
         self._lead = parameters.touchdown_lead / parameters.sample_time
+        self.clock = Clock(self.sample_time)
         self._patience = round(parameters.late_touchdown / parameters.sample_time)
         self._look_ahead(0.0)
 
@@ -76,20 +79,14 @@ class Stepper:
         phase, t = self.phase, self.sample_time
         follows = phase if phase.stance is not None else self.queue.phase(phase.end)
         leads_to = follows.step if follows.stance is not None else 0
-        return PhaseInfo(
-            phase.kind, phase.stance, phase.step, (self.tick - phase.start) * t, phase.samples * t, leads_to
-        )
+        elapsed, duration = (self.clock.now - phase.start) * t, phase.samples * t
+        return PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to)
 
     @property
     def swing_foot(self) -> Foot | None:
         """The swinging foot in single support."""
         stance = self.phase.stance
         return None if stance is None else stance.other
-
-    @property
-    def swinging(self) -> Step:
-        """The step being swung; asked in single support only."""
-        return self.queue.steps[self.phase.step]
 
     @property
     def free(self) -> tuple[bool, bool]:
@@ -100,7 +97,7 @@ class Stepper:
     @property
     def left(self) -> float:
         """Time until the present phase ends [samples]."""
-        return self._until(self.phase.end)
+        return self.clock.until(self.phase.end)
 
     @property
     def time_left(self) -> float:
@@ -115,61 +112,37 @@ class Stepper:
             return 0.0
         return self.queue.phase(phase.end).samples * self.sample_time
 
-    def time_to_touchdown(self, step: int) -> float:
-        """Time until a step in sight lands [s]."""
-        return self._until(self.queue.lift_off(step).end) * self.sample_time
-
-    def _until(self, clock: float) -> float:
-        """Time until an instant on the clock that no pace goes beyond [samples]."""
-        if self._pace is None:
-            return clock - self.tick
-        return self._pace.length - self._paced + clock - self._began - self._pace.way
-
-    @property
-    def steady(self) -> bool:
-        """Whether the clock goes by itself, and every sample is one on."""
-        return self._pace is None
-
-    def hurry(self, time: float) -> Hurry | None:
-        """How the clock goes, which shows a time [s] now; None while it goes by itself."""
-        if self._pace is None:
-            return None
-        t = self.sample_time
-        return Hurry(self._pace, time - self._paced * t, time + (self._began - self.tick) * t, t)
-
     def samples(self, count: int) -> PhaseSamples:
         """The phases at `count` samples from now on, with one more before them and one after."""
-        ahead = np.arange(-1.0, count + 1)
-        if self._pace is None:
-            return self.queue.samples(Flow(np.maximum(self.tick + ahead, 0.0)))
-        way, rate, bend = self._pace.at(self._paced + ahead)
-        return self.queue.samples(Flow(self._began + way, (rate, bend / self.sample_time)))
+        return self.queue.samples(self.clock.flow(np.arange(-1.0, count + 1)))
 
-    def retime(self, gait: GaitParameters) -> float:
-        """Take the durations of a gait from now on; what is left of the present phase changes in proportion.
+    def change(self, gait: GaitParameters, source: StepSource | None, time: float) -> None:
+        """Walk on otherwise; what is left of the present phase changes in proportion to its duration.
 
         Args:
-            gait: gives the durations of every step to come, and of this one.
-
-        Returns:
-            By how much the end of the present phase is put off [s].
+            gait: gives durations and swing height of the steps to come; the durations from now on.
+            source: of the steps to come; the present one if None.
+            time: now [s].
         """
-        left, phase, (_, rate, bend) = self.time_left, self.phase, self._following(0.0)
-        length = self.queue.retime(gait, phase, self.tick)
-        way = phase.end - self.tick
+        before = self.queue.gait
+        if (gait.single_support, gait.double_support) != (before.single_support, before.double_support):
+            self._retime(gait, time)
+        self.queue.gait = gait
+        if source is not None or gait.swing_height != before.swing_height:
+            self.queue.reorder(self.phase, source)
+            self.revision += 1
+            self._look_ahead(self.clock.now)
+
+    def _retime(self, gait: GaitParameters, time: float) -> None:
+        left, phase, now = self.time_left, self.phase, self.clock.now
+        length, way = self.queue.retime(gait, phase, now), phase.end - now
         lasting = length * way / phase.samples
         if phase.kind is not PhaseKind.STAND and min(way, lasting) >= _LEAST_LEFT + self._lead:
-            self._pace = Pace.over(way, lasting, rate, bend)
-            self._began, self._paced = self.tick, 0.0
+            self.clock.take(way, lasting)
         self.revision += 1
-        self._look_ahead(self.tick)
-        return self.time_left - left if phase.kind is not PhaseKind.STAND else 0.0
-
-    def reorder(self, source: StepSource | None = None) -> None:
-        """Take the steps to come from another source, or ask the present one anew; see `StepQueue.reorder`."""
-        self.queue.reorder(self.phase, source)
-        self.revision += 1
-        self._look_ahead(self.tick)
+        self._look_ahead(now)
+        if self.swing is not None and self.time_left != left:
+            self.swing = self.swing.retimed(time, self.time_left - left, self.sample_time)
 
     def advance(self, feet: FeetState) -> None:
         """Go on by one tick.
@@ -177,9 +150,9 @@ class Stepper:
         Args:
             feet: the measured feet.
         """
-        following, _, _ = self._following(1.0)
+        following, _, _ = self.clock.after(1.0)
         phase, swing = self.phase, self.swing_foot
-        if swing is not None and self.tick >= 0.0:
+        if swing is not None and self.clock.now >= 0.0:
             contact = feet.contact[swing]
             if following >= phase.end - CLOCK_ROUNDING:
                 if not contact and self.waited < self._patience:
@@ -189,21 +162,13 @@ class Stepper:
             elif contact and not self.early and 2.0 * (following - phase.start) > phase.samples:
                 self.early = True
                 self.fix(feet.position[swing])
-        self.tick = following
-        self._paced += 1.0
-        if self._pace is not None and self._paced >= self._pace.length - CLOCK_ROUNDING:
-            self._pace = None
+        self.clock.advance()
         if following >= phase.end - CLOCK_ROUNDING:
             self.queue.enter(following)
         if following >= phase.end - CLOCK_ROUNDING or phase.samples == np.inf:
             self._look_ahead(following)
-
-    def _following(self, samples: float) -> tuple[float, float, float]:
-        """The clock so many samples from now, its rate and the derivative of that by samples."""
-        if self._pace is None:
-            return self.tick + samples, 1.0, 0.0
-        way, rate, bend = (float(value[0]) for value in self._pace.at(np.array([self._paced + samples])))
-        return self._began + way, rate, bend
+        if self.swing_foot is None:
+            self.swing = None
 
     def _look_ahead(self, clock: float) -> None:
         """See as far as any plan of the phase at an instant on the clock looks; a step ordered may end a stand."""
@@ -233,7 +198,8 @@ class Stepper:
                 normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
             footstep = Footstep(steps.feet[row], position, float(steps.yaw[row]), normal)
             step = self.landed + 1 + ahead
-            planned.append(PlannedFootstep(step, footstep, time + self.time_to_touchdown(step)))
+            left = self.clock.until(self.queue.lift_off(step).end)
+            planned.append(PlannedFootstep(step, footstep, time + left * self.sample_time))
         return tuple(planned)
 
     def fix(self, position: Array) -> None:
@@ -250,3 +216,39 @@ class Stepper:
         self.fix(position)
         self.landed += 1
         self.waited, self.early, self.fixed = 0, False, False
+
+    def fix_imminent(self, time: float) -> None:
+        """Decide the next footstep where its foot now lands, shortly before it does."""
+        if self.swing is None or self.fixed:
+            return
+        if self.swing.touchdown_time - time <= self._parameters.freeze_time + 1e-9:
+            self.fix(self.swing.target[:3])
+
+    def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool) -> None:
+        """Let the swing foot go on to where it is to land; asked in single support only.
+
+        Args:
+            landing: the footstep.
+            time: now [s].
+            feet: the measured feet, from one of which a swing begins.
+            held: keep to the target of before.
+        """
+        target = sole_pose(landing.position, landing.yaw, landing.normal)
+        if self.swing is None:
+            foot, leaving = landing.foot, self.footsteps.footstep(self.row - 1)
+            yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
+            pose = sole_pose(feet.position[foot], yaw, leaving.normal)
+            course = self.queue.steps[self.phase.step].course
+            times = swing_times(time, self.left, course, self._parameters)
+            self.swing = start_swing(foot, pose, target, times, course.height, self._parameters)
+        elif not (self.fixed or held) and np.abs(target - self.swing.target).max() > _SAME_TARGET:
+            self.swing = self.swing.retargeted(time, target)
+
+    def roll(self, time: float) -> FootRoll | None:
+        """Pitch of the foot that leaves the ground next or has just left it; None for one that stays level."""
+        span, now = self.phase.roll, self.clock.now
+        if span is None or now >= span.end:
+            return None
+        foot = self.queue.gait.step_foot(self.phase.row)
+        start, end = (time + (at - now) * self.sample_time for at in span[:2])
+        return FootRoll(foot, start, end, span.angle, float(self.queue.ground.half_size[0]), self.clock.hurry(time))

@@ -1,15 +1,18 @@
 """What a long walk costs: a planner for it, a tick at its begin and at its end, and the memory meanwhile.
 
-    python benchmarks/long_walk.py [--steps N]
+    python benchmarks/long_walk.py [--steps N] [--full]
 
-The CoM and the feet do exactly what is planned. Run it with OMP_NUM_THREADS=1 on an idle core.
+The CoM and the feet do exactly what is planned; or the whole robot walks in full physics, with its log. Run it with
+OMP_NUM_THREADS=1 on an idle core.
 """
 
 import argparse
 import time
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
+import surefoot
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
@@ -38,6 +41,13 @@ def print_construction() -> None:
         print(f"{steps:>7} {1e3 * np.median(spent):>12.2f}")
 
 
+def report(done: int, spent: list[float]) -> None:
+    """Print what the last ticks took, and forget them."""
+    median, mean = 1e6 * np.median(spent), 1e6 * np.mean(spent)
+    print(f"{done:>7} {median:>11.1f} {mean:>9.1f} {resident_memory() / 1e6:>11.2f}", flush=True)
+    spent.clear()
+
+
 def walk(steps: int) -> None:
     planner = planner_of(steps)
     t = planner.parameters.sample_time
@@ -54,17 +64,36 @@ def walk(steps: int) -> None:
         com, velocity = plan.com[1], plan.com_velocity[1]
         feet.follow(PlanSampler(plan), t * (tick + 1))
         if len(spent) == block:
-            numbers = f"{1e6 * np.median(spent):>11.1f} {1e6 * np.mean(spent):>9.1f} {resident_memory() / 1e6:>11.2f}"
-            print(f"{plan.phase.step:>7} {numbers}", flush=True)
-            spent.clear()
+            report(plan.phase.step, spent)
+
+
+def walk_in_full(steps: int) -> None:
+    scenario = surefoot.load("walk", {"gait.steps": steps})
+    period, rate = scenario.gait.single_support + scenario.gait.double_support, scenario.rates.control
+    block = round(min(BLOCK, steps // 2) * period * rate)
+    print(f"{'ticks':>7} {'median, us':>11} {'mean, us':>9} {'memory, MB':>11}")
+    spent: list[float] = []
+    with TemporaryDirectory() as folder, surefoot.Simulation(scenario, log=f"{folder}/log.mcap") as sim:
+        while not sim.done:
+            start = time.perf_counter()
+            sim.advance()
+            spent.append(time.perf_counter() - start)
+            if len(spent) == block:
+                numbers = (
+                    f"{1e6 * np.median(spent):>11.1f} {1e6 * np.mean(spent):>9.1f} {resident_memory() / 1e6:>11.2f}"
+                )
+                print(f"{round(sim.time * rate):>7} {numbers}", flush=True)
+                spent.clear()
+        print(sim.end)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--steps", type=int, default=20_000)
-    steps = parser.parse_args().steps
+    parser.add_argument("--full", action="store_true")
+    asked = parser.parse_args()
     print_construction()
-    walk(steps)
+    (walk_in_full if asked.full else walk)(asked.steps)
 
 
 if __name__ == "__main__":

@@ -79,11 +79,7 @@ def walk_in_full(steps: int) -> None:
             sim.advance()
             spent.append(time.perf_counter() - start)
             if len(spent) == block:
-                numbers = (
-                    f"{1e6 * np.median(spent):>11.1f} {1e6 * np.mean(spent):>9.1f} {resident_memory() / 1e6:>11.2f}"
-                )
-                print(f"{round(sim.time * rate):>7} {numbers}", flush=True)
-                spent.clear()
+                report(round(sim.time * rate), spent)
         print(sim.end)
 
 

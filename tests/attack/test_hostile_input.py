@@ -114,7 +114,7 @@ def test_one_sentence_of_a_value_from_python(robots, value, said):
 @pytest.mark.parametrize(
     ("text", "first", "count"),
     [
-        ("\n".join(f"k{i}: 1" for i in range(2500)), "f.yaml:1:1: unknown key 'k0'; valid are criteria", 2500),
+        ("\n".join(f"k{i}: 1" for i in range(2500)), "f.yaml:1:1: unknown key 'k0'; valid are commands", 2500),
         ("criteria:\n" + "".join(f"  k{i}: 1\n" for i in range(1500)), "f.yaml:2:3: unknown metric 'k0'", 1500),
         ("pushes:\n" + "  - {x: 1}\n" * 1500, "f.yaml:2:6: unknown key 'x'; valid are body", 1500),
         ("name: b\n" * 1500, "f.yaml:1500:1: 'name' is given twice", 1499),

@@ -13,7 +13,7 @@ with TemporaryDirectory() as folder:
             if sim.time == 0.5:
                 sim.command(v_x=0.9, yaw_rate=0.3)  # m/s and rad/s
             if sim.time == 2.0:
-                print(f"asked for 0.9 m/s, walks at {sim.orders.followed.v_x:.2f} m/s")
+                print(f"asked for 0.9 m/s, walks at {sim.orders.followed}")
             if sim.time == 2.6:
                 sim.command(single_support=0.43)  # quicker from now on, in the middle of a step
             if sim.time == 3.0:

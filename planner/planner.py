@@ -86,7 +86,7 @@ class WalkingPlanner:
         self._plan: WalkPlan | None = None
         region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width))
         self._region, self._bare = region, not terrain.has_edges
-        self._source = CommandSource(gait, region)
+        self._source, self._led = CommandSource(gait, region), False
         self._told: tuple[GaitParameters, CommandSource | None] = (gait, None)
         self.motion: Motion | None = None
 
@@ -100,8 +100,9 @@ class WalkingPlanner:
         """What the walk does of what it has been told."""
         source, gait = self._source, self._stepper.queue.gait
         place = source.places[-1] if source.places else None
-        durations = gait.single_support, gait.double_support
-        return Orders(source.twist, source.followed(gait.period), place, *durations, gait.swing_height)
+        follows = self._led and place is None
+        twist, followed = (source.twist, source.followed(gait.period)) if follows else (None, None)
+        return Orders(twist, followed, place, gait.single_support, gait.double_support, gait.swing_height)
 
     def command(self, command: Command) -> None:
         """Do something else from the next plan on; of two commands before it the later one holds.
@@ -113,11 +114,11 @@ class WalkingPlanner:
             command: what changes.
 
         Raises:
-            ParameterError: the ground has edges, on which footsteps would have to keep to treads, or the CoM would fall
-                almost freely in phases that short.
+            ParameterError: the ground has edges, for which footsteps and swings were laid, or the CoM would fall almost
+                freely in phases that short.
         """
-        if not self._bare and (command.twist or command.places):
-            what = "a velocity or a place to go to on ground with edges, whose treads the footsteps would not keep to"
+        if not self._bare:
+            what = "a command on ground with edges, for which footsteps and swings were laid"
             raise ParameterError(("command",), what, "command a walk on bare ground")
         changed = {name: getattr(command, name) for name in ("single_support", "double_support", "swing_height")}
         gait = replace(self._told[0], **{name: value for name, value in changed.items() if value is not None})
@@ -125,6 +126,10 @@ class WalkingPlanner:
         source = self._told[1]
         if command.twist is not None or command.places is not None:
             source = CommandSource(self.gait, self._region, command.twist or Twist(), command.places or ())
+            self._led = True
+        elif source is None and self._led:
+            # Strides follow from velocity and durations.
+            source = self._source
         self._told = gait, source
 
     def _obey(self, time: float) -> None:

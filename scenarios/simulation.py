@@ -268,7 +268,13 @@ class Simulation:
             fault = error.errors(include_url=False)[0]
             what = f"a command with {fault['loc'][-1]} {fault['input']!r}"
             raise ParameterError(("command", *map(str, fault["loc"])), what, fault["msg"]) from None
-        self._loop.planning.command(timed_command(settings).command)
+        if not keys:
+            raise ParameterError(
+                ("command",),
+                "a command that says nothing",
+                "give a velocity, a place, or what of the gait is to change",
+            )
+        self._loop.planning.command(timed_command(settings).command, self._loop.tick)
         self._told += 1
         record = json.dumps(settings.model_dump(mode="json", exclude_none=True))
         self._writer.add_metadata(f"{COMMAND_RECORD}{self._told}", {"command": record})

@@ -24,7 +24,7 @@ from browser import Browser  # noqa: E402  the tests' own
 
 PICTURE = Path(__file__).with_name("drive.gif")
 SIZE, WIDTH = (1150, 800), 720
-EVERY = 0.12
+EVERY = 0.2
 """Simulated time from one picture to the next [s]."""
 
 TIME = "return parseFloat(document.getElementById('drive-clock').textContent.split('·')[1])"
@@ -35,7 +35,7 @@ PLAIN = "document.head.insertAdjacentHTML('beforeend', '<style>.mantine-Notifica
 KEYS = ((0.3, "w", True), (3.0, "q", True), (4.6, "q", False), (6.4, "w", False))
 """Simulated time, key, and whether it is pressed or let go of."""
 
-PUSH, END = 5.4, 8.4
+PUSH, END = 5.4, 7.6
 """When the body is dragged, and when it ends, simulated [s]."""
 
 
@@ -54,9 +54,9 @@ def filmed(page: Browser, address: str) -> list[Image.Image]:
             _, key, pressed = keys.pop(0)
             (page.press if pressed else page.release)(key)
         if not pushed and time >= PUSH:
-            page.drag(torso, (torso[0] + 15, torso[1]), (torso[0] + 45, torso[1]))
+            page.drag(torso, (torso[0] + 8, torso[1]), (torso[0] + 22, torso[1]))
             pushed = True
-        following += EVERY
+        following = max(time, following) + EVERY
         post(address, kind="pace", paused=False)
         page.wait_for(f"{TIME} >= {following}")
         post(address, kind="pace", paused=True)
@@ -78,7 +78,7 @@ def main() -> None:
             with Browser(address, Path(folder) / "profile", SIZE) as page:
                 page.wait_for(CANVAS)
                 page.run(PLAIN)
-                post(address, kind="pace", speed=0.25)
+                post(address, kind="pace", speed=0.1)
                 pictures = filmed(page, address)
         finally:
             process.terminate()

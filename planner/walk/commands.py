@@ -142,16 +142,16 @@ class Orders:
     """What a walk does of what it has been told.
 
     Attributes:
-        twist: the velocity asked for.
-        followed: the one that is followed in its place, whose steps are in reach.
-        place: where it goes to stand; None while it follows a velocity.
+        twist: the velocity asked for; None while none is.
+        followed: the one that is followed in its place, whose steps are in reach; likewise.
+        place: where it goes to stand; None while it goes to none.
         single_support: duration of the steps to come [s].
         double_support: likewise [s].
         swing_height: their clearance [m].
     """
 
-    twist: Twist
-    followed: Twist
+    twist: Twist | None
+    followed: Twist | None
     place: Pose | None
     single_support: float
     double_support: float

@@ -114,7 +114,7 @@ class CommandSource:
 
     Attributes:
         twist: the velocity to follow where there are no places to go to.
-        places: where to go, in order; those that were reached are gone, but for the last one.
+        places: where to go, in order.
     """
 
     def __init__(
@@ -125,6 +125,7 @@ class CommandSource:
         self._change = np.array([_SOFTLY * region.length, side, _SHARE * region.turn])
         self._most = np.array([min(abs(gait.step_length), region.length), _SHARE * side, _SHARE * region.turn])
         self.twist, self.places = twist, places
+        self._reached: dict[int, int] = {}
 
     def followed(self, period: float) -> Twist:
         """The velocity that is followed for the one asked for.
@@ -149,10 +150,14 @@ class CommandSource:
     def _onward(self, at: Request) -> Array:
         """Length, lateral and turn of the stride to the next place, zero at the last one, shape (3,) [m, rad]."""
         near = _AWAY if at.before is None else _THERE
-        while (way := self._towards(self.places[0], at.pose, near)) is None:
-            if len(self.places) == 1:
+        # How many places were reached before which step: a step may be asked for anew.
+        self._reached = {step: count for step, count in self._reached.items() if step < at.step}
+        reached = max(self._reached.values(), default=0)
+        while (way := self._towards(self.places[reached], at.pose, near)) is None:
+            if reached == len(self.places) - 1:
                 return np.zeros(3)
-            self.places = self.places[1:]
+            reached += 1
+            self._reached[at.step] = reached
         return way
 
     def _towards(self, place: Pose, pose: Pose, near: float) -> Array | None:
@@ -171,14 +176,13 @@ class CommandSource:
             turn = float(np.clip(bearing, -most_turn, most_turn))
             return np.array([ahead * math.cos(bearing - 0.5 * turn) if abs(bearing) < _ASTRAY else 0.0, 0.0, turn])
         way = way @ frame_rotation(pose.yaw + 0.5 * turn)
-        count = 1
-        while True:
+        for count in range(1, _MOST_EQUAL + 1):
             # Equal strides on an arc: their chords add up to the way.
             share = math.sin(0.5 * turn / count) / math.sin(0.5 * turn) if abs(turn) > _STRAIGHT else 1.0 / count
             stride = np.array([*(share * way), turn / count])
             if (np.abs(stride) <= self._most).all():
-                return stride
-            count += 1
+                break
+        return stride
 
     def _admitted(self, way: Array) -> Stride:
         """The longest stride this way that both feet may make."""
@@ -211,6 +215,9 @@ def steps_ordered(source: StepSource, gait: GaitParameters, pose: Pose, most: in
         path, _ = path.advanced(before, gait.step_foot(step))
     return most
 
+
+_MOST_EQUAL = 1000
+"""Equal strides of which no more make sense: feet that wide cannot step sideways at all [-]."""
 
 _STRAIGHT = 1e-6
 """Turn below which an arc is a line [rad]."""

@@ -122,7 +122,7 @@ class DrivePage:
 
     def _followed(self) -> Any:
         try:
-            return self._robot.orders.followed
+            return self._robot.orders.followed or Velocity()
         except ParameterError:  # of a planner that takes no commands
             return Velocity()
 

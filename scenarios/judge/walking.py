@@ -42,10 +42,10 @@ def duration(run: RunView) -> float:
     return float(run.time[-1] - run.time[0]) + 1 / run.constants.control_rate
 
 
-@metric(needs=(), reads={"/command": (), "/reference": ("step", "phase")}, least=0.0)
+@metric(needs=(), reads={"/command": ("yaw_rate", "heading"), "/reference": ("step", "phase")}, least=0.0)
 def steps_planned(run: RunView) -> int:
     """Footsteps asked for; of a walk that is told while it goes on where to go, those that have begun."""
-    if not run.has("/command"):
+    if not run.has("/command") or not _led(run):
         return run.constants.steps_planned
     return int(run.field("/reference", "step")[run.single_support].max(initial=0))
 
@@ -72,6 +72,12 @@ def heading_error(run: RunView) -> float | None:
         return None
     turned = run.sole_yaw[-1] - place[2]
     return float(abs(np.angle(np.exp(1j * turned).sum())))
+
+
+def _led(run: RunView) -> bool:
+    """Whether the robot was told where to go."""
+    log = run.log["/command"]
+    return not bool(np.isnan([log.field("yaw_rate"), log.field("heading")]).all())
 
 
 def _last_place(run: RunView) -> tuple[float, float, float] | None:

@@ -98,13 +98,15 @@ class Planning:
             self._told = False
         self._book(now_ns, before, feet)
 
-    def command(self, command: Command) -> None:
-        """Tell the planner something, from the next plan on.
+    def command(self, command: Command, tick: int) -> None:
+        """Tell the planner something at a control tick, from the next plan on.
 
         Raises:
             ParameterError: it is a planner that takes no commands, or cannot do this.
         """
-        self._commanded.command(command)
+        taking = self._commanded
+        self._tell(tick)
+        taking.command(command)
         self._told = True
 
     @property
@@ -126,7 +128,8 @@ class Planning:
     def _tell(self, tick: int) -> None:
         """Tell the planner what it is to hear at a control tick or was to hear since its last plan."""
         while self._commands and self._commands[0].time * self._rate <= tick + _ROUNDING:
-            self.command(self._commands.popleft().command)
+            self._commanded.command(self._commands.popleft().command)
+            self._told = True
 
     def _book(self, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
         """Record a footstep once its swing is over and its foot has touched down, which it may never do.

@@ -13,6 +13,7 @@ from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.loop.planning import Planning, RunFault
+from surefoot.scenarios.record.provenance import AFTER_FALL
 from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
 from surefoot.scenarios.setup.gait import PushPoint
 from surefoot.scenarios.setup.keys import scenario_problem
@@ -22,9 +23,6 @@ from surefoot.wbc.types import RobotState, WbcReport
 
 _ROUNDING = 1e-6
 """Times are compared with this tolerance [ticks]."""
-
-AFTER_FALL = 0.3
-"""How long a run goes on after a fall, so that the log shows it [s]."""
 
 _PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}
 
@@ -282,7 +280,8 @@ class ClosedLoop:
         waiting, self._pushes = self._pushes, []
         for point, push in waiting:
             begin = max(now, plan.time + point.left(plan.phase))
-            if begin < now + (1.0 - _ROUNDING) / self.rate:
+            # At the end of the tick too: there the next phase may begin, which does not know the point any more.
+            if begin < now + (1.0 + _ROUNDING) / self.rate:
                 self.walker.push(replace(push, time=begin))
             else:
                 self._pushes.append((point, push))

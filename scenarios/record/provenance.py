@@ -32,6 +32,9 @@ END_RECORD = "end"
 STOPPED = "stopped from outside"
 """Why a run ended that a program or a driver has closed: it is as long as they wanted it."""
 
+AFTER_FALL = 0.3
+"""How long a run goes on after a fall, so that the log shows it [s]."""
+
 PUSH_RECORD = "push "
 """Beginning of the names of metadata records that hold a push given while the run went on, each with its number."""
 

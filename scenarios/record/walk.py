@@ -119,7 +119,7 @@ class WalkRecorder:
         """What the walk is told from now on."""
         none = (math.nan,) * 3
         pose, twists = orders.place or none, (orders.twist, orders.followed)
-        asked, followed = (none if orders.place else (twist.v_x, twist.v_y, twist.yaw_rate) for twist in twists)
+        asked, followed = (none if twist is None else (twist.v_x, twist.v_y, twist.yaw_rate) for twist in twists)
         gait = (orders.single_support, orders.double_support, orders.swing_height)
         self._command.append(time_ns, asked[:2], asked[2], followed[:2], followed[2], pose[:2], pose[2], *gait)
 

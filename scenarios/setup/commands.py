@@ -62,6 +62,8 @@ def told_until(draft: "Draft") -> float:
 def told_problems(draft: "Draft") -> Iterator[Problem]:
     """List commands and waypoints that say nothing, say two things, or cannot be obeyed."""
     keys = draft.keys
+    if keys.gait.waypoints and keys.gait.step_length == 0.0:
+        yield Problem(("gait", "step_length"), "gait.waypoints with steps of no length", "give the longest step")
     if keys.gait.waypoints and (keys.gait.velocity or keys.gait.footsteps):
         what = f"waypoints beside gait.{'velocity' if keys.gait.velocity else 'footsteps'}"
         yield Problem(("gait", "waypoints"), what, "give one of them", at_key=True)
@@ -69,15 +71,16 @@ def told_problems(draft: "Draft") -> Iterator[Problem]:
     for index, command in enumerate(keys.commands):
         yield from _command_problems(draft, ("commands", index), command)
     where: list[Key] = [("gait", "waypoints")] if keys.gait.waypoints else []
-    where += [("commands", index) for index, command in enumerate(keys.commands) if _leads(command)]
+    where += [("commands", index) for index in range(len(keys.commands))]
     if where and keys.terrain.kind != "flat":
-        what = "a place to go to, or a velocity," if where[0][0] == "commands" else "gait.waypoints"
+        what = "commands" if where[0][0] == "commands" else "gait.waypoints"
         what = f"{what} on terrain.kind {keys.terrain.kind}, where footsteps are laid for the ground"
         yield Problem(where[0], what, "use kind flat")
     if where and draft.profile.planner is not None:
         what = f"planner.profile {draft.profile.name}, whose planner takes no commands"
         yield Problem(("planner", "profile"), what, "use a profile with surefoot's own walking planner")
-    if keys.commands and keys.duration is None and not _stops(max(keys.commands, key=lambda command: command.time)):
+    leading = sorted((command for command in keys.commands if _leads(command)), key=lambda command: command.time)
+    if leading and keys.duration is None and not _stops(leading[-1]):
         yield Problem(("commands",), "commands that do not end with a stop", "end them with v_x: 0, or give duration")
 
 

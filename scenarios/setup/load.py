@@ -20,6 +20,7 @@ from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.encoding import MAGIC
 from surefoot.scenarios.record.provenance import (
+    AFTER_FALL,
     COMMAND_RECORD,
     END_RECORD,
     PARTS_RECORD,
@@ -89,8 +90,11 @@ def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
         return text
     keys = parse(text, SCENARIO_FILE).value
     keys |= {name: [*keys.get(name, []), *values] for name, values in given.items() if values}
-    if end.get("kind") == "interrupted":
-        keys["duration"] = float(end["time"])
+    if end:
+        keys["duration"] = float(end["time"]) + (AFTER_FALL if end["kind"] == "fall" else 0.0)
+        for name in ("pushes", "commands", "faults"):
+            # What was to come later has not acted.
+            keys[name] = [entry for entry in keys.get(name, []) if (entry.get("time") or 0.0) < keys["duration"]]
     return yaml.safe_dump(keys, sort_keys=False)
 
 

@@ -162,3 +162,58 @@ def test_what_cannot_be_obeyed_is_refused_and_changes_nothing(scenario, order, m
             order(sim)
         sim.step()
         assert sim.orders == before
+
+
+def test_a_run_without_a_given_duration_walks_again_and_what_never_came_is_left_out(tmp_path, same_content):
+    late = {"pushes": [{"time": 3.0, "force": [10.0, 0.0, 0.0]}], "gait.steps": 3, "fidelity": "pendulum"}
+    keys = {**late, "gait.initial_stand": 0.1}
+    for name, until in {"whole": 99.0, "part": 1.5}.items():
+        path = tmp_path / f"{name}.mcap"
+        with surefoot.Simulation(surefoot.load("walk", keys), log=path) as sim:
+            sim.command(swing_height=0.06)
+            while not sim.done and sim.time < until:
+                if sim.time == 1.0:
+                    sim.command(0.2)
+                sim.step()
+            sim.command(0.1)
+        assert same_content(path, surefoot.run(path, out=tmp_path / f"{name}-again").log) == []
+
+
+def test_of_two_orders_at_a_time_the_live_one_holds_in_both(tmp_path, same_content):
+    keys = {"commands": [{"time": 0.5, "v_x": 0.3}]}
+    path = told(tmp_path / "told.mcap", 2.0, {0.5: lambda sim: sim.command(-0.2)}, **keys)
+    rows = surefoot.read(path)["/command"]
+    assert rows.field("velocity")[-1, 0] == -0.2
+    assert same_content(path, surefoot.run(path, out=tmp_path / "again").log) == []
+
+
+def test_a_place_on_the_way_is_reached_though_steps_are_asked_for_anew(tmp_path):
+    waypoints = [{"x": 1.5, "y": 0.0, "yaw": 0.0}, {"x": 1.5, "y": 1.2, "yaw": 1.57}]
+    keys = {"gait.waypoints": waypoints, "gait.step_length": 0.3}
+    orders = {2.6: lambda sim: sim.command(swing_height=0.051), 3.2: lambda sim: sim.command(single_support=0.45)}
+    log = surefoot.read(told(tmp_path / "told.mcap", 12.0, orders, **keys))
+    steps = log["/footstep"].field("planned")
+    middles = 0.5 * (steps[1:, :2] + steps[:-1, :2])
+    assert np.hypot(*(middles - (1.5, 0.0)).T).min() < 0.05
+    assert surefoot.judge(log).metrics["place_error"] < 0.003
+
+
+def test_a_velocity_is_kept_when_steps_take_other_times(tmp_path):
+    orders = {0.2: lambda sim: sim.command(0.3), 4.0: lambda sim: sim.command(single_support=0.35, double_support=0.12)}
+    log = surefoot.read(told(tmp_path / "told.mcap", 8.0, orders, **{"gait.single_support": 0.7}))
+    com = log["/truth"].field("com")[:, 0]
+    assert (com[3500] - com[2500]) / 2.0 == pytest.approx(0.3, rel=0.1)
+
+
+def test_a_walk_that_was_not_led_owes_all_its_steps_and_a_push_may_end_a_phase(tmp_path):
+    keys = {"duration": 2.5, "gait.steps": 12, "gait.initial_stand": 0.1, "fidelity": "pendulum"}
+    push = {"step": 1, "phase": "single", "fraction": 1.0, "force": [1.0, 0.0, 0.0]}
+    given = {**keys, "commands": [{"time": 1.0, "swing_height": 0.06}], "pushes": [push]}
+    result = surefoot.run(surefoot.load("walk", given), out=tmp_path)
+    assert result.verdict["steps_planned"] == 12
+    assert surefoot.read(result.log).metadata["end"]["kind"] == "completed"
+    with (
+        surefoot.Simulation(surefoot.load("walk", keys)) as sim,
+        pytest.raises(surefoot.ParameterError, match="nothing"),
+    ):
+        sim.command()

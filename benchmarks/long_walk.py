@@ -8,6 +8,7 @@ OMP_NUM_THREADS=1 on an idle core.
 
 import argparse
 import time
+from collections.abc import Iterator, Sequence
 from tempfile import TemporaryDirectory
 
 import numpy as np
@@ -27,8 +28,8 @@ BLOCK = 1000
 _FRESH = 60
 """Steps of the fresh planner."""
 
-_FRESH_TICKS = 2000
-"""About as many of the last ticks are compared with it."""
+_START = 200
+"""Ticks of both that are left out: there the fresh one stands."""
 
 
 def planner_of(steps: int) -> WalkingPlanner:
@@ -47,37 +48,41 @@ def print_construction() -> None:
         print(f"{steps:>7} {1e3 * np.median(spent):>12.2f}")
 
 
-def report(done: int, spent: list[float], fresh: float = np.nan) -> None:
-    """Print what the last ticks took, and forget them."""
-    median = 1e6 * np.median(spent)
-    print(f"{done:>7} {median:>11.1f} {1e6 * fresh:>10.1f} {resident_memory() / 1e6:>11.2f}", flush=True)
-    spent.clear()
+def report(done: int, spent: Sequence[float], fresh: Sequence[float] = ()) -> None:
+    """Print what the last ticks took."""
+    median, beside = 1e6 * np.median(spent), 1e6 * np.median(fresh) if fresh else np.nan
+    print(f"{done:>7} {median:>11.1f} {beside:>10.1f} {resident_memory() / 1e6:>11.2f}", flush=True)
 
 
 HEAD = f"{'done':>7} {'median, us':>11} {'fresh, us':>10} {'memory, MB':>11}"
 
 
-def walk(steps: int) -> float:
-    """Walk; prints the median tick of each block of steps beside that of a fresh planner, taken just then.
-
-    A machine that is now faster, now slower changes both alike.
-    """
+def ticks(steps: int) -> Iterator[tuple[int, float]]:
+    """Walk; the step swung last and the time taken [s] of each tick."""
     planner = planner_of(steps)
     t = planner.parameters.sample_time
     com, velocity, feet = np.array([0.0, 0.0, 0.99]), np.zeros(3), IdealFeet(STANCE)
-    block = round(BLOCK * planner.gait.period / t)
-    spent: list[float] = []
     for tick in range(round(planner.gait.duration / t)):
         state = CentroidalState(t * tick, com, velocity)
         start = time.perf_counter()
         plan = planner.update(state, feet.state)
-        spent.append(time.perf_counter() - start)
+        spent = time.perf_counter() - start
         com, velocity = plan.com[1], plan.com_velocity[1]
         feet.follow(PlanSampler(plan), t * (tick + 1))
-        if len(spent) == block:
-            report(plan.phase.step, spent[-_FRESH_TICKS:], walk(_FRESH))
-            spent.clear()
-    return float(np.median(spent)) if spent else np.nan
+        yield plan.phase.step, spent
+
+
+def walk(steps: int) -> None:
+    """Walk; prints the median tick at the end of each block of steps beside that of a fresh planner.
+
+    Both tick in turn, so that a machine that is now faster, now slower changes both alike.
+    """
+    walked = ticks(steps)
+    for step, _ in walked:
+        if step and step % BLOCK == BLOCK - _FRESH:
+            both = [(old, new) for (_, old), (_, new) in zip(walked, ticks(_FRESH), strict=False)]
+            old, new = zip(*both[_START:], strict=True)
+            report(step + _FRESH, old, new)
 
 
 def walk_in_full(steps: int) -> None:
@@ -93,6 +98,7 @@ def walk_in_full(steps: int) -> None:
             spent.append(time.perf_counter() - start)
             if len(spent) == block:
                 report(round(sim.time * rate), spent)
+                spent.clear()
         print(sim.end)
 
 

@@ -25,7 +25,15 @@ if TYPE_CHECKING:
     from surefoot.planner.planner import WalkingPlanner
     from surefoot.planner.plants import IdealFeet, Pendulum, PointPush, walk_pendulum
     from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
-    from surefoot.planner.walk.commands import Twist, VelocityCommand, VelocityTimeline, velocity_bouts, walk_of
+    from surefoot.planner.walk.commands import (
+        Command,
+        Pose,
+        Twist,
+        VelocityCommand,
+        VelocityTimeline,
+        velocity_bouts,
+        walk_of,
+    )
     from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
 
 __all__ = [
@@ -34,6 +42,7 @@ __all__ = [
     "Box",
     "BuiltQps",
     "CentroidalState",
+    "Command",
     "FeetState",
     "Foot",
     "Footstep",
@@ -50,6 +59,7 @@ __all__ = [
     "Planner",
     "PlannerParameters",
     "PointPush",
+    "Pose",
     "Profile",
     "Qp",
     "QpLaw",
@@ -82,7 +92,15 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "planner": ("WalkingPlanner",),
             "plants": ("IdealFeet", "Pendulum", "PointPush", "walk_pendulum"),
             "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "PhaseKind"),
-            "walk.commands": ("Twist", "VelocityCommand", "VelocityTimeline", "velocity_bouts", "walk_of"),
+            "walk.commands": (
+                "Command",
+                "Pose",
+                "Twist",
+                "VelocityCommand",
+                "VelocityTimeline",
+                "velocity_bouts",
+                "walk_of",
+            ),
             "walk.gait": ("Bout", "GaitParameters", "Stride"),
         },
     )

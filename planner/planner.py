@@ -86,7 +86,7 @@ class WalkingPlanner:
         self._plan: WalkPlan | None = None
         region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width))
         self._region, self._bare = region, not terrain.has_edges
-        self._source, self._led = CommandSource(gait, region), False
+        self._source: CommandSource | None = None
         self._told: tuple[GaitParameters, CommandSource | None] = (gait, None)
         self.motion: Motion | None = None
 
@@ -99,10 +99,12 @@ class WalkingPlanner:
     def orders(self) -> Orders:
         """What the walk does of what it has been told."""
         source, gait = self._source, self._stepper.queue.gait
-        place = source.places[-1] if source.places else None
-        follows = self._led and place is None
-        twist, followed = (source.twist, source.followed(gait.period)) if follows else (None, None)
-        return Orders(twist, followed, place, gait.single_support, gait.double_support, gait.swing_height)
+        durations = gait.single_support, gait.double_support
+        if source is None:
+            return Orders(None, None, None, *durations, gait.swing_height)
+        if source.places:
+            return Orders(None, None, source.places[-1], *durations, gait.swing_height)
+        return Orders(source.twist, source.followed(gait.period), None, *durations, gait.swing_height)
 
     def command(self, command: Command) -> None:
         """Do something else from the next plan on; of two commands before it the later one holds.
@@ -123,13 +125,10 @@ class WalkingPlanner:
         changed = {name: getattr(command, name) for name in ("single_support", "double_support", "swing_height")}
         gait = replace(self._told[0], **{name: value for name, value in changed.items() if value is not None})
         check_durations(gait, self.parameters.sample_time)
-        source = self._told[1]
+        # Steps of a source that is kept are asked for anew, too: their strides follow from the durations.
+        source = self._told[1] or self._source
         if command.twist is not None or command.places is not None:
             source = CommandSource(self.gait, self._region, command.twist or Twist(), command.places or ())
-            self._led = True
-        elif source is None and self._led:
-            # Strides follow from velocity and durations.
-            source = self._source
         self._told = gait, source
 
     def _obey(self, time: float) -> None:

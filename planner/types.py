@@ -128,6 +128,7 @@ class PhaseInfo:
         elapsed: time since the phase began, without the time for which the clock waited [s].
         duration: length of the phase, infinite for the final standing [s].
         leads_to: number of the step being swung, or whose foot leaves the ground at its end; 0 for none.
+        left: time until it ends, which is not what its duration leaves while the clock hurries or slows down [s].
     """
 
     kind: PhaseKind
@@ -135,7 +136,8 @@ class PhaseInfo:
     step: int
     elapsed: float
     duration: float
-    leads_to: int = 0
+    leads_to: int
+    left: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -128,12 +128,13 @@ class Simulation:
         self._path = None if log is None else Path(log)
         self._writer: LogWriter
         self._loop: ClosedLoop
-        self._last: tuple[float, PlanSample]
+        self._last: tuple[float, PlanSample] | None
         self._pushes, self._told, self._closed = 0, 0, False
         self._threads = one_thread()
         self._begin()
 
     def _begin(self) -> None:
+        self._last = None
         if self._path is None:
             self._writer = NoLog()
         else:
@@ -202,7 +203,13 @@ class Simulation:
         self._last = (time, sample)
 
     def look(self) -> Tick:
-        """The last tick; there is none before the first step."""
+        """The last tick.
+
+        Raises:
+            RunFault: there is none before the first step.
+        """
+        if self._last is None:
+            raise RunFault("there is no tick to look at yet; step() makes the first one")
         loop, (time, sample) = self._loop, self._last
         seen = loop.walker.look()
         return Tick(
@@ -262,18 +269,15 @@ class Simulation:
         self._tell({"place": {"x": x, "y": y, "yaw": yaw}})
 
     def _tell(self, keys: dict[str, Any]) -> None:
+        if not keys:
+            right = "give a velocity, or what of the gait is to change"
+            raise ParameterError(("command",), "a command that says nothing", right)
         try:
             settings = CommandSettings.model_validate({"time": self.time, **keys})
         except ValidationError as error:
             fault = error.errors(include_url=False)[0]
             what = f"a command with {fault['loc'][-1]} {fault['input']!r}"
             raise ParameterError(("command", *map(str, fault["loc"])), what, fault["msg"]) from None
-        if not keys:
-            raise ParameterError(
-                ("command",),
-                "a command that says nothing",
-                "give a velocity, a place, or what of the gait is to change",
-            )
         self._loop.planning.command(timed_command(settings).command, self._loop.tick)
         self._told += 1
         record = json.dumps(settings.model_dump(mode="json", exclude_none=True))

@@ -20,6 +20,9 @@ _BEGIN = 0.25
 _END = 0.6
 """Share of single support after which the foot is level again, before it comes down [-]."""
 
+LEVEL_AGAIN = 0.9
+"""The same at most, of a swing that is shortened when its foot has begun to roll [-]."""
+
 _LEAST_STEP = 1.5
 """Feet nearer to each other than so many half soles along the foot do not roll [-]."""
 

@@ -1,6 +1,6 @@
 """The sequence of footsteps: on level ground a step landed elsewhere shifts all that follow, on treads none."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,24 +74,21 @@ class FootstepPlan:
         position: sole centres, shape (n, 3) [m].
         yaw: planned headings, unwrapped, shape (n,) [rad]; landing errors do not enter, so heading does not drift.
         normal: unit normals of the ground, shape (n, 3) [-].
-        increment: nominal displacement from the row before, shape (n, 2) [m].
         supports: rows between which each support point of the ZMP reference lies, shape (m, 2): two feet where the
             robot stands, and one, given twice, while it stands on that.
         first: row of the walk that its first one is.
         first_support: support point of the walk that its first one is.
-        moved_to: where a row was moved and how far the last row lies from there nominally, shape (2,) each [m]; None
-            before any was.
+        shift: where the footsteps to come lie from their nominal places, shape (2,) [m].
     """
 
     feet: tuple[Foot, ...]
     position: Array
     yaw: Array
     normal: Array
-    increment: Array
     supports: NDArray[np.intp]
     first: int = 0
     first_support: int = 0
-    moved_to: tuple[Array, Array] | None = None
+    shift: Array = field(default_factory=lambda: np.zeros(2))
 
     @property
     def steps(self) -> int:
@@ -103,7 +100,7 @@ class FootstepPlan:
         return Footstep(self.feet[row], self.position[row], float(self.yaw[row]), self.normal[row])
 
     def moved(self, row: int, position: Array, terrain: Terrain) -> "FootstepPlan":
-        """The plan with one foothold somewhere else and its successors at their nominal increments from it.
+        """The plan with one foothold somewhere else and its successors shifted by as much.
 
         Where footholds are not free the successors stay on the treads that were chosen for them.
 
@@ -112,36 +109,30 @@ class FootstepPlan:
             position: its new sole centre in the world frame, shape (3,) [m].
             terrain: gives the heights of the shifted successors, or keeps them where they are.
         """
-        moved, normal, anchor = self.position.copy(), self.normal, self.moved_to
+        moved, normal, shift = self.position.copy(), self.normal, self.shift
         moved[row] = position
         if terrain.free_footholds:
-            way = np.cumsum(self.increment[row + 1 :], axis=0)
-            moved[row + 1 :, :2] = position[:2] + way
+            way = position[:2] - self.position[row, :2]
+            shift = shift + way
+            moved[row + 1 :, :2] += way
             moved[row + 1 :, 2] = terrain.heights(moved[row + 1 :, :2])
             normal = np.concatenate((normal[:row], terrain.normals(moved[row:, :2])))
-            anchor = (position[:2], way[-1] if len(way) else np.zeros(2))
-        return replace(self, position=moved, normal=normal, moved_to=anchor)
+        return replace(self, position=moved, normal=normal, shift=shift)
 
-    def followed(self, place: Footstep, increment: Array, terrain: Terrain) -> "FootstepPlan":
-        """The plan with one more footstep, moved by as much as those before it.
+    def followed(self, place: Footstep, terrain: Terrain) -> "FootstepPlan":
+        """The plan with one more footstep, shifted as those before it.
 
         Args:
             place: where it nominally is.
-            increment: its displacement from the nominal one before, shape (2,) [m].
-            terrain: gives its height where it is moved.
+            terrain: gives its height where it is shifted to.
         """
-        xy, anchor = place.position[None, :2], self.moved_to
-        if anchor is not None:
-            anchor = (anchor[0], anchor[1] + increment)
-            xy = (anchor[0] + anchor[1])[None]
+        xy = place.position[None, :2] + self.shift
         return replace(
             self,
             feet=(*self.feet, place.foot),
             position=np.concatenate((self.position, np.column_stack((xy, terrain.heights(xy))))),
             yaw=np.append(self.yaw, place.yaw),
             normal=np.concatenate((self.normal, terrain.normals(xy))),
-            increment=np.concatenate((self.increment, increment[None])),
-            moved_to=anchor,
         )
 
     def supported(self, row: int, other: int) -> "FootstepPlan":
@@ -157,11 +148,11 @@ class FootstepPlan:
 
     def until(self, row: int, support: int) -> "FootstepPlan":
         """What of the plan ends with a row and a support point of the walk."""
-        part, supports = self._part(slice(row + 1 - self.first)), self.supports[: support + 1 - self.first_support]
-        return replace(part, supports=supports, moved_to=self.moved_to and (part.position[-1, :2], np.zeros(2)))
+        supports = self.supports[: support + 1 - self.first_support]
+        return replace(self._part(slice(row + 1 - self.first)), supports=supports)
 
     def _part(self, rows: slice) -> "FootstepPlan":
-        arrays = {name: getattr(self, name)[rows] for name in ("feet", "position", "yaw", "normal", "increment")}
+        arrays = {name: getattr(self, name)[rows] for name in ("feet", "position", "yaw", "normal")}
         return replace(self, **arrays)
 
     def support_points(self) -> Array:
@@ -178,9 +169,9 @@ def start_footholds(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> 
     path = Path.begin(feet, terrain, gait.step_width)
     rows = (gait.step_foot(-1), gait.step_foot(0))
     position = feet.position[list(rows)]
-    increment = np.diff(position[:, :2], axis=0, prepend=position[:1, :2])
-    normal = terrain.normals(position[:, :2])
-    return path, FootstepPlan(rows, position, np.full(2, path.yaw), normal, increment, np.array([[0, 1]]))
+    return path, FootstepPlan(
+        rows, position, np.full(2, path.yaw), terrain.normals(position[:, :2]), np.array([[0, 1]])
+    )
 
 
 def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
@@ -201,5 +192,4 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> F
     level = np.array(places)
     position = np.column_stack((level, terrain.heights(level)))
     position[:2] = start.position
-    increment, normal = np.diff(level, axis=0, prepend=level[:1]), terrain.normals(level)
-    return replace(start, feet=tuple(rows), position=position, yaw=np.array(yaw), normal=normal, increment=increment)
+    return replace(start, feet=tuple(rows), position=position, yaw=np.array(yaw), normal=terrain.normals(level))

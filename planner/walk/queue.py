@@ -7,7 +7,7 @@ import numpy as np
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.course import swing_course
-from surefoot.planner.swing.heel_off import roll_span, roll_times
+from surefoot.planner.swing.heel_off import LEVEL_AGAIN, roll_span, roll_times
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseKind
 from surefoot.planner.walk.commands import Pose
@@ -132,10 +132,10 @@ class StepQueue:
         time, before = (phases[-1].start, None) if self._standing else (phases[-1].end, last.stride)
         order = self._source.order(Request(last.number + 1, time * t, before, self._pose, self.gait.period))
         if order is None:
-            if not self._standing:
-                self._end_bout()
-                return True
-            return False
+            if self._standing:
+                return False
+            self._end_bout()
+            return True
         if self._standing:
             self._begin_bout(phases[-1], max(in_samples(order.stand, t), now - phases[-1].start))
         self._lay(order.stride)
@@ -144,8 +144,8 @@ class StepQueue:
     @property
     def _pose(self) -> Pose:
         """Where the path is that the footsteps in sight go along."""
-        path, astray = self._last.path, self.footsteps.position[-1, :2] - self._last.place.position[:2]
-        x, y = path.middle + astray
+        path = self._last.path
+        x, y = path.middle + self.footsteps.shift
         return Pose(float(x), float(y), path.yaw)
 
     def _begin_bout(self, stand: Phase, samples: float) -> None:
@@ -164,8 +164,7 @@ class StepQueue:
         gait, (single, double) = self.gait, self._durations
         step = self._next(stride, single)
         check_reach(step.number, Landing.between(self._last.place, step.place), self.ground.parameters)
-        increment = step.place.position[:2] - self._last.place.position[:2]
-        footsteps = self.footsteps.followed(step.place, increment, self.ground.terrain)
+        footsteps = self.footsteps.followed(step.place, self.ground.terrain)
         self.footsteps = footsteps.supported(step.number, step.number)
         self.steps[step.number] = step
         before = self.phases[-1]
@@ -249,15 +248,20 @@ class StepQueue:
             if phase.kind is PhaseKind.SINGLE:
                 phase = self._retimed_roll(number, phase, clock)
                 step = self.steps[phase.step]
-                swing = unit_swing(single, step.climb, step.course, self.ground.parameters)
+                swing = unit_swing(phase.samples, step.climb, step.course, self.ground.parameters)
                 self.steps[phase.step] = replace(step, swing=swing)
             self.phases[number] = phase
         return _lasting(present, single, double)[0]
 
     def _retimed_roll(self, number: int, phase: Phase, clock: float) -> Phase:
-        """A single support with its roll and that of the double support before it; one that has begun stays."""
-        if phase.roll is None or clock >= phase.roll.start:
+        """A single support with its roll and that of the double support before it.
+
+        A roll that has begun stays, and the swing lasts at least until its foot is level.
+        """
+        if phase.roll is None:
             return phase
+        if clock >= phase.roll.start:
+            return replace(phase, samples=max(phase.samples, (phase.roll.end - phase.start) / LEVEL_AGAIN))
         roll = roll_times(self.phases[number - 1], phase.samples, phase.roll.angle)
         self.phases[number - 1] = replace(self.phases[number - 1], roll=roll)
         return replace(phase, roll=roll)

@@ -80,7 +80,7 @@ class Stepper:
         follows = phase if phase.stance is not None else self.queue.phase(phase.end)
         leads_to = follows.step if follows.stance is not None else 0
         elapsed, duration = (self.clock.now - phase.start) * t, phase.samples * t
-        return PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to)
+        return PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to, self.time_left)
 
     @property
     def swing_foot(self) -> Foot | None:

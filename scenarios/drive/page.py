@@ -176,8 +176,9 @@ class DrivePage:
         elif kind == "camera":
             self._follow = bool(given.get("follows"))
         elif kind == "layer":
-            if self._scene is not None and given.get("layer") in self._scene.layers:
-                self._scene.layers[given["layer"]].visible = bool(given.get("shown"))
+            layer = given.get("layer")
+            if self._scene is not None and isinstance(layer, str) and layer in self._scene.layers:
+                self._scene.layers[layer].visible = bool(given.get("shown"))
         else:
             self._inputs.put(read_input(kind, given))
 

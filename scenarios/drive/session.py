@@ -212,7 +212,8 @@ class Session:
         period = PICTURE_PERIOD if moving and lag < NO_TIME else SLOWEST_PICTURES
         if now - self._shown_at >= period - 1e-6:
             self._shown_at = now
-            self._page.show(self._robot.look(), self._status(now))
+            with suppress(RunFault):  # there is nothing to see of a run that ended in its first tick
+                self._page.show(self._robot.look(), self._status(now))
             return 0.0
         if not moving:
             return 5 * IDLE
@@ -226,7 +227,8 @@ class Session:
         self._over, self._note = False, ""
         self._slow_at = self._shown_at = -math.inf
         self._page.begin(self._robot)
-        self._robot.advance()
+        with suppress(RunFault):  # its end says why
+            self._robot.advance()
         self._passed: deque[tuple[float, float]] = deque()
         self._anchor(self._clock())
 
@@ -277,7 +279,10 @@ class Session:
         elif isinstance(given, Gait):
             self._gait = replace(self._gait, **{key: v for key, v in asdict(given).items() if v is not None})
         elif isinstance(given, Push):
-            if not self._over and self._try(self._push, given):
+            if self._over:
+                return
+            self._note = ""
+            if self._try(self._push, given):
                 self._page.pushed(given, self._robot.time)
         elif isinstance(given, Pace):
             self._speed = self._speed if given.speed is None else given.speed
@@ -299,11 +304,13 @@ class Session:
         if self._robot.time - self._sent_at < COMMAND_PERIOD - 1e-9 and not (stop and wanted != self._sent):
             return
         before = asdict(self._sent_gait)
-        changed: dict[str, float] = {key: v for key, v in asdict(self._gait).items() if v != before[key]}
-        if wanted != self._sent:
-            changed.update(asdict(wanted))
+        changed = {key: value for key, value in asdict(self._gait).items() if value != before[key]}
+        # One after the other: a gait that is refused shall not take a stop with it.
+        orders = (asdict(wanted) if wanted != self._sent else {}, changed)
         self._sent, self._sent_gait, self._sent_at = wanted, self._gait, self._robot.time
-        self._try(lambda keys: self._robot.command(**keys), changed)
+        self._note = ""
+        for keys in filter(None, orders):
+            self._try(lambda keys: self._robot.command(**keys), keys)
 
     def _try(self, do: Callable[[Any], None], what: Any) -> bool:
         """Do what the robot may refuse, and say so if it does."""
@@ -312,7 +319,6 @@ class Session:
         except ParameterError as refusal:
             self._note = f"{refusal.what}; {refusal.right}"
             return False
-        self._note = ""
         return True
 
     def _status(self, now: float) -> Status:

@@ -115,6 +115,9 @@ def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
         yield f"the whole-body QP needed its second solver at {failures} ticks"
 
 
+AT_PLACE = 0.02
+"""Distance from the place where the robot was told to go within which it is there, if no criterion says it [m]."""
+
 _LOSSES_SAID = 3
 _ACCEPTED_ENDS = ("completed", "fall")
 
@@ -201,7 +204,8 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     measured = measure(gathered)
     criteria = asked(scenario.criteria, scenario.fidelity)
     untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(RunView(gathered))
-    reasons = (*untrue, *map(str, absent), *_unacted(log, scenario), *missed(measured.values, criteria))
+    undone = (*_unacted(log, scenario), *_not_there(measured.values, criteria))
+    reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
     said = (*skipped, *notes(Draft(scenario)), *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
@@ -283,6 +287,13 @@ def _unacted(log: Log, scenario: Scenario) -> list[str]:
         return [problem.what for problem in never_act(Draft(scenario), end)]
     except ParameterError as fault:
         return [f"when its pushes and faults act cannot be known: {fault}"]
+
+
+def _not_there(metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> Iterator[str]:
+    """Say that the robot is not where it was told to go, unless a criterion says how far from it it may be."""
+    error = metrics.get("place_error")
+    if error is not None and "place_error" not in criteria and error > AT_PLACE:
+        yield f"the robot is {error:.3g} m from where it was told to go last; it must be within {AT_PLACE:g} m"
 
 
 def _incomplete(log: Log) -> list[str]:

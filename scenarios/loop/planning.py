@@ -19,7 +19,7 @@ from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.setup.events import FaultWindow
 from surefoot.wbc.types import WbcReference
 
-_ROUNDING = 1e-6
+ROUNDING = 1e-6
 """Times of commands are compared with those of ticks with this tolerance [ticks]."""
 
 
@@ -127,7 +127,7 @@ class Planning:
 
     def _tell(self, tick: int) -> None:
         """Tell the planner what it is to hear at a control tick or was to hear since its last plan."""
-        while self._commands and self._commands[0].time * self._rate <= tick + _ROUNDING:
+        while self._commands and self._commands[0].time * self._rate <= tick + ROUNDING:
             self._commanded.command(self._commands.popleft().command)
             self._told = True
 
@@ -162,6 +162,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     The heading of pelvis and torso is the mean of both feet's yaws, so that it turns smoothly with the swing foot.
     """
     phase = plan.phase
+    lifts = phase.kind is PhaseKind.DOUBLE and phase.leads_to > 0
     passed = phase.elapsed + sample.time - plan.time
     swing, rate, bend = sample.swing, sample.swing_velocity, sample.swing_acceleration
     roll = plan.roll
@@ -184,8 +185,8 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         heading_rate=0.5 * float(rate[3]),
         planned_contact=sample.contacts,
         load_share=(sample.load_left, 1.0 - sample.load_left),
-        time_to_switch=max(0.0, phase.duration - passed),
-        lifting_foot=_lifting_foot(plan),
+        time_to_switch=max(0.0, phase.left - (sample.time - plan.time)),
+        lifting_foot=int(plan.footsteps[0].footstep.foot) if lifts else -1,
         swing_foot=foot,
         swing_progress=min(1.0, passed / phase.duration) if foot >= 0 and math.isfinite(phase.duration) else 0.0,
         swing_position=swing[:3],
@@ -198,13 +199,3 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         rolling_foot=-1 if roll is None or not roll.rolling(sample.time) else int(roll.foot),
         roll=(0.0, 0.0, 0.0) if roll is None else roll.evaluate(sample.time),
     )
-
-
-def _lifting_foot(plan: WalkPlan) -> int:
-    """The foot that leaves the ground when the present double support ends, -1 if none does."""
-    phase = plan.phase
-    if phase.kind is not PhaseKind.DOUBLE or not plan.footsteps:
-        return -1
-    end = math.ceil((phase.duration - phase.elapsed) / plan.sample_time - 1e-6)
-    stands = end < len(plan.contacts) and bool(plan.contacts[end].all())
-    return -1 if stands else int(plan.footsteps[0].footstep.foot)

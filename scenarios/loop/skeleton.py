@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
-from surefoot.scenarios.loop.planning import Planning, RunFault
+from surefoot.scenarios.loop.planning import ROUNDING, Planning, RunFault
 from surefoot.scenarios.record.provenance import AFTER_FALL
 from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
 from surefoot.scenarios.setup.gait import PushPoint
@@ -20,9 +20,6 @@ from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.pushes import Push
 from surefoot.wbc.types import RobotState, WbcReport
-
-_ROUNDING = 1e-6
-"""Times are compared with this tolerance [ticks]."""
 
 _PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}
 
@@ -281,7 +278,7 @@ class ClosedLoop:
         for point, push in waiting:
             begin = max(now, plan.time + point.left(plan.phase))
             # At the end of the tick too: there the next phase may begin, which does not know the point any more.
-            if begin < now + (1.0 + _ROUNDING) / self.rate:
+            if begin < now + (1.0 + ROUNDING) / self.rate:
                 self.walker.push(replace(push, time=begin))
             else:
                 self._pushes.append((point, push))

@@ -90,7 +90,7 @@ def test_the_push_of_the_page_becomes_what_the_page_says():
     keys = PushSettings(step=step, phase="single", fraction=fraction, force=[40.0, 0.0, 0.0])
     walk = resolve(scenario.model_copy(update={"pushes": (keys,)}))
     ((point, push),) = walk.gait_pushes
-    middle = PhaseInfo(PhaseKind.SINGLE, Foot.RIGHT, step, 0.2, 0.5, step)
+    middle = PhaseInfo(PhaseKind.SINGLE, Foot.RIGHT, step, 0.2, 0.5, step, 0.3)
     assert point.left(middle) == pytest.approx(fraction * 0.5 - 0.2)
     assert push.body == walk.robot.torso_body
     assert push.force.tolist() == [40.0, 0.0, 0.0]

@@ -13,6 +13,7 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, SolverStatus
+from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
 
 pytestmark = pytest.mark.unit
@@ -22,7 +23,9 @@ HUMAN = (0.22, 0.11)
 
 def assert_walks(planner, trace, rms, step_error):
     error = trace.zmp - trace.zmp_reference
-    nominal = planner.footsteps.increment[2:]
+    side = np.array([0.0, 0.5 * planner.gait.step_width, 0.0])
+    whole = plan_footsteps(planner.gait, FeetState(np.array([side, -side]), np.zeros(2), (True, True)), flat())
+    nominal = np.diff(whole.position[planner.footsteps.first + 1 :, :2], axis=0)
     taken = np.diff(planner.footsteps.position[1:, :2], axis=0)
     assert trace.fall_time is None
     assert trace.margin.min() > 0.0

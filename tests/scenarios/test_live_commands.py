@@ -7,6 +7,7 @@ import pytest
 
 import surefoot
 from surefoot.planner.types import PhaseKind
+from surefoot.scenarios.file.criteria import Bound
 
 pytestmark = pytest.mark.unit
 
@@ -18,7 +19,7 @@ def told(log, duration, orders, **keys):
     """Step a walk that is told things at times; the log."""
     waiting = dict(orders)
     with surefoot.Simulation(surefoot.load("walk", {**STANDING, "duration": duration, **keys}), log=log) as sim:
-        while not sim.done and waiting is not None:
+        while not sim.done:
             for time in [time for time in waiting if sim.time >= time]:
                 waiting.pop(time)(sim)
             sim.step()
@@ -102,6 +103,15 @@ def test_waypoints_are_passed_one_after_another(tmp_path):
     first = np.array([c * 0.5 - s * 0.2, s * 0.5 + c * 0.2])
     middles = 0.5 * (steps[1:, :2] + steps[:-1, :2])
     assert np.hypot(*(middles - first).T).min() < 0.15
+
+
+def test_a_walk_that_ends_before_its_place_fails_though_it_was_asked_for_nothing(tmp_path):
+    keys = {**STANDING, "gait.waypoints": WAYPOINTS, "duration": 4.0}
+    bare = surefoot.load("walk", keys).model_copy(update={"criteria": {}})
+    (reason,) = surefoot.run(bare, out=tmp_path / "short").verdict.reasons
+    assert "m from where it was told to go last" in reason
+    far = surefoot.load("walk", keys).model_copy(update={"criteria": {"place_error": Bound(max=9.0)}})
+    assert surefoot.run(far, out=tmp_path / "far").verdict.passed
 
 
 def test_a_robot_that_is_pushed_off_its_way_still_arrives(tmp_path):

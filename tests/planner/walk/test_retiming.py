@@ -13,7 +13,7 @@ from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.com_height import Rise, SmoothHeight
-from surefoot.planner.types import CentroidalState, PhaseKind
+from surefoot.planner.types import CentroidalState, Foot, PhaseKind
 from surefoot.planner.walk.commands import Command, Twist
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import Pace
@@ -51,13 +51,21 @@ def assert_continuous(plans):
         if before.swing is not None and after.swing is not None:
             ends = [plan.swing.evaluate(after.time) for plan in (before, after)]
             np.testing.assert_allclose(ends[1][:2], ends[0][:2], atol=1e-7)
-        if before.roll is not None and after.roll is not None and before.roll.foot is after.roll.foot:
-            np.testing.assert_allclose(after.roll.evaluate(after.time), before.roll.evaluate(after.time), atol=1e-7)
+    assert_rolls_on(plans)
     for plan in plans:
         z, speed, bend = plan.com[:, 2], plan.com_velocity[:, 2], plan.com_acceleration[:, 2]
         rise = 0.5 * T * (speed[1:] + speed[:-1]) - T * T / 12.0 * np.diff(bend)
         np.testing.assert_allclose(np.diff(z), rise, atol=5e-5)
         np.testing.assert_allclose(np.diff(speed), 0.5 * T * (bend[1:] + bend[:-1]), atol=_TRAPEZOID)
+
+
+def assert_rolls_on(plans):
+    """Pitch about the toe edge and its rates go on, also where a plan has no roll any more."""
+    for pair in pairwise(plans):
+        for foot in Foot:
+            rolls = [plan.roll if plan.roll is not None and plan.roll.foot is foot else None for plan in pair]
+            ends = [(0.0, 0.0, 0.0) if roll is None else roll.evaluate(pair[1].time) for roll in rolls]
+            np.testing.assert_allclose(*ends, atol=1e-7)
 
 
 def assert_walked(plans, steps):
@@ -97,6 +105,14 @@ def test_durations_may_change_as_a_foot_leaves_the_ground(stand):
     plans = plans_of(stand, GAIT, [(tick, 0.75)], Rise.DOUBLE)
     assert (plans[tick - 1].phase.kind, plans[tick].phase.kind) == (PhaseKind.DOUBLE, PhaseKind.SINGLE)
     assert_continuous(plans)
+    assert_walked(plans, 4)
+
+
+def test_a_swing_shortened_while_its_foot_rolls_lasts_until_it_is_level(stand):
+    rolling = next(n for n, plan in enumerate(plans_of(stand, GAIT)) if plan.roll and plan.roll.rolling(plan.time))
+    plans = plans_of(stand, GAIT, [(rolling + 1, 0.45)])
+    assert plans[rolling + 1].phase.kind is PhaseKind.DOUBLE
+    assert_rolls_on(plans)
     assert_walked(plans, 4)
 
 

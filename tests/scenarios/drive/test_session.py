@@ -20,6 +20,7 @@ from surefoot.scenarios.drive.session import (
     Status,
     Velocity,
 )
+from surefoot.scenarios.loop.planning import RunFault
 from surefoot.scenarios.loop.skeleton import End
 
 pytestmark = pytest.mark.unit
@@ -55,11 +56,15 @@ class Robot:
         return End("fall", self.time, "fell") if self.done else End("completed", 1e9)
 
     def advance(self) -> None:
-        assert not (self.closed or self.done)
+        assert not self.closed
+        if self.done:
+            raise RunFault("the run is over")
         self.ticks += 1
         self._clock.now += self._cost
 
     def look(self) -> Any:
+        if not self.ticks:
+            raise RunFault("there is no tick to look at yet")
         return SimpleNamespace(time=self.time - PERIOD)
 
     def push(self, force: Any, duration: float = 0.1, body: str | None = None) -> None:
@@ -68,6 +73,8 @@ class Robot:
         self.told.append((self.time, "push", tuple(force), duration, body))
 
     def command(self, **keys: float) -> None:
+        if keys.get("single_support", 1.0) < 0.1:
+            raise ParameterError(("command", "single_support"), "too short", "take longer")
         self.told.append((self.time, "command", keys))
 
     def close(self) -> None:
@@ -211,6 +218,26 @@ def test_the_gait_alone_leaves_the_velocity_as_it_is():
     drive.inputs.put(Gait(single_support=0.6))
     drive.go_on(0.5)
     assert [keys for _, _, keys in drive.robot.told] == [{"swing_height": 0.07}, {"single_support": 0.6}]
+
+
+def test_a_gait_that_is_refused_does_not_take_a_stop_with_it():
+    drive = Drive()
+    drive.inputs.put(Velocity(0.3))
+    drive.go_on(0.5)
+    for given in (Gait(single_support=0.05), Velocity()):
+        drive.inputs.put(given)
+    drive.go_on(0.5)
+    assert [keys["v_x"] for _, _, keys in drive.robot.told] == [0.3, 0.0]
+    assert drive.status.note == "too short; take longer"
+
+
+def test_a_run_that_ends_in_its_first_tick_waits_for_a_reset():
+    drive = Drive(falls_at=0.0)
+    drive.go_on(0.5)
+    assert drive.page.shown == []
+    drive.inputs.put(Reset())
+    drive.go_on(0.1)
+    assert len(drive.robots) == 2
 
 
 def test_a_push_has_its_impulse_and_is_shown():

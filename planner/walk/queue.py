@@ -194,6 +194,9 @@ class StepQueue:
     def reorder(self, present: Phase, source: StepSource | None = None) -> None:
         """Ask anew for all steps but the one being swung and the one to which the weight is being shifted.
 
+        A stop is made once its last foot swings: the DCM is on its way to rest between the feet by then, and small feet
+        cannot bring it to where the next step would need it.
+
         Args:
             present: the phase now.
             source: of the steps from now on; that of those before by default.
@@ -203,6 +206,8 @@ class StepQueue:
         kept = self.phases.index(present) + (1 if present.kind is PhaseKind.SINGLE else 0)
         if present.kind is PhaseKind.DOUBLE:
             kept += 2 if self.phases[kept + 1].kind is PhaseKind.SINGLE else 1
+        elif present.kind is PhaseKind.SINGLE and self.phases[kept + 1].kind is PhaseKind.STAND:
+            kept += 1
         last = replace(self.phases[kept], roll=None)
         if last.kind is PhaseKind.STAND:
             last = replace(last, samples=np.inf)

@@ -6,10 +6,12 @@ import pytest
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import PhaseKind
+from surefoot.planner.walk.commands import Twist
 from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
 from surefoot.planner.walk.phases import Flow
 from surefoot.planner.walk.queue import Ground, StepQueue
-from surefoot.planner.walk.source import GaitSource
+from surefoot.planner.walk.reach import StepRegion
+from surefoot.planner.walk.source import CommandSource, GaitSource
 
 pytestmark = pytest.mark.unit
 
@@ -164,3 +166,20 @@ def test_footholds_in_sight_shift_with_the_one_that_landed_elsewhere(stand):
     shift = moved.footsteps.position[2:, :2] - plain.footsteps.position[2:, :2]
     assert len(shift) > 10
     np.testing.assert_allclose(shift, np.tile(offset, (len(shift), 1)), atol=1e-12)
+
+
+def test_a_stop_is_made_once_its_last_foot_swings(stand):
+    """Told to go on then, the robot shifts its weight anew; told so before, it steps on."""
+    gait = GaitParameters(steps=2, single_support=0.8, double_support=0.3, initial_stand=0.0)
+    source = CommandSource(gait, StepRegion(0.4, (0.08, 0.4), (0.075, 0.075)), Twist(0.1))
+    kinds = []
+    for number in (1, 2):
+        queue = StepQueue(gait, stand(gait.step_width), GROUND)
+        queue.extend(1000.0)
+        queue.reorder(queue.lift_off(number), source)
+        queue.extend(1000.0)
+        after = queue.phases[queue.phases.index(queue.lift_off(2)) :]
+        kinds.append("".join(phase.kind.name[0] for phase in after[:4]))
+        assert bool(after[2].rest or after[3].rest) is (number == 2)
+    assert kinds[0] == "SDSD"
+    assert kinds[1].startswith("SDD")

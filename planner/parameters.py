@@ -66,7 +66,13 @@ class StepAdaptation(Enum):
     """What a disturbance may change about the footsteps."""
 
     NONE = "none"
+    """Nothing."""
     LOCATION = "location"
+    """Where the next ones land."""
+    TIMING = "timing"
+    """Where and when."""
+    CROSSING = "crossing"
+    """Where and when, and a foot may land beyond its stance foot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +120,7 @@ class PlannerParameters:
         reach_length: largest distance of a footstep ahead of or behind the stance foot [m].
         reach_width: smallest and largest lateral distance of a footstep from the stance foot [m].
         compliance_margin: change of a footstep that the paper's step law does not ask for [m].
-        swing_speed: fastest mean speed of the swing foot to a shifted footstep [m/s].
+        swing_speed: fastest mean speed of the swing foot to a shifted footstep, where the legs are not known [m/s].
         freeze_time: time before touchdown from which the footstep is fixed [s].
         late_touchdown: longest wait of the phase clock for a touchdown [s].
         apex_share: share of single support after which the swing sole is highest; a late apex keeps the sole high while
@@ -141,7 +147,7 @@ class PlannerParameters:
     foot_margin: float = 0.9
     terminal_margin: float = 0.8
     leg: LegInertia = LegInertia()
-    step_adaptation: StepAdaptation = StepAdaptation.LOCATION
+    step_adaptation: StepAdaptation = StepAdaptation.CROSSING
     reach_length: float = 0.4
     reach_width: tuple[float, float] = (0.08, 0.4)
     compliance_margin: float = 0.05

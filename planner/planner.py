@@ -12,8 +12,9 @@ from surefoot.planner.laws.constraints import StepContext
 from surefoot.planner.laws.law import Motion, MotionProblem
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.model.jerk import block_moves, predict, trajectory
-from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.plan import WalkPlan
+from surefoot.planner.recovery import Catch, Recovery, Situation
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import Outlook, Window
 from surefoot.planner.references.zmp_reference import Support
@@ -22,7 +23,7 @@ from surefoot.planner.walk.commands import Command, Orders, Twist
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.queue import Ground, StepQueue
-from surefoot.planner.walk.reach import StepRegion
+from surefoot.planner.walk.reach import Legs, StepRegion
 from surefoot.planner.walk.source import CommandSource
 from surefoot.planner.walk.stepper import Stepper
 
@@ -45,6 +46,7 @@ class WalkingPlanner:
         height_profile: vertical CoM motion; that of the profile, or else the smooth one, by default.
         profile: formulation of the planner; the robust one by default.
         region: where a step that is commanded may land; where the parameters let it by default.
+        legs: what they can do to catch the body; None lets steps be moved where the parameters let them, and only that.
 
     Attributes:
         gait: the walk.
@@ -67,6 +69,7 @@ class WalkingPlanner:
         height_profile: HeightProfile | None = None,
         profile: Profile = PROFILES["default"],
         region: StepRegion | None = None,
+        legs: Legs | None = None,
     ) -> None:
         self.gait = gait
         self.parameters = parameters or profile.parameters
@@ -78,8 +81,13 @@ class WalkingPlanner:
         half_size = 0.5 * np.array([foot_length, foot_width])
         heights = height_profile or profile.height or SmoothHeight()
         self._outlook = Outlook(gait, heights, p, half_size)
-        queue = StepQueue(gait, feet, Ground(terrain, half_size, p))
-        self._stepper = Stepper(queue, self._outlook.reach + 1)
+        queue, adaptation = StepQueue(gait, feet, Ground(terrain, half_size, p)), p.step_adaptation
+        legs = legs if profile.catches and adaptation is not StepAdaptation.NONE else None
+        if legs is not None and adaptation is not StepAdaptation.CROSSING:
+            legs = replace(legs, across=None)
+        timing = adaptation is not StepAdaptation.LOCATION
+        self._recovery = None if legs is None else Recovery(legs, p, timing)
+        self._stepper = Stepper(queue, self._outlook.reach + 1, legs)
         check_height(heights, gait, self._stepper.samples(self._outlook.reach), queue.support_heights)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
         self._law = profile.law(p, heights.standing(gait))
@@ -153,16 +161,14 @@ class WalkingPlanner:
         stepper.advance(feet)
         self._obey(state.time)
         stepper.fix_imminent(state.time)
-        # ZMP planner: what carries the robot now, and the ZMP that the footsteps define.
         support = outlook.support(stepper)
-        samples = stepper.samples(outlook.reach)
-        reference = outlook.zmp(samples, support)
-        # Vertical motion planner of the CoM, with it the varying dynamics.
-        height = outlook.com_height(samples, support, reference)
         local = self._local_state(state, support)
-        window = outlook.window(stepper, samples, support, reference, height, local[:, 0])
+        window = self._window(state.time, support, local)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
-        problem = self._problem(local, feet, support, window)
+        catch = self._catch(state.time, local, feet, support, window)
+        if catch is not None and stepper.end_in(catch.left, state.time):
+            window = self._window(state.time, support, local)
+        problem = self._problem(local, feet, support, window, catch)
         # TVMPC, or the law that stands in its place.
         motion = self.motion = self._law.plan(problem)
         footsteps = stepper.upcoming(state.time, motion.shifts @ support.rotation.T)
@@ -171,6 +177,26 @@ class WalkingPlanner:
             stepper.swing_to(footsteps[0].footstep, state.time, feet, held)
         self._plan = self._world_plan(state.time, support, window, local, motion, footsteps)
         return self._plan
+
+    def _window(self, time: float, support: Support, local: Array) -> Window:
+        """References from now on, as the clock goes."""
+        stepper, outlook = self._stepper, self._outlook
+        # ZMP planner: the ZMP that the footsteps define, from what carries the robot now.
+        samples = stepper.samples(outlook.reach)
+        reference = outlook.zmp(samples, support)
+        # Vertical motion planner of the CoM, with it the varying dynamics.
+        height = outlook.com_height(samples, support, reference)
+        deviation = stepper.deviation(time)
+        return outlook.window(stepper, samples, support, reference, height, local[:, 0], deviation)
+
+    def _catch(self, time: float, local: Array, feet: FeetState, support: Support, window: Window) -> Catch | None:
+        """What is made of the next step where the CoP alone does not hold the body."""
+        if self._recovery is None:
+            return None
+        situation = Situation.of(time, self._stepper, local, feet, support, window)
+        catch = None if situation is None else self._recovery.catch(situation)
+        self._stepper.adapted |= catch is not None
+        return catch
 
     def _world_plan(
         self,
@@ -214,7 +240,9 @@ class WalkingPlanner:
             status=self._status(motion),
         )
 
-    def _problem(self, local: Array, feet: FeetState, support: Support, window: Window) -> MotionProblem:
+    def _problem(
+        self, local: Array, feet: FeetState, support: Support, window: Window, catch: Catch | None
+    ) -> MotionProblem:
         jerk = np.zeros((self.parameters.horizon + 1, 2))
         if self._plan is not None:
             jerk[:-1] = self._plan.jerk @ support.rotation
@@ -223,13 +251,13 @@ class WalkingPlanner:
             stiffness=window.stiffness,
             omega=window.omega,
             reference=window.driving,
-            steps=self._step_context(support, feet),
+            steps=self._step_context(support, feet, catch),
             last_jerk=jerk[0],
             fallback=jerk[1:],
             rotation=support.rotation,
         )
 
-    def _step_context(self, support: Support, feet: FeetState) -> StepContext:
+    def _step_context(self, support: Support, feet: FeetState, catch: Catch | None) -> StepContext:
         stepper, steps = self._stepper, self._stepper.footsteps
         row, swing = stepper.row, stepper.swing_foot
         increment = np.zeros((2, 2))
@@ -238,7 +266,16 @@ class WalkingPlanner:
         side = 1.0 if steps.feet[row] is Foot.RIGHT else -1.0
         here = None if swing is None else (feet.position[swing, :2] - support.origin) @ support.rotation
         left = 0.0 if swing is None else stepper.time_left
-        return StepContext(increment, (side, -side), stepper.free, here, left, stepper.transfer_time)
+        context = StepContext(increment, (side, -side), stepper.free, here, left, stepper.transfer_time)
+        if self._recovery is None:
+            return context
+        if not stepper.adapted:
+            return replace(context, reach=(increment, increment))
+        boxes = [self._recovery.legs.beside(increment[0], side), self._recovery.legs.beside(increment[1], -side)]
+        if catch is not None:
+            boxes[0] = catch.low, catch.high
+        low, high = np.array(boxes).swapaxes(0, 1)
+        return replace(context, reach=(low, high))
 
     def _local_state(self, state: CentroidalState, support: Support) -> Array:
         """Position and velocity as measured, acceleration as the last plan had it for now."""

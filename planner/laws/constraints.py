@@ -22,6 +22,8 @@ class StepContext:
         swing: position of the swing foot from the stance foot, shape (2,) [m], or None when no foot swings.
         time_left: time until the first of them lands [s].
         transfer_time: duration of the double support that follows, zero when no foot swings (T_ds) [s].
+        reach: lower and upper corners of the boxes in which they may land, from the foothold before, shape
+            (step, axis) = (2, 2) each [m]; None for the paper's reachable area, as far as the foot can swing.
     """
 
     increment: Array
@@ -30,6 +32,7 @@ class StepContext:
     swing: Array | None
     time_left: float
     transfer_time: float
+    reach: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,17 +90,17 @@ def generate_constraints(
 def step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Array, Array]:
     """Lower and upper bounds of the footstep shifts, each of shape (step, axis) = (2, 2) [m].
 
-    They are the reach boxes, the first one also within what the swing foot can still reach in time. A shift that is
-    not free has no effect on the motion and costs something, so its wide bounds leave it at zero.
+    They are the reach boxes, the paper's first one also within what the swing foot can still reach in time. A shift
+    that is not free has no effect on the motion and costs something, so its wide bounds leave it at zero.
     """
     lower, upper = np.full((2, 2), -1.0), np.full((2, 2), 1.0)
     for j in range(2):
         if steps.free[j]:
-            low, high = reach_box(parameters, steps.side[j])
+            low, high = _reach(parameters, steps, j)
             lower[j], upper[j] = low - steps.increment[j], high - steps.increment[j]
     if steps.free[1]:
         lower[1], upper[1] = np.minimum(lower[1], 0.0), np.maximum(upper[1], 0.0)
-    if steps.free[0] and steps.swing is not None:
+    if steps.free[0] and steps.swing is not None and steps.reach is None:
         travel = parameters.swing_speed * steps.time_left / np.sqrt(2.0)
         here = steps.swing - steps.increment[0]
         # The nominal footstep is never out of reach: a fast gait's swing is faster than that speed by itself.
@@ -105,3 +108,10 @@ def step_bounds(parameters: PlannerParameters, steps: StepContext) -> tuple[Arra
         upper[0] = np.minimum(upper[0], np.maximum(np.maximum(here + travel, 0.0), lower[0]))
         lower[0] = low
     return lower, upper
+
+
+def _reach(parameters: PlannerParameters, steps: StepContext, step: int) -> tuple[Array, Array]:
+    if steps.reach is None:
+        return reach_box(parameters, steps.side[step])
+    low, high = steps.reach
+    return low[step], high[step]

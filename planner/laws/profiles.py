@@ -26,6 +26,8 @@ class Profile:
         law: makes its law of motion, from the parameters and the CoM height over the ground at rest [m].
         moves: whether it optimises moves of the jerk, whose number may be chosen.
         height: vertical CoM motion that belongs to it; None for what the user chooses.
+        catches: whether its law moves footsteps as it needs to, so that place and time of a step may be adapted to all
+            that the legs can do (see `planner.recovery`).
         planner: makes a planner that takes the place of `planner.planner.WalkingPlanner`, from the same arguments; None
             for that one.
     """
@@ -36,6 +38,7 @@ class Profile:
     law: Callable[[PlannerParameters, float], MotionPlanner]
     moves: bool
     height: HeightProfile | None = None
+    catches: bool = False
     planner: Callable[..., Planner] | None = None
 
 
@@ -52,10 +55,14 @@ _PAPER = PlannerParameters(
 _REPAIRED = replace(_PAPER, moves=BLOCK_STARTS)
 
 _OWN = (
-    Profile("default", "soft TVMPC with the footsteps in the QP", PlannerParameters(), FootstepTvmpc, moves=True),
+    Profile(
+        "default", "soft TVMPC with the footsteps in the QP", PlannerParameters(), FootstepTvmpc, True, catches=True
+    ),
     Profile("paper", "the paper's TVMPC as printed", _PAPER, paper_law, moves=True, height=PaperHeight()),
     Profile("repaired", "the paper's TVMPC with more moves and a terminal bound", _REPAIRED, repaired_law, moves=True),
-    Profile("lti", "default without preview of the dynamics", PlannerParameters(), ConstantHeightTvmpc, moves=True),
+    Profile(
+        "lti", "default without preview of the dynamics", PlannerParameters(), ConstantHeightTvmpc, True, catches=True
+    ),
     Profile("preview", "ZMP preview control of a cart-table", PlannerParameters(), ZmpPreview, moves=False),
     Profile("dcm", "instantaneous DCM feedback, without a QP", PlannerParameters(), DcmFeedback, moves=False),
 )

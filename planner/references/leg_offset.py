@@ -29,6 +29,7 @@ from surefoot.planner.swing.heel_off import bump
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
 from surefoot.planner.walk.phases import PhaseSamples
 from surefoot.planner.walk.queue import StepQueue
+from surefoot.planner.walk.stepper import Deviation
 
 
 def softening(leg: LegInertia) -> float:
@@ -53,22 +54,37 @@ class Feet:
     toe: float
 
 
-def nominal_feet(samples: PhaseSamples, queue: StepQueue, frame: tuple[Array, Array], toe: float) -> Feet:
-    """Nominal feet in the plan frame.
+def nominal_feet(
+    samples: PhaseSamples,
+    queue: StepQueue,
+    frame: tuple[Array, Array],
+    toe: float,
+    deviation: Deviation | None = None,
+) -> Feet:
+    """Nominal feet in the plan frame, but for a swing that does not go as its step was laid.
 
     Args:
         samples: the phases over a window.
         queue: the steps in sight.
         frame: the plan frame's rotation to the world, shape (2, 2), and origin, shape (2,) [m].
         toe: toe edge from the sole's centre [m].
+        deviation: that swing.
     """
-    (rotation, origin), footsteps = frame, queue.footsteps
+    (rotation, origin), footsteps = frame, queue.footsteps if deviation is None else deviation.footsteps
     points = np.column_stack(((footsteps.position[:, :2] - origin) @ rotation, footsteps.position[:, 2], footsteps.yaw))
     row = np.array([phase.row for phase in samples.phases])[samples.which] - footsteps.first
     progress, height, rolled = _swings(samples, queue)
     before, after = points[row - 1], points[np.minimum(row + 1, len(points) - 1)]
     stance, swing = points[row], before + progress[:, None] * (after - before)
     swing[:, 2] = before[:, 2] + height
+    if deviation is not None:
+        now = np.flatnonzero(samples.which == samples.which[1])
+        now = now[now > 0]
+        times = np.asarray(deviation.time + samples.sample_time * (now - 1.0), dtype=np.float64)
+        way = deviation.swing.positions(times)
+        swing[now, :2] = (way[:, :2] - origin) @ rotation
+        swing[now, 2] = np.maximum(way[:, 2], deviation.swing.target[2])
+        swing[0] = 2.0 * swing[1] - swing[2]
     left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
     pitch = rolled * np.stack((~left, left))

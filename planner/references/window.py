@@ -22,7 +22,7 @@ from surefoot.planner.references.zmp_reference import (
 from surefoot.planner.types import Array
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import PhaseSamples
-from surefoot.planner.walk.stepper import Stepper
+from surefoot.planner.walk.stepper import Deviation, Stepper
 
 _TICKS = 5
 """Ticks for which an offset of the legs serves; making it costs more than the rest of a plan."""
@@ -139,6 +139,7 @@ class Outlook:
         reference: ZmpReference,
         height: HeightPreview,
         position: Array,
+        deviation: Deviation | None,
     ) -> Window:
         """The window that begins now.
 
@@ -149,11 +150,12 @@ class Outlook:
             reference: ZMP.
             height: CoM height.
             position: CoM now in the plan frame, shape (2,) [m].
+            deviation: swing that does not go as its step was laid.
         """
         count = self._count
         stiffness = softening(self._leg) * height.stiffness
         seen = reference.part(slice(count))
-        offset = self._offset(stepper, samples, support, reference.point, height, position)
+        offset = self._offset(stepper, samples, support, reference.point, height, position, deviation)
         return Window(
             reference=seen,
             driving=replace(seen, point=seen.point - offset),
@@ -173,6 +175,7 @@ class Outlook:
         point: Array,
         height: HeightPreview,
         position: Array,
+        deviation: Deviation | None,
     ) -> Array:
         """What the legs add to the ZMP, shape (n, 2) [m]; arguments as of `window`."""
         chain, count, clock = self._leg.chain, self._count, stepper.clock
@@ -180,12 +183,13 @@ class Outlook:
             return np.zeros((count, 2))
         last = samples.phases[-1]
         standing = last.start if math.isinf(last.samples) else math.inf
-        if self._offsets is None or not clock.steady or not self._offsets.holds(clock.now, support.key, standing):
+        kept = self._offsets is not None and self._offsets.holds(clock.now, support.key, standing)
+        if self._offsets is None or deviation is not None or not clock.steady or not kept:
             # No longer than until the robot stands will they serve.
             count += int(min(_TICKS - 1, max(standing - clock.now, 0.0) + 1))
             heights = HeightPreview(height.height[:, :count], height.stiffness[:count])
             frame = support.rotation, support.origin
-            feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]))
+            feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]), deviation)
             values = self._made_offset(chain, feet, point[:count], heights, position)
             self._offsets = OffsetTable(clock.now, support.key, values)
         return self._offsets.since(clock.now, self._count)

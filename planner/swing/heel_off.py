@@ -93,6 +93,20 @@ def bump(s: float) -> tuple[float, float, float]:
     return 64.0 * w**3, 192.0 * w**2 * (1.0 - 2.0 * s), 384.0 * w * ((1.0 - 2.0 * s) ** 2 - w)
 
 
+def stretched(ahead: float, radius: float) -> float:
+    """Pitch that a foot needs so far behind the other one that its leg is too short [rad].
+
+    Args:
+        ahead: distance of the other foot [m].
+        radius: how far from under its hip a sole reaches flat [m].
+    """
+    return min(max(_PER_WAY * (ahead - _SHORT * radius), 0.0), _MOST)
+
+
+_PER_WAY, _SHORT, _MOST = 3.0, 1.1, 0.5
+"""Pitch for each metre beyond so many radii, and the greatest [rad/m, -, rad]: 7 cm of leg are 0.5 rad."""
+
+
 def roll_span(
     before: Phase, single: float, leaving: Footstep, stance: Footstep, angle: float, half_length: float
 ) -> RollSpan | None:

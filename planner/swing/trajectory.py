@@ -100,16 +100,18 @@ class SwingTrajectory:
             result[k, 2] -= self.search.motion(float(times[k]) - self.touchdown_time)[0]
         return result
 
-    def retargeted(self, time: float, target: Array) -> "SwingTrajectory":
+    def retargeted(self, time: float, target: Array, gliding: bool = False) -> "SwingTrajectory":
         """The trajectory that goes on from its own state at `time` to another target.
 
         Args:
             time: instant of the change, before the touchdown [s].
             target: new touchdown position and angles, shape (6,).
+            gliding: go on until the touchdown, which takes the least acceleration.
         """
         state = self.evaluate(time)
         start = max(time, self.start_time)
-        end = self.glide_end if time < self.glide_end - _LEAST_GLIDE else self.touchdown_time
+        keeps = time < self.glide_end - _LEAST_GLIDE and not gliding
+        end = self.glide_end if keeps else self.touchdown_time
         level = _to_rest(state[:, _GLIDING], target[_GLIDING], end - start)
         moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target))
         if target[2] == self.target[2]:

@@ -4,10 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.course import swing_course
-from surefoot.planner.swing.heel_off import LEVEL_AGAIN, roll_span, roll_times
+from surefoot.planner.swing.heel_off import LEVEL_AGAIN, roll_span, roll_times, stretched
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseKind
 from surefoot.planner.walk.commands import Pose
@@ -276,6 +277,24 @@ class StepQueue:
         """Single and double support of the steps to come [samples]."""
         t = self.ground.parameters.sample_time
         return in_samples(self.gait.single_support, t), in_samples(self.gait.double_support, t)
+
+    def lift_heel(self, step: int, radius: float) -> None:
+        """Let the foot that a step has left too far behind for its leg roll as it leaves the ground.
+
+        Args:
+            step: that has just landed.
+            radius: how far from under its hip a sole reaches flat [m].
+        """
+        at = self.phases.index(self.lift_off(step)) + 1
+        row = step + 1 - self.footsteps.first
+        stance, leaving = self.footsteps.footstep(row), self.footsteps.footstep(row - 1)
+        angle = stretched(float(((stance.position - leaving.position)[:2] @ frame_rotation(stance.yaw))[0]), radius)
+        if at + 1 == len(self.phases) or self.phases[at + 1].kind is not PhaseKind.SINGLE:
+            return
+        before, swing = self.phases[at : at + 2]
+        if angle > (swing.roll.angle if swing.roll else 0.0):
+            roll = roll_times(before, swing.samples, angle)
+            self.phases[at : at + 2] = [replace(before, roll=roll), replace(swing, roll=roll)]
 
     def phase(self, clock: float) -> Phase:
         """The phase at an instant on the clock, the first in sight if it lies before."""

@@ -144,6 +144,59 @@ class StepRegion:
         return all(self.contains(landing(stride, foot)) for foot in Foot)
 
 
+@dataclass(frozen=True, slots=True)
+class Legs:
+    """What the legs can do to catch the body.
+
+    Attributes:
+        radius: how far from under its hip a sole reaches at the CoM height of the gait [m].
+        hip_width: distance between the hips [m].
+        near: least distance beside its stance foot at which a foot clears it [m].
+        across: how far beyond its stance foot a foot may land that is clear of it; None where legs must not cross [m].
+        clear: distance ahead of or behind the stance foot from which on it is [m].
+        acceleration: of a swinging sole that the hips' torques allow, forward and sideways [m/s^2].
+    """
+
+    radius: float
+    hip_width: float
+    near: float
+    across: float | None
+    clear: float
+    acceleration: tuple[float, float]
+
+    def boxes(self, side: float) -> list[tuple[Array, Array]]:
+        """Lower and upper corners of boxes, one of which holds the landing of a left (+1) or right (-1) foot."""
+        most = 2.0 * self.radius
+        boxes = [self._box(side, -most, most, self.near)]
+        if self.across is not None:
+            boxes += [
+                self._box(side, self.clear, most, -self.across),
+                self._box(side, -most, -self.clear, -self.across),
+            ]
+        return boxes
+
+    def _box(self, side: float, back: float, ahead: float, near: float) -> tuple[Array, Array]:
+        low, high = sorted((side * near, side * (2.0 * self.radius + self.hip_width)))
+        return np.array([back, low]), np.array([ahead, high])
+
+    def within(self, places: Array, hips: Array) -> Array:
+        """The places nearest to these that legs reach from hips, shape (n, 2) each [m]."""
+        way = places - hips
+        share = np.minimum(1.0, self.radius / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9))
+        return np.asarray(hips + share[:, None] * way)
+
+    def around(self, place: Array, hip: Array, box: tuple[Array, Array]) -> tuple[Array, Array]:
+        """The part of a box with a place in it whose sides a leg reaches from a hip, level with the place."""
+        most = np.sqrt(np.maximum(self.radius**2 - (place - hip)[::-1] ** 2, 0.0))
+        low, high = np.maximum(box[0], hip - most), np.minimum(box[1], hip + most)
+        return np.minimum(low, place), np.maximum(high, place)
+
+    def beside(self, place: Array, side: float) -> tuple[Array, Array]:
+        """The box of a footstep that is too far ahead to know where the hips will be: both legs span it."""
+        both = replace(self, radius=2.0 * self.radius)
+        return both.around(place, np.array([0.0, side * self.hip_width]), self.boxes(side)[0])
+
+
 def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]:
     """Where a footstep may land from its stance foot: lower and upper corner in the plan frame, shape (2,) [m].
 

@@ -1,5 +1,7 @@
 """The way of a walk through the phases in sight, and its swing foot."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from surefoot.planner.geometry import sole_pose, wrap_angle
@@ -11,6 +13,7 @@ from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Clock, PhaseSamples
 from surefoot.planner.walk.queue import StepQueue
+from surefoot.planner.walk.reach import Legs
 from surefoot.planner.walk.source import StepSource
 
 _LEAST_LEFT = 3.0
@@ -19,8 +22,26 @@ _LEAST_LEFT = 3.0
 _SAME_GROUND = 1e-3
 """Footstep shift up to which the ground height is not looked up again [m]."""
 
+_SAME_TIME = 1e-3
+"""Difference of a phase's time left that is not worth another pace [s]."""
+
 _SAME_TARGET = 1e-4
 """Difference of touchdown pose that is not worth a new swing trajectory [m, rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """A swing that does not go as its step was laid.
+
+    Attributes:
+        swing: its trajectory.
+        time: now [s].
+        footsteps: footholds in sight, with its own where it is aimed at.
+    """
+
+    swing: SwingTrajectory
+    time: float
+    footsteps: FootstepPlan
 
 
 class Stepper:
@@ -32,6 +53,7 @@ class Stepper:
     Args:
         queue: the steps in sight.
         window: how far a plan looks ahead [samples].
+        legs: what they can do; None where it is not known.
 
     Attributes:
         queue: the steps in sight.
@@ -44,10 +66,11 @@ class Stepper:
         waited: ticks for which the clock has waited for the present touchdown.
         early: the swing foot has landed before its time.
         fixed: the next footstep may not be shifted any more.
+        adapted: place or time of the next footstep are being adapted.
     """
 
-    def __init__(self, queue: StepQueue, window: int) -> None:
-        self.queue = queue
+    def __init__(self, queue: StepQueue, window: int, legs: Legs | None = None) -> None:
+        self.queue, self._legs = queue, legs
         self._window, self._terrain, self._parameters = window, queue.ground.terrain, queue.ground.parameters
         parameters = self._parameters
         self.revision = 0
@@ -56,7 +79,8 @@ class Stepper:
         self.waited = 0
         self.early = False
         self.fixed = False
-        self._adapts = parameters.step_adaptation is StepAdaptation.LOCATION and self._terrain.free_footholds
+        self.adapted = False
+        self._adapts = parameters.step_adaptation is not StepAdaptation.NONE and self._terrain.free_footholds
         self.sample_time = parameters.sample_time
         self._lead = parameters.touchdown_lead / parameters.sample_time
         self.clock = Clock(self.sample_time)
@@ -144,6 +168,39 @@ class Stepper:
         if self.swing is not None and self.time_left != left:
             self.swing = self.swing.retimed(time, self.time_left - left, self.sample_time)
 
+    def end_in(self, left: float, time: float) -> bool:
+        """Let the present phase end at another time, if there is enough left of it.
+
+        Args:
+            left: time from now on [s].
+            time: now [s].
+
+        Returns:
+            Whether it will.
+        """
+        before, way = self.time_left, self.phase.end - self.clock.now
+        length = left / self.sample_time
+        if abs(left - before) < _SAME_TIME:
+            return False
+        self.clock.take(way, length)
+        self._look_ahead(self.clock.now)
+        if self.swing is not None:
+            self.swing = self.swing.retimed(time, self.time_left - before, self.sample_time)
+        return True
+
+    def deviation(self, time: float) -> Deviation | None:
+        """How the swing deviates from its step; None where it does not.
+
+        Args:
+            time: now [s].
+        """
+        if self.swing is None or not self.adapted:
+            return None
+        aimed = self.footsteps
+        if not self.fixed:
+            aimed = aimed.moved(self.row + 1, self.swing.target[:3], self._terrain)
+        return Deviation(self.swing, time, aimed)
+
     def advance(self, feet: FeetState) -> None:
         """Go on by one tick.
 
@@ -215,7 +272,9 @@ class Stepper:
     def _land(self, position: Array) -> None:
         self.fix(position)
         self.landed += 1
-        self.waited, self.early, self.fixed = 0, False, False
+        if self.adapted and self._legs is not None:
+            self.queue.lift_heel(self.landed, self._legs.radius)
+        self.waited, self.early, self.fixed, self.adapted = 0, False, False, False
 
     def fix_imminent(self, time: float) -> None:
         """Decide the next footstep where its foot now lands, shortly before it does."""
@@ -242,7 +301,7 @@ class Stepper:
             times = swing_times(time, self.left, course, self._parameters)
             self.swing = start_swing(foot, pose, target, times, course.height, self._parameters)
         elif not (self.fixed or held) and np.abs(target - self.swing.target).max() > _SAME_TARGET:
-            self.swing = self.swing.retargeted(time, target)
+            self.swing = self.swing.retargeted(time, target, self.adapted)
 
     def roll(self, time: float) -> FootRoll | None:
         """Pitch of the foot that leaves the ground next or has just left it; None for one that stays level."""

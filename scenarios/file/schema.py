@@ -205,8 +205,9 @@ class PlannerSettings(Group):
     jerk_rate_limit: Annotated[Positive, Unit("m/s^3")] | None = Field(
         default=None, description="bound on its change per sample, null: the profile's own"
     )
-    step_adaptation: Literal["none", "location", "timing"] = Field(
-        default="location", description="what of the next footstep the planner may change"
+    step_adaptation: Literal["none", "location", "timing", "crossing"] = Field(
+        default="crossing",
+        description="what of the next footsteps a push may change: where, when, beyond the stance foot",
     )
     knee: Literal["stretched", "bent"] = Field(
         default="stretched", description="CoM height: the paper's rises, or constant and 0.08 m lower"

@@ -29,7 +29,6 @@ _SENSED = ("source", "zmp_noise", "com_noise")
 
 AVAILABLE: dict[Key, tuple[Any, ...]] = {
     ("fidelity",): ("full", "pendulum"),
-    ("planner", "step_adaptation"): ("none", "location"),
     **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
 }
 """Values of the format's keys that this version has; of other keys it has all."""

@@ -24,6 +24,8 @@ class RobotFacts:
         foot_length: of the soles [m].
         foot_width: of the soles [m].
         shank_spacing: lateral distance of the soles at which upright shanks keep apart [m].
+        swing_acceleration: of the sole of a straight leg, forward and sideways, with half the torque of its hip
+            [m/s^2].
     """
 
     bodies: tuple[str, ...]
@@ -33,6 +35,7 @@ class RobotFacts:
     foot_length: float
     foot_width: float
     shank_spacing: float
+    swing_acceleration: tuple[float, float]
 
 
 class Robots(Protocol):
@@ -75,6 +78,7 @@ def facts_of(description: "RobotDescription") -> RobotFacts:
         foot_length=description.sole_length,
         foot_width=description.sole_width,
         shank_spacing=description.shank_spacing,
+        swing_acceleration=_swing_acceleration(description),
     )
 
 
@@ -116,6 +120,42 @@ def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "R
     if errors.payload is not None and errors.payload.mass > 0.0:
         robot = with_load(robot, errors.payload.mass, errors.payload.body)
     return robot
+
+
+HIP_SHARE = 0.67
+"""Share of a hip's torque that swings a leg; the rest is for gravity and for a knee that is bent [-]."""
+
+
+def _swing_acceleration(description: "RobotDescription") -> tuple[float, float]:
+    """See `RobotFacts`: of the left leg, by the joint whose axis is nearest to the one that it needs."""
+    joints = description.roles.left_leg
+    limits = [float(description.torque_limit[description.joint_names.index(name)]) for name in joints]
+    axes, inertias = _leg_joints(description.mjcf, joints)
+    reached = [
+        HIP_SHARE * description.leg_length * limit / inertia for limit, inertia in zip(limits, inertias, strict=True)
+    ]
+    hips = range(len(joints) // 2)
+    pitch, roll = (max(hips, key=lambda k: abs(axes[k][axis])) for axis in (1, 0))
+    return reached[pitch], reached[roll]
+
+
+@lru_cache(maxsize=16)
+def _leg_joints(mjcf: str, joints: tuple[str, ...]) -> tuple[list[list[float]], list[float]]:
+    """Axes in the world of joints with all of them at zero, and the inertias about them [-, kg·m²]."""
+    import mujoco
+
+    model = mujoco.MjModel.from_xml_string(mjcf)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    axes, inertias = [], []
+    for name in joints:
+        joint = model.joint(name)
+        unit, inertia = np.zeros((2, model.nv))
+        unit[joint.dofadr[0]] = 1.0
+        mujoco.mj_mulM(model, data, inertia, unit)
+        axes.append(data.xaxis[joint.id].tolist())
+        inertias.append(float(inertia[joint.dofadr[0]]))
+    return axes, inertias
 
 
 @lru_cache(maxsize=16)

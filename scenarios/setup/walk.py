@@ -17,7 +17,7 @@ from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.types import Array, FeetState
 from surefoot.planner.walk.commands import TimedCommand
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import StepRegion
+from surefoot.planner.walk.reach import Legs, StepRegion
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
 from surefoot.scenarios.setup.commands import told
@@ -33,6 +33,12 @@ if TYPE_CHECKING:
 LEG_SHARE = 0.9
 """Share of the span of the legs that steps on command make use of: with all of it both are straight at touchdown, and
 at 0.88 m/s a push felled the robot that it took at 0.65 to 0.8 m/s [-]."""
+
+ACROSS = 0.12
+"""How far beyond its stance foot a foot may land to catch the body [m]."""
+
+GAP = 0.02
+"""Least gap between two soles one of which lands ahead of the other [m]."""
 
 LEAST_BELIEVED_FRICTION = 0.05
 """The controller counts on at least this friction, so that its wrench cones keep an inside."""
@@ -131,6 +137,14 @@ class Walk:
         span = LEG_SHARE * leg_span(self.gait.com_height, facts)
         return step_region(self.parameters, self.sole, facts.shank_spacing, span, facts.hip_width)
 
+    @property
+    def legs(self) -> Legs:
+        """What the legs can do to catch the body."""
+        facts, apart = facts_of(self.robot), self.parameters.reach_width[0]
+        radius = 0.5 * LEG_SHARE * leg_span(self.gait.com_height, facts)
+        clear = self.robot.sole_length + GAP
+        return Legs(radius, facts.hip_width, apart, ACROSS, clear, facts.swing_acceleration)
+
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
         """The planner of this walk: the profile's own, or the walking planner with the profile's law.
 
@@ -146,7 +160,7 @@ class Walk:
         if self.profile.planner is not None:
             return self.profile.planner(*given, self.profile)
         check_walk(*given)
-        return WalkingPlanner(*given, self.profile, self.region)
+        return WalkingPlanner(*given, self.profile, self.region, self.legs)
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:

@@ -1,14 +1,14 @@
 """The limit of a push by one-step capturability: what no controller survives that lands once, on the clock, and stops.
 
 Of a linear inverted pendulum (Koolen et al., Capturability-based analysis and control of legged locomotion, 2012) whose
-centre of pressure may be anywhere in the support and whose foot may land anywhere in the planner's reach. Neither the
+centre of pressure may be anywhere in the support and whose foot may land anywhere that the legs reach. Neither the
 torso's rotation, nor a second step, nor another clock is in it: a controller that has these may survive more.
 """
 
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from scipy.optimize import linprog
 
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import sole_corners
+from surefoot.planner.parameters import StepAdaptation
 from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
 from surefoot.planner.walk.reach import reach_box
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
@@ -139,10 +140,21 @@ def _moment(scenario: Scenario, walk: Walk, view: LogView, push: int) -> Moment 
     lift = max(gait.lift_off(step) - begin, 0.0)
     land = gait.lift_off(step) + gait.single_support - begin
     supports = ((np.vstack(soles), (0.0, lift)), (alone, (lift, land)))
-    reach = reach_box(walk.parameters, 1.0 if swing is Foot.LEFT else -1.0)
+    reach = _reach(walk, 1.0 if swing is Foot.LEFT else -1.0)
     landed = landing_points(stance, alone, half, reach)
     pushed = scenario.pushes[push]
     return Moment(com + speed / omega, omega, supports, landed, pushed.duration, pushed.direction or 0.0)
+
+
+def _reach(walk: Walk, side: float) -> tuple[Array, Array]:
+    """Lower and upper corner of the box in which a foot may land, in the frame of the standing one, shape (2,) [m]."""
+    adaptation, legs = walk.parameters.step_adaptation, walk.legs
+    if not walk.profile.catches or adaptation is StepAdaptation.NONE:
+        return reach_box(walk.parameters, side)
+    if adaptation is not StepAdaptation.CROSSING:
+        legs = replace(legs, across=None)
+    lows, highs = zip(*legs.boxes(side), strict=True)
+    return np.min(lows, axis=0), np.max(highs, axis=0)
 
 
 def _corners(foot: Foot, pose: Array, half: tuple[float, float]) -> Array:

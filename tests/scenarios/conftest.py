@@ -36,6 +36,7 @@ class FakeRobots:
         return RobotFacts(
             bodies=("pelvis", "torso"), leg_length=0.92, hip_width=0.2, com_above_hip=0.114,
             foot_length=options.foot_length or FOOT, foot_width=width, shank_spacing=0.11,
+            swing_acceleration=(60.0, 50.0),
         )  # fmt: skip
 
 

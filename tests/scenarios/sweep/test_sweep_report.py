@@ -212,6 +212,7 @@ set:
   gait.single_support: 0.5
   gait.double_support: 0.12
   pushes: [{step: 1, phase: single, fraction: 0.2, duration: 0.1, impulse: 0.1, direction: 0.0}]
+  planner.step_adaptation: location  # The limit is one on the clock.
   criteria: {fell: false}
 grid: {pushes.0.direction: [0.0, 2.0, 4.0]}
 bisect: {key: pushes.0.impulse, low: 0.2, high: 1.9, ratio: 3}

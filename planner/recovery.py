@@ -1,0 +1,246 @@
+"""Where and when the next step lands after a push: what no CoP can hold is caught by place and time together.
+
+On a foot the DCM goes away from the CoP p as ξ(t) = p + (ξ - p) e^{ωt}. While the CoP moves evenly from p0 to p1 in a
+double support of length T it comes to ξ(T) = e^{ωT} ξ - p0 (e^{ωT} - 1) - (p1 - p0) ((e^{ωT} - 1) / (ωT) - 1). So where
+it is when the next foot lands follows from the times left alone; a foot that lands d beside its nominal place moves the
+DCM that its future ZMP keeps bounded by g d. For each of some times left the CoP takes what it can, the step what legs
+reach and the foot can be swung to until then, and the step after it what is left. The cheapest is walked.
+
+It is the law of Khadiv et al. (IEEE Transactions on Robotics 2020) with the CoP as one more means, with double support,
+and with the limits of the legs as they are, over a list of times in place of a QP. Without need, where the CoP alone
+can bring the DCM back until the foot lands, nothing is adapted.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from surefoot.planner.model.dcm import decays, nominal_dcm, viability_weights
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.references.window import Window
+from surefoot.planner.references.zmp_reference import Support, ZmpReference
+from surefoot.planner.types import Array, FeetState, Foot, PhaseKind
+from surefoot.planner.walk.reach import Legs
+from surefoot.planner.walk.stepper import Stepper
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """A tick before a step lands, in the plan frame: its origin is the stance foot of that step.
+
+    Attributes:
+        com: CoM now, shape (2,) [m].
+        dcm: DCM now, shape (2,) [m].
+        stiffness: λ over the window, shape (n,) [1/s^2].
+        omega: ω over the window, shape (n,) [1/s].
+        reference: ZMP that drives the pendulum, over the window.
+        nominal: where the step lands nominally, shape (2,) [m].
+        side: +1 where it is a left one, -1 where it is a right one.
+        swing: position and velocity of its foot, shape (2, 2) [m, m/s].
+        double: time until that leaves the ground as planned, zero when it has [s].
+        single: time that it swings, or swings on, as planned [s].
+        cycle: duration of the step after it [s].
+        adapted: whether the step is being adapted already.
+    """
+
+    com: Array
+    dcm: Array
+    stiffness: Array
+    omega: Array
+    reference: ZmpReference
+    nominal: Array
+    side: float
+    swing: Array
+    double: float
+    single: float
+    cycle: float
+    adapted: bool
+
+    @classmethod
+    def of(
+        cls, time: float, stepper: Stepper, local: Array, feet: FeetState, support: Support, window: Window
+    ) -> "Situation | None":
+        """That of a tick; None where no step is to come, or none that may be moved.
+
+        Args:
+            time: now [s].
+            stepper: clock and footholds.
+            local: CoM position, velocity and acceleration per axis of the plan frame, shape (2, 3).
+            feet: the measured feet.
+            support: what carries the robot now, with the plan frame.
+            window: references.
+        """
+        phase, rotation, moving = stepper.info, support.rotation, np.zeros(2)
+        swings = phase.kind is PhaseKind.SINGLE
+        if not (phase.leads_to and stepper.free[0]) or (swings and stepper.swing is None):
+            return None
+        foot = stepper.queue.gait.step_foot(phase.leads_to)
+        if stepper.swing is not None:
+            moving = stepper.swing.evaluate(time)[1, :2] @ rotation
+        return cls(
+            com=local[:, 0],
+            dcm=local[:, 0] + local[:, 1] / window.omega[0],
+            stiffness=window.stiffness,
+            omega=window.omega,
+            reference=window.driving,
+            nominal=(stepper.footsteps.position[stepper.row + 1, :2] - support.origin) @ rotation,
+            side=1.0 if foot is Foot.LEFT else -1.0,
+            swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
+            double=0.0 if swings else phase.left,
+            single=phase.left if swings else stepper.queue.lift_off(phase.leads_to).samples * stepper.sample_time,
+            cycle=stepper.queue.gait.period,
+            adapted=stepper.adapted,
+        )
+
+
+class Catch(NamedTuple):
+    """What is made of a step.
+
+    Attributes:
+        left: time until the present phase is to end [s].
+        low: lower corner of the box in which it may land, shape (2,) [m].
+        high: upper corner, shape (2,) [m].
+    """
+
+    left: float
+    low: Array
+    high: Array
+
+
+_AUTHORITY = 0.8
+"""Share of the ZMP box that a step which is adapted leaves to the CoP [-]."""
+
+_MARGIN = 0.02
+"""DCM error at landing that the CoP cannot hold from which on a step is adapted [m]."""
+
+_LEAST_GAIN = 0.05
+"""Gain of a step, which no horizon that ends with it shall make zero [-]."""
+
+_CHANGES = np.array(
+    [*np.arange(-0.6, -0.2, 0.1), *np.arange(-0.24, 0.0, 0.04), -0.02, 0.02, *np.arange(0.04, 0.21, 0.04)]
+)
+"""By which a phase may become longer at once [s]."""
+
+_SHORTEST = {"double": 0.06, "single": 0.16}
+"""Times left that phases are not made shorter than [s]."""
+
+_PLACE, _TIME, _STRETCH, _SECOND = 0.02, 1.0, 1.0, 1.0
+"""Cost of a squared shift, change of time, way of the hip beyond the reach of the stance leg, and shift of the step
+after it [1/m^2, 1/s^2, 1/m^2, 1/m^2]."""
+
+_WORTH = 0.001
+"""Cost that other times must save [-]."""
+
+_PEAK, _BRAKING, _GAINING = 5.77, 1.9, 3.9
+"""Greatest acceleration of a quintic to rest over way / T², and what of it a speed / T takes off at its end and its
+begin [-]."""
+
+
+class Recovery:
+    """Chooses when the next step lands, and the box of where.
+
+    Args:
+        legs: what they can do.
+        parameters: of the planner.
+        timing: whether times may change.
+    """
+
+    def __init__(self, legs: Legs, parameters: PlannerParameters, timing: bool) -> None:
+        self.legs, self._timing = legs, timing
+        self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
+
+    def catch(self, now: Situation) -> Catch | None:
+        """What is made of the next step; None where nothing has to be."""
+        t, omega, count = self._sample_time, float(now.omega[0]), len(now.stiffness)
+        lift = min(round(now.double / t), count - 3)
+        land = min(max(round((now.double + now.single) / t), lift + 1), count - 2)
+        point, weights = now.reference.point, viability_weights(now.stiffness[land:], now.omega[land:], t)
+        landed, gain = weights @ point[land:], max(float(weights @ now.reference.gain[land:, 0]), _LEAST_GAIN)
+        # The DCM that keeps bounded what comes, from now until landing.
+        fades = decays(now.stiffness[: land + 1], now.omega[: land + 1], t)
+        nominal = nominal_dcm(now.stiffness[: land + 1], now.omega[: land + 1], point[: land + 1], t)
+        nominal = nominal + (fades[-1] / fades)[:, None] * (landed - point[land])
+        box = now.reference.half_size[lift]
+        fine = bool((np.abs(now.dcm - nominal[0]) <= (1.0 - fades[-1]) * box + fades[-1] * _MARGIN).all())
+        if fine and not now.adapted:
+            return None
+        half = _AUTHORITY * box
+        doubles, singles = self._times(now, fine)
+        spread, grown = np.exp(omega * doubles), np.exp(omega * singles)
+        # The constant CoP on the foot, and beside the moving one before it, that are nominal.
+        growth = np.exp(omega * now.single)
+        centre = (landed - growth * nominal[lift]) / (1.0 - growth)
+        lifted, start = np.broadcast_to(now.dcm, (len(singles), 2)), centre
+        if now.double:
+            growth, start = np.exp(omega * now.double), point[0]
+            beside = growth * nominal[0] - moving_cop(start, centre, omega, np.array([now.double]))[0] - nominal[lift]
+            lifted = spread[:, None] * now.dcm - moving_cop(start, centre, omega, doubles)
+            lifted = lifted - (spread[:, None] - 1.0) * (beside / (growth - 1.0))
+        astray = grown[:, None] * (lifted - centre) + centre - landed
+        most = (grown * spread - 1.0)[:, None] * half
+        held = np.clip(astray, -most, most)
+        wanted = now.nominal + (astray - held) / gain
+        cop = centre + half * held / np.maximum(most, 1e-9)
+        com = pendulum_com(now.com, now.dcm, 0.5 * (start + cop), spread)
+        com = pendulum_com(com, lifted, cop, grown)
+        hip = 0.5 * now.side * self.legs.hip_width * np.array([0.0, 1.0])
+        stretch = np.hypot(*(com - hip).T) - self.legs.radius
+        cost = _TIME * ((doubles - now.double) ** 2 + (singles - now.single) ** 2)
+        cost = cost + _STRETCH * np.maximum(stretch, 0.0) ** 2
+        low, high = self._swung(now, singles)
+        growth = np.exp(omega * now.cycle)
+        options = []
+        for box in self.legs.boxes(now.side):
+            place = np.clip(self.legs.within(np.clip(np.clip(wanted, low, high), *box), com + hip), *box)
+            second = np.maximum(gain * growth * np.abs(wanted - place) - (growth - 1.0) * half, 0.0)
+            total = cost + _PLACE * ((place - now.nominal) ** 2).sum(axis=1) + _SECOND * (second**2).sum(axis=1)
+            best = int(np.argmin(total))
+            best = best if total[best] < total[-1] - _WORTH else len(total) - 1
+            options.append((total[best], best, place[best], box))
+        _, best, place, box = min(options, key=lambda option: option[0])
+        lower, upper = self.legs.around(place, com[best] + hip, box)
+        lower, upper = np.maximum(lower, np.minimum(low[best], place)), np.minimum(upper, np.maximum(high[best], place))
+        return Catch(float(doubles[best] if now.double else singles[best]), lower, upper)
+
+    def _times(self, now: Situation, fine: bool) -> tuple[Array, Array]:
+        """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
+        if fine or not self._timing:
+            return np.array([now.double]), np.array([now.single])
+        singles = _around(now.single, _SHORTEST["single"])
+        doubles = _around(now.double, _SHORTEST["double"]) if now.double else np.zeros(1)
+        grid = np.meshgrid(doubles, singles, indexing="ij")
+        return grid[0].ravel(), grid[1].ravel()
+
+    def _swung(self, now: Situation, singles: Array) -> tuple[Array, Array]:
+        """Boxes to which the foot can be swung in times, lower and upper corners, shape (n, 2) each [m].
+
+        It may always be swung as hard as it nominally is.
+        """
+        time, (here, speed) = np.maximum(singles - self._lead, self._sample_time)[:, None], now.swing
+        usual = np.abs(_PEAK * (now.nominal - here) / time[-1] ** 2 - _BRAKING * speed / time[-1])
+        most = np.maximum(self.legs.acceleration, usual) * time**2
+        onward = (most + _BRAKING * np.abs(speed) * time) / _PEAK
+        back = (most - _GAINING * np.abs(speed) * time) / _PEAK
+        return here - np.where(speed > 0.0, back, onward), here + np.where(speed > 0.0, onward, back)
+
+
+def _around(time: float, least: float) -> Array:
+    """Times about one, which is the last [s]."""
+    times = time + _CHANGES
+    return np.append(times[times >= min(time, least)], time)
+
+
+def moving_cop(start: Array, end: Array, omega: float, times: Array) -> Array:
+    """What a CoP that moves evenly from start to end takes off the DCM in times, shape (n, 2) [m]; see the module."""
+    growth = np.exp(omega * times) - 1.0
+    return np.asarray(growth[:, None] * start + (growth / (omega * times) - 1.0)[:, None] * (end - start))
+
+
+def pendulum_com(com: Array, dcm: Array, cop: Array, growth: Array) -> Array:
+    """CoM once the DCM's distance from a constant CoP has grown by factors e^{ωt}, shape (n, 2) [m].
+
+    c' = ω (ξ - c) gives c(t) = c e^{-ωt} + p (1 - e^{-ωt}) + (ξ - p) sinh ωt.
+    """
+    grown = growth[:, None]
+    return np.asarray(com / grown + cop * (1.0 - 1.0 / grown) + 0.5 * (dcm - cop) * (grown - 1.0 / grown))

@@ -1,0 +1,173 @@
+"""Where and when a step lands after a push, held against the pendulum's own motion."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from surefoot.planner.geometry import quintic
+from surefoot.planner.laws.profiles import PROFILES
+from surefoot.planner.model.dcm import viability_weights
+from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import PointPush, walk_pendulum
+from surefoot.planner.recovery import Recovery, Situation, moving_cop, pendulum_com
+from surefoot.planner.references.zmp_reference import ZmpReference
+from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.reach import Legs
+
+pytestmark = pytest.mark.unit
+
+P = PlannerParameters()
+T, OMEGA = P.sample_time, 3.2
+LEGS = Legs(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
+NOMINAL = np.array([0.36, 0.2])
+HALF = np.array([0.1, 0.05])
+
+
+def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 0.0)), **keys):
+    """A left step on the right foot: its DCM is off the nominal one by an error [m]."""
+    count = P.horizon + P.preview + 1
+    landed = round(single / T) * T
+    times = T * np.arange(count)
+    share = np.clip((times - landed) / 0.12, 0.0, 1.0)
+    point, gain = share[:, None] * NOMINAL, np.column_stack((share, np.zeros(count)))
+    reference = ZmpReference(point, gain, np.broadcast_to(half, (count, 2)), np.zeros(count))
+    stiffness, omega = np.full(count, OMEGA**2), np.full(count, OMEGA)
+    bounded = viability_weights(stiffness, omega, T) @ point
+    given = {
+        "com": bounded - (0.1, 0.0), "dcm": bounded + error, "stiffness": stiffness, "omega": omega,
+        "reference": reference, "nominal": NOMINAL, "side": 1.0, "swing": np.array(swing), "double": 0.0,
+        "single": landed, "cycle": 0.62, "adapted": False,
+    }  # fmt: skip
+    return Situation(**{**given, **keys})
+
+
+def catch(now, timing=True, legs=LEGS):
+    return Recovery(legs, P, timing).catch(now)
+
+
+@pytest.mark.parametrize("time", [0.05, 0.3])
+def test_the_laws_of_dcm_and_com_are_the_motion_of_the_pendulum(time):
+    com, dcm, start, end = np.array([0.1, 0.02]), np.array([0.2, -0.03]), np.array([-0.1, 0.1]), np.array([0.2, 0.0])
+
+    def rate(at, state, moves):
+        cop = start + moves * (end - start) * at / time
+        return np.concatenate((OMEGA * (state[2:] - state[:2]), OMEGA * (state[2:] - cop)))
+
+    moved, fixed = (
+        solve_ivp(rate, (0.0, time), np.concatenate((com, dcm)), args=(moves,), rtol=1e-10, atol=1e-12).y[:, -1]
+        for moves in (1.0, 0.0)
+    )
+    grown = np.exp(OMEGA * time)
+    np.testing.assert_allclose(grown * dcm - moving_cop(start, end, OMEGA, np.array([time]))[0], moved[2:], atol=1e-8)
+    np.testing.assert_allclose(pendulum_com(com, dcm, start, np.array([grown]))[0], fixed[:2], atol=1e-8)
+
+
+@pytest.mark.parametrize("error", [(0.0, 0.0), (0.08, 0.0), (-0.05, 0.03), (0.0, -0.04)])
+def test_without_need_nothing_is_adapted(error):
+    """The CoP holds (e^{ωT} - 1) / e^{ωT} of its box until the landing: 62 % of 0.1 and 0.05 m."""
+    held = (1.0 - np.exp(-OMEGA * 0.3)) * HALF + 0.02 * np.exp(-OMEGA * 0.3)
+    assert (catch(situation(error)) is None) is bool((np.abs(error) <= held).all())
+    assert catch(situation(0.999 * held)) is None
+    assert catch(situation(1.001 * held)) is not None
+
+
+@pytest.mark.parametrize("error", [(0.08, 0.0), (-0.06, 0.0), (0.0, 0.06), (0.05, 0.05)])
+def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error):
+    """The pendulum with its CoP at the edge until the foot lands where the box says; legs without limits."""
+    free = replace(LEGS, radius=2.0, near=-2.0, acceleration=(1e4, 1e4))
+    now = situation(error, half=0.2 * HALF)
+    caught = catch(now, timing=False, legs=free)
+    assert caught.left == now.single
+    edge = 0.8 * 0.2 * HALF * np.sign(error)
+    landed = edge + (now.dcm - edge) * np.exp(OMEGA * now.single)
+    nominal = situation().dcm * np.exp(OMEGA * now.single)
+    # Double support takes 0.12 s, in which the ZMP goes over to the foot: a shift counts as the mean fade of that time.
+    gain = (1.0 - np.exp(-OMEGA * 0.12)) / (OMEGA * 0.12)
+    moved = np.where(error, (landed - nominal) / gain, 0.0)
+    place = NOMINAL + moved
+    assert (caught.low <= place + 2e-3).all()
+    assert (place - 2e-3 <= caught.high).all()
+
+
+def test_a_foot_is_swung_no_harder_than_the_hip_allows():
+    now = situation((0.15, 0.0), swing=((0.1, 0.2), (1.0, 0.0)))
+    caught = catch(now, timing=False)
+    time = now.single - P.touchdown_lead
+    for corner in (caught.low[0], caught.high[0]):
+        start, end = np.array([[0.1], [1.0], [0.0]]), np.array([[corner], [0.0], [0.0]])
+        at = np.linspace(0.0, time, 200)[:, None] ** np.arange(4)
+        bend = at @ (np.arange(2, 6) * np.arange(1, 5) * quintic(start, end, time)[2:, 0])
+        assert np.abs(bend).max() < 1.03 * LEGS.acceleration[0]
+
+
+@pytest.mark.parametrize("direction", np.linspace(-np.pi, np.pi, 12, endpoint=False))
+@pytest.mark.parametrize("single", [0.1, 0.3, 0.8])
+def test_the_box_is_in_reach_of_the_legs(direction, single):
+    error = 0.3 * np.array([np.cos(direction), np.sin(direction)])
+    for legs in (LEGS, replace(LEGS, across=None)):
+        caught = catch(situation(error, single), legs=legs)
+        assert (caught.low <= caught.high).all()
+        assert (np.abs(caught.low) <= 2.0 * legs.radius + legs.hip_width).all()
+        for x in (caught.low[0], caught.high[0]):
+            assert caught.low[1] >= legs.near - 1e-9 or (abs(x) >= legs.clear - 1e-9 and legs.across is not None)
+
+
+def test_who_is_pushed_over_the_stance_foot_crosses_where_it_may():
+    now = situation((0.0, -0.1), 0.4, swing=((0.2, 0.2), (1.5, 0.0)))
+    crossing, beside = catch(now), catch(now, legs=replace(LEGS, across=None))
+    assert crossing.low[1] < 0.0
+    assert beside.low[1] >= LEGS.near - 1e-9
+
+
+def test_a_step_that_legs_cannot_make_long_enough_is_made_sooner():
+    slow = {"single": 1.0, "swing": ((-0.3, 0.2), (0.0, 0.0))}
+    assert catch(situation((0.14, 0.0), **slow)).left < 0.9
+    assert catch(situation((0.14, 0.0), **slow), timing=False).left == 1.0
+
+
+def test_a_double_support_ends_sooner_for_who_is_far_ahead_of_its_feet():
+    now = situation((0.12, 0.0), 0.5, double=0.4, swing=((-0.36, 0.2), (0.0, 0.0)))
+    assert catch(now).left < 0.3
+
+
+LEVELS = (StepAdaptation.NONE, StepAdaptation.LOCATION, StepAdaptation.TIMING, StepAdaptation.CROSSING)
+
+
+def greatest(stand, name, adaptation, direction):
+    """Largest of some impulses in mid-swing that the pendulum survives with all smaller ones [N·s/kg]."""
+    gait = GaitParameters(steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
+    parameters, begin = replace(PROFILES[name].parameters, step_adaptation=adaptation), gait.lift_off(3) + 0.25
+    survived = 0.0
+    for impulse in 0.1 * 1.25 ** np.arange(16):
+        planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, profile=PROFILES[name], legs=LEGS)
+        push = PointPush(begin, 0.1, 1000.0 * impulse * np.array(direction))
+        com = np.array([0.0, 0.0, gait.com_height])
+        if walk_pendulum(planner, stand(), gait.duration + 1.0, com=com, pushes=(push,)).fall_time is not None:
+            break
+        survived = float(impulse)
+    return survived
+
+
+@pytest.mark.parametrize(("direction", "least"), [((1.0, 0.0), 3.0), ((0.0, 1.0), 1.5), ((0.0, -1.0), 1.5)])
+def test_a_pushed_pendulum_survives_more_the_more_it_may_adapt(stand, direction, least):
+    survived = [greatest(stand, "default", level, direction) for level in LEVELS]
+    assert min(survived[1:]) > survived[0] > 0.0
+    assert survived[-1] == max(survived) > least * survived[0]
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_an_undisturbed_walk_is_not_adapted(stand, level):
+    gait = GaitParameters(steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
+    parameters = replace(P, step_adaptation=level)
+    com = np.array([0.0, 0.0, gait.com_height])
+    trace = walk_pendulum(
+        WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS), stand(), gait.duration, com=com
+    )
+    swung = {plan.phase.step: plan for plan in trace.plans if plan.swing is not None}
+    assert sorted(swung) == [1, 2, 3, 4, 5]
+    for step, plan in swung.items():
+        np.testing.assert_allclose(plan.swing.target[0], 0.3 * min(step, 4), atol=1e-3)
+        assert abs(plan.time - gait.lift_off(step) - gait.single_support) < 1.5 * T

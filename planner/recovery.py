@@ -129,6 +129,9 @@ _PLACE, _TIME, _STRETCH, _SECOND = 0.02, 1.0, 1.0, 1.0
 """Cost of a squared shift, change of time, way of the hip beyond the reach of the stance leg, and shift of the step
 after it [1/m^2, 1/s^2, 1/m^2, 1/m^2]."""
 
+_OUTWARD = 3.0
+"""Factor of that shift where the body goes on outward over the foot that has landed: the other one has to cross [-]."""
+
 _WORTH = 0.001
 """Cost that other times must save [-]."""
 
@@ -193,7 +196,9 @@ class Recovery:
         options = []
         for box in self.legs.boxes(now.side):
             place = np.clip(self.legs.within(np.clip(np.clip(wanted, low, high), *box), com + hip), *box)
-            second = np.maximum(gain * growth * np.abs(wanted - place) - (growth - 1.0) * half, 0.0)
+            short = wanted - place
+            second = np.maximum(gain * growth * np.abs(short) - (growth - 1.0) * half, 0.0)
+            second[:, 1] *= np.where(now.side * short[:, 1] > 0.0, _OUTWARD, 1.0)
             total = cost + _PLACE * ((place - now.nominal) ** 2).sum(axis=1) + _SECOND * (second**2).sum(axis=1)
             best = int(np.argmin(total))
             best = best if total[best] < total[-1] - _WORTH else len(total) - 1

@@ -84,7 +84,8 @@ def nominal_feet(
         way = deviation.swing.positions(times)
         swing[now, :2] = (way[:, :2] - origin) @ rotation
         swing[now, 2] = np.maximum(way[:, 2], deviation.swing.target[2])
-        swing[0] = 2.0 * swing[1] - swing[2]
+        # Before now it goes on evenly: its own past may be on another trajectory.
+        swing[0] = 2.0 * swing[1] - swing[2] if len(now) > 1 else swing[1]
     left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
     pitch = rolled * np.stack((~left, left))

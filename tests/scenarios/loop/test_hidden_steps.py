@@ -51,6 +51,6 @@ def test_ground_a_centimetre_off_is_felt_and_walked_over(tmp_path):
     assert max(map(abs, soles)) < 1e-4  # the start is as believed
 
 
-def test_a_step_of_ten_centimetres_cannot_be_hidden(tmp_path):
-    scenario = load_scenario("diagonal-walk", [*STRAIGHT, hidden_step(0.1, 0.3, 0.66)])
+def test_a_step_of_ten_centimetres_fells_who_does_not_adapt(tmp_path):
+    scenario = load_scenario("diagonal-walk", [*STRAIGHT, hidden_step(0.1, 0.3, 0.66), "planner.step_adaptation=none"])
     assert run_scenario(scenario, tmp_path).verdict.metrics["fell"]

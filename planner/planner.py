@@ -82,9 +82,7 @@ class WalkingPlanner:
         heights = height_profile or profile.height or SmoothHeight()
         self._outlook = Outlook(gait, heights, p, half_size)
         queue, adaptation = StepQueue(gait, feet, Ground(terrain, half_size, p)), p.step_adaptation
-        legs = legs if profile.catches and adaptation is not StepAdaptation.NONE else None
-        if legs is not None and adaptation is not StepAdaptation.CROSSING:
-            legs = replace(legs, across=None)
+        legs = legs.adapting(adaptation) if legs is not None and profile.catches else None
         timing = adaptation is not StepAdaptation.LOCATION
         self._recovery = None if legs is None else Recovery(legs, p, timing)
         self._stepper = Stepper(queue, self._outlook.reach + 1, legs)

@@ -8,7 +8,7 @@ import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.types import Array, Foot, Footstep
 from surefoot.planner.walk.gait import Stride
 
@@ -163,6 +163,12 @@ class Legs:
     across: float | None
     clear: float
     acceleration: tuple[float, float]
+
+    def adapting(self, adaptation: StepAdaptation) -> "Legs | None":
+        """What of it an adaptation of steps makes use of; None where it makes none."""
+        if adaptation is StepAdaptation.NONE:
+            return None
+        return self if adaptation is StepAdaptation.CROSSING else replace(self, across=None)
 
     def boxes(self, side: float) -> list[tuple[Array, Array]]:
         """Lower and upper corners of boxes, one of which holds the landing of a left (+1) or right (-1) foot."""

@@ -169,20 +169,19 @@ class Stepper:
             self.swing = self.swing.retimed(time, self.time_left - left, self.sample_time)
 
     def end_in(self, left: float, time: float) -> bool:
-        """Let the present phase end at another time, if there is enough left of it.
+        """Let the present phase end at another time, or as near to it as the clock can (see `Pace.over`).
 
         Args:
             left: time from now on [s].
             time: now [s].
 
         Returns:
-            Whether it will.
+            Whether that is another one than before.
         """
-        before, way = self.time_left, self.phase.end - self.clock.now
-        length = left / self.sample_time
+        before = self.time_left
         if abs(left - before) < _SAME_TIME:
             return False
-        self.clock.take(way, length)
+        self.clock.take(self.phase.end - self.clock.now, left / self.sample_time)
         self._look_ahead(self.clock.now)
         if self.swing is not None:
             self.swing = self.swing.retimed(time, self.time_left - before, self.sample_time)

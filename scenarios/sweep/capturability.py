@@ -8,7 +8,7 @@ torso's rotation, nor a second step, nor another clock is in it: a controller th
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,6 @@ from scipy.optimize import linprog
 
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import sole_corners
-from surefoot.planner.parameters import StepAdaptation
 from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
 from surefoot.planner.walk.reach import reach_box
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
@@ -148,11 +147,9 @@ def _moment(scenario: Scenario, walk: Walk, view: LogView, push: int) -> Moment 
 
 def _reach(walk: Walk, side: float) -> tuple[Array, Array]:
     """Lower and upper corner of the box in which a foot may land, in the frame of the standing one, shape (2,) [m]."""
-    adaptation, legs = walk.parameters.step_adaptation, walk.legs
-    if not walk.profile.catches or adaptation is StepAdaptation.NONE:
+    legs = walk.legs.adapting(walk.parameters.step_adaptation) if walk.profile.catches else None
+    if legs is None:
         return reach_box(walk.parameters, side)
-    if adaptation is not StepAdaptation.CROSSING:
-        legs = replace(legs, across=None)
     lows, highs = zip(*legs.boxes(side), strict=True)
     return np.min(lows, axis=0), np.max(highs, axis=0)
 

@@ -7,7 +7,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from surefoot.planner.geometry import quintic
-from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
@@ -136,13 +135,13 @@ def test_a_double_support_ends_sooner_for_who_is_far_ahead_of_its_feet():
 LEVELS = (StepAdaptation.NONE, StepAdaptation.LOCATION, StepAdaptation.TIMING, StepAdaptation.CROSSING)
 
 
-def greatest(stand, name, adaptation, direction):
+def greatest(stand, adaptation, direction):
     """Largest of some impulses in mid-swing that the pendulum survives with all smaller ones [N·s/kg]."""
     gait = GaitParameters(steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
-    parameters, begin = replace(PROFILES[name].parameters, step_adaptation=adaptation), gait.lift_off(3) + 0.25
+    parameters, begin = replace(P, step_adaptation=adaptation), gait.lift_off(3) + 0.25
     survived = 0.0
     for impulse in 0.1 * 1.25 ** np.arange(16):
-        planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, profile=PROFILES[name], legs=LEGS)
+        planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
         push = PointPush(begin, 0.1, 1000.0 * impulse * np.array(direction))
         com = np.array([0.0, 0.0, gait.com_height])
         if walk_pendulum(planner, stand(), gait.duration + 1.0, com=com, pushes=(push,)).fall_time is not None:
@@ -153,7 +152,7 @@ def greatest(stand, name, adaptation, direction):
 
 @pytest.mark.parametrize(("direction", "least"), [((1.0, 0.0), 3.0), ((0.0, 1.0), 1.5), ((0.0, -1.0), 1.5)])
 def test_a_pushed_pendulum_survives_more_the_more_it_may_adapt(stand, direction, least):
-    survived = [greatest(stand, "default", level, direction) for level in LEVELS]
+    survived = [greatest(stand, level, direction) for level in LEVELS]
     assert min(survived[1:]) > survived[0] > 0.0
     assert survived[-1] == max(survived) > least * survived[0]
 

@@ -9,6 +9,7 @@ from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.leg_offset import softening
 from surefoot.planner.types import GRAVITY, CentroidalState, Foot
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.reach import Legs
 
 pytestmark = pytest.mark.unit
 
@@ -19,16 +20,20 @@ CHAIN = LegChain(
 LEG = LegInertia(mass_ratio=0.05, chain=CHAIN)
 
 
-def plans(stand, leg, until=3.0):
-    """Plans of a walk whose CoM and feet do exactly what is planned."""
+LEGS = Legs(0.36, 0.2, 0.11, 0.12, 0.22, (60.0, 50.0))
+
+
+def plans(stand, leg, until=3.0, kick=(0.0, 0.0)):
+    """Plans of a walk whose CoM and feet do exactly what is planned, but for a kick in mid-swing at 1.4 s [m/s]."""
     gait = GaitParameters(
         initial_stand=0.0, step_length=0.3, single_support=0.5, double_support=0.2, lateral_step=0.05, com_height=0.95
     )
-    planner = WalkingPlanner(gait, stand(), 0.2, 0.1, parameters=PlannerParameters(leg=leg))
+    planner = WalkingPlanner(gait, stand(), 0.2, 0.1, parameters=PlannerParameters(leg=leg), legs=LEGS)
     com, velocity, ideal, made = np.array([0.0, 0.0, 0.95]), np.zeros(3), IdealFeet(stand()), []
     for tick in range(round(until / 0.02)):
         made.append(planner.update(CentroidalState(0.02 * tick, com, velocity), ideal.state))
         com, velocity = made[-1].com[1], made[-1].com_velocity[1]
+        velocity = velocity + np.array([*kick, 0.0]) * (tick == 70)
         ideal.follow(PlanSampler(made[-1]), 0.02 * (tick + 1))
     return made
 
@@ -86,3 +91,16 @@ def test_a_body_at_rest_has_no_offset(stand):
 def test_impossible_legs_are_refused(ratio):
     with pytest.raises(ValueError, match="must be within"):
         LegInertia(mass_ratio=ratio)
+
+
+@pytest.mark.parametrize("kick", [(0.35, 0.0), (0.0, 0.25), (0.0, -0.3)])
+def test_zmp_of_the_plan_is_that_of_the_links_while_a_swing_goes_elsewhere(stand, kick):
+    """But for the ticks in which the swing is sent elsewhere, whose bend no spline of samples follows."""
+    errors = []
+    for plan in plans(stand, LEG, until=1.9, kick=kick):
+        if plan.time > 1.42 and plan.swing is not None:
+            zmp, sample = zmp_of_the_chain(plan)
+            errors.append(np.abs(sample.zmp - zmp).max())
+    assert len(errors) > 10
+    assert np.median(errors) < 0.01
+    assert max(errors) < 0.09

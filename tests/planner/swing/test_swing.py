@@ -91,3 +91,14 @@ def test_positions_at_many_instants_are_those_of_evaluate():
         instants = np.linspace(start, times.touchdown, 97)
         each = [trajectory.evaluate(float(time))[0] for time in instants]
         np.testing.assert_allclose(trajectory.positions(instants), each, atol=1e-12)
+
+
+def test_a_swing_that_glides_on_to_its_touchdown_bends_less():
+    trajectory, target = swing(0.1, glide=(2.1, 2.5, 2.66)), TARGET + np.array([0.2, 0.1, 0.1, 0.0, 0.0, 0.0])
+    times, bends = np.arange(2.3, 2.7999, 1e-3), []
+    for gliding in (False, True):
+        moved = trajectory.retargeted(2.3, target, gliding)
+        np.testing.assert_allclose(moved.evaluate(2.3)[:, GLIDING], trajectory.evaluate(2.3)[:, GLIDING], atol=1e-9)
+        np.testing.assert_allclose(moved.evaluate(2.7999999)[0], target, atol=1e-6)
+        bends.append(max(np.abs(moved.evaluate(t)[2, :2]).max() for t in times))
+    assert bends[1] < 0.6 * bends[0]

@@ -183,3 +183,19 @@ def test_a_stop_is_made_once_its_last_foot_swings(stand):
         assert bool(after[2].rest or after[3].rest) is (number == 2)
     assert kinds[0] == "SDSD"
     assert kinds[1].startswith("SDD")
+
+
+def test_a_foot_left_far_behind_rolls_as_it_leaves_the_ground(stand):
+    """From 1.1 radii on; the last foot of a walk stays."""
+    gait = GaitParameters(steps=3, step_length=0.5, single_support=0.5, double_support=0.12, initial_stand=0.0)
+    ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.6))
+    for step, radius, angle in ((1, 0.5, None), (1, 0.4, 0.18), (1, 0.2, 0.5), (3, 0.2, None)):
+        queue = StepQueue(gait, stand(gait.step_width), ground)
+        queue.extend(1000.0)
+        queue.lift_heel(step, radius)
+        double, after = queue.phases[queue.phases.index(queue.lift_off(step)) + 1 :][:2]
+        assert (double.roll is None) is (angle is None)
+        assert after.roll == double.roll
+        if angle is not None:
+            assert double.roll.angle == pytest.approx(angle, abs=1e-9)
+            assert double.start < double.roll.start < double.end < double.roll.end < after.end

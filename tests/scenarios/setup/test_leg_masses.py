@@ -2,12 +2,14 @@
 
 from dataclasses import astuple
 
+import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
+from surefoot.scenarios.setup.robot import facts_of
 from surefoot.scenarios.setup.stance import body_of, leg_inertia
 from surefoot.wbc.ik import PostureTarget
 
@@ -109,3 +111,17 @@ def test_heading_does_not_matter(body, standing, reduced):
     there = leg_inertia(body.model, body.frames, turned, body.leg_joints)
     flat = [np.hstack([leg.mass_ratio, *map(np.ravel, astuple(leg.chain))]) for leg in (reduced, there)]
     np.testing.assert_allclose(flat[1].astype(float), flat[0].astype(float), atol=1e-9)
+
+
+def test_a_sole_is_swung_by_two_thirds_of_the_torque_of_its_hip():
+    """Held against a simulated leg that hangs straight: that torque at the hip alone, all else rigid and fixed."""
+    robot = describe("humanoid100", RobotOptions())
+    model = mujoco.MjModel.from_xml_string(robot.mjcf)
+    data = mujoco.MjData(model)
+    for joint, reached in zip(("left_hip_pitch", "left_hip_roll"), facts_of(robot).swing_acceleration, strict=True):
+        mujoco.mj_resetData(model, data)
+        data.qvel[model.joint(joint).dofadr[0]] = 1.0
+        mujoco.mj_forward(model, data)
+        mujoco.mj_energyVel(model, data)
+        limit = robot.torque_limit[robot.joint_names.index(joint)]
+        np.testing.assert_allclose(reached, 2.0 / 3.0 * limit / (2.0 * data.energy[1]) * robot.leg_length, rtol=0.01)

@@ -14,11 +14,20 @@ from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.model.jerk import block_moves, predict, trajectory
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery import Catch, Recovery, Situation
+from surefoot.planner.recovery import ASIDE, Catch, Recovery, Situation
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import Outlook, Window
 from surefoot.planner.references.zmp_reference import Support
-from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PlannedFootstep, PlanStatus, SolverStatus
+from surefoot.planner.types import (
+    Array,
+    CentroidalState,
+    FeetState,
+    Foot,
+    PhaseKind,
+    PlannedFootstep,
+    PlanStatus,
+    SolverStatus,
+)
 from surefoot.planner.walk.commands import Command, Orders, Twist
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
@@ -162,8 +171,18 @@ class WalkingPlanner:
         support = outlook.support(stepper)
         local = self._local_state(state, support)
         window = self._window(state.time, support, local)
+        if self._steps_out(local, window):
+            support = outlook.support(stepper)
+            local = self._local_state(state, support)
+            window = self._window(state.time, support, local)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         catch = self._catch(state.time, local, feet, support, window)
+        if catch is not None and stepper.queue.stops(stepper.phase):
+            # What the step does not catch the one after it is to catch, which brings the feet side by side again, too.
+            stepper.go_on()
+            support = outlook.support(stepper)
+            window = self._window(state.time, support, local)
+            catch = self._catch(state.time, local, feet, support, window)
         if catch is not None and stepper.end_in(catch.left, state.time):
             window = self._window(state.time, support, local)
         problem = self._problem(local, feet, support, window, catch)
@@ -186,6 +205,21 @@ class WalkingPlanner:
         height = outlook.com_height(samples, support, reference)
         deviation = stepper.deviation(time)
         return outlook.window(stepper, samples, support, reference, height, local[:, 0], deviation)
+
+    def _steps_out(self, local: Array, window: Window) -> bool:
+        """Order a step of a robot that stands and would fall; says whether."""
+        stepper = self._stepper
+        if self._recovery is None or not stepper.stands:
+            return False
+        error = self._recovery.topples(local[:, 0] + local[:, 1] / window.omega[0], window)
+        if error is None:
+            return False
+        # The foot that carries stays, and the other one is brought to it.
+        stance = None
+        if stepper.phase.kind is PhaseKind.STAND and abs(error[1]) > ASIDE:
+            stance = Foot.LEFT if error[1] > 0.0 else Foot.RIGHT
+        stepper.go_on(None if stance is None else stance.other)
+        return True
 
     def _catch(self, time: float, local: Array, feet: FeetState, support: Support, window: Window) -> Catch | None:
         """What is made of the next step where the CoP alone does not hold the body."""
@@ -270,9 +304,12 @@ class WalkingPlanner:
         if not stepper.adapted:
             return replace(context, reach=(increment, increment))
         boxes = [self._recovery.legs.beside(increment[0], side), self._recovery.legs.beside(increment[1], -side)]
-        if catch is not None:
-            boxes[0] = catch.low, catch.high
         low, high = np.array(boxes).swapaxes(0, 1)
+        rooms = np.zeros((2, 2, 2))
+        rooms[: len(ahead)] = [stepper.room(number) for number in range(len(ahead))]
+        low, high = np.maximum(low, increment + rooms[:, 0]), np.minimum(high, increment + rooms[:, 1])
+        if catch is not None:
+            low[0], high[0] = catch.low, catch.high
         return replace(context, reach=(low, high))
 
     def _local_state(self, state: CentroidalState, support: Support) -> Array:

@@ -11,6 +11,7 @@ and with the limits of the legs as they are, over a list of times in place of a 
 can bring the DCM back until the foot lands, nothing is adapted.
 """
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -41,6 +42,8 @@ class Situation:
         double: time until that leaves the ground as planned, zero when it has [s].
         single: time that it swings, or swings on, as planned [s].
         cycle: duration of the step after it [s].
+        hurry: shortest time in which the swing may be made, over the time that it takes as planned [-].
+        room: by which the step may land elsewhere, least and greatest way, shape (2, 2) [m].
         adapted: whether the step is being adapted already.
     """
 
@@ -55,6 +58,8 @@ class Situation:
     double: float
     single: float
     cycle: float
+    hurry: float
+    room: Array
     adapted: bool
 
     @classmethod
@@ -75,7 +80,8 @@ class Situation:
         swings = phase.kind is PhaseKind.SINGLE
         if not (phase.leads_to and stepper.free[0]) or (swings and stepper.swing is None):
             return None
-        foot = stepper.queue.gait.step_foot(phase.leads_to)
+        step = stepper.queue.steps[phase.leads_to]
+        foot, swinging = step.place.foot, stepper.queue.lift_off(phase.leads_to).samples * stepper.sample_time
         if stepper.swing is not None:
             moving = stepper.swing.evaluate(time)[1, :2] @ rotation
         return cls(
@@ -88,8 +94,10 @@ class Situation:
             side=1.0 if foot is Foot.LEFT else -1.0,
             swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
             double=0.0 if swings else phase.left,
-            single=phase.left if swings else stepper.queue.lift_off(phase.leads_to).samples * stepper.sample_time,
+            single=phase.left if swings else swinging,
             cycle=stepper.queue.gait.period,
+            hurry=min(math.sqrt(_PEAK * abs(step.climb) / _CLIMBING) / swinging, 1.0),
+            room=stepper.room(0),
             adapted=stepper.adapted,
         )
 
@@ -114,6 +122,12 @@ _AUTHORITY = 0.8
 _MARGIN = 0.02
 """DCM error at landing that the CoP cannot hold from which on a step is adapted [m]."""
 
+_HELD = 0.85
+"""Share of the ZMP box of a stand that holds the body without a step [-]."""
+
+ASIDE = 0.02
+"""DCM error sideways from which on the foot on that side stays [m]."""
+
 _LEAST_GAIN = 0.05
 """Gain of a step, which no horizon that ends with it shall make zero [-]."""
 
@@ -135,6 +149,9 @@ _OUTWARD = 3.0
 _WORTH = 0.001
 """Cost that other times must save [-]."""
 
+_CLIMBING = 5.0
+"""Vertical acceleration of the body with which it may be lifted or lowered onto a step [m/s^2]."""
+
 _PEAK, _BRAKING, _GAINING = 5.77, 1.9, 3.9
 """Greatest acceleration of a quintic to rest over way / T², and what of it a speed / T takes off at its end and its
 begin [-]."""
@@ -152,6 +169,17 @@ class Recovery:
     def __init__(self, legs: Legs, parameters: PlannerParameters, timing: bool) -> None:
         self.legs, self._timing = legs, timing
         self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
+
+    def topples(self, dcm: Array, window: Window) -> Array | None:
+        """DCM error of a robot that stands, or will without another step, if no CoP can hold it, shape (2,) [m].
+
+        Args:
+            dcm: now, in the plan frame, shape (2,) [m].
+            window: references.
+        """
+        nominal = nominal_dcm(window.stiffness, window.omega, window.driving.point, self._sample_time)
+        error = dcm - nominal[0]
+        return error if (np.abs(error) > _HELD * window.driving.half_size[-1]).any() else None
 
     def catch(self, now: Situation) -> Catch | None:
         """What is made of the next step; None where nothing has to be."""
@@ -194,7 +222,10 @@ class Recovery:
         low, high = self._swung(now, singles)
         growth = np.exp(omega * now.cycle)
         options = []
-        for box in self.legs.boxes(now.side):
+        for reach in self.legs.boxes(now.side):
+            box = _shared(reach, now.nominal + now.room)
+            if box is None:
+                continue
             place = np.clip(self.legs.within(np.clip(np.clip(wanted, low, high), *box), com + hip), *box)
             short = wanted - place
             second = np.maximum(gain * growth * np.abs(short) - (growth - 1.0) * half, 0.0)
@@ -203,6 +234,8 @@ class Recovery:
             best = int(np.argmin(total))
             best = best if total[best] < total[-1] - _WORTH else len(total) - 1
             options.append((total[best], best, place[best], box))
+        if not options:
+            return None
         _, best, place, box = min(options, key=lambda option: option[0])
         lower, upper = self.legs.around(place, com[best] + hip, box)
         lower, upper = np.maximum(lower, np.minimum(low[best], place)), np.minimum(upper, np.maximum(high[best], place))
@@ -212,7 +245,7 @@ class Recovery:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
         if fine or not self._timing:
             return np.array([now.double]), np.array([now.single])
-        singles = _around(now.single, _SHORTEST["single"])
+        singles = _around(now.single, max(_SHORTEST["single"], now.hurry * now.single))
         doubles = _around(now.double, _SHORTEST["double"]) if now.double else np.zeros(1)
         grid = np.meshgrid(doubles, singles, indexing="ij")
         return grid[0].ravel(), grid[1].ravel()
@@ -228,6 +261,12 @@ class Recovery:
         onward = (most + _BRAKING * np.abs(speed) * time) / _PEAK
         back = (most - _GAINING * np.abs(speed) * time) / _PEAK
         return here - np.where(speed > 0.0, back, onward), here + np.where(speed > 0.0, onward, back)
+
+
+def _shared(box: tuple[Array, Array], room: Array) -> tuple[Array, Array] | None:
+    """What a box has in common with a room; None where that is nothing."""
+    low, high = np.maximum(box[0], room[0]), np.minimum(box[1], room[1])
+    return (low, high) if (low <= high).all() else None
 
 
 def _around(time: float, least: float) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.planner.geometry import frame_rotation
 
 if TYPE_CHECKING:
     from surefoot.planner.walk.footsteps import FootstepPlan
@@ -129,6 +130,37 @@ class Terrain:
             highest[carrying] = height[carrying]
             margins[carrying] = corner_inside.min(axis=1)[carrying]
         return margins
+
+    def room(self, position: NDArray[np.float64], yaw: float, half_size: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far a sole may be moved on the face that carries it, ahead and to the left of where it was to land.
+
+        Args:
+            position: where it was to, shape (3,) [m].
+            yaw: its heading [rad].
+            half_size: half of its length and width, shape (2,) [m].
+
+        Returns:
+            Least and greatest way, shape (2, 2) [m]; without bounds where footsteps may land anywhere.
+        """
+        if self.free_footholds:
+            return np.array([[-np.inf] * 2, [np.inf] * 2])
+        axes = frame_rotation(yaw).T
+        moved = position[:2] + (np.vstack((-axes, axes))[:, None] * _WAYS[:, None]).reshape(-1, 2)
+        soles = moved[:, None] + (half_size * _CORNERS) @ axes
+        level = position[2] - (moved - position[:2]) @ (normal := self.normal(*position[:2]))[:2] / normal[2]
+        off = (self.edge_margins(moved, soles) < _KEPT) | (np.abs(self.heights(moved) - level) > _KEPT)
+        first = np.argmax(np.column_stack((off.reshape(4, -1), np.ones(4, dtype=np.bool_))), axis=1)
+        way = np.append(0.0, _WAYS)[first].reshape(2, 2)
+        return np.array([-way[0], way[1]])
+
+
+_WAYS = 0.01 * np.arange(1.0, 41.0)
+"""Ways by which a sole might be moved on its face [m]."""
+
+_CORNERS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+
+_KEPT = 0.01
+"""Distance from the edges of its face that it keeps then, and from another face in height [m]."""
 
 
 def flat(friction: float = 0.8) -> Terrain:

@@ -49,27 +49,36 @@ class ZmpReference:
         return ZmpReference(self.point[samples], self.gain[samples], self.half_size[samples], self.height[samples])
 
 
-def support_table(plan: FootstepPlan, stance_row: int, free: tuple[bool, bool], half_size: Array) -> SupportTable:
+def support_table(
+    plan: FootstepPlan, stance_row: int, free: tuple[bool, bool], half_size: Array, stay: bool = False
+) -> SupportTable:
     """Tabulate the support points in the plan frame (origin and planned heading of the stance row).
 
     The box of a point is the largest axis-aligned one, of the foot's proportions, inscribed in the foot turned by its
-    heading in the plan frame; without turning it is the foot itself. A convex combination of two such boxes lies in
-    the convex hull of the two feet, so the box that moves with the reference is legal throughout double support.
+    heading in the plan frame; without turning it is the foot itself. Between two feet it is as much wider as both
+    together are. A convex combination of two such boxes lies in the convex hull of the two feet, so the box that moves
+    with the reference is legal throughout double support.
 
     Args:
         plan: footsteps.
         stance_row: row of the stance foot, or of the foot that landed last.
         free: whether the first and the second footstep after the stance row may be shifted.
         half_size: half extents of the (shrunk) foot, shape (2,) [m].
+        stay: footsteps stay where they are when the one before them is shifted.
     """
     rows = np.arange(len(plan.feet))
     points = plan.support_points()
     rotation = frame_rotation(float(plan.yaw[stance_row]))
     values = np.empty((len(points), 7))
     values[:, :2] = (points[:, :2] - plan.position[stance_row, :2]) @ rotation
-    shifted = np.where(rows[:, None] > stance_row + np.arange(2), np.array(free, dtype=np.float64), 0.0)
+    moves = np.equal if stay else np.greater_equal
+    shifted = np.where(moves(rows[:, None], stance_row + np.arange(1, 3)), np.array(free, dtype=np.float64), 0.0)
     values[:, 2:4] = plan.between_rows(shifted)
     values[:, 4:6] = plan.between_rows(_inscribed_boxes(plan.yaw - plan.yaw[stance_row], half_size))
+    one, other = plan.supports.T
+    between = one != other
+    apart = (plan.position[other[between], :2] - plan.position[one[between], :2]) @ rotation
+    values[between, 4:6] = _joint_boxes(values[between, 4:6], 0.5 * np.abs(apart))
     values[:, 6] = points[:, 2]
     steps = np.zeros_like(values)
     steps[:-1] = np.diff(values, axis=0)
@@ -95,6 +104,24 @@ def _inscribed_boxes(yaw: Array, half_size: Array) -> Array:
     a, b = half_size
     scale = np.minimum(a / (a * c + b * s), b / (a * s + b * c))
     return np.asarray(scale[:, None] * half_size)
+
+
+def _joint_boxes(boxes: Array, apart: Array) -> Array:
+    """Largest boxes midway between two feet, within the hull of both.
+
+    A box of half sizes (a, b) that is moved by up to ±s (x, y), s in [0, 1], holds one of half sizes (a - s x, b + s y)
+    between its extremes; s is that of the greatest area.
+
+    Args:
+        boxes: half sizes of those of one foot, shape (n, 2) [m].
+        apart: half of the distance of the feet, shape (n, 2) [m].
+    """
+    (a, b), (x, y) = boxes.T, apart.T
+    sideways = np.clip((a * y - b * x) / np.maximum(2.0 * x * y, 1e-12), 0.0, 1.0)
+    ahead = np.clip((b * x - a * y) / np.maximum(2.0 * x * y, 1e-12), 0.0, 1.0)
+    wide = np.column_stack((a - sideways * x, b + sideways * y))
+    long = np.column_stack((a + ahead * x, b - ahead * y))
+    return np.where((wide.prod(axis=1) >= long.prod(axis=1))[:, None], wide, long)
 
 
 class SupportKey(NamedTuple):
@@ -169,7 +196,7 @@ def present_support(last: Support | None, stepper: Stepper, half_size: Array, ma
         key=key,
         rotation=frame_rotation(latest.yaw),
         origin=latest.position[:2],
-        table=support_table(steps, row, stepper.free, margin * half_size),
+        table=support_table(steps, row, stepper.free, margin * half_size, not stepper.wide),
         heights=steps.support_points()[:, 2],
         on_left=steps.between_rows(np.array([float(foot is Foot.LEFT) for foot in steps.feet])),
         outer=outer,

@@ -140,6 +140,14 @@ class FootstepPlan:
         point = np.array([[row - self.first, other - self.first]])
         return replace(self, supports=np.concatenate((self.supports, point)))
 
+    def swapped(self) -> "FootstepPlan":
+        """The plan with its last two rows in the other order."""
+        order = np.arange(len(self.feet))
+        order[-2:] = order[:-3:-1]
+        feet = tuple(self.feet[row] for row in order)
+        arrays = {name: getattr(self, name)[order] for name in ("position", "yaw", "normal")}
+        return replace(self, feet=feet, supports=order[self.supports], **arrays)
+
     def since(self, row: int, support: int) -> "FootstepPlan":
         """What of the plan begins at a row and a support point of the walk, or what there is from there on."""
         rows, points = max(row - self.first, 0), max(support - self.first_support, 0)

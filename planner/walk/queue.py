@@ -16,7 +16,7 @@ from surefoot.planner.walk.footsteps import Path, start_footholds
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Phase, PhaseSamples
 from surefoot.planner.walk.reach import Landing, check_reach
-from surefoot.planner.walk.source import GaitSource, Request, StepSource
+from surefoot.planner.walk.source import GaitSource, Interlude, Request, StepSource
 
 _MORE_STEPS = 3
 """Steps in sight beyond a window: its last support points depend on the ones after them, and a plan tells three."""
@@ -32,6 +32,7 @@ class Step:
         path: where the nominal path comes to with it.
         place: its nominal footstep.
         climb: height of that above where its foot nominally stood before [m].
+        room: by which it may land elsewhere on its face, least and greatest way in its own heading, shape (2, 2) [m].
         course: of its swing over the ground.
         swing: that swing to a footstep one metre ahead, in its own time.
     """
@@ -41,6 +42,7 @@ class Step:
     path: Path
     place: Footstep
     climb: float
+    room: Array
     course: SwingCourse
     swing: SwingTrajectory
 
@@ -91,7 +93,10 @@ class StepQueue:
         zero, course = Stride(0.0, 0.0, 0.0, gait.step_width), SwingCourse(0.5, 0.0, 1.0, 0.0)
         swing = unit_swing(self._durations[0], 0.0, course, ground.parameters)
         # The start feet count as footsteps -1 and 0, so that the first steps are laid as all others.
-        self.steps = {number: Step(number, zero, path, start[number + 1], 0.0, course, swing) for number in (-1, 0)}
+        self.steps = {
+            number: Step(number, zero, path, start[number + 1], 0.0, np.zeros((2, 2)), course, swing)
+            for number in (-1, 0)
+        }
         self.phases: list[Phase] = [Phase(PhaseKind.STAND, 0.0, np.inf, 0, None, 0)]
 
     @property
@@ -138,7 +143,8 @@ class StepQueue:
             self._end_bout()
             return True
         if self._standing:
-            self._begin_bout(phases[-1], max(in_samples(order.stand, t), now - phases[-1].start))
+            stand = max(in_samples(order.stand, t), now - phases[-1].start)
+            self._begin_bout(phases[-1], stand, order.hurried)
         self._lay(order.stride)
         return True
 
@@ -149,10 +155,10 @@ class StepQueue:
         x, y = path.middle + self.footsteps.shift
         return Pose(float(x), float(y), path.yaw)
 
-    def _begin_bout(self, stand: Phase, samples: float) -> None:
+    def _begin_bout(self, stand: Phase, samples: float, hurried: bool) -> None:
         double = self._durations[1]
         self.phases[-1:] = [replace(stand, samples=samples)] if samples else []
-        shift, rest = WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double
+        shift, rest = (double, 0.0) if hurried else (WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double)
         self.phases.append(Phase(PhaseKind.DOUBLE, stand.start + samples, shift, stand.step, None, stand.support, rest))
 
     def _end_bout(self) -> None:
@@ -190,7 +196,9 @@ class StepQueue:
         )
         # The start feet are measured, which may be a few nanometres off the ground.
         climb = round(float(position[2] - start.position[2]), 6)
-        return Step(number, stride, path, place, climb, course, unit_swing(single, climb, course, ground.parameters))
+        swing = unit_swing(single, climb, course, ground.parameters)
+        room = ground.terrain.room(position, path.yaw, ground.half_size)
+        return Step(number, stride, path, place, climb, room, course, swing)
 
     def reorder(self, present: Phase, source: StepSource | None = None) -> None:
         """Ask anew for all steps but the one being swung and the one to which the weight is being shifted.
@@ -209,6 +217,36 @@ class StepQueue:
             kept += 2 if self.phases[kept + 1].kind is PhaseKind.SINGLE else 1
         elif present.kind is PhaseKind.SINGLE and self.phases[kept + 1].kind is PhaseKind.STAND:
             kept += 1
+        self._forget(kept)
+
+    def stops(self, present: Phase) -> bool:
+        """Whether the robot stands, or will with the next step that lands."""
+        return any(phase.kind is PhaseKind.STAND for phase in self.phases[self.phases.index(present) :][:4])
+
+    def go_on(self, present: Phase, foot: Foot | None = None) -> None:
+        """Make a step on the spot where the robot stands or would stand next, before anything else.
+
+        Args:
+            present: the phase now.
+            foot: that makes it, of a robot that stands; else it is the one that landed first.
+        """
+        at = self.phases.index(present)
+        stand = next(n for n, phase in enumerate(self.phases[at:], at) if phase.kind is PhaseKind.STAND)
+        self._forget(max(at, stand - 1))
+        last = self._last.number
+        if foot is not None and self.gait.step_foot(last + 1) is not foot:
+            self._swap_feet(last)
+        self._source = Interlude(self._source, last + 1, self.gait.step_width)
+
+    def _swap_feet(self, last: int) -> None:
+        """Let the other foot be the one that landed last, so that this one makes the next step."""
+        self.gait = replace(self.gait, first_foot=Foot(self.gait.first_foot).other)
+        self.footsteps = self.footsteps.swapped()
+        one, other = self.steps[last - 1], self.steps[last]
+        self.steps |= {last - 1: replace(one, place=other.place), last: replace(other, place=one.place)}
+
+    def _forget(self, kept: int) -> None:
+        """Let go of all that comes after a phase; a robot that stands then does so until steps are ordered."""
         last = replace(self.phases[kept], roll=None)
         if last.kind is PhaseKind.STAND:
             last = replace(last, samples=np.inf)

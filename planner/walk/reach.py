@@ -203,6 +203,30 @@ class Legs:
         return both.around(place, np.array([0.0, side * self.hip_width]), self.boxes(side)[0])
 
 
+def turned_room(room: Array, angle: float) -> Array:
+    """The part of a room around a footstep that is a box in another frame.
+
+    Args:
+        room: least and greatest way in the footstep's heading, shape (2, 2) [m].
+        angle: heading of the footstep in that frame [rad].
+
+    Returns:
+        Least and greatest way in that frame, shape (2, 2) [m].
+    """
+    if not np.isfinite(room).all() or abs(angle) < _PARALLEL:
+        return room
+    # As far as the room goes along each axis; of the rhombus between these ends the box with half their ways.
+    axes = frame_rotation(angle).T
+    ways = [min(max(low / a, high / a) if abs(a) > 1e-9 else np.inf for a, low, high in zip(axis, *room, strict=True))
+            for axis in (-axes[:, 0], -axes[:, 1], axes[:, 0], axes[:, 1])]  # fmt: skip
+    half = 0.5 * np.array(ways).reshape(2, 2)
+    return np.array([-half[0], half[1]])
+
+
+_PARALLEL = 0.02
+"""Angle up to which a room is one in another frame, too [rad]."""
+
+
 def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]:
     """Where a footstep may land from its stance foot: lower and upper corner in the plan frame, shape (2,) [m].
 

@@ -1,7 +1,7 @@
 """Where the steps of a walk come from: one after another, when the queue asks for the next."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -41,10 +41,12 @@ class StepOrder:
         stride: what it does to the path.
         stand: standing before the weight shift to it; of a step that follows another without a stop it says nothing
             [s].
+        hurried: its weight shift takes no longer than any, and begins at once.
     """
 
     stride: Stride
     stand: float = 0.0
+    hurried: bool = False
 
 
 class StepSource(Protocol):
@@ -76,6 +78,29 @@ class GaitSource:
         if at.step > len(self._strides) or (at.before is not None and at.step in self._begins):
             return None
         return StepOrder(self._strides[at.step - 1], self._begins.get(at.step, 0.0))
+
+
+class Interlude:
+    """A step on the spot between those of another source, which goes on as if it had not been.
+
+    Args:
+        source: the other one, which may have been interrupted before.
+        step: number of the step.
+        width: of the stance that it keeps [m].
+    """
+
+    def __init__(self, source: StepSource, step: int, width: float) -> None:
+        before = source if isinstance(source, Interlude) else None
+        self._source: StepSource = source if before is None else before._source
+        self._taken: int = 1 if before is None else before._taken + (step > before._step)
+        self._step: int = step
+        self._stride = Stride(0.0, 0.0, 0.0, width)
+
+    def order(self, at: Request) -> StepOrder | None:
+        """See `StepSource`."""
+        if at.step == self._step:
+            return StepOrder(self._stride, hurried=True)
+        return self._source.order(replace(at, step=at.step - self._taken))
 
 
 _SOFTLY = 0.4

@@ -1,6 +1,6 @@
 """The way of a walk through the phases in sight, and its swing foot."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Clock, PhaseSamples
 from surefoot.planner.walk.queue import StepQueue
-from surefoot.planner.walk.reach import Legs
+from surefoot.planner.walk.reach import Legs, turned_room
 from surefoot.planner.walk.source import StepSource
 
 _LEAST_LEFT = 3.0
@@ -67,6 +67,7 @@ class Stepper:
         early: the swing foot has landed before its time.
         fixed: the next footstep may not be shifted any more.
         adapted: place or time of the next footstep are being adapted.
+        wide: whether footsteps may land anywhere in reach, and those after them are shifted with them.
     """
 
     def __init__(self, queue: StepQueue, window: int, legs: Legs | None = None) -> None:
@@ -80,7 +81,10 @@ class Stepper:
         self.early = False
         self.fixed = False
         self.adapted = False
-        self._adapts = parameters.step_adaptation is not StepAdaptation.NONE and self._terrain.free_footholds
+        self.wide = self._terrain.free_footholds
+        # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
+        adapts = parameters.step_adaptation is not StepAdaptation.NONE
+        self._adapts = adapts and (self.wide or legs is not None)
         self.sample_time = parameters.sample_time
         self._lead = parameters.touchdown_lead / parameters.sample_time
         self.clock = Clock(self.sample_time)
@@ -140,6 +144,26 @@ class Stepper:
         """The phases at `count` samples from now on, with one more before them and one after."""
         return self.queue.samples(self.clock.flow(np.arange(-1.0, count + 1)))
 
+    def room(self, ahead: int) -> Array:
+        """By which the next footstep (0) or a later one may be moved on its face.
+
+        Returns:
+            Least and greatest way in the heading of the foot that landed last, shape (2, 2) [m].
+        """
+        step = self.queue.steps[self.landed + 1 + ahead]
+        return turned_room(step.room, step.place.yaw - float(self.footsteps.yaw[self.row]))
+
+    @property
+    def stands(self) -> bool:
+        """Whether no foot is to swing before the robot stands, which may be moved to step."""
+        return self._adapts and self.info.leads_to == 0
+
+    def go_on(self, foot: Foot | None = None) -> None:
+        """Make a step on the spot where the robot stands or would stand next (see `StepQueue.go_on`)."""
+        self.queue.go_on(self.phase, foot)
+        self.revision += 1
+        self._look_ahead(self.clock.now)
+
     def change(self, gait: GaitParameters, source: StepSource | None, time: float) -> None:
         """Walk on otherwise; what is left of the present phase changes in proportion to its duration.
 
@@ -149,6 +173,7 @@ class Stepper:
             time: now [s].
         """
         before = self.queue.gait
+        gait = replace(gait, first_foot=before.first_foot)
         if (gait.single_support, gait.double_support) != (before.single_support, before.double_support):
             self._retime(gait, time)
         self.queue.gait = gait
@@ -246,7 +271,9 @@ class Stepper:
         for ahead, row in enumerate(range(self.row + 1, min(self.row + 4, len(steps.feet)))):
             position, normal = steps.position[row].copy(), steps.normal[row]
             if ahead < 2 and self.free[ahead]:
-                shift = shift + shifts[ahead]
+                shift = shift + shifts[ahead] if self.wide else shifts[ahead]
+            elif not self.wide:
+                shift = np.zeros(2)
             position[:2] += shift
             if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND:
                 x, y = float(position[0]), float(position[1])

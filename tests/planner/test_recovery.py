@@ -13,6 +13,7 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.recovery import Recovery, Situation, moving_cop, pendulum_com
 from surefoot.planner.references.zmp_reference import ZmpReference
+from surefoot.planner.types import PhaseKind
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import Legs
 
@@ -23,6 +24,7 @@ T, OMEGA = P.sample_time, 3.2
 LEGS = Legs(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
 NOMINAL = np.array([0.36, 0.2])
 HALF = np.array([0.1, 0.05])
+EVERYWHERE = np.array([[-np.inf] * 2, [np.inf] * 2])
 
 
 def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 0.0)), **keys):
@@ -38,7 +40,8 @@ def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 
     given = {
         "com": bounded - (0.1, 0.0), "dcm": bounded + error, "stiffness": stiffness, "omega": omega,
         "reference": reference, "nominal": NOMINAL, "side": 1.0, "swing": np.array(swing), "double": 0.0,
-        "single": landed, "cycle": 0.62, "adapted": False,
+        "single": landed, "cycle": 0.62, "hurry": 0.0, "room": EVERYWHERE,
+        "adapted": False,
     }  # fmt: skip
     return Situation(**{**given, **keys})
 
@@ -75,31 +78,33 @@ def test_without_need_nothing_is_adapted(error):
 
 @pytest.mark.parametrize("error", [(0.08, 0.0), (-0.06, 0.0), (0.0, 0.06), (0.05, 0.05)])
 def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error):
-    """The pendulum with its CoP at the edge until the foot lands where the box says; legs without limits."""
+    """The pendulum with its CoP at the edge until the foot lands; the box is what legs reach level with that place."""
     free = replace(LEGS, radius=2.0, near=-2.0, acceleration=(1e4, 1e4))
     now = situation(error, half=0.2 * HALF)
     caught = catch(now, timing=False, legs=free)
     assert caught.left == now.single
-    edge = 0.8 * 0.2 * HALF * np.sign(error)
-    landed = edge + (now.dcm - edge) * np.exp(OMEGA * now.single)
-    nominal = situation().dcm * np.exp(OMEGA * now.single)
+    nominal, most = situation().dcm * np.exp(OMEGA * now.single), 0.8 * 0.2 * HALF
+    astray = now.dcm * np.exp(OMEGA * now.single) - nominal
+    cop = np.clip(astray / (np.exp(OMEGA * now.single) - 1.0), -most, most)
+    landed = cop + (now.dcm - cop) * np.exp(OMEGA * now.single)
     # Double support takes 0.12 s, in which the ZMP goes over to the foot: a shift counts as the mean fade of that time.
     gain = (1.0 - np.exp(-OMEGA * 0.12)) / (OMEGA * 0.12)
-    moved = np.where(error, (landed - nominal) / gain, 0.0)
-    place = NOMINAL + moved
-    assert (caught.low <= place + 2e-3).all()
-    assert (place - 2e-3 <= caught.high).all()
+    place = NOMINAL + (landed - nominal) / gain
+    hip = pendulum_com(now.com, now.dcm, cop, np.exp([OMEGA * now.single]))[0] + (0.0, 0.1)
+    low, high = free.around(place, hip, free.boxes(1.0)[0])
+    np.testing.assert_allclose((caught.low, caught.high), (low, high), atol=3e-3)
 
 
 def test_a_foot_is_swung_no_harder_than_the_hip_allows():
-    now = situation((0.15, 0.0), swing=((0.1, 0.2), (1.0, 0.0)))
-    caught = catch(now, timing=False)
-    time = now.single - P.touchdown_lead
+    now = situation((0.25, 0.0), single=0.2, swing=((0.1, 0.2), (1.0, 0.0)))
+    caught = catch(now, timing=False, legs=replace(LEGS, radius=2.0))
+    time, bends = now.single - P.touchdown_lead, []
     for corner in (caught.low[0], caught.high[0]):
         start, end = np.array([[0.1], [1.0], [0.0]]), np.array([[corner], [0.0], [0.0]])
         at = np.linspace(0.0, time, 200)[:, None] ** np.arange(4)
-        bend = at @ (np.arange(2, 6) * np.arange(1, 5) * quintic(start, end, time)[2:, 0])
-        assert np.abs(bend).max() < 1.03 * LEGS.acceleration[0]
+        bends.append(np.abs(at @ (np.arange(2, 6) * np.arange(1, 5) * quintic(start, end, time)[2:, 0])).max())
+    assert max(bends) < 1.03 * LEGS.acceleration[0]
+    assert bends[1] > 0.9 * LEGS.acceleration[0]
 
 
 @pytest.mark.parametrize("direction", np.linspace(-np.pi, np.pi, 12, endpoint=False))
@@ -132,6 +137,16 @@ def test_a_double_support_ends_sooner_for_who_is_far_ahead_of_its_feet():
     assert catch(now).left < 0.3
 
 
+def test_a_step_that_stays_on_its_tread_lands_sooner_within_it():
+    room = np.array([[-0.02, -0.4], [0.02, 0.4]])
+    now = situation((0.12, 0.04), 0.5, room=room)
+    caught = catch(now)
+    assert caught.left < 0.5
+    assert (caught.low >= NOMINAL + room[0] - 1e-12).all()
+    assert (caught.high <= NOMINAL + room[1] + 1e-12).all()
+    assert catch(situation((0.12, 0.04), 0.5, room=room, hurry=0.9)).left >= 0.45
+
+
 LEVELS = (StepAdaptation.NONE, StepAdaptation.LOCATION, StepAdaptation.TIMING, StepAdaptation.CROSSING)
 
 
@@ -140,7 +155,7 @@ def greatest(stand, adaptation, direction):
     gait = GaitParameters(steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
     parameters, begin = replace(P, step_adaptation=adaptation), gait.lift_off(3) + 0.25
     survived = 0.0
-    for impulse in 0.1 * 1.25 ** np.arange(16):
+    for impulse in 0.1 * 1.5 ** np.arange(9):
         planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
         push = PointPush(begin, 0.1, 1000.0 * impulse * np.array(direction))
         com = np.array([0.0, 0.0, gait.com_height])
@@ -155,6 +170,84 @@ def test_a_pushed_pendulum_survives_more_the_more_it_may_adapt(stand, direction,
     survived = [greatest(stand, level, direction) for level in LEVELS]
     assert min(survived[1:]) > survived[0] > 0.0
     assert survived[-1] == max(survived) > least * survived[0]
+
+
+def test_what_a_push_leaves_to_the_cop_moves_no_step(stand):
+    """Not by what the TVMPC would save in jerk either."""
+    gait = GaitParameters(steps=4, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
+    push = PointPush(gait.lift_off(2) + 0.1, 0.1, 30.0 * np.array([1.0, 0.5]))
+    planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
+    trace = walk_pendulum(planner, stand(), gait.duration, com=com, pushes=(push,))
+    moved = [plan.swing.target[:2] - (0.3 * min(plan.phase.step, 3), 0.1 * (-1) ** (plan.phase.step + 1))
+             for plan in trace.plans if plan.swing is not None]  # fmt: skip
+    assert np.abs(moved).max() < 1e-6
+
+
+STANDING = GaitParameters(steps=0, single_support=0.5, double_support=0.12, com_height=0.95, initial_stand=0.2)
+
+
+def stood(stand, impulse, direction, gait=STANDING, duration=6.0, adaptation=StepAdaptation.CROSSING):
+    """A pendulum on two human-size feet, pushed at 0.5 s for 0.1 s [N·s/kg, rad]."""
+    parameters = replace(P, step_adaptation=adaptation)
+    planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
+    push = PointPush(0.5, 0.1, 1000.0 * impulse * np.array([np.cos(direction), np.sin(direction)]))
+    return walk_pendulum(planner, stand(), duration, com=np.array([0.0, 0.0, gait.com_height]), pushes=(push,))
+
+
+@pytest.mark.parametrize(
+    ("impulse", "direction"), [(0.5, 0.0), (0.6, 0.5 * np.pi), (0.6, 0.8 * np.pi), (0.6, -0.4 * np.pi)]
+)
+def test_who_stands_steps_when_ankles_do_not_hold_it_and_then_stands_again(stand, impulse, direction):
+    trace = stood(stand, impulse, direction, duration=4.5)
+    assert trace.fall_time is None
+    last = trace.plans[-1]
+    assert last.phase.kind is PhaseKind.STAND
+    assert last.phase.step >= 1
+    way = (last.footholds[0].position - last.footholds[1].position)[:2]
+    np.testing.assert_allclose(way, (0.0, 0.2), atol=2e-3)
+    np.testing.assert_allclose(last.com_velocity[0], 0.0, atol=5e-3)
+    assert stood(stand, impulse, direction, duration=3.0, adaptation=StepAdaptation.NONE).fall_time is not None
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.4 * np.pi, np.pi])
+def test_who_is_held_by_its_ankles_stays(stand, direction):
+    """0.85 of the box reaches 0.09 m ahead, and sideways 0.13 m: both feet are beside one another."""
+    most = (
+        0.85
+        * P.foot_margin
+        * np.array([0.11, 0.155])
+        / np.maximum(np.abs([np.cos(direction), np.sin(direction)]), 1e-9)
+    )
+    omega = np.sqrt(9.81 / 0.95)
+    trace = stood(stand, 0.9 * omega * most.min(), direction, duration=2.0)
+    assert trace.fall_time is None
+    assert {plan.phase.kind for plan in trace.plans} == {PhaseKind.STAND}
+
+
+def test_the_walk_goes_on_as_if_it_had_not_been_pushed_while_it_stood(stand):
+    gait = replace(STANDING, steps=4, step_length=0.3, initial_stand=3.0)
+    trace = stood(stand, 0.4, 0.0, gait, gait.duration + 5.0)
+    assert trace.fall_time is None
+    taken = trace.plans[-1].phase.step
+    assert taken > 4
+    ahead = {plan.phase.step: plan.swing.target[0] for plan in trace.plans if plan.swing is not None}
+    strides = np.diff([ahead[step] for step in range(taken - 4, taken + 1)])
+    np.testing.assert_allclose(strides, (0.3, 0.3, 0.3, 0.0), atol=2e-3)
+
+
+def test_who_ends_its_walk_goes_on_when_it_is_pushed(stand):
+    """In its last swing, in the double support after it, and right when it stands."""
+    gait = replace(STANDING, steps=3, step_length=0.3)
+    com = np.array([0.0, 0.0, gait.com_height])
+    for begin in (gait.lift_off(3) + 0.2, gait.lift_off(3) + 0.52, gait.duration):
+        planner = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS)
+        push = PointPush(begin, 0.1, np.array([450.0, 0.0]))
+        trace = walk_pendulum(planner, stand(), gait.duration + 3.0, com=com, pushes=(push,))
+        assert trace.fall_time is None
+        last = trace.plans[-1]
+        assert last.phase.kind is PhaseKind.STAND
+        assert last.phase.step > 3
+        np.testing.assert_allclose((last.footholds[0].position - last.footholds[1].position)[:2], (0.0, 0.2), atol=2e-3)
 
 
 @pytest.mark.parametrize("level", LEVELS)

@@ -42,7 +42,7 @@ class Situation:
         double: time until that leaves the ground as planned, zero when it has [s].
         single: time that it swings, or swings on, as planned [s].
         cycle: duration of the step after it [s].
-        hurry: shortest time in which the swing may be made, over the time that it takes as planned [-].
+        shortest: time left of its swing in which the body can be lifted or lowered with it [s].
         room: by which the step may land elsewhere, least and greatest way, shape (2, 2) [m].
         adapted: whether the step is being adapted already.
     """
@@ -58,7 +58,7 @@ class Situation:
     double: float
     single: float
     cycle: float
-    hurry: float
+    shortest: float
     room: Array
     adapted: bool
 
@@ -81,7 +81,8 @@ class Situation:
         if not (phase.leads_to and stepper.free[0]) or (swings and stepper.swing is None):
             return None
         step = stepper.queue.steps[phase.leads_to]
-        foot, swinging = step.place.foot, stepper.queue.lift_off(phase.leads_to).samples * stepper.sample_time
+        foot, swing = step.place.foot, stepper.queue.lift_off(phase.leads_to)
+        yet = min(1.0, (swing.end - stepper.clock.now) / swing.samples)
         if stepper.swing is not None:
             moving = stepper.swing.evaluate(time)[1, :2] @ rotation
         return cls(
@@ -94,9 +95,9 @@ class Situation:
             side=1.0 if foot is Foot.LEFT else -1.0,
             swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
             double=0.0 if swings else phase.left,
-            single=phase.left if swings else swinging,
+            single=phase.left if swings else swing.samples * stepper.sample_time,
             cycle=stepper.queue.gait.period,
-            hurry=min(math.sqrt(_PEAK * abs(step.climb) / _CLIMBING) / swinging, 1.0),
+            shortest=yet * math.sqrt(_PEAK * abs(step.climb) / _CLIMBING),
             room=stepper.room(0),
             adapted=stepper.adapted,
         )
@@ -245,7 +246,7 @@ class Recovery:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
         if fine or not self._timing:
             return np.array([now.double]), np.array([now.single])
-        singles = _around(now.single, max(_SHORTEST["single"], now.hurry * now.single))
+        singles = _around(now.single, max(_SHORTEST["single"], now.shortest))
         doubles = _around(now.double, _SHORTEST["double"]) if now.double else np.zeros(1)
         grid = np.meshgrid(doubles, singles, indexing="ij")
         return grid[0].ravel(), grid[1].ravel()

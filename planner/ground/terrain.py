@@ -149,6 +149,9 @@ class Terrain:
         soles = moved[:, None] + (half_size * _CORNERS) @ axes
         level = position[2] - (moved - position[:2]) @ (normal := self.normal(*position[:2]))[:2] / normal[2]
         off = (self.edge_margins(moved, soles) < _KEPT) | (np.abs(self.heights(moved) - level) > _KEPT)
+        # A shank leans over its foot: beyond it nothing may rise so near.
+        beyond = (soles.reshape(4, -1, 2) + _SHANK * np.vstack((-axes, axes))[:, None]).reshape(-1, 2)
+        off |= (self.heights(beyond).reshape(len(moved), -1) - level[:, None] > _KEPT).any(axis=1)
         first = np.argmax(np.column_stack((off.reshape(4, -1), np.ones(4, dtype=np.bool_))), axis=1)
         way = np.append(0.0, _WAYS)[first].reshape(2, 2)
         return np.array([-way[0], way[1]])
@@ -158,6 +161,9 @@ _WAYS = 0.01 * np.arange(1.0, 41.0)
 """Ways by which a sole might be moved on its face [m]."""
 
 _CORNERS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+
+_SHANK = 0.04
+"""Way beyond a sole in which the ground must not rise for it to be moved there [m]."""
 
 _KEPT = 0.01
 """Distance from the edges of its face that it keeps then, and from another face in height [m]."""

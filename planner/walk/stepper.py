@@ -327,7 +327,8 @@ class Stepper:
             times = swing_times(time, self.left, course, self._parameters)
             self.swing = start_swing(foot, pose, target, times, course.height, self._parameters)
         elif not (self.fixed or held) and np.abs(target - self.swing.target).max() > _SAME_TARGET:
-            self.swing = self.swing.retargeted(time, target, self.adapted)
+            # Over edges the foot keeps to the times in which its course clears them.
+            self.swing = self.swing.retargeted(time, target, self.adapted and self.wide)
 
     def roll(self, time: float) -> FootRoll | None:
         """Pitch of the foot that leaves the ground next or has just left it; None for one that stays level."""

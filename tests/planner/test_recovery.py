@@ -40,7 +40,7 @@ def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 
     given = {
         "com": bounded - (0.1, 0.0), "dcm": bounded + error, "stiffness": stiffness, "omega": omega,
         "reference": reference, "nominal": NOMINAL, "side": 1.0, "swing": np.array(swing), "double": 0.0,
-        "single": landed, "cycle": 0.62, "hurry": 0.0, "room": EVERYWHERE,
+        "single": landed, "cycle": 0.62, "shortest": 0.0, "room": EVERYWHERE,
         "adapted": False,
     }  # fmt: skip
     return Situation(**{**given, **keys})
@@ -144,7 +144,7 @@ def test_a_step_that_stays_on_its_tread_lands_sooner_within_it():
     assert caught.left < 0.5
     assert (caught.low >= NOMINAL + room[0] - 1e-12).all()
     assert (caught.high <= NOMINAL + room[1] + 1e-12).all()
-    assert catch(situation((0.12, 0.04), 0.5, room=room, hurry=0.9)).left >= 0.45
+    assert catch(situation((0.12, 0.04), 0.5, room=room, shortest=0.45)).left >= 0.45
 
 
 LEVELS = (StepAdaptation.NONE, StepAdaptation.LOCATION, StepAdaptation.TIMING, StepAdaptation.CROSSING)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -57,6 +59,24 @@ def test_a_fixed_footstep_has_no_gain(setup):
     assert not reference.gain.any()
 
 
+def test_gain_where_footsteps_stay_is_that_of_one_alone(setup):
+    steps, plan, refer = setup(steps=4, single_support=0.6, double_support=0.2)
+    start = next(p.start for p in plan.phases if p.step == 1 and p.stance is not None)
+    base = refer(support_table(steps, 1, (True, True), HALF, stay=True), start, 151)
+    for j in range(2):
+        position = steps.position.copy()
+        position[2 + j, 0] += 0.01
+        moved = refer(support_table(replace(steps, position=position), 1, (True, True), HALF, stay=True), start, 151)
+        np.testing.assert_allclose((moved.point - base.point)[:, 0] / 0.01, base.gain[:, j], atol=1e-9)
+    assert base.gain[-1, 0] == 0.0
+
+
+def test_the_box_of_a_stand_is_as_wide_as_both_feet(setup):
+    steps, _, refer = setup(steps=0)
+    reference = refer(support_table(steps, 1, (False, False), HALF), 0, 2)
+    np.testing.assert_allclose(reference.half_size[0], HALF + np.array([0.0, 0.1]))
+
+
 @pytest.mark.parametrize("turn", [0.0, 0.25])
 def test_moving_box_lies_in_the_support_polygon(setup, turn):
     steps, plan, refer = setup(steps=3, single_support=0.6, double_support=0.2, step_length=0.15, turn=turn)
@@ -64,9 +84,10 @@ def test_moving_box_lies_in_the_support_polygon(setup, turn):
     world = steps.position[1, :2] + reference.point @ frame_rotation(steps.yaw[1]).T
     for k in range(150):
         i = plan.samples.index[k]
-        if not 1 <= i < steps.steps:
-            continue
-        soles = [sole_corners(steps.footstep(row), HALF) for row in ((i, i + 1) if plan.samples.fraction[k] else (i,))]
+        # Where the robot stands the support point lies between two feet.
+        points = (i, i + 1) if plan.samples.fraction[k] else (i,)
+        rows = {int(row) for point in points for row in steps.supports[point]}
+        soles = [sole_corners(steps.footstep(row), HALF) for row in rows]
         hull = convex_hull(np.concatenate(soles))
         corners = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]]) * reference.half_size[k]
         for corner in corners @ frame_rotation(steps.yaw[1]).T:

@@ -5,7 +5,7 @@ import pytest
 
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.types import PhaseKind
+from surefoot.planner.types import Foot, PhaseKind
 from surefoot.planner.walk.commands import Twist
 from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
 from surefoot.planner.walk.phases import Flow
@@ -183,6 +183,28 @@ def test_a_stop_is_made_once_its_last_foot_swings(stand):
         assert bool(after[2].rest or after[3].rest) is (number == 2)
     assert kinds[0] == "SDSD"
     assert kinds[1].startswith("SDD")
+
+
+@pytest.mark.parametrize("foot", [Foot.LEFT, Foot.RIGHT])
+def test_a_robot_that_stands_steps_with_either_foot(stand, foot):
+    gait = GaitParameters(steps=2, step_length=0.3, single_support=0.5, double_support=0.12, initial_stand=9.0)
+    queue = StepQueue(gait, stand(gait.step_width), Ground(flat(), np.array([0.11, 0.055]), PlannerParameters()))
+    queue.extend(50.0)
+    before = queue.footsteps.support_points()[0]
+    queue.go_on(queue.phase(10.0), foot)
+    queue.extend(1000.0, 10.0)
+    stand_, double, swing, _ = queue.phases[:4]
+    assert (stand_.start, double.start, swing.start, swing.end) == (0.0, 10.0, 16.0, 41.0)
+    assert [phase.kind for phase in (stand_, double, swing)] == [PhaseKind.STAND, PhaseKind.DOUBLE, PhaseKind.SINGLE]
+    assert swing.stance is foot.other
+    steps = queue.footsteps
+    assert steps.feet == (foot, foot.other, foot, foot.other, foot)
+    np.testing.assert_allclose(steps.support_points()[0], before)
+    # On the spot, and then the steps of the gait after its stand.
+    start = stand(gait.step_width).position
+    np.testing.assert_allclose(steps.position[:3], start[[foot, foot.other, foot]])
+    np.testing.assert_allclose(steps.position[3:, 0], [0.3, 0.3])
+    assert [phase.kind for phase in queue.phases[4:6]] == [PhaseKind.STAND, PhaseKind.DOUBLE]
 
 
 def test_a_foot_left_far_behind_rolls_as_it_leaves_the_ground(stand):

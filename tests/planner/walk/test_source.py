@@ -11,7 +11,7 @@ from surefoot.planner.walk.commands import Command, Pose, Twist
 from surefoot.planner.walk.footsteps import Path
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import StepRegion
-from surefoot.planner.walk.source import CommandSource, Request, steps_ordered
+from surefoot.planner.walk.source import CommandSource, GaitSource, Interlude, Request, steps_ordered
 
 pytestmark = pytest.mark.unit
 
@@ -23,6 +23,17 @@ ORIGIN = Pose(0.0, 0.0, 0.0)
 speeds = st.floats(-1.5, 1.5)
 twists = st.builds(Twist, speeds, speeds, speeds)
 places = st.builds(Pose, st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
+
+
+def test_steps_between_those_of_a_gait_leave_them_as_they_were():
+    source = GaitSource(GaitParameters(steps=4, step_length=0.3))
+    for step in (2, 2, 3, 5):
+        # Step 2 is asked for anew while it has not been taken.
+        source = Interlude(source, step, 0.2)
+    lengths = [order.stride.length if (order := source.order(Request(n, n * PERIOD, None, ORIGIN, PERIOD))) else None
+               for n in range(5, 9)]  # fmt: skip
+    assert lengths == [0.0, 0.3, 0.0, None]
+    assert source.order(Request(5, 5 * PERIOD, None, ORIGIN, PERIOD)).hurried
 
 
 def walked(source, most=200, pose=ORIGIN):

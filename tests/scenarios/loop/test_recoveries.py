@@ -1,0 +1,74 @@
+"""Recoveries from pushes in full physics: by where and when steps land, from standing, and on stairs."""
+
+import math
+
+import numpy as np
+import pytest
+
+from surefoot.scenarios.log import read
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
+
+pytestmark = pytest.mark.physics
+
+NATURAL = (
+    "robot_options.foot_length=0.22",
+    "robot_options.foot_width=0.11",
+    "gait.single_support=0.5",
+    "gait.double_support=0.12",
+    "gait.com_height=0.95",
+)
+WALKING = (*NATURAL, "gait.steps=6", "gait.step_length=0.36")
+STANDING = (
+    *NATURAL,
+    "duration=5.5",
+    "criteria={fell: false, standing_time_final: {min: 0.5}, wbc_fallbacks: {max: 0}}",
+)
+FORWARD, LEFT, RIGHT = 0.0, 0.5 * math.pi, -0.5 * math.pi
+
+PEAK = 5.0
+"""Greatest force on the soles in a recovery [body weights]."""
+
+
+def pushed(scenario, keys, impulse, direction, when, tmp_path):
+    """A run with a push of an impulse [N·s/kg] for 0.1 s."""
+    push = f"pushes=[{{{when}, duration: 0.1, impulse: {impulse}, direction: {direction}}}]"
+    return run_scenario(load_scenario(scenario, (*keys, push)), tmp_path)
+
+
+def assert_recovered(result):
+    metrics, log = result.verdict.metrics, read(result.log)
+    assert not metrics["fell"]
+    assert metrics["standing_time_final"] >= 0.5
+    assert metrics["self_contact_time"] == 0.0
+    assert metrics["joint_limit_margin_min"] >= 0.0
+    weight = log["/contact"].field("normal_force")[0].sum()
+    assert log["/contact"].field("normal_force").sum(axis=1).max() < PEAK * weight
+    return metrics, log
+
+
+@pytest.mark.parametrize(("direction", "impulse"), [(FORWARD, 0.45), (RIGHT, 0.27)])
+def test_a_walk_goes_on_after_a_push_that_no_step_on_its_clock_could_catch(direction, impulse, tmp_path):
+    when = "step: 3, phase: single, fraction: 0.2"
+    metrics, _ = assert_recovered(pushed("walk", WALKING, impulse, direction, when, tmp_path / "free"))
+    assert metrics["steps_taken"] >= 6
+    as_laid = pushed("walk", (*WALKING, "planner.step_adaptation=none"), impulse, direction, when, tmp_path / "laid")
+    assert as_laid.verdict.metrics["fell"]
+
+
+@pytest.mark.parametrize("direction", [FORWARD, 0.75 * math.pi])
+def test_who_stands_steps_and_stands_again_with_its_feet_side_by_side(direction, tmp_path):
+    result = pushed("stand", STANDING, 0.5, direction, "time: 0.5", tmp_path)
+    metrics, log = assert_recovered(result)
+    assert metrics["steps_taken"] >= 2
+    truth = log["/truth"]
+    way = truth.field("left_sole")[-1][:2] - truth.field("right_sole")[-1][:2]
+    np.testing.assert_allclose(way, (0.0, 0.2), atol=0.02)
+
+
+def test_a_foot_lands_beside_its_place_on_the_tread_but_on_it(tmp_path):
+    result = pushed("stairs-up", (), 0.2, LEFT, "step: 3, phase: single, fraction: 0.5", tmp_path)
+    metrics, log = assert_recovered(result)
+    assert metrics["steps_taken"] == metrics["steps_planned"]
+    assert metrics["stair_edge_margin_min"] > 0.0
+    assert np.ptp(log["/footstep"].field("planned")[:, 1]) > 0.25

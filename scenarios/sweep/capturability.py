@@ -229,7 +229,9 @@ def _times(walk: Walk, left: tuple[float, float]) -> tuple[Array, Array]:
     if not walk.profile.catches or walk.parameters.step_adaptation is StepAdaptation.LOCATION:
         return np.array(left[:1]), np.array(left[1:])
     earliest = [min(time, SHORTEST[name]) for name, time in zip(("double", "single"), left, strict=True)]
-    double, single = (np.arange(begin, end, _EVERY) for begin, end in zip(earliest, (left[0], left[1] + _LATER)))
+    double, single = (
+        np.arange(begin, end, _EVERY) for begin, end in zip(earliest, (left[0], left[1] + _LATER), strict=True)
+    )
     return np.append(double, left[0]), np.append(single, left[1])
 
 

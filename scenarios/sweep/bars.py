@@ -66,7 +66,9 @@ def bars(
             one.set_visible(False)
         for one in every[::columns]:
             one.set_ylabel(with_unit(key))
-        figure.legend(handles=_handles(every[: len(panels)], shades, marks), loc="outside lower center", ncols=2 * columns)
+        figure.legend(
+            handles=_handles(every[: len(panels)], shades, marks), loc="outside lower center", ncols=2 * columns
+        )
     return figure
 
 

@@ -272,6 +272,7 @@ def _overridden(spec: Spec, overrides: Sequence[str]) -> Spec:
         "grid": grid,
         "sample": {name: draw for name, draw in spec.sample.items() if name not in taken},
         "first": {name: values for name, values in spec.first.items() if name not in taken},
+        "records": [one for one in spec.records if all(label in grid[name] for name, label in one.at.items())],
     }
     return spec.model_copy(update=update)
 

@@ -2,9 +2,9 @@
 
     python benchmarks/recovery_tick.py [--tries N] [--set KEY=VALUE ...]
 
-A walk without adaptation, the same with it, and with pushes that make it adapt. Runs of the same scenario are equal to the
-bit, so that each tick counts with the least processor time that it took in the tries. Run it with OMP_NUM_THREADS=1 on
-an idle core.
+A walk without adaptation, the same with it, and with pushes that make it adapt. Runs of the same scenario are equal to
+the bit, so that each tick counts with the least processor time that it took in the tries. Run it with OMP_NUM_THREADS=1
+on an idle core.
 """
 
 import argparse

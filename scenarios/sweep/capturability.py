@@ -177,29 +177,34 @@ def _moment(scenario: Scenario, walk: Walk, view: LogView, push: int) -> Moment 
     begin = push_time(gait, scenario.pushes[push])
     ends = ((step, gait.lift_off(step) + gait.single_support) for step in range(1, gait.steps + 1))
     step = next((step for step, end in ends if end > begin + _TICK), None)
-    row = int(np.searchsorted(view.time("/reference"), begin - _TICK))
-    if step is None or row >= len(view.time("/reference")):
+    times = view.time("/truth")
+    row = int(np.searchsorted(times, begin + _TICK)) - 1  # the last tick that knows nothing of the push
+    if step is None or not 0 < row < len(times) - 1:
         return None
-    com, speed = (view.field("/truth", name, 3)[row, :2] for name in ("com", "com_velocity"))
     omega = math.sqrt(GRAVITY / gait.com_height)
     lift = max(gait.lift_off(step) - begin, 0.0)
     single = min(gait.lift_off(step) - begin, 0.0) + gait.single_support
     pushed = scenario.pushes[push]
-    ways = tuple(_ways(walk, view, gait.step_foot(step), row, (lift, single)))
-    return Moment(com + speed / omega, omega, ways, pushed.duration, pushed.direction or 0.0)
+    com, speed = (view.field("/truth", name, 3)[row - 1 : row + 1, :2] for name in ("com", "com_velocity"))
+    before, now = com + speed / omega
+    since = begin - times[row]
+    dcm = now + since / (times[row] - times[row - 1]) * (now - before)
+    ways = tuple(_ways(walk, view, gait.step_foot(step), (row, since), (lift, single)))
+    return Moment(dcm, omega, ways, pushed.duration, pushed.direction or 0.0)
 
 
-def _ways(walk: Walk, view: LogView, swing: Foot, row: int, left: tuple[float, float]) -> Iterator[Way]:
+def _ways(walk: Walk, view: LogView, swing: Foot, at: tuple[int, float], left: tuple[float, float]) -> Iterator[Way]:
     """Ways to land: as planned, and as steps may be adapted.
 
     Args:
         walk: that was resolved.
         view: of its log.
         swing: the foot that is to land.
-        row: of the tick of the push, in the channels of every control tick.
+        at: row of the tick before the push, in the channels of every control tick, and time from then to it [s].
         left: double and single support that are left by the clock [s].
     """
-    seen = max(int(np.searchsorted(view.time("/footsteps"), view.time("/reference")[row] + _TICK)) - 1, 0)
+    row, since = at
+    seen = max(int(np.searchsorted(view.time("/footsteps"), view.time("/truth")[row] + _TICK)) - 1, 0)
     poses = [view.field("/footsteps", f"current_{foot}", 4)[seen][[0, 1, 3]] for foot in ("left", "right")]
     planned = view.field("/footsteps", "next", 3, 4)[seen, 0][[0, 1, 3]]
     half = (0.5 * walk.sole[0], 0.5 * walk.sole[1])
@@ -214,7 +219,7 @@ def _ways(walk: Walk, view: LogView, swing: Foot, row: int, left: tuple[float, f
     here, speed = view.field("/truth", f"{swing.name.lower()}_sole", 7)[row, :2] - stance[:2], np.zeros(2)
     if not left[0]:
         speed = view.field("/reference", "swing_velocity", 3)[row, :2]
-    here, speed = here @ frame_rotation(stance[2]), speed @ frame_rotation(stance[2])
+    here, speed = (here + since * speed) @ frame_rotation(stance[2]), speed @ frame_rotation(stance[2])
     most = np.array(walk.legs.acceleration)
     for double, single in itertools.product(*_times(walk, left)):
         foot = swing_box(here, speed, most, single)

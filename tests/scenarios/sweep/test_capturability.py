@@ -133,16 +133,16 @@ set:
   gait.steps: 2
   gait.initial_stand: 0.2
   gait.single_support: 0.5
-  pushes: [{step: 1, phase: PHASE, fraction: 0.5, duration: 0.1, impulse: 0.01, direction: 0.5}]
+  pushes: [{step: 1, phase: PHASE, fraction: FRACTION, duration: 0.1, impulse: 0.01, direction: 0.5}]
 bisect: {key: pushes.0.impulse, low: 0.01, high: 0.02, ratio: 1.5}
 """
 
 
-def first_log(folder, phase="single"):
+def first_log(folder, phase="single", fraction=0.5, impulse=0.01):
     path = folder / "spec.yaml"
-    path.write_text(SPEC.replace("PHASE", phase))
+    path.write_text(SPEC.replace("PHASE", phase).replace("FRACTION", str(fraction)))
     (cell, *_) = cells(read_campaign(str(path)))
-    point = cell.point(0, {"pushes.0.impulse": 0.01})
+    point = cell.point(0, {"pushes.0.impulse": impulse})
     return run_scenario(read_scenario(*point.base.written, point.settings), folder / "run").log
 
 
@@ -163,6 +163,20 @@ def test_a_run_tells_the_moment_of_its_push(log):
     assert all(moment.limit(way) > 0.1 for way in (0.0, 1.5, 3.0, -1.5))
     # The left foot swings: a step to that side reaches further than the edge of the sole does on the other.
     assert moment.limit(math.pi / 2) > 1.2 * moment.limit(-math.pi / 2)
+
+
+def test_the_state_is_that_before_the_push_which_need_not_begin_with_a_tick(tmp_path):
+    logs = []
+    for name, impulse in (("light", 0.01), ("heavy", 0.3)):
+        (tmp_path / name).mkdir()
+        logs.append(first_log(tmp_path / name, fraction=0.514, impulse=impulse))
+    light, heavy = (moment_of(one, 0) for one in logs)
+    assert heavy.dcm == pytest.approx(light.dcm, abs=1e-9)
+    assert heavy.limit(0.0) == pytest.approx(light.limit(0.0))
+    view, begin = LogView(read(logs[0])), push_time(resolve(load(logs[0])).gait, load(logs[0]).pushes[0])
+    com, speed = (view.field("/truth", name, 3)[:, 0] for name in ("com", "com_velocity"))
+    truth = np.interp(begin, view.time("/truth"), com + speed / light.omega)
+    assert light.dcm[0] == pytest.approx(truth, abs=5e-4)
 
 
 def adapting(log, adaptation):
@@ -208,7 +222,7 @@ def survives(moment, sole, feet, legs, impulses, direction, time):
 def test_the_limit_is_what_trying_out_on_a_pendulum_finds(log, direction):
     """Of all times, places and centres of pressure tried none survives more, and some as much."""
     moment, walk, data = moment_of(log, 0), resolve(load(log)), LogView(read(log))
-    row = int(np.searchsorted(data.time("/reference"), push_time(walk.gait, load(log).pushes[0]) - 1e-6))
+    row = int(np.searchsorted(data.time("/truth"), push_time(walk.gait, load(log).pushes[0]) + 1e-6)) - 1
     right, left = (data.field("/truth", f"{side}_sole", 7)[row, :2] for side in ("right", "left"))
     feet = right, left, data.field("/reference", "swing_velocity", 3)[row, :2]
     limit = moment.limit(direction)

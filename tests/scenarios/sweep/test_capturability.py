@@ -1,5 +1,6 @@
 """The one-step limit of a push: closed forms along a line, and what a run's log tells of its moment."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -15,6 +16,7 @@ from surefoot.scenarios.setup.gait import push_time
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.scenarios.show.logview import LogView
+from surefoot.scenarios.sweep import capturability
 from surefoot.scenarios.sweep.capturability import (
     SHORTEST,
     Limits,
@@ -117,6 +119,22 @@ def test_a_foot_is_where_full_acceleration_and_full_braking_bring_it():
     assert (low == high).all()
 
 
+def test_the_limit_is_the_edge_of_the_sum_of_all_polygons():
+    """Aslant ones, of some points within them, by the hull of all sums of their corners."""
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        hulls = [rng.normal(size=(count, 2)) for count in (2, 3, 5)]
+        supports = tuple((hull, (0.1 * i, 0.1 * (i + 1))) for i, hull in enumerate(hulls[:2]))
+        way = Way(supports, hulls[2])
+        sums = [sum(corners) for corners in itertools.product(*way.summands(OMEGA))]
+        edges = ConvexHull(sums).equations
+        dcm, angle = np.mean(sums, axis=0), rng.uniform(-math.pi, math.pi)
+        along = edges[:, :2] @ (math.cos(angle), math.sin(angle))
+        room = -(edges[:, :2] @ dcm + edges[:, 2])
+        wanted = OMEGA * np.min(room[along > 0.0] / along[along > 0.0])
+        assert Moment(dcm, OMEGA, (way,), 1e-6).limit(angle) == pytest.approx(wanted, rel=1e-5)
+
+
 def test_landing_turns_with_the_stance_foot():
     reach = (np.array([-0.3, 0.1]), np.array([0.3, 0.4]))
     stance = np.array([1.0, 2.0, math.pi / 2])
@@ -165,18 +183,23 @@ def test_a_run_tells_the_moment_of_its_push(log):
     assert moment.limit(math.pi / 2) > 1.2 * moment.limit(-math.pi / 2)
 
 
-def test_the_state_is_that_before_the_push_which_need_not_begin_with_a_tick(tmp_path):
+def test_the_state_is_that_before_the_push_which_need_not_begin_with_a_tick(tmp_path, monkeypatch):
+    begun = []
+    monkeypatch.setattr(capturability, "swing_box", lambda *given: begun.append(given) or swing_box(*given))
     logs = []
     for name, impulse in (("light", 0.01), ("heavy", 0.3)):
         (tmp_path / name).mkdir()
         logs.append(first_log(tmp_path / name, fraction=0.514, impulse=impulse))
-    light, heavy = (moment_of(one, 0) for one in logs)
+    heavy, light = (moment_of(one, 0) for one in reversed(logs))
     assert heavy.dcm == pytest.approx(light.dcm, abs=1e-9)
     assert heavy.limit(0.0) == pytest.approx(light.limit(0.0))
     view, begin = LogView(read(logs[0])), push_time(resolve(load(logs[0])).gait, load(logs[0]).pushes[0])
     com, speed = (view.field("/truth", name, 3)[:, 0] for name in ("com", "com_velocity"))
     truth = np.interp(begin, view.time("/truth"), com + speed / light.omega)
     assert light.dcm[0] == pytest.approx(truth, abs=5e-4)
+    left, right = (view.field("/truth", f"{side}_sole", 7)[:, 0] for side in ("left", "right"))
+    assert begun[-1][0][0] == pytest.approx(np.interp(begin, view.time("/truth"), left - right), abs=1e-3)
+    assert begun[-1][1][0] > 0.5
 
 
 def adapting(log, adaptation):

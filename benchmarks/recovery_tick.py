@@ -2,14 +2,14 @@
 
     python benchmarks/recovery_tick.py [--tries N] [--set KEY=VALUE ...]
 
-A walk without adaptation, the same with it, and with pushes that make it adapt. Runs of the same scenario are equal to
-the bit, so that each tick counts with the least processor time that it took in the tries. Run it with OMP_NUM_THREADS=1
-on an idle core.
+A walk without adaptation, the same with it, and with pushes that make it adapt, tick by tick in turns, standing left
+out. Runs of the same scenario are equal to the bit, so that each tick counts with the least processor time that it took
+in the tries. Run it with OMP_NUM_THREADS=1 on an idle core.
 """
 
 import argparse
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 from unittest.mock import patch
 
@@ -18,6 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.recovery import Recovery
+from surefoot.planner.types import PhaseKind
 from surefoot.scenarios.log import NoLog
 from surefoot.scenarios.loop.run import closed_loop
 from surefoot.scenarios.setup.load import load as load_scenario
@@ -50,63 +51,70 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def timed(method: Callable[..., Any], spent: list[float]) -> Callable[..., Any]:
-    def call(*given: Any) -> Any:
-        start = time.thread_time()
-        result = method(*given)
-        spent.append(time.thread_time() - start)
-        return result
+class Walk:
+    """A walk whose planner's ticks are timed.
 
-    return call
+    Attributes:
+        loop: the closed loop.
+        rows: of each tick of the planner on steps its time, that in `Recovery.catch` [s], and whether one was adapted.
+    """
+
+    def __init__(self, settings: Sequence[str]) -> None:
+        self.loop = closed_loop(resolve(load_scenario("walk", list(settings))), NoLog())
+        self.rows: list[tuple[float, float, float]] = []
+
+    def step(self) -> None:
+        """Go through one control tick."""
+        spent, caught, adapts, steps = 0.0, 0.0, False, False
+        update, catch = WalkingPlanner.update, Recovery.catch
+
+        def timed_update(self: WalkingPlanner, *given: Any) -> Any:
+            nonlocal spent, steps
+            start = time.thread_time()
+            plan = update(self, *given)
+            spent, steps = time.thread_time() - start, plan.phase.kind is not PhaseKind.STAND
+            return plan
+
+        def timed_catch(self: Recovery, now: Any) -> Any:
+            nonlocal caught, adapts
+            start = time.thread_time()
+            found = catch(self, now)
+            caught, adapts = caught + time.thread_time() - start, found is not None
+            return found
+
+        with patch.object(WalkingPlanner, "update", timed_update), patch.object(Recovery, "catch", timed_catch):
+            self.loop.step()
+        if steps:
+            self.rows.append((spent, caught, float(adapts)))
 
 
-def ticks(settings: Sequence[str]) -> np.ndarray:
-    """Of each tick its time, that in `Recovery.catch` [s], and whether a step was adapted, shape (n, 3)."""
-    planner: list[float] = []
-    catch: list[float] = []
-    rows: list[tuple[float, float, float]] = []
-    adapts: list[bool] = []
-    recovery = Recovery.catch
-
-    def noted(self: Recovery, now: Any) -> Any:
-        found = recovery(self, now)
-        adapts.append(found is not None)
-        return found
-
-    with (
-        threadpool_limits(1),
-        patch.object(WalkingPlanner, "update", timed(WalkingPlanner.update, planner)),
-        patch.object(Recovery, "catch", timed(noted, catch)),
-    ):
-        loop = closed_loop(resolve(load_scenario("walk", list(settings))), NoLog())
-        while not loop.done:
-            loop.step()
-            if len(planner) > len(rows):
-                rows.append((planner[-1], sum(catch), float(any(adapts))))
-                catch.clear()
-                adapts.clear()
-        assert not loop.fell, "it fell: what was timed is no walk"
-    return np.array(rows)
+def walked(overrides: Sequence[str]) -> dict[str, np.ndarray]:
+    """Rows of each variant, shape (n, 3) each; their ticks take turns, so that neighbours slow all of them alike."""
+    walks = {name: Walk([*WALK, *settings, *overrides]) for name, settings in VARIANTS.items()}
+    with threadpool_limits(1):
+        while not all(walk.loop.done for walk in walks.values()):
+            for walk in walks.values():
+                if not walk.loop.done:
+                    walk.step()
+    assert not any(walk.loop.fell for walk in walks.values()), "one fell: what was timed is no walk"
+    return {name: np.array(walk.rows) for name, walk in walks.items()}
 
 
 def row(name: str, values: np.ndarray, median: float) -> str:
     """A line of the table, ratios to the median without adaptation."""
     middle, p99 = np.percentile(values[:, 0], (50, 99)) * 1e6
-    caught = np.median(values[:, 1]) * 1e6
+    caught = np.mean(values[:, 1]) * 1e6
     ratios = f"{middle / median:>9.2f} {p99 / middle:>12.2f}"
     return f"{name:<24} {len(values):>6} {middle:>10.0f} {p99:>8.0f} {ratios} {caught:>14.0f}"
 
 
 def main() -> None:
     options = arguments()
-    tries: dict[str, list[np.ndarray]] = {name: [] for name in VARIANTS}
-    for _ in range(options.tries):
-        for name, settings in VARIANTS.items():
-            tries[name].append(ticks([*WALK, *settings, *options.set]))
-    best = {name: np.min(runs, axis=0) for name, runs in tries.items()}
+    tries = [walked(options.set) for _ in range(options.tries)]
+    best = {name: np.min([one[name] for one in tries], axis=0) for name in VARIANTS}
     median = float(np.median(best["without"][:, 0])) * 1e6
     print(f"{'planner tick':<24} {'ticks':>6} {'median us':>10} {'p99 us':>8} {'to without':>9} ", end="")
-    print(f"{'p99 / median':>12} {'in catch, us':>14}")
+    print(f"{'p99 / median':>12} {'mean in catch':>14}")
     for name, values in best.items():
         print(row(name, values, median))
     adapted = best["with, pushed"][:, 2] > 0.0

@@ -22,6 +22,7 @@ from PIL import Image
 from surefoot.scenarios.show.figures.style import save
 from surefoot.scenarios.sweep.bars import Limit, bars
 from surefoot.scenarios.sweep.capturability import Limits
+from surefoot.scenarios.sweep.figures import WIDTH as PAGE_WIDTH
 from surefoot.scenarios.sweep.figures import Axis, Found, Spread, distributions, text, with_unit
 from surefoot.scenarios.sweep.points import Threshold
 from surefoot.scenarios.sweep.spec import read_campaign
@@ -29,7 +30,7 @@ from surefoot.scenarios.sweep.table import wilson
 
 FOLDER = Path(__file__).parent
 WIDTH = 1300
-"""Of a picture [px]."""
+"""Of a picture that is as wide as a page [px]."""
 
 
 def rows(table: Path) -> Iterator[dict[str, Any]]:
@@ -77,19 +78,20 @@ def push_map(folder: Path, name: str) -> None:
 def table(found: Sequence[Found], axes: Sequence[Axis], limit: Limit) -> Iterator[str]:
     """Thresholds of all shades of a group in one cell, and the limit of the last shade, in the style of the page."""
     *others, columns, shades, groups = axes
-    cells: dict[str, dict[str, list[str]]] = {}
+    cells: dict[str, dict[Any, dict[Any, str]]] = {}
     for one in found:
         row = ", ".join(text(one.labels[axis.name]) for axis in (*others, groups) if len(axis.values) > 1)
-        below = "< " if one.threshold.side == "below" else ""
-        shown = [f"{below}{one.shown:.2f}"]
-        if one.labels[shades.name] == shades.values[-1]:
-            most = limit(one.labels)
-            shown += [f"({most:.2f})"] if most is not None else []
-        cells.setdefault(row, {}).setdefault(one.labels[columns.name], []).append(" ".join(shown))
+        shown = f"{'< ' if one.threshold.side == 'below' else ''}{one.shown:.2f}"
+        most = limit(one.labels) if one.labels[shades.name] == shades.values[-1] else None
+        cell = cells.setdefault(row, {}).setdefault(one.labels[columns.name], {})
+        cell[one.labels[shades.name]] = shown if most is None else f"{shown} ({most:.2f})"
     yield "| N·s/kg | " + " | ".join(map(text, columns.values)) + " |"
     yield "|---" * (1 + len(columns.values)) + "|"
     for row, values in cells.items():
-        yield f"| {row} | " + " | ".join(", ".join(values.get(column, ["–"])) for column in columns.values) + " |"
+        every = (values.get(column, {}) for column in columns.values)
+        yield (
+            f"| {row} | " + " | ".join(", ".join(cell.get(one, "–") for one in shades.values) for cell in every) + " |"
+        )
 
 
 def robustness(folder: Path, name: str) -> None:
@@ -112,8 +114,9 @@ def _save(figure: Any, name: str) -> None:
     save(figure, FOLDER / name, replace=True)
     with Image.open(FOLDER / name) as drawn:
         picture = drawn.convert("RGB")
-    height = round(picture.height * WIDTH / picture.width)
-    picture.resize((WIDTH, height), Image.Resampling.LANCZOS).save(FOLDER / name, optimize=True)
+    width = round(WIDTH * figure.get_figwidth() / PAGE_WIDTH)
+    height = round(picture.height * width / picture.width)
+    picture.resize((width, height), Image.Resampling.LANCZOS).save(FOLDER / name, optimize=True)
     print(FOLDER / name)
 
 

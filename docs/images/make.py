@@ -108,7 +108,7 @@ OF_CAMPAIGNS = (
     "courses.png",
     "drive.gif",
 )
-"""Pictures of campaigns that take hours, which `campaigns.py` draws from their results, and one that it drew in its time."""
+"""Pictures of campaigns that take hours, which `campaigns.py` draws from their results, one as it drew them before."""
 
 
 def main() -> None:

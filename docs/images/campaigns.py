@@ -1,16 +1,18 @@
 """Draw the pictures of campaigns from their results, which take hours.
 
-    surefoot sweep push-map --out runs/push-map
+    surefoot sweep push-map --set fidelity=full --out runs/push-map
     python docs/images/campaigns.py push-map runs/push-map
+    surefoot sweep push-map --set fidelity=pendulum --out runs/push-map-pendulum
+    python docs/images/campaigns.py push-map-pendulum runs/push-map-pendulum
     python docs/images/campaigns.py robustness runs/robustness
 
-What is drawn is read from the tables of the campaign, and the limit of a push from the logs beside them. A map of
-several campaigns, each of other gaits, is drawn when several folders are given.
+What is drawn is read from the tables of the campaign, and the limit of a push from the logs beside them. The table of a
+map is printed as it stands on the page.
 """
 
 import argparse
 import csv
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,14 +20,17 @@ import yaml
 from PIL import Image
 
 from surefoot.scenarios.show.figures.style import save
+from surefoot.scenarios.sweep.bars import Limit, bars
 from surefoot.scenarios.sweep.capturability import Limits
-from surefoot.scenarios.sweep.figures import Axis, Found, Spread, compass, distributions, with_unit
+from surefoot.scenarios.sweep.figures import WIDTH as PAGE_WIDTH
+from surefoot.scenarios.sweep.figures import Axis, Found, Spread, distributions, text, with_unit
 from surefoot.scenarios.sweep.points import Threshold
+from surefoot.scenarios.sweep.spec import read_campaign
 from surefoot.scenarios.sweep.table import wilson
 
 FOLDER = Path(__file__).parent
 WIDTH = 1300
-"""Of a picture [px]."""
+"""Of a picture that is as wide as a page [px]."""
 
 
 def rows(table: Path) -> Iterator[dict[str, Any]]:
@@ -47,27 +52,50 @@ def specification(folder: Path) -> Mapping[str, Any]:
     return dict(yaml.safe_load((folder / "campaign.yaml").read_text(encoding="utf-8")))
 
 
-def push_map(folders: list[Path]) -> None:
-    """Thresholds of pushes around the compass beside their limit: a panel for each gait, a curve for each phase."""
-    found, logs, searched = [], [], specification(folders[0])["bisect"]
-    key = searched["key"]
-    for folder in folders:
-        axes = list(specification(folder)["grid"])
-        for row in rows(folder / "thresholds.csv"):
-            labels = {name: row[name] for name in axes}
-            value = None if row["threshold"] == "" else row["threshold"]
-            found.append(Found(labels, Threshold(value, row["side"]), (searched["low"], searched["high"])))
-            logs += [(labels, folder / row["log"])] if row["log"] else []
-    names = {name: tuple(dict.fromkeys(one.labels[name] for one in found)) for name in found[0].labels}
-    angle = next(name for name in names if name.endswith(".direction"))
-    limits = Limits(key, logs, angle)
-    varied = [Axis(name, values) for name, values in names.items()]
-    _save(compass(found, varied, key, limits.at), "push-map.png")
+def push_map(folder: Path, name: str) -> None:
+    """Thresholds of pushes as bars beside their limit and what others have published, and as a table."""
+    campaign = read_campaign(str(folder / "campaign.yaml"))
+    axes = [Axis(axis, tuple(one.label for one in settings)) for axis, settings in campaign.axes.items()]
+    search = campaign.spec.bisect
+    assert search is not None
+    ranges = {
+        str(labels): (own.low, own.high)
+        for labels, keys in campaign.combinations()
+        if (own := campaign.bisect(keys)) is not None
+    }
+    found, logs = [], []
+    for row in rows(folder / "thresholds.csv"):
+        labels = {axis.name: row[axis.name] for axis in axes}
+        value = None if row["threshold"] == "" else row["threshold"]
+        found.append(Found(labels, Threshold(value, row["side"]), ranges[str(labels)]))
+        logs += [(labels, folder / row["log"])] if row["log"] else []
+    limits = Limits(search.key, logs, "")
+    for line in table(found, axes, lambda labels: limits.at(labels, None)):
+        print(line)
+    _save(bars(found, axes, search.key, lambda labels: limits.at(labels, None), campaign.spec.records), name)
 
 
-def robustness(folders: list[Path]) -> None:
+def table(found: Sequence[Found], axes: Sequence[Axis], limit: Limit) -> Iterator[str]:
+    """Thresholds of all shades of a group in one cell, and the limit of the last shade, in the style of the page."""
+    *others, columns, shades, groups = axes
+    cells: dict[str, dict[Any, dict[Any, str]]] = {}
+    for one in found:
+        row = ", ".join(text(one.labels[axis.name]) for axis in (*others, groups) if len(axis.values) > 1)
+        shown = f"{'< ' if one.threshold.side == 'below' else ''}{one.shown:.2f}"
+        most = limit(one.labels) if one.labels[shades.name] == shades.values[-1] else None
+        cell = cells.setdefault(row, {}).setdefault(one.labels[columns.name], {})
+        cell[one.labels[shades.name]] = shown if most is None else f"{shown} ({most:.2f})"
+    yield "| N·s/kg | " + " | ".join(map(text, columns.values)) + " |"
+    yield "|---" * (1 + len(columns.values)) + "|"
+    for row, values in cells.items():
+        every = (values.get(column, {}) for column in columns.values)
+        yield (
+            f"| {row} | " + " | ".join(", ".join(cell.get(one, "–") for one in shades.values) for cell in every) + " |"
+        )
+
+
+def robustness(folder: Path, name: str) -> None:
     """What was drawn in runs that passed and in runs that failed."""
-    (folder,) = folders
     spec = specification(folder)
     runs = [row for row in rows(folder / "table.csv") if row["status"] in ("pass", "fail")]
     passed, failed = ([row for row in runs if row["status"] == status] for status in ("pass", "fail"))
@@ -79,26 +107,27 @@ def robustness(folders: list[Path]) -> None:
         met = sum(row["status"] == "pass" for row in of_it)
         rate = wilson(met, len(of_it))
         print(*combination, f"{met} of {len(of_it)}: {rate.rate:.1%}, 95 % interval {rate.low:.1%} to {rate.high:.1%}")
-    _save(distributions(spreads), "robustness.png")
+    _save(distributions(spreads), name)
 
 
 def _save(figure: Any, name: str) -> None:
     save(figure, FOLDER / name, replace=True)
     with Image.open(FOLDER / name) as drawn:
         picture = drawn.convert("RGB")
-    height = round(picture.height * WIDTH / picture.width)
-    picture.resize((WIDTH, height), Image.Resampling.LANCZOS).save(FOLDER / name, optimize=True)
+    width = round(WIDTH * figure.get_figwidth() / PAGE_WIDTH)
+    height = round(picture.height * width / picture.width)
+    picture.resize((width, height), Image.Resampling.LANCZOS).save(FOLDER / name, optimize=True)
     print(FOLDER / name)
 
 
 def main() -> None:
     """Draw the picture that is asked for."""
-    drawers = {"push-map": push_map, "robustness": robustness}
+    drawers = {"push-map": push_map, "push-map-pendulum": push_map, "robustness": robustness}
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("picture", choices=drawers)
-    parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="of a campaign")
+    parser.add_argument("folder", type=Path, help="of a campaign")
     options = parser.parse_args()
-    drawers[options.picture](options.folders)
+    drawers[options.picture](options.folder, f"{options.picture}.png")
 
 
 if __name__ == "__main__":

@@ -1,23 +1,25 @@
-"""The limit of a push by one-step capturability: what no controller survives that lands once, on the clock, and stops.
+"""The limit of a push by one-step capturability: what no controller survives that lands once and stops.
 
 Of a linear inverted pendulum (Koolen et al., Capturability-based analysis and control of legged locomotion, 2012) whose
-centre of pressure may be anywhere in the support and whose foot may land anywhere that the legs reach. Neither the
-torso's rotation, nor a second step, nor another clock is in it: a controller that has these may survive more.
+centre of pressure may be anywhere in the support and whose foot may land wherever and whenever the steps may be adapted
+to, as far as the legs reach and the hips can swing it. Neither the torso's rotation nor a second step is in it: a
+controller that has these may survive more.
 """
 
+import itertools
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linprog
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import sole_corners
+from surefoot.planner.geometry import frame_rotation, sole_corners
+from surefoot.planner.parameters import StepAdaptation
+from surefoot.planner.recovery import _SHORTEST as SHORTEST
 from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
 from surefoot.planner.walk.reach import reach_box
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
@@ -31,6 +33,41 @@ from surefoot.scenarios.show.logview import LogView, MissingError
 _TICK = 1e-6
 """Of two times nearer than this, neither is earlier [s]."""
 
+_EVERY, _LATER = 0.04, 0.2
+"""Spacing of the times at which a foot is tried to land, and by how much that may be after the clock's [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A way to land once.
+
+    Attributes:
+        supports: until the landing: points whose hull the centre of pressure may be in, shape (n, 2) [m], and from
+            when until when [s].
+        landed: points in whose hull it may be once the foot has landed where it is best, shape (n, 2) [m].
+    """
+
+    supports: tuple[tuple[Array, tuple[float, float]], ...]
+    landed: Array
+
+    @property
+    def landing(self) -> float:
+        """Time until the foot lands [s]."""
+        return self.supports[-1][1][1] if self.supports else 0.0
+
+    def summands(self, omega: float) -> list[Array]:
+        """Polygons whose Minkowski sum holds each DCM that can be brought to rest, by their points, (n, 2) each [m].
+
+        The DCM obeys dξ/dt = ω (ξ - p). It can be brought to rest after the landing at T exactly if
+
+            ξ = Σ_k p_k (e^{-ω a_k} - e^{-ω b_k}) + e^{-ωT} q
+
+        with p_k in the support from a_k to b_k and q in that after landing.
+        """
+        shares = [(math.exp(-omega * begin) - math.exp(-omega * end), hull) for hull, (begin, end) in self.supports]
+        shares.append((math.exp(-omega * self.landing), self.landed))
+        return [share * hull for share, hull in shares if share > 0.0]
+
 
 @dataclass(frozen=True, slots=True)
 class Moment:
@@ -39,73 +76,89 @@ class Moment:
     Attributes:
         dcm: divergent component of motion, shape (2,) [m].
         omega: rate of its divergence [1/s].
-        supports: until the landing: points whose hull the centre of pressure may be in, shape (n, 2) [m], and from
-            when until when [s].
-        landed: points in whose hull it may be once the foot has landed where it is best, shape (n, 2) [m].
+        ways: to land.
         duration: of the push [s].
         direction: of it, from the world's x axis to the left [rad].
     """
 
     dcm: Array
     omega: float
-    supports: tuple[tuple[Array, tuple[float, float]], ...]
-    landed: Array
+    ways: tuple[Way, ...]
     duration: float
     direction: float = 0.0
-
-    @property
-    def landing(self) -> float:
-        """Time until the foot lands [s]."""
-        return self.supports[-1][1][1] if self.supports else 0.0
 
     def limit(self, direction: float) -> float:
         """Largest impulse per mass in a direction that can be captured [N·s/kg]; 0 where not even none can be.
 
-        The DCM obeys dξ/dt = ω (ξ - p) + a / ω. It can be brought to rest after the landing at T exactly if
-
-            ξ + j (1 - e^{-ωd}) / (ω² d) = Σ_k p_k (e^{-ω a_k} - e^{-ω b_k}) + e^{-ωT} q
-
-        with j the impulse per mass over the duration d, p_k in the support from a_k to b_k and q in that after landing:
-        a linear program in j and in the weights of the points.
+        An acceleration j / d over the duration d moves the DCM, as of now, by j (1 - e^{-ωd}) / (ω² d).
 
         Args:
             direction: of the push in the world, from x to the left [rad].
         """
-        omega, spread = self.omega, self.omega * self.duration
-        gain = -math.expm1(-spread) / spread / omega
-        shares = [math.exp(-omega * begin) - math.exp(-omega * end) for _, (begin, end) in self.supports]
-        hulls = [*(points for points, _ in self.supports), self.landed]
-        scales = [*shares, math.exp(-omega * self.landing)]
-        push = -gain * np.array([math.cos(direction), math.sin(direction)])
-        points = [scale * (hull - self.dcm).T for scale, hull in zip(scales, hulls, strict=True)]  # scales add up to 1
-        sums = np.zeros((len(hulls), 1 + sum(map(len, hulls))))
-        for row, (begin, end) in enumerate(pairwise(np.cumsum([1, *map(len, hulls)]))):
-            sums[row, begin:end] = 1.0
-        conditions = np.vstack([np.column_stack([push, *points]), sums])
-        values = np.concatenate([np.zeros(2), np.ones(len(hulls))])
-        found = linprog(np.eye(1, sums.shape[1])[0] * -1.0, A_eq=conditions, b_eq=values)
-        return float(found.x[0]) if found.success else 0.0
+        spread = self.omega * self.duration
+        gain = -math.expm1(-spread) / spread / self.omega
+        to = np.array([math.cos(direction), math.sin(direction)])
+        return max(_distance(self.dcm, to, way.summands(self.omega)) for way in self.ways) / gain
 
 
-def landing_points(stance: Array, support: Array, sole: tuple[float, float], reach: tuple[Array, Array]) -> Array:
-    """Points whose hull is all that feet can span, of which one stands and one lands within reach, shape (n, 2) [m].
+def _distance(point: Array, to: Array, summands: list[Array]) -> float:
+    """How far a point may go in a direction within the Minkowski sum of polygons; 0 where it is not in it [m].
+
+    The sum's edges are parallel to those of the polygons, and how far it goes in any direction is the sum of how far
+    they do.
+    """
+    ways = [np.eye(2)]
+    for hull in summands:
+        first, second = np.triu_indices(len(hull), 1)
+        ways.append(hull[first] - hull[second])
+    sides = np.vstack(ways)
+    sides = np.vstack([sides, sides[:, ::-1] * (1.0, -1.0)])
+    sides = sides[np.hypot(*sides.T) > _ROUNDING]
+    normals = np.vstack([sides, -sides]) / np.tile(np.hypot(*sides.T), 2)[:, None]
+    room = sum((hull @ normals.T).max(axis=0) for hull in summands) - normals @ point
+    along = normals @ to
+    if (room < -_ROUNDING).any():
+        return 0.0
+    return float(np.min(np.maximum(room[along > _ROUNDING], 0.0) / along[along > _ROUNDING]))
+
+
+_ROUNDING = 1e-9
+"""What is less is none [m, -]."""
+
+
+def swing_box(here: Array, speed: Array, most: Array, time: float) -> tuple[Array, Array]:
+    """Where a foot can be at rest after a time: lower and upper corner, shape (2,) each [m].
+
+    It gets farthest by full acceleration for (T - v / a) / 2 and full braking for (T + v / a) / 2.
+
+    Args:
+        here: where it is, shape (2,) [m].
+        speed: that it has, shape (2,) [m/s].
+        most: its greatest acceleration, shape (2,) [m/s^2].
+        time: until then [s].
+    """
+    middle = here + 0.5 * speed * time
+    span = 0.25 * most * (time**2 - np.minimum(np.abs(speed) / most, time) ** 2)
+    return middle - span, middle + span
+
+
+def landing_points(stance: Array, sole: tuple[float, float], reach: tuple[Array, Array]) -> Array:
+    """Corners of all that a sole can cover that lands within reach, shape (4, 2) [m].
 
     Args:
         stance: centre and heading of the standing sole, shape (3,) [m, rad].
-        support: its corners, shape (4, 2) [m].
         sole: half length and half width of the landing one, which keeps the heading [m].
         reach: lower and upper corner of where its centre may land, in the frame of the standing one, shape (2,) [m].
     """
     low, high = reach[0] - sole, reach[1] + sole
     corners = np.array([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])])
-    c, s = math.cos(stance[2]), math.sin(stance[2])
-    return np.vstack([support, stance[:2] + corners @ np.array([[c, s], [-s, c]])])
+    return np.asarray(stance[:2] + corners @ frame_rotation(stance[2]).T)
 
 
 def moment_of(log: Path, push: int) -> Moment | None:
     """The state of a run as a push begins; None where there is none of the kind that has a limit.
 
-    It has one on flat ground, in a walk with its steps on the clock, before the last foot has landed.
+    It has one on flat ground, before the last foot has landed.
 
     Args:
         log: of the run.
@@ -124,34 +177,75 @@ def _moment(scenario: Scenario, walk: Walk, view: LogView, push: int) -> Moment 
     begin = push_time(gait, scenario.pushes[push])
     ends = ((step, gait.lift_off(step) + gait.single_support) for step in range(1, gait.steps + 1))
     step = next((step for step, end in ends if end > begin + _TICK), None)
-    times = view.time("/reference")
-    row = int(np.searchsorted(times, begin - _TICK))
-    if step is None or row >= len(times):
+    times = view.time("/truth")
+    row = int(np.searchsorted(times, begin + _TICK)) - 1  # the last tick that knows nothing of the push
+    if step is None or not 0 < row < len(times) - 1:
         return None
-    com, speed = (view.field("/truth", name, 3)[row, :2] for name in ("com", "com_velocity"))
     omega = math.sqrt(GRAVITY / gait.com_height)
-    seen = int(np.searchsorted(view.time("/footsteps"), begin + _TICK)) - 1
-    poses = [view.field("/footsteps", f"current_{foot}", 4)[max(seen, 0)][[0, 1, 3]] for foot in ("left", "right")]
-    swing = gait.step_foot(step)
-    half = (0.5 * walk.sole[0], 0.5 * walk.sole[1])
-    soles = [_corners(foot, pose, half) for foot, pose in zip(Foot, poses, strict=True)]
-    stance, alone = poses[swing.other], soles[swing.other]
     lift = max(gait.lift_off(step) - begin, 0.0)
-    land = gait.lift_off(step) + gait.single_support - begin
-    supports = ((np.vstack(soles), (0.0, lift)), (alone, (lift, land)))
-    reach = _reach(walk, 1.0 if swing is Foot.LEFT else -1.0)
-    landed = landing_points(stance, alone, half, reach)
+    single = min(gait.lift_off(step) - begin, 0.0) + gait.single_support
     pushed = scenario.pushes[push]
-    return Moment(com + speed / omega, omega, supports, landed, pushed.duration, pushed.direction or 0.0)
+    com, speed = (view.field("/truth", name, 3)[row - 1 : row + 1, :2] for name in ("com", "com_velocity"))
+    before, now = com + speed / omega
+    since = begin - times[row]
+    dcm = now + since / (times[row] - times[row - 1]) * (now - before)
+    ways = tuple(_ways(walk, view, gait.step_foot(step), (row, since), (lift, single)))
+    return Moment(dcm, omega, ways, pushed.duration, pushed.direction or 0.0)
 
 
-def _reach(walk: Walk, side: float) -> tuple[Array, Array]:
-    """Lower and upper corner of the box in which a foot may land, in the frame of the standing one, shape (2,) [m]."""
+def _ways(walk: Walk, view: LogView, swing: Foot, at: tuple[int, float], left: tuple[float, float]) -> Iterator[Way]:
+    """Ways to land: as planned, and as steps may be adapted.
+
+    Args:
+        walk: that was resolved.
+        view: of its log.
+        swing: the foot that is to land.
+        at: row of the tick before the push, in the channels of every control tick, and time from then to it [s].
+        left: double and single support that are left by the clock [s].
+    """
+    row, since = at
+    seen = max(int(np.searchsorted(view.time("/footsteps"), view.time("/truth")[row] + _TICK)) - 1, 0)
+    poses = [view.field("/footsteps", f"current_{foot}", 4)[seen][[0, 1, 3]] for foot in ("left", "right")]
+    planned = view.field("/footsteps", "next", 3, 4)[seen, 0][[0, 1, 3]]
+    half = (0.5 * walk.sole[0], 0.5 * walk.sole[1])
+    both = np.vstack([_corners(foot, pose, half) for foot, pose in zip(Foot, poses, strict=True)])
+    stance = poses[swing.other]
+    alone = _corners(swing.other, stance, half)
+
+    def way(double: float, single: float, landed: Array) -> Way:
+        return Way(((both, (0.0, double)), (alone, (double, double + single))), np.vstack([alone, landed]))
+
+    yield way(*left, _corners(swing, planned, half))
+    here, speed = view.field("/truth", f"{swing.name.lower()}_sole", 7)[row, :2] - stance[:2], np.zeros(2)
+    if not left[0]:
+        speed = view.field("/reference", "swing_velocity", 3)[row, :2]
+    here, speed = (here + since * speed) @ frame_rotation(stance[2]), speed @ frame_rotation(stance[2])
+    most = np.array(walk.legs.acceleration)
+    for double, single in itertools.product(*_times(walk, left)):
+        foot = swing_box(here, speed, most, single)
+        for box in _boxes(walk, 1.0 if swing is Foot.LEFT else -1.0):
+            low, high = np.maximum(box[0], foot[0]), np.minimum(box[1], foot[1])
+            if (low <= high).all():
+                yield way(double, single, landing_points(stance, half, (low, high)))
+
+
+def _times(walk: Walk, left: tuple[float, float]) -> tuple[Array, Array]:
+    """Double and single support that may be left [s]."""
+    if not walk.profile.catches or walk.parameters.step_adaptation is StepAdaptation.LOCATION:
+        return np.array(left[:1]), np.array(left[1:])
+    earliest = [min(time, SHORTEST[name]) for name, time in zip(("double", "single"), left, strict=True)]
+    double, single = (
+        np.arange(begin, end, _EVERY) for begin, end in zip(earliest, (left[0], left[1] + _LATER), strict=True)
+    )
+    return np.append(double, left[0]), np.append(single, left[1])
+
+
+def _boxes(walk: Walk, side: float) -> list[tuple[Array, Array]]:
+    """Boxes, in the frame of the standing foot, in one of which the other may land: lower and upper corners [m]."""
+    if walk.parameters.step_adaptation is StepAdaptation.NONE:
+        return []
     legs = walk.legs.adapting(walk.parameters.step_adaptation) if walk.profile.catches else None
-    if legs is None:
-        return reach_box(walk.parameters, side)
-    lows, highs = zip(*legs.boxes(side), strict=True)
-    return np.min(lows, axis=0), np.max(highs, axis=0)
+    return [reach_box(walk.parameters, side)] if legs is None else legs.boxes(side)
 
 
 def _corners(foot: Foot, pose: Array, half: tuple[float, float]) -> Array:

@@ -13,6 +13,7 @@ from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.show.html import MISSING, document, escape, figure_html, number, tag
 from surefoot.scenarios.sweep import figures
+from surefoot.scenarios.sweep.bars import are_named, bars
 from surefoot.scenarios.sweep.capturability import Limits
 from surefoot.scenarios.sweep.figures import Axis, Found, Square
 from surefoot.scenarios.sweep.journal import JOURNAL
@@ -135,7 +136,14 @@ def _thresholds(swept: "Swept", axes: Sequence[Axis]) -> str:
     angle = figures.angle_of(axes)
     logs = ((one.labels, swept.folder / record.log) for one, runs in ends for _, record in runs if record.log)
     limits = Limits(bisect.key, logs, angle.name if angle else "")
-    if figures.is_around(varied):
+    if are_named(axes):
+        records = swept.campaign.spec.records
+        drawn = bars(found, axes, bisect.key, lambda labels: limits.at(labels, None), records)
+        caption = "Thresholds. Hollow bars lie beyond the end of the searched range."
+        caption += " Black: the most that a linear inverted pendulum survives by one step." if limits else ""
+        told = {f"{record.name}: {record.source}" for record in records}
+        parts.append(figure_html(drawn, " ".join((caption, *(f"{one}." for one in sorted(told)))), "thresholds-figure"))
+    elif figures.is_around(varied):
         drawn = figures.compass(found, varied, bisect.key, limits.at)
         caption = (
             "Thresholds by direction in the world. Hollow marks lie beyond the end of the searched range. "
@@ -154,9 +162,10 @@ def _thresholds(swept: "Swept", axes: Sequence[Axis]) -> str:
 
 _LIMIT_NOTE = (
     "Limit: one-step capturability. The largest impulse after which some centre of pressure within the soles until the "
-    "landing, and some landing within the planner&#39;s reach at the time of the clock, bring a linear inverted "
-    "pendulum to rest. Its state is that in which the push began in a run of the same kind, by its log. Turning the "
-    "torso, a second step and another clock are not in it; a threshold beyond it uses one of these."
+    "landing, and some landing, bring a linear inverted pendulum to rest: where and when the adaptation of steps may "
+    "put it, within reach of the legs and of how hard hips can swing them. Its state is that in which the push began "
+    "in a run of the same kind, by its log. Turning the torso and a second step are not in it; a threshold beyond it "
+    "uses one of these."
 )
 
 

@@ -75,6 +75,15 @@ class Bisect(Group):
         return tuple(self.low * self.ratio**k for k in range(count))
 
 
+class Published(Group):
+    """A value of the searched key that others have published, drawn beside the thresholds."""
+
+    name: str = Field(min_length=1, description="of whom or what it is")
+    value: Finite = Field(description="in the unit of the searched key")
+    source: str = Field(min_length=1, description="where it was published")
+    at: dict[str, Any] = Field(default={}, description="settings of axes that it is comparable with")
+
+
 Axis = Annotated[list[Any], Field(min_length=1)] | Annotated[dict[str, dict[str, Any]], Field(min_length=1)]
 
 
@@ -94,6 +103,7 @@ class Spec(Group):
     )
     sample: dict[str, Draw] = Field(default={}, description="values drawn anew for each seed")
     bisect: Bisect | None = Field(default=None, description="a threshold instead of single runs")
+    records: list[Published] = Field(default=[], description="published values to draw beside thresholds")
     seeds: Annotated[int, Field(ge=1, le=MOST_RUNS), WHOLE] = Field(default=1, description="runs 0, 1, ... of each")
     seed: Annotated[int, Field(ge=0, lt=2**32), WHOLE] = Field(default=0, description="of what is drawn")
     keep: Literal["failing", "all"] = Field(default="failing", description="of which runs the logs are kept")
@@ -102,6 +112,19 @@ class Spec(Group):
     def _one_search(self) -> Self:
         if self.first and self.bisect is not None:
             raise ValueError("has both first and bisect; a campaign searches one key")
+        if self.records and self.bisect is None:
+            raise ValueError("has records but searches nothing that is like them; give bisect")
+        return self
+
+    @model_validator(mode="after")
+    def _records_in_the_grid(self) -> Self:
+        for record in self.records:
+            for name, label in record.at.items():
+                if label not in self.grid.get(name, ()):
+                    known = self.grid.get(name, self.grid)
+                    raise ValueError(
+                        f"a record is at {name}: {label}, not in the grid; {nearest(str(label), map(str, known))}"
+                    )
         return self
 
 
@@ -173,7 +196,7 @@ def read_campaign(reference: str, overrides: Sequence[str] = (), seeds: int | No
     Args:
         reference: name of a shipped campaign, or a file.
         overrides: ``key=value``: values of scenario keys in every run, over those that the specification sets or
-            varies; of an axis with named settings, the name of the one to keep.
+            varies; of an axis with named settings, the name of the one to keep; of any axis a list of those to keep.
         seeds: over those of the specification.
 
     Raises:
@@ -232,11 +255,15 @@ def _overridden(spec: Spec, overrides: Sequence[str]) -> Spec:
         name, value = setting(override)
         text, axis = override.partition("=")[2], grid.get(name)
         if isinstance(axis, dict):
-            if text not in axis:
-                raise ScenarioError([f"--set {name}={text}: the grid has no such setting; {nearest(text, axis)}"])
-            grid[name] = {text: axis[text]}
+            kept = [str(one) for one in value] if isinstance(value, list) else [text]
+            unknown = next((one for one in kept if one not in axis), None)
+            if unknown is not None or not kept:
+                right = nearest(unknown or text, axis)
+                raise ScenarioError([f"--set {name}={text}: the grid has no such setting; {right}"])
+            grid[name] = {one: axis[one] for one in axis if one in kept}
         elif axis is not None:
-            grid[name] = [value]
+            several = isinstance(value, list) and value and all(one in axis for one in value)
+            grid[name] = [one for one in axis if one in value] if several else [value]
         else:
             fixed[name] = value
     taken = {name: value for name, value in fixed.items() if name not in spec.set or value != spec.set[name]}
@@ -245,6 +272,7 @@ def _overridden(spec: Spec, overrides: Sequence[str]) -> Spec:
         "grid": grid,
         "sample": {name: draw for name, draw in spec.sample.items() if name not in taken},
         "first": {name: values for name, values in spec.first.items() if name not in taken},
+        "records": [one for one in spec.records if all(label in grid[name] for name, label in one.at.items())],
     }
     return spec.model_copy(update=update)
 

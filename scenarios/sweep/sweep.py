@@ -12,7 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from surefoot.scenarios.errors import install_command
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.show.console import TerminalLine
-from surefoot.scenarios.sweep.engine import Outcome, Worker, local_workers, outcome_of, run_cells
+from surefoot.scenarios.sweep.engine import InterruptedRunsError, Outcome, Worker, local_workers, outcome_of, run_cells
 from surefoot.scenarios.sweep.journal import Journal
 from surefoot.scenarios.sweep.points import Record, Status, cells
 from surefoot.scenarios.sweep.spec import Campaign
@@ -135,15 +135,21 @@ def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) 
     Raises:
         LogError: something cannot be written.
         ScenarioError: the cluster cannot be reached or used.
-        InterruptedRunsError: the user stopped it; what was done is kept.
+        InterruptedRunsError: the user stopped it; tables and page are of what was done.
     """
     keep_all, every = campaign.spec.keep == "all", tuple(cells(campaign))
     workers = _workers(out, jobs, cluster, keep_all)
     with Journal(out, keep_all) as journal:
-        with CampaignBar(len(every), "searches" if campaign.spec.bisect else "runs") as bar:
-            run_cells(every, journal, workers, bar.run, bar.cell)
+        stopped: InterruptedRunsError | None = None
+        try:
+            with CampaignBar(len(every), "searches" if campaign.spec.bisect else "runs") as bar:
+                run_cells(every, journal, workers, bar.run, bar.cell)
+        except InterruptedRunsError as error:
+            stopped = error
         swept = Swept(campaign, out, tuple(outcome_of(cell, journal) for cell in every), journal.stale)
         write(swept)
+    if stopped is not None:
+        raise stopped
     return swept
 
 

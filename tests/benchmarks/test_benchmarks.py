@@ -19,6 +19,7 @@ SHORT = ["--scenario", "stand", "--set", "duration=0.5"]
         ("qp_solvers.py", SHORT, "daqp"),
         ("log_reader.py", ["--tries", "1"], "median"),
         ("planner_tick.py", ["--steps", "1"], "cached"),
+        ("recovery_tick.py", ["--tries", "1", "--set", "fidelity=pendulum", "--set", "rates.control=50"], "adapting"),
     ],
 )
 def test_a_benchmark_runs(script, arguments, told):

@@ -2,7 +2,7 @@
 
 import re
 import shlex
-from itertools import pairwise
+from itertools import chain, pairwise
 from pathlib import Path
 
 import pytest
@@ -11,6 +11,7 @@ import yaml
 
 from surefoot.scenarios.cli import app
 from surefoot.scenarios.show.listing import keys
+from surefoot.scenarios.sweep.spec import read_campaign, shipped
 
 pytestmark = pytest.mark.unit
 
@@ -22,6 +23,8 @@ LINES = [
     for line in re.findall(r"(?m)(?:^(?:\$ )?|`)(surefoot(?: [^`\n]*)?)(?:$|`)", page.read_text(encoding="utf-8"))
 ]
 COMMANDS = typer.main.get_command(app)
+AXES = {name: set(read_campaign(name).axes) for name in shipped()}
+"""Of the campaigns that come along, which --set can fix too."""
 
 
 def options(command):
@@ -36,6 +39,7 @@ def faults(line):
         return [words[0]]
     given = [word for text in words for word in re.findall(r"^-[\w-]+", text.strip("()[]"))]
     known = {re.sub(r"\.\d+", "", key) for key, _ in keys()}
+    known |= AXES.get("".join(words[1:2]), set()) if words[:1] == ["sweep"] else set()
     settings = [text.partition("=")[0] for before, text in pairwise(words) if before == "--set"]
     return [word for word in given if word not in options(command)] + [key for key in settings if key not in known]
 
@@ -65,10 +69,12 @@ def test_what_is_not_there_is_found():
     assert faults("surefoot swep x") == ["swep"]
     assert faults("surefoot compare A B --exit-cod") == ["--exit-cod"]
     assert faults("surefoot run walk --set gait.stride=3 --seed 3") == ["gait.stride"]
+    assert faults("surefoot sweep push-map --set phase=x --set phases=x") == ["phases"]
+    assert faults("surefoot run push-map --set phase=x") == ["phase"]
 
 
 def test_keys_that_the_pages_set_are_there():
-    known = dict(keys())
+    known = {*dict(keys()), *chain.from_iterable(AXES.values())}
     for page in PAGES:
         for key in re.findall(r"--set [\"']?([a-z_.]+)=", page.read_text(encoding="utf-8")):
             assert key in known, f"{page.name}: {key}"

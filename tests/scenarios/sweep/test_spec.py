@@ -107,6 +107,32 @@ sample: {terrain.friction: {uniform: [0.5, 1]}}
     assert "unknown key 'x'" in refused(text, "gait.x=1")[0]
 
 
+def test_a_part_of_an_axis_is_kept_in_the_order_of_the_grid(campaign, refused):
+    text = "scenario: walk\ngrid: {gait.turn: [0, 0.1, 0.2], pace: {slow: {gait.steps: 3}, fast: {}, slower: {}}}"
+    made = campaign(text, "gait.turn=[0.2, 0]", "pace=[slower, slow]")
+    chosen = [tuple(labels.values()) for labels, _ in made.combinations()]
+    assert chosen == [(0, "slow"), (0, "slower"), (0.2, "slow"), (0.2, "slower")]
+    assert "did you mean 'slow'?" in refused(text, "pace=[fast, slo]")[0]
+    assert "no such setting" in refused(text, "pace=[]")[0]
+    assert "gait.turn is" in refused(text, "gait.turn=[0, 9]")[0]  # no part of the axis: a value, which is none
+
+
+SEARCHED = (
+    "scenario: walk\ngrid: {gait.steps: [3, 4]}\nbisect: {key: gait.turn, low: 0.1, high: 0.2, ratio: 1.1}\nrecords: "
+)
+
+
+def test_published_values_belong_to_the_grid(campaign, refused):
+    text = SEARCHED + "[{name: X, value: 1, source: Y, at: {gait.steps: 3}}]"
+    assert campaign(text).spec.records[0].at == {"gait.steps": 3}
+    assert campaign(text, "gait.steps=4").spec.records == []  # what is written of it can be read again
+    assert (
+        "a record is at gait.steps: 5" in refused(SEARCHED + "[{name: X, value: 1, source: Y, at: {gait.steps: 5}}]")[0]
+    )
+    assert "a record is at pace: 5" in refused(SEARCHED + "[{name: X, value: 1, source: Y, at: {pace: 5}}]")[0]
+    assert "give bisect" in refused("scenario: walk\nrecords: [{name: X, value: 1, source: Y}]")[0]
+
+
 def test_a_scenario_beside_the_specification(tmp_path, campaign):
     (tmp_path / "mine.yaml").write_text("gait: {steps: 2}")
     made = campaign("scenario: mine.yaml")

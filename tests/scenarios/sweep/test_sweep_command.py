@@ -12,10 +12,12 @@ from pathlib import Path
 import pytest
 
 from surefoot.scenarios import cli
+from surefoot.scenarios.cli import INTERRUPTED
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.sweep import cluster
 from surefoot.scenarios.sweep.engine import perform
 from surefoot.scenarios.sweep.journal import JOURNAL, LOGS, SCRATCH
+from surefoot.scenarios.sweep.sweep import PAGE, CampaignBar
 
 CAMPAIGN = """
 scenario: paper-walk
@@ -62,6 +64,19 @@ def surefoot(monkeypatch, capsys, tmp_path):
 def rows(folder, name="table.csv"):
     with (folder / name).open(newline="") as file:
         return list(csv.DictReader(file))
+
+
+@pytest.mark.unit
+def test_who_stops_a_campaign_has_tables_and_page_of_what_was_done(surefoot, monkeypatch, tmp_path):
+    def stop(bar, record):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(CampaignBar, "run", stop)
+    code, _, err = surefoot("short.yaml", "--out", "out")
+    assert code == INTERRUPTED
+    assert err.startswith("interrupted; ")
+    assert 0 < len(rows(tmp_path / "out")) < 12
+    assert "of them have no result yet" in (tmp_path / "out" / PAGE).read_text()
 
 
 @pytest.mark.unit

@@ -189,6 +189,12 @@ def test_links_lead_to_logs_that_are_there(tmp_path):
             "bisect: {key: gait.com_height, low: 0.9, high: 0.95, ratio: 1.1}",
             id="curves",
         ),
+        pytest.param(
+            "grid: {pace: {slow: {gait.steps: 3}, fast: {gait.steps: 4}}, planner.profile: [default, paper]}\n"
+            "bisect: {key: gait.com_height, low: 0.9, high: 0.95, ratio: 1.1}\n"
+            "records: [{name: Somebody, value: 0.93, source: a paper, at: {pace: slow}}]",
+            id="bars",
+        ),
     ],
 )
 def test_no_campaign_is_too_poor_for_a_page(tmp_path, rule, more):

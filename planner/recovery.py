@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.planner.model.dcm import decays, nominal_dcm, viability_weights
+from surefoot.planner.model.dcm import decays, nominal_dcm
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support, ZmpReference
@@ -137,7 +137,7 @@ _CHANGES = np.array(
 )
 """By which a phase may become longer at once [s]."""
 
-_SHORTEST = {"double": 0.06, "single": 0.16}
+SHORTEST = {"double": 0.06, "single": 0.16}
 """Times left that phases are not made shorter than [s]."""
 
 _PLACE, _TIME, _STRETCH, _SECOND = 0.02, 1.0, 1.0, 1.0
@@ -187,14 +187,14 @@ class Recovery:
         t, omega, count = self._sample_time, float(now.omega[0]), len(now.stiffness)
         lift = min(round(now.double / t), count - 3)
         land = min(max(round((now.double + now.single) / t), lift + 1), count - 2)
-        point, weights = now.reference.point, viability_weights(now.stiffness[land:], now.omega[land:], t)
-        landed, gain = weights @ point[land:], max(float(weights @ now.reference.gain[land:, 0]), _LEAST_GAIN)
-        # The DCM that keeps bounded what comes, from now until landing.
-        fades = decays(now.stiffness[: land + 1], now.omega[: land + 1], t)
-        nominal = nominal_dcm(now.stiffness[: land + 1], now.omega[: land + 1], point[: land + 1], t)
-        nominal = nominal + (fades[-1] / fades)[:, None] * (landed - point[land])
+        # The DCM that keeps bounded what comes, and what a shift of the step does to it.
+        point = now.reference.point
+        future = np.concatenate((point, now.reference.gain[:, :1]), axis=1)
+        bounded = nominal_dcm(now.stiffness, now.omega, future, t)
+        nominal, landed, gain = bounded[:, :2], bounded[land, :2], max(float(bounded[land, 2]), _LEAST_GAIN)
+        fade = float(decays(now.stiffness[: land + 1], now.omega[: land + 1], t)[-1])
         box = now.reference.half_size[lift]
-        fine = bool((np.abs(now.dcm - nominal[0]) <= (1.0 - fades[-1]) * box + fades[-1] * _MARGIN).all())
+        fine = bool((np.abs(now.dcm - nominal[0]) <= (1.0 - fade) * box + fade * _MARGIN).all())
         if fine and not now.adapted:
             return None
         half = _AUTHORITY * box
@@ -246,8 +246,8 @@ class Recovery:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
         if fine or not self._timing:
             return np.array([now.double]), np.array([now.single])
-        singles = _around(now.single, max(_SHORTEST["single"], now.shortest))
-        doubles = _around(now.double, _SHORTEST["double"]) if now.double else np.zeros(1)
+        singles = _around(now.single, max(SHORTEST["single"], now.shortest))
+        doubles = _around(now.double, SHORTEST["double"]) if now.double else np.zeros(1)
         grid = np.meshgrid(doubles, singles, indexing="ij")
         return grid[0].ravel(), grid[1].ravel()
 

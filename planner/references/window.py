@@ -58,6 +58,14 @@ class OffsetTable:
         """
         return self.key == key and self.start < clock < min(self.start + _TICKS, last)
 
+    def guess(self, clock: float, key: SupportKey, count: int) -> Array | None:
+        """About what the next one will be, shape (count, 2) [m]; None where the last one tells nothing of it."""
+        passed = round(clock - self.start)
+        if self.key != key or not 0 <= passed < len(self.values):
+            return None
+        values = self.values[passed : passed + count]
+        return np.concatenate((values, np.repeat(values[-1:], count - len(values), axis=0)))
+
     def since(self, clock: float, count: int) -> Array:
         """So many offsets from a sample at which it holds, shape (count, 2) [m]."""
         passed = round(clock - self.start)
@@ -190,14 +198,25 @@ class Outlook:
             heights = HeightPreview(height.height[:, :count], height.stiffness[:count])
             frame = support.rotation, support.origin
             feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]), deviation)
-            values = self._made_offset(chain, feet, point[:count], heights, position)
+            # While a step is adapted it is made at every tick, from the last one.
+            adapted = self._offsets is not None and (deviation is not None or not clock.steady)
+            guess = self._offsets.guess(clock.now, support.key, count) if self._offsets and adapted else None
+            values = self._made_offset(chain, feet, point[:count], heights, position, guess)
             self._offsets = OffsetTable(clock.now, support.key, values)
         return self._offsets.since(clock.now, self._count)
 
-    def _made_offset(self, chain: LegChain, feet: Feet, point: Array, height: HeightPreview, position: Array) -> Array:
-        """That for a CoM on the nominal motion, which itself depends on it: two passes leave a millimetre."""
-        stiffness, offset = softening(self._leg) * height.stiffness, np.zeros_like(point)
-        for _ in range(2):
+    def _made_offset(
+        self,
+        chain: LegChain,
+        feet: Feet,
+        point: Array,
+        height: HeightPreview,
+        position: Array,
+        guess: Array | None,
+    ) -> Array:
+        """That for a CoM on the nominal motion, which itself depends on it: two passes, or one, leave a millimetre."""
+        stiffness, offset = softening(self._leg) * height.stiffness, np.zeros_like(point) if guess is None else guess
+        for _ in range(2 if guess is None else 1):
             motion = nominal_motion(position, point - offset, stiffness, self._sample_time)
             offset = zmp_offset(chain, feet, motion, height, stiffness)
         return offset

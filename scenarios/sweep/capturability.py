@@ -19,7 +19,7 @@ import numpy as np
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation, sole_corners
 from surefoot.planner.parameters import StepAdaptation
-from surefoot.planner.recovery import _SHORTEST as SHORTEST
+from surefoot.planner.recovery import SHORTEST
 from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
 from surefoot.planner.walk.reach import reach_box
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError

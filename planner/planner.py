@@ -14,7 +14,7 @@ from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.model.jerk import block_moves, predict, trajectory
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery import ASIDE, Catch, Recovery, Situation
+from surefoot.planner.recovery import ASIDE, ASTRIDE, CALM, Catch, Recovery, Situation
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import Outlook, Window
 from surefoot.planner.references.zmp_reference import Support
@@ -180,8 +180,7 @@ class WalkingPlanner:
             window = self._window(state.time, support, local)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         catch = self._catch(state.time, local, feet, support, window)
-        if catch is not None and stepper.queue.stops(stepper.phase):
-            # What the step does not catch the one after it is to catch, which brings the feet side by side again, too.
+        if catch is not None and catch.more and stepper.stops:
             stepper.go_on()
             support = outlook.support(stepper)
             window = self._window(state.time, support, local)
@@ -210,13 +209,17 @@ class WalkingPlanner:
         return outlook.window(stepper, samples, support, reference, height, local[:, 0], deviation)
 
     def _steps_out(self, local: Array, window: Window) -> bool:
-        """Order a step of a robot that stands and would fall; says whether."""
+        """Order a step of a robot that stands and would fall, or stands astride; says whether."""
         stepper = self._stepper
         if self._recovery is None or not stepper.stands:
             return False
-        error = self._recovery.topples(local[:, 0] + local[:, 1] / window.omega[0], window)
-        if error is None:
-            return False
+        error, falls = self._recovery.topples(local[:, 0] + local[:, 1] / window.omega[0], window)
+        if not falls:
+            # Once it is at rest the robot brings its feet side by side again.
+            calm = np.abs(error).max() < CALM and stepper.astride > ASTRIDE
+            if calm:
+                stepper.go_on(at_once=False)
+            return bool(calm)
         # The foot that carries stays, and the other one is brought to it.
         stance = None
         if stepper.phase.kind is PhaseKind.STAND and abs(error[1]) > ASIDE:

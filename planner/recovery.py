@@ -45,6 +45,7 @@ class Situation:
         shortest: time left of its swing in which the body can be lifted or lowered with it [s].
         room: by which the step may land elsewhere, least and greatest way, shape (2, 2) [m].
         adapted: whether the step is being adapted already.
+        last: whether the robot stands after it.
     """
 
     com: Array
@@ -61,6 +62,7 @@ class Situation:
     shortest: float
     room: Array
     adapted: bool
+    last: bool
 
     @classmethod
     def of(
@@ -100,6 +102,7 @@ class Situation:
             shortest=yet * math.sqrt(_PEAK * abs(step.climb) / _CLIMBING),
             room=stepper.room(0),
             adapted=stepper.adapted,
+            last=stepper.stops,
         )
 
 
@@ -110,11 +113,13 @@ class Catch(NamedTuple):
         left: time until the present phase is to end [s].
         low: lower corner of the box in which it may land, shape (2,) [m].
         high: upper corner, shape (2,) [m].
+        more: whether the step after it has something to catch, too.
     """
 
     left: float
     low: Array
     high: Array
+    more: bool
 
 
 _AUTHORITY = 0.8
@@ -125,6 +130,10 @@ _MARGIN = 0.02
 
 _HELD = 0.85
 """Share of the ZMP box of a stand that holds the body without a step [-]."""
+
+ASTRIDE, CALM = 0.05, 0.005
+"""Distance of a foot from where it was to stand beside the other one from which on it is brought there, and the DCM
+error up to which the robot is calm enough for that [m]."""
 
 ASIDE = 0.02
 """DCM error sideways from which on the foot on that side stays [m]."""
@@ -140,7 +149,7 @@ _CHANGES = np.array(
 SHORTEST = {"double": 0.06, "single": 0.16}
 """Times left that phases are not made shorter than [s]."""
 
-_PLACE, _TIME, _STRETCH, _SECOND = 0.02, 1.0, 1.0, 1.0
+_PLACE, _TIME, _STRETCH, _SECOND = 0.02, 0.38, 1.0, 1.0
 """Cost of a squared shift, change of time, way of the hip beyond the reach of the stance leg, and shift of the step
 after it [1/m^2, 1/s^2, 1/m^2, 1/m^2]."""
 
@@ -171,16 +180,19 @@ class Recovery:
         self.legs, self._timing = legs, timing
         self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
 
-    def topples(self, dcm: Array, window: Window) -> Array | None:
-        """DCM error of a robot that stands, or will without another step, if no CoP can hold it, shape (2,) [m].
+    def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
+        """DCM error of a robot that stands, or will without another step, and whether no CoP can hold it.
 
         Args:
             dcm: now, in the plan frame, shape (2,) [m].
             window: references.
+
+        Returns:
+            The error, shape (2,) [m], and whether it falls.
         """
         nominal = nominal_dcm(window.stiffness, window.omega, window.driving.point, self._sample_time)
         error = dcm - nominal[0]
-        return error if (np.abs(error) > _HELD * window.driving.half_size[-1]).any() else None
+        return error, bool((np.abs(error) > _HELD * window.driving.half_size[-1]).any())
 
     def catch(self, now: Situation) -> Catch | None:
         """What is made of the next step; None where nothing has to be."""
@@ -218,10 +230,12 @@ class Recovery:
         com = pendulum_com(com, lifted, cop, grown)
         hip = 0.5 * now.side * self.legs.hip_width * np.array([0.0, 1.0])
         stretch = np.hypot(*(com - hip).T) - self.legs.radius
-        cost = _TIME * ((doubles - now.double) ** 2 + (singles - now.single) ** 2)
+        cost = _TIME * ((doubles - now.double) ** 2 + (singles - now.single) ** 2) / now.cycle**2
         cost = cost + _STRETCH * np.maximum(stretch, 0.0) ** 2
         low, high = self._swung(now, singles)
         growth = np.exp(omega * now.cycle)
+        # What the CoP holds until the step after it, or in a stand on both feet for ever.
+        held_next = growth * _HELD * now.reference.half_size[-1] if now.last else (growth - 1.0) * half
         options = []
         for reach in self.legs.boxes(now.side):
             box = _shared(reach, now.nominal + now.room)
@@ -229,18 +243,18 @@ class Recovery:
                 continue
             place = np.clip(self.legs.within(np.clip(np.clip(wanted, low, high), *box), com + hip), *box)
             short = wanted - place
-            second = np.maximum(gain * growth * np.abs(short) - (growth - 1.0) * half, 0.0)
+            second = np.maximum(gain * growth * np.abs(short) - held_next, 0.0)
             second[:, 1] *= np.where(now.side * short[:, 1] > 0.0, _OUTWARD, 1.0)
             total = cost + _PLACE * ((place - now.nominal) ** 2).sum(axis=1) + _SECOND * (second**2).sum(axis=1)
             best = int(np.argmin(total))
             best = best if total[best] < total[-1] - _WORTH else len(total) - 1
-            options.append((total[best], best, place[best], box))
+            options.append((total[best], best, place[best], box, bool(second[best].any())))
         if not options:
             return None
-        _, best, place, box = min(options, key=lambda option: option[0])
+        _, best, place, box, more = min(options, key=lambda option: option[0])
         lower, upper = self.legs.around(place, com[best] + hip, box)
         lower, upper = np.maximum(lower, np.minimum(low[best], place)), np.minimum(upper, np.maximum(high[best], place))
-        return Catch(float(doubles[best] if now.double else singles[best]), lower, upper)
+        return Catch(float(doubles[best] if now.double else singles[best]), lower, upper, more)
 
     def _times(self, now: Situation, fine: bool) -> tuple[Array, Array]:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""

@@ -223,12 +223,13 @@ class StepQueue:
         """Whether the robot stands, or will with the next step that lands."""
         return any(phase.kind is PhaseKind.STAND for phase in self.phases[self.phases.index(present) :][:4])
 
-    def go_on(self, present: Phase, foot: Foot | None = None) -> None:
+    def go_on(self, present: Phase, foot: Foot | None = None, at_once: bool = True) -> None:
         """Make a step on the spot where the robot stands or would stand next, before anything else.
 
         Args:
             present: the phase now.
             foot: that makes it, of a robot that stands; else it is the one that landed first.
+            at_once: with a weight shift no longer than any.
         """
         at = self.phases.index(present)
         stand = next(n for n, phase in enumerate(self.phases[at:], at) if phase.kind is PhaseKind.STAND)
@@ -236,7 +237,7 @@ class StepQueue:
         last = self._last.number
         if foot is not None and self.gait.step_foot(last + 1) is not foot:
             self._swap_feet(last)
-        self._source = Interlude(self._source, last + 1, self.gait.step_width)
+        self._source = Interlude(self._source, last + 1, self.gait.step_width, at_once)
 
     def _swap_feet(self, last: int) -> None:
         """Let the other foot be the one that landed last, so that this one makes the next step."""

@@ -87,19 +87,20 @@ class Interlude:
         source: the other one, which may have been interrupted before.
         step: number of the step.
         width: of the stance that it keeps [m].
+        hurried: see `StepOrder`.
     """
 
-    def __init__(self, source: StepSource, step: int, width: float) -> None:
+    def __init__(self, source: StepSource, step: int, width: float, hurried: bool) -> None:
         before = source if isinstance(source, Interlude) else None
         self._source: StepSource = source if before is None else before._source
         self._taken: int = 1 if before is None else before._taken + (step > before._step)
         self._step: int = step
-        self._stride = Stride(0.0, 0.0, 0.0, width)
+        self._spot = StepOrder(Stride(0.0, 0.0, 0.0, width), hurried=hurried)
 
     def order(self, at: Request) -> StepOrder | None:
         """See `StepSource`."""
         if at.step == self._step:
-            return StepOrder(self._stride, hurried=True)
+            return self._spot
         return self._source.order(replace(at, step=at.step - self._taken))
 
 

@@ -158,9 +158,22 @@ class Stepper:
         """Whether no foot is to swing before the robot stands, which may be moved to step."""
         return self._adapts and self.info.leads_to == 0
 
-    def go_on(self, foot: Foot | None = None) -> None:
+    @property
+    def stops(self) -> bool:
+        """Whether the robot stands, or will with the next step that lands."""
+        return self.queue.stops(self.phase)
+
+    @property
+    def astride(self) -> float:
+        """How far from where it was to the robot has one foot from the other, if it stands; else zero [m]."""
+        if not self.stands or self.phase.kind is not PhaseKind.STAND:
+            return 0.0
+        here, place = self.footsteps.position, [self.queue.steps[self.landed - back].place.position for back in (0, 1)]
+        return float(np.hypot(*(here[self.row] - here[self.row - 1] - place[0] + place[1])[:2]))
+
+    def go_on(self, foot: Foot | None = None, at_once: bool = True) -> None:
         """Make a step on the spot where the robot stands or would stand next (see `StepQueue.go_on`)."""
-        self.queue.go_on(self.phase, foot)
+        self.queue.go_on(self.phase, foot, at_once)
         self.revision += 1
         self._look_ahead(self.clock.now)
 

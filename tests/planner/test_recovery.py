@@ -41,7 +41,7 @@ def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 
         "com": bounded - (0.1, 0.0), "dcm": bounded + error, "stiffness": stiffness, "omega": omega,
         "reference": reference, "nominal": NOMINAL, "side": 1.0, "swing": np.array(swing), "double": 0.0,
         "single": landed, "cycle": 0.62, "shortest": 0.0, "room": EVERYWHERE,
-        "adapted": False,
+        "adapted": False, "last": False,
     }  # fmt: skip
     return Situation(**{**given, **keys})
 
@@ -242,7 +242,7 @@ def test_who_ends_its_walk_goes_on_when_it_is_pushed(stand):
     for begin in (gait.lift_off(3) + 0.2, gait.lift_off(3) + 0.52, gait.duration):
         planner = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS)
         push = PointPush(begin, 0.1, np.array([450.0, 0.0]))
-        trace = walk_pendulum(planner, stand(), gait.duration + 3.0, com=com, pushes=(push,))
+        trace = walk_pendulum(planner, stand(), gait.duration + 4.5, com=com, pushes=(push,))
         assert trace.fall_time is None
         last = trace.plans[-1]
         assert last.phase.kind is PhaseKind.STAND

@@ -29,7 +29,7 @@ def test_steps_between_those_of_a_gait_leave_them_as_they_were():
     source = GaitSource(GaitParameters(steps=4, step_length=0.3))
     for step in (2, 2, 3, 5):
         # Step 2 is asked for anew while it has not been taken.
-        source = Interlude(source, step, 0.2)
+        source = Interlude(source, step, 0.2, True)
     lengths = [order.stride.length if (order := source.order(Request(n, n * PERIOD, None, ORIGIN, PERIOD))) else None
                for n in range(5, 9)]  # fmt: skip
     assert lengths == [0.0, 0.3, 0.0, None]

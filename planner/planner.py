@@ -161,11 +161,11 @@ class WalkingPlanner:
         stepper.fix_imminent(state.time)
         support = outlook.support(stepper)
         local = self._local_state(state, support)
-        window = self._window(state.time, support, local)
+        window = self._window(state, support, local)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         catch = self._catch(state.time, local, feet, support, window)
         if catch is not None and stepper.end_in(catch.left, state.time):
-            window = self._window(state.time, support, local)
+            window = self._window(state, support, local)
         problem = self._problem(local, feet, support, window, catch)
         # TVMPC, or the law that stands in its place.
         motion = self.motion = self._law.plan(problem)
@@ -176,7 +176,7 @@ class WalkingPlanner:
         self._plan = self._world_plan(state.time, support, window, local, motion, footsteps)
         return self._plan
 
-    def _window(self, time: float, support: Support, local: Array) -> Window:
+    def _window(self, state: CentroidalState, support: Support, local: Array) -> Window:
         """References from now on, as the clock goes."""
         stepper, outlook = self._stepper, self._outlook
         # ZMP planner: the ZMP that the footsteps define, from what carries the robot now.
@@ -184,8 +184,8 @@ class WalkingPlanner:
         reference = outlook.zmp(samples, support)
         # Vertical motion planner of the CoM, with it the varying dynamics.
         height = outlook.com_height(samples, support, reference)
-        deviation = stepper.deviation(time)
-        return outlook.window(stepper, samples, support, reference, height, local[:, 0], deviation)
+        deviation = stepper.deviation(state.time)
+        return outlook.window(stepper, samples, support, reference, height, local[:, 0], deviation, state.lasting)
 
     def _catch(self, time: float, local: Array, feet: FeetState, support: Support, window: Window) -> Catch | None:
         """What is made of the next step where the CoP alone does not hold the body."""

@@ -24,6 +24,9 @@ SPAN = 0.02
 SPANS = 13
 """Spans of which the median is taken: a push for less than half of them, 0.12 s, is not lasting and leaves no trace."""
 
+LATEST = 3
+"""Spans whose median bounds that: what ceases shall be forgotten soon."""
+
 FORCE = (4.0, 8.0)
 """Force below which there is none, and from which all of it counts [N]; undisturbed walks leave 1.2 N."""
 
@@ -106,7 +109,9 @@ class LoadObserver:
 
     def _follow(self) -> None:
         """Let the load follow what lasts."""
-        lasting = np.median(self._spans, axis=0)
+        lasting, latest = np.median(self._spans, axis=0), np.median(self._spans[-LATEST:], axis=0)
+        # It ceases at once.
+        lasting[:5] = np.where(lasting * latest > 0.0, np.copysign(np.minimum(abs(lasting), abs(latest)), lasting), 0.0)[:5]
         lasting[:5] *= len(self._spans) == SPANS
         lasting *= np.clip((np.abs(lasting) - self._none) / self._ramp, 0.0, 1.0)
         lasting[5] = min(max(lasting[5], -MOST), MOST)

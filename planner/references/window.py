@@ -107,7 +107,8 @@ def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array
     """
     x, y = lasting.moment.tolist()
     turning = np.array([y, -x]) @ rotation
-    return lasting.force @ rotation / height.stiffness[:, None] + turning / (GRAVITY + height.height[2])[:, None]
+    pressing = GRAVITY + height.height[2]
+    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
 
 
 class Outlook:

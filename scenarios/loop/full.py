@@ -179,7 +179,7 @@ class SimulatedRobot:
     def _lasting(self) -> LastingForce | None:
         """The lasting force that the controller counted with a tick ago."""
         load = self._load
-        if not (load.force.any() or load.moment.any()):
+        if load is NO_LOAD:
             return None
         mass = load.mass_scale * self.controller.terms.model_mass
         return LastingForce(load.force[:2] / mass, load.moment[:2] / mass)

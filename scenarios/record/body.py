@@ -102,8 +102,9 @@ class Recorder:
         """
         m, r = measurement, report
         numbers = (
-            m.nonfoot_contact, m.self_contact, r.load.mass_scale * terms.model_mass, *reference.planned_contact, *r.active, *r.felt,
-            r.status, r.iterations, r.primal_residual, r.dual_residual, reference.omega, truth.torso_rotation[2, 2],
+            m.nonfoot_contact, m.self_contact, r.load.mass_scale * terms.model_mass,
+            *reference.planned_contact, *r.active, *r.felt, r.status, r.iterations, r.primal_residual, r.dual_residual,
+            reference.omega, truth.torso_rotation[2, 2],
         )  # fmt: skip
         self._row.append(
             time_ns, numbers,

@@ -7,8 +7,8 @@ origin (of which masses all are the model's times one factor s)
     s m (g + Δv_z / T) = mean F_z,    f = s Δp / T - mean F,    n + c x f = s ΔL / T - mean M - s m c x g.
 
 No acceleration is measured for that, and how the robot moves and stands does not matter. It is the momentum observer
-of De Luca and Mattone (ICRA 2003), with means over spans and their median in place of its low-pass: a push, however
-hard, is to leave no trace, since what it has done is in the CoM's velocity already.
+of De Luca and Mattone (ICRA 2003), with means over spans and their medians in place of its low-pass. What lasts is told
+from a push, which has done what it does when it is over and may be hard: of what is new only little counts.
 """
 
 import math
@@ -22,19 +22,23 @@ SPAN = 0.02
 """Time over which forces are held against the change of momentum [s]."""
 
 SPANS = 13
-"""Spans of which the median lasts: a push for less than half of them, 0.12 s, leaves no trace."""
+"""Spans whose median is what lasts: a push for less than half of them, 0.12 s, is not in it."""
 
 LATEST = 3
-"""Spans whose median bounds that: what ceases is to be forgotten at once."""
+"""Spans whose median is what acts now: what lasts counts no longer than that."""
 
-FORCE = (4.0, 8.0)
-"""Force below which there is none, and from which all of it counts [N]; undisturbed walks leave 1.2 N."""
+KEPT = (4.0, 8.0)
+"""Force [N] and moment about the CoM [N·m] of what lasts that are none, and from which on all of it counts; undisturbed
+walks leave 1.2 N and 1.2 N·m."""
 
-MOMENT = (4.0, 8.0)
-"""Likewise of its moment about the CoM [N·m]; undisturbed walks leave 1.2 N·m."""
+SUDDEN = (10.0, 20.0)
+"""Likewise of what acts now; walking at 1 m/s leaves 8 N and 6 N·m."""
+
+BOUND = (40.0, 12.0)
+"""No more force and moment counts of what acts now and has not lasted: it may be a push, soon over [N, N·m]."""
 
 WEIGHT = (0.01, 0.02)
-"""Likewise of what the robot weighs more or less than its model, as a share of that [-]; they leave 0.001."""
+"""Likewise of what the robot weighs more or less than its model, as a share of that; these leave 0.001 [-]."""
 
 RATES = (1000.0, 1000.0, 2.0)
 """How fast force, moment and share of the weight may change [N/s, N·m/s, 1/s]."""
@@ -67,8 +71,7 @@ class LoadObserver:
         self._momentum: Array | None = None
         self._count = 0
         self._spans = np.empty((0, sum(_ROWS)))
-        self._none, full = np.repeat([FORCE, MOMENT, WEIGHT], _ROWS, axis=0).T
-        self._ramp, self._most = full - self._none, np.repeat(RATES, _ROWS) * self._span
+        self._most, self._bound = np.repeat(RATES, _ROWS) * self._span, np.repeat(BOUND, _ROWS[:2])
         self._estimate = np.zeros(sum(_ROWS))
         self.load = NO_LOAD
 
@@ -113,17 +116,26 @@ class LoadObserver:
     def _follow(self) -> None:
         """Let the load follow what lasts."""
         lasting, latest = _median(self._spans), _median(self._spans[-LATEST:])
-        bounded = np.where(
-            lasting * latest > 0.0, np.copysign(np.minimum(np.abs(lasting), np.abs(latest)), lasting), 0.0
-        )
-        # A weight does not cease, and is wanted from the first span on.
-        lasting[:-1] = bounded[:-1] if len(self._spans) == SPANS else 0.0
-        lasting[-1] = min(max(lasting[-1], -MOST), MOST)
-        lasting *= np.clip((np.abs(lasting) - self._none) / self._ramp, 0.0, 1.0)
-        self._estimate = self._estimate + np.clip(lasting - self._estimate, -self._most, self._most)
-        x, y, *moment, share = self._estimate.tolist()
-        none = not self._estimate.any()
-        self.load = NO_LOAD if none else ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + share)
+        share = _ramp(np.array([min(max(float(lasting[-1]), -MOST), MOST)]), WEIGHT)
+        if len(self._spans) < SPANS:
+            pull = np.zeros(len(lasting) - 1)
+        else:
+            kept = np.where(lasting * latest > 0.0, np.minimum(np.abs(lasting), np.abs(latest)), 0.0)
+            kept = _ramp(np.copysign(kept, latest)[:-1], KEPT)
+            sudden = _ramp(np.clip(latest[:-1], -self._bound, self._bound), SUDDEN)
+            pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
+        wanted = np.concatenate((pull, share))
+        self._estimate = self._estimate + np.clip(wanted - self._estimate, -self._most, self._most)
+        self.load = NO_LOAD
+        if self._estimate.any():
+            x, y, *moment, more = self._estimate.tolist()
+            self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
+
+
+def _ramp(values: Array, limits: tuple[float, float]) -> Array:
+    """Values of which nothing counts up to the first limit, all from the second one on."""
+    none, full = limits
+    return values * np.clip((np.abs(values) - none) / (full - none), 0.0, 1.0)
 
 
 def _median(spans: Array) -> Array:

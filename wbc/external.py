@@ -122,7 +122,7 @@ class LoadObserver:
         else:
             kept = np.where(lasting * latest > 0.0, np.minimum(np.abs(lasting), np.abs(latest)), 0.0)
             kept = _ramp(np.copysign(kept, latest)[:-1], KEPT)
-            sudden = _ramp(np.clip(latest[:-1], -self._bound, self._bound), SUDDEN)
+            sudden = np.clip(_ramp(latest[:-1], SUDDEN), -self._bound, self._bound)
             pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
         wanted = np.concatenate((pull, share))
         self._estimate = self._estimate + np.clip(wanted - self._estimate, -self._most, self._most)

@@ -204,6 +204,7 @@ def _without_body(draft: Draft) -> Iterator[Problem]:
 _NO_CONTACT = (
     ("terrain", "friction"),
     ("terrain", "height_noise"),
+    ("sensing", "force_estimate"),
     ("start", "angle_noise"),
     ("errors", "friction"),
     ("errors", "torso_com"),

@@ -154,7 +154,7 @@ class WholeBodyController:
         return self.terms
 
     def update(self, reference: WbcReference, sensing: FootSensing, fail_solvers: bool = False) -> WbcReport:
-        """Torques for the state last observed.
+        """Torques for the state last observed; once per observation, since the load is found from tick to tick.
 
         Args:
             reference: what to do.

@@ -45,12 +45,12 @@ def test_a_lasting_force_is_found_within_a_tenth_and_walked_with(tmp_path):
 
 @pytest.mark.physics
 def test_without_the_estimate_that_force_fells_it(tmp_path):
-    assert walk(tmp_path, "walk", *NATURAL, pulled(40, "left"), OFF).verdict.metrics["fell"]
+    assert walk(tmp_path, "walk", *NATURAL, pulled(40, "left"), OFF, "duration=5").verdict.metrics["fell"]
 
 
 @pytest.mark.physics
 def test_an_undisturbed_walk_is_the_same_to_the_last_digit(tmp_path):
-    logs = [read(walk(tmp_path, "walk", *NATURAL, "gait.steps=2", *keys).log) for keys in ((), (OFF,))]
+    logs = [read(walk(tmp_path, "walk", *NATURAL, "gait.steps=2", "duration=2.5", *keys).log) for keys in ((), (OFF,))]
     np.testing.assert_array_equal(*(log["/truth"].field("q") for log in logs))
     estimate = logs[0]["/estimate"]
     assert not estimate.field("external_force").any()

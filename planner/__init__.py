@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
     from surefoot.planner.planner import WalkingPlanner
     from surefoot.planner.plants import IdealFeet, Pendulum, PointPush, walk_pendulum
-    from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
+    from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, LastingForce, PhaseKind
     from surefoot.planner.walk.commands import (
         Command,
         Pose,
@@ -48,6 +48,7 @@ __all__ = [
     "Footstep",
     "GaitParameters",
     "IdealFeet",
+    "LastingForce",
     "LegInertia",
     "Motion",
     "MotionPlanner",
@@ -91,7 +92,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "plan": ("PlanSample", "PlanSampler", "Planner", "WalkPlan"),
             "planner": ("WalkingPlanner",),
             "plants": ("IdealFeet", "Pendulum", "PointPush", "walk_pendulum"),
-            "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "PhaseKind"),
+            "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "LastingForce", "PhaseKind"),
             "walk.commands": (
                 "Command",
                 "Pose",

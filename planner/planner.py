@@ -167,26 +167,21 @@ class WalkingPlanner:
         """
         if not math.isfinite(float(state.com.sum() + state.com_velocity.sum() + feet.position.sum() + feet.yaw.sum())):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
-        stepper, outlook = self._stepper, self._outlook
+        stepper = self._stepper
         stepper.advance(feet)
         self._obey(state.time)
         stepper.fix_imminent(state.time)
-        support = outlook.support(stepper)
-        local = self._local_state(state, support)
-        window = self._window(state.time, support, local)
+        support, local, window = self._sight(state)
         if self._steps_out(local, window):
-            support = outlook.support(stepper)
-            local = self._local_state(state, support)
-            window = self._window(state.time, support, local)
+            support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         catch = self._catch(state.time, local, feet, support, window)
         if catch is not None and catch.more and stepper.stops:
             stepper.go_on()
-            support = outlook.support(stepper)
-            window = self._window(state.time, support, local)
+            support, local, window = self._sight(state)
             catch = self._catch(state.time, local, feet, support, window)
         if catch is not None and stepper.end_in(catch.left, state.time):
-            window = self._window(state.time, support, local)
+            window = self._window(state, support, local)
         problem = self._problem(local, feet, support, window, catch)
         # TVMPC, or the law that stands in its place.
         motion = self.motion = self._law.plan(problem)
@@ -197,7 +192,13 @@ class WalkingPlanner:
         self._plan = self._world_plan(state.time, support, window, local, motion, footsteps)
         return self._plan
 
-    def _window(self, time: float, support: Support, local: Array) -> Window:
+    def _sight(self, state: CentroidalState) -> tuple[Support, Array, Window]:
+        """What carries the robot now, its CoM in that plan frame, and the references from now on."""
+        support = self._outlook.support(self._stepper)
+        local = self._local_state(state, support)
+        return support, local, self._window(state, support, local)
+
+    def _window(self, state: CentroidalState, support: Support, local: Array) -> Window:
         """References from now on, as the clock goes."""
         stepper, outlook = self._stepper, self._outlook
         # ZMP planner: the ZMP that the footsteps define, from what carries the robot now.
@@ -205,8 +206,8 @@ class WalkingPlanner:
         reference = outlook.zmp(samples, support)
         # Vertical motion planner of the CoM, with it the varying dynamics.
         height = outlook.com_height(samples, support, reference)
-        deviation = stepper.deviation(time)
-        return outlook.window(stepper, samples, support, reference, height, local[:, 0], deviation)
+        deviation = stepper.deviation(state.time)
+        return outlook.window(stepper, samples, support, reference, height, local[:, 0], deviation, state.lasting)
 
     def _steps_out(self, local: Array, window: Window) -> bool:
         """Order a step of a robot that stands and would fall, or stands astride; says whether."""

@@ -54,6 +54,19 @@ class Footstep:
 
 
 @dataclass(frozen=True, slots=True)
+class LastingForce:
+    """A horizontal force that goes on acting on the body, per mass of that; world frame.
+
+    Attributes:
+        force: x and y, shape (2,) [m/s^2].
+        moment: of it about the CoM, its x and y, shape (2,) [m^2/s^2].
+    """
+
+    force: Array
+    moment: Array
+
+
+@dataclass(frozen=True, slots=True)
 class CentroidalState:
     """What the planner is told of the body at one instant.
 
@@ -61,11 +74,13 @@ class CentroidalState:
         time: instant [s].
         com: CoM position, shape (3,) [m].
         com_velocity: CoM velocity, shape (3,) [m/s].
+        lasting: force that goes on acting on it; None for none.
     """
 
     time: float
     com: Array
     com_velocity: Array
+    lasting: LastingForce | None = None
 
 
 @dataclass(frozen=True, slots=True)

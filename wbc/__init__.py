@@ -19,10 +19,11 @@ if TYPE_CHECKING:
     from surefoot.wbc.model import BodyFrames, RobotTerms
     from surefoot.wbc.parameters import WbcParameters
     from surefoot.wbc.qp import QpData, QpLayout
-    from surefoot.wbc.types import FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
+    from surefoot.wbc.types import ExternalLoad, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
 
 __all__ = [
     "BodyFrames",
+    "ExternalLoad",
     "FootSensing",
     "JointLimits",
     "PostureIk",
@@ -51,6 +52,6 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "model": ("BodyFrames", "RobotTerms"),
             "parameters": ("WbcParameters",),
             "qp": ("QpData", "QpLayout"),
-            "types": ("FootSensing", "RobotState", "SolveStatus", "WbcReference", "WbcReport"),
+            "types": ("ExternalLoad", "FootSensing", "RobotState", "SolveStatus", "WbcReference", "WbcReport"),
         },
     )

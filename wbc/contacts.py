@@ -60,13 +60,15 @@ class ContactSchedule:
     - A foot that the plan rolls keeps its toe edge on the ground, while the other foot carries as well.
     - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in
       force.
+
+    Attributes:
+        weight: of the robot, as it is now known [N].
     """
 
     def __init__(self, parameters: ContactParameters, weight: float, control_period: float) -> None:
         """Start with both feet loaded; ``weight`` [N], ``control_period`` [s]."""
         self._parameters = parameters
-        self._weight = weight
-        self._full = 3.0 * weight
+        self.weight = weight
         self._period = control_period
         self._active = [True, True]
         self._ticks_felt = [parameters.felt_ticks, parameters.felt_ticks]
@@ -98,12 +100,12 @@ class ContactSchedule:
         if not self._active[k]:
             return 0.0
         if not self._active[1 - k]:
-            return self._full
+            return 3.0 * self.weight
         if not reference.planned_contact[k]:
             return parameters.early_cap
         self._loading[k] = min(1.0, self._loading[k] + self._period / parameters.loading_time)
-        cap = parameters.early_cap + self._loading[k] * (self._full - parameters.early_cap)
+        cap = parameters.early_cap + self._loading[k] * (3.0 * self.weight - parameters.early_cap)
         if reference.lifting_foot == k and self._loading[1 - k] >= 1.0:
             remaining = min(1.0, reference.time_to_switch / parameters.unloading_time)
-            cap = min(cap, self._weight * (reference.load_share[k] + parameters.share_margin * remaining))
+            cap = min(cap, self.weight * (reference.load_share[k] + parameters.share_margin * remaining))
         return cap

@@ -14,6 +14,7 @@ from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.cone import CONE_ROWS, wrench_cone
 from surefoot.wbc.contacts import ContactSchedule, ContactState
 from surefoot.wbc.dynamics import HardConstraints
+from surefoot.wbc.external import LoadObserver
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
@@ -134,6 +135,7 @@ class WholeBodyController:
         )
         self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal)
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
+        self._observer = LoadObserver(self.terms.mass, control_period)
         self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
         self._limits, self._toe, self._period = limits, toe, control_period
         self._edge: tuple[int, Array] | None = None
@@ -152,7 +154,7 @@ class WholeBodyController:
         return self.terms
 
     def update(self, reference: WbcReference, sensing: FootSensing, fail_solvers: bool = False) -> WbcReport:
-        """Torques for the state last observed.
+        """Torques for the state last observed; once per observation, since the load is found from tick to tick.
 
         Args:
             reference: what to do.
@@ -160,6 +162,9 @@ class WholeBodyController:
             fail_solvers: pretend that both QP solvers failed, to exercise the fallback.
         """
         start = time.perf_counter()
+        if sensing.wrench is not None:
+            self.terms.bear(self._observer.update(self.terms, sensing.wrench))
+            self.schedule.weight = self.terms.mass * GRAVITY
         contacts = self.schedule.update(reference, sensing)
         qp = self.build(self.terms, reference, contacts)
         built = time.perf_counter()
@@ -179,6 +184,7 @@ class WholeBodyController:
             task_error=answer.task_error,
             build_time=built - start,
             solve_time=solved - built,
+            load=self.terms.load,
         )
 
     def build(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> QpData:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from surefoot.wbc.types import GRAVITY, Array
+from surefoot.wbc.types import GRAVITY, NO_LOAD, Array, ExternalLoad
 
 _LOCAL = pin.ReferenceFrame.LOCAL
 
@@ -34,12 +34,17 @@ class RobotTerms:
     A foot may be seen from another frame fixed to it (see ``shift_foot``): the arrays that begin with ``contact_``, the
     sole Jacobians, velocities and biases, and the wrench map, are then of that frame.
 
+    A robot may be heavier than its model, and pulled at (see ``bear``): total mass, mass matrix and bias are then of
+    that; all else stays the model's.
+
     Attributes:
-        model, data: Pinocchio's, the latter as ``pin.computeAllTerms`` leaves it.
+        model, data: Pinocchio's, the latter as ``pin.computeAllTerms`` leaves it, but for a load.
         q, v: the state of the last update, shape (nq,) and (nv,).
+        model_mass: total mass of the model [kg].
         mass: total mass [kg].
+        load: what else acts on the robot.
         mass_matrix: M, shape (nv, nv).
-        bias: Coriolis, centrifugal and gravity terms h, shape (nv,).
+        bias: Coriolis, centrifugal, gravity and load terms h, shape (nv,).
         com, com_velocity, angular_momentum: centroidal state in the world frame, shape (3,) each.
         base_rotation, torso_rotation: orientation in the world, shape (3, 3).
         base_angular_velocity: in the base frame, shape (3,).
@@ -48,6 +53,7 @@ class RobotTerms:
         sole_jacobian: shape (2, 6, nv); contact_jacobian: the same memory, shape (12, nv).
         sole_velocity, sole_bias: shape (2, 6).
         sole_wrench_map: from both sole wrenches to their force and moment about the world's origin, shape (6, 12).
+        torso_position: shape (3,).
         torso_jacobian: angular rows, shape (3, nv); torso_velocity, torso_bias: shape (3,).
     """
 
@@ -67,15 +73,18 @@ class RobotTerms:
         self.v: Array = np.zeros(model.nv)
         self._soles = tuple(_frame_id(model, name) for name in frames.soles)
         self._torso = _frame_id(model, frames.torso)
-        self.mass = float(sum(inertia.mass for inertia in model.inertias))
+        self.mass = self.model_mass = float(sum(inertia.mass for inertia in model.inertias))
+        self.load = NO_LOAD
         # Views of Pinocchio's own memory need no copy. M is symmetric and column-major: its transpose is contiguous.
         self.mass_matrix: Array = data.M.T
+        self._mass_diagonal: Array = np.einsum("ii->i", data.M)
         self.bias: Array = data.nle
         self.com: Array = data.com[0]
         self.angular_momentum: Array = data.hg.angular
         self._linear_momentum: Array = data.hg.linear
         self.base_rotation: Array = data.oMi[1].rotation
         self.torso_rotation: Array = data.oMf[self._torso].rotation
+        self.torso_position: Array = data.oMf[self._torso].translation
         self._allocate(model.nv)
 
     def _allocate(self, nv: int) -> None:
@@ -96,11 +105,33 @@ class RobotTerms:
         self.q, self.v = q, v
         # Leaves in data.a the velocity-product accelerations, those of zero generalised acceleration.
         pin.computeAllTerms(self.model, self.data, q, v)
-        np.divide(self._linear_momentum, self.mass, out=self.com_velocity)
+        np.divide(self._linear_momentum, self.model_mass, out=self.com_velocity)
+        self.mass, self.load = self.model_mass, NO_LOAD
         self.base_angular_velocity[:] = v[3:6]
         self._update_sole(0)
         self._update_sole(1)
         self._update_torso()
+
+    def bear(self, load: ExternalLoad) -> None:
+        """Count with a load until the next update.
+
+        What a robot is heavier than its model all its bodies share, but for the rotors' inertia. Where a force acts
+        nobody knows: on the torso, at the point that gives its moment.
+
+        Args:
+            load: what acts on the robot.
+        """
+        if load is NO_LOAD:
+            return
+        self.load, scale = load, load.mass_scale
+        if scale != 1.0:
+            self.mass = scale * self.model_mass
+            self.mass_matrix *= scale
+            self._mass_diagonal += (1.0 - scale) * self.model.armature
+            self.bias *= scale
+        R = self.torso_rotation
+        moment = load.moment + cross(self.com - self.torso_position, load.force)
+        self.bias -= np.concatenate((load.force @ R, moment @ R)) @ self._torso_rows
 
     def _update_sole(self, k: int) -> None:
         model, data, frame = self.model, self.data, self._soles[k]
@@ -161,9 +192,17 @@ class RobotTerms:
     def _update_torso(self) -> None:
         model, data, frame = self.model, self.data, self._torso
         pin.updateFramePlacement(model, data, frame)
-        self.torso_jacobian[:] = pin.getFrameJacobian(model, data, frame, _LOCAL)[3:]
+        self._torso_rows = pin.getFrameJacobian(model, data, frame, _LOCAL)
+        self.torso_jacobian[:] = self._torso_rows[3:]
         self.torso_velocity[:] = pin.getFrameVelocity(model, data, frame, _LOCAL).angular
         self.torso_bias[:] = pin.getFrameAcceleration(model, data, frame, _LOCAL).angular
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Cross product of two vectors, shape (3,) each; numpy's own takes ten times as long for a single pair."""
+    ax, ay, az = a.tolist()
+    bx, by, bz = b.tolist()
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def _frame_id(model: pin.Model, name: str) -> int:

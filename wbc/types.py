@@ -49,9 +49,30 @@ class FootSensing:
 
     Attributes:
         normal_force: force along each sole's normal, (left, right) [N].
+        wrench: sole wrenches in the sole frames, shape (2, 6) [N, N·m]; without them no load is estimated.
     """
 
     normal_force: tuple[float, float]
+    wrench: Array | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ExternalLoad:
+    """What acts on the robot beside gravity and the ground, and how heavy it is; world frame.
+
+    Attributes:
+        force: lasting external force, of which the vertical part counts as weight, shape (3,) [N].
+        moment: its moment about the CoM, shape (3,) [N·m].
+        mass_scale: true mass over the model's [-].
+    """
+
+    force: Array
+    moment: Array
+    mass_scale: float
+
+
+NO_LOAD = ExternalLoad(np.zeros(3), np.zeros(3), 1.0)
+"""A robot as heavy as its model, on which nothing acts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +151,7 @@ class WbcReport:
             ``WholeBodyController.task_layout``.
         build_time: wall-clock time of terms and assembly [s].
         solve_time: wall-clock time of the solve [s].
+        load: with which it counted.
     """
 
     torque: Array
@@ -144,3 +166,4 @@ class WbcReport:
     task_error: Array
     build_time: float
     solve_time: float
+    load: ExternalLoad = NO_LOAD

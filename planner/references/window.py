@@ -19,7 +19,7 @@ from surefoot.planner.references.zmp_reference import (
     present_support,
     zmp_reference,
 )
-from surefoot.planner.types import Array
+from surefoot.planner.types import GRAVITY, Array, LastingForce
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import PhaseSamples
 from surefoot.planner.walk.stepper import Deviation, Stepper
@@ -79,7 +79,7 @@ class Window:
     Attributes:
         reference: ZMP reference that the footsteps define.
         driving: what of it drives the pendulum: the reference less `offset`.
-        offset: what the swing leg adds to the ZMP, shape (n, 2) [m].
+        offset: what the swing leg and a lasting force add to the ZMP, shape (n, 2) [m].
         height: CoM height.
         stiffness: λ of the pendulum, softened by the legs' masses, shape (n,) [1/s^2].
         omega: ω of its DCM, shape (n,) [1/s].
@@ -95,6 +95,28 @@ class Window:
     omega: Array
     load_left: Array
     contacts: NDArray[np.bool_]
+
+
+def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array:
+    """What a lasting force adds to the ZMP, by which the body has to lean into it, in the plan frame.
+
+    The moment balance about the ZMP (see `planner.references.leg_offset`) with a force m f on the body and its moment
+    m n about the CoM has, with h = c_z - p_z and λ = (g + z'') / h,
+
+        p_x = c_x - c_x'' / λ + f_x / λ + n_y / (g + z''),      p_y = c_y - c_y'' / λ + f_y / λ - n_x / (g + z'').
+
+    Args:
+        lasting: the force.
+        rotation: plan frame to world, shape (2, 2).
+        height: CoM height over n samples.
+
+    Returns:
+        Shape (n, 2) [m].
+    """
+    x, y = lasting.moment.tolist()
+    turning = np.array([y, -x]) @ rotation
+    pressing = GRAVITY + height.height[2]
+    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
 
 
 class Outlook:
@@ -148,6 +170,7 @@ class Outlook:
         height: HeightPreview,
         position: Array,
         deviation: Deviation | None,
+        lasting: LastingForce | None = None,
     ) -> Window:
         """The window that begins now.
 
@@ -159,11 +182,14 @@ class Outlook:
             height: CoM height.
             position: CoM now in the plan frame, shape (2,) [m].
             deviation: swing that does not go as its step was laid.
+            lasting: force that goes on acting on the body.
         """
         count = self._count
         stiffness = softening(self._leg) * height.stiffness
         seen = reference.part(slice(count))
-        offset = self._offset(stepper, samples, support, reference.point, height, position, deviation)
+        leant = np.zeros((self.reach, 2)) if lasting is None else lean(lasting, support.rotation, height)
+        point = reference.point - leant
+        offset = self._offset(stepper, samples, support, point, height, position, deviation) + leant[:count]
         return Window(
             reference=seen,
             driving=replace(seen, point=seen.point - offset),

@@ -235,6 +235,11 @@ class Sensing(Group):
     accelerometer_noise: Annotated[NonNegative, Unit("m/s^2")] = Field(default=0.0, description="of the accelerometer")
     wrench_noise: Annotated[NonNegative, NEWTON] = Field(default=0.0, description="of the foot force sensors")
     latency: Instant = Field(default=0.0, description="age of the measurement")
+    force_estimate: bool = Field(
+        default=True,
+        description="a lasting external force and the true weight are estimated from what the feet feel, and counted "
+        "with",
+    )
 
 
 class Start(Group):

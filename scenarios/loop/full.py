@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from surefoot.models.pinocchio import limb_shapes, pinocchio_model
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
-from surefoot.planner.types import CentroidalState, FeetState
+from surefoot.planner.types import CentroidalState, FeetState, LastingForce
 from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.loop.planning import FaultSchedule, Planning, RunFault, whole_body_reference
@@ -40,7 +40,7 @@ from surefoot.wbc.controller import Sole, WholeBodyController
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.statics import standing_torque
 from surefoot.wbc.tasks import TASKS, TaskFactory
-from surefoot.wbc.types import FootSensing, RobotState, WbcReport
+from surefoot.wbc.types import NO_LOAD, FootSensing, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
 Array = NDArray[np.float64]
@@ -147,7 +147,8 @@ class SimulatedRobot:
         self._steps = walk.rates.physics // walk.rates.control
         self._nominal_height = walk.true_com_height
         self._zero_torque = np.zeros(controller.layout.joints)
-        self._landed = (True, True)
+        self._landed, self._load = (True, True), NO_LOAD
+        self._estimates = walk.sensing.force_estimate
         self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
         self.measurement: Measurement
         self.state: RobotState
@@ -172,16 +173,25 @@ class SimulatedRobot:
         terms = self._terms
         R = terms.sole_rotation
         feet = FeetState(terms.level_soles(self._toe), np.arctan2(R[:, 1, 0], R[:, 0, 0]), self._landed)
-        state = CentroidalState(now, terms.com.copy(), terms.com_velocity.copy())
+        state = CentroidalState(now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
         return state, np.array(measured_zmp(self.measurement.wrench, terms.sole_position, R)[:2]), feet
+
+    def _lasting(self) -> LastingForce | None:
+        """The lasting force that the controller counted with a tick ago."""
+        load = self._load
+        if load is NO_LOAD:
+            return None
+        mass = load.mass_scale * self.controller.terms.model_mass
+        return LastingForce(load.force[:2] / mass, load.moment[:2] / mass)
 
     def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
         """See `Walker`."""
         wrench = self.measurement.wrench
         self._reference = whole_body_reference(plan, sample)
-        sensing = FootSensing((float(wrench[0, 2]), float(wrench[1, 2])))
+        forces = float(wrench[0, 2]), float(wrench[1, 2])
+        sensing = FootSensing(forces, wrench if self._estimates else None)
         report = self.controller.update(self._reference, sensing, self._faults.active("qp_failure", tick))
-        self._landed = report.active
+        self._landed, self._load = report.active, report.load
         self._torque = self._zero_torque if self._faults.active("torque_loss", tick) else report.torque
         self.report = report
         return report.build_time, report.solve_time

@@ -1,6 +1,7 @@
 """What is measured: the estimator slot of the controller, and noise and filter of what the planner is told."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -109,14 +110,14 @@ class PlannerSensing:
         noise = self._deviation * np.clip(self._rng.standard_normal((3, 2)), -CLIP, CLIP)
         com = np.append(state.com[:2] + noise[1], state.com[2])
         velocity = np.append(state.com_velocity[:2] + noise[2], state.com_velocity[2])
-        measured, measured_zmp = CentroidalState(state.time, com, velocity), zmp + noise[0]
+        measured, measured_zmp = replace(state, com=com, com_velocity=velocity), zmp + noise[0]
         kalman = self._filter
         if kalman is None:
             nothing = np.full(2, np.nan)
             return PlannerState(measured, measured_zmp, measured, nothing, nothing)
         self._estimate(kalman, measured, measured_zmp, plan)
         x, v, a = kalman.mean
-        given = CentroidalState(state.time, np.append(x, com[2]), np.append(v, velocity[2]))
+        given = replace(state, com=np.append(x, com[2]), com_velocity=np.append(v, velocity[2]))
         innovation = kalman.innovation
         return PlannerState(
             measured, measured_zmp, given, a, np.full(2, np.nan) if innovation is None else innovation.normalised

@@ -65,12 +65,13 @@ class Recorder:
             (measurement, ("joint_position", "joint_velocity", "joint_torque", "gyro", "accelerometer")),
             (measurement, ("wrench_left", "wrench_right", "external_force")),
             (truth, ("q", "v", "com", "com_velocity", "angular_momentum", "left_sole", "right_sole")),
-            (estimate, ("com", "com_velocity", "base_position", "base_velocity")),
+            (estimate, ("com", "com_velocity", "base_position", "base_velocity", "external_force", "external_moment")),
             (wbc, ("acceleration", "wrench_left", "wrench_right", "task_error")),
             (torque, ("command",)),
         )
         numbers = (
             (truth, ("nonfoot_contact", "self_contact")),
+            (estimate, ("mass",)),
             (contact, ("planned", "active", "felt")),
             (wbc, ("status", "iterations", "primal_residual", "dual_residual")),
         )
@@ -101,15 +102,16 @@ class Recorder:
         """
         m, r = measurement, report
         numbers = (
-            m.nonfoot_contact, m.self_contact, *reference.planned_contact, *r.active, *r.felt,
-            r.status, r.iterations, r.primal_residual, r.dual_residual, reference.omega, truth.torso_rotation[2, 2],
+            m.nonfoot_contact, m.self_contact, r.load.mass_scale * terms.model_mass,
+            *reference.planned_contact, *r.active, *r.felt, r.status, r.iterations, r.primal_residual, r.dual_residual,
+            reference.omega, truth.torso_rotation[2, 2],
         )  # fmt: skip
         self._row.append(
             time_ns, numbers,
             m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer,
             m.wrench.ravel(), m.external_force,
             m.q, m.v, truth.com, truth.com_velocity, truth.angular_momentum, truth.sole_pose.ravel(),
-            terms.com, terms.com_velocity, state.q[:3], state.v[:6],
+            terms.com, terms.com_velocity, state.q[:3], state.v[:6], r.load.force, r.load.moment,
             r.acceleration, r.wrench.ravel(), r.task_error, torque,
             truth.sole_rotation.ravel(),
         )  # fmt: skip

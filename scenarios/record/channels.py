@@ -88,13 +88,16 @@ def point_truth(_: Sizes) -> ChannelSpec:
 
 
 def estimate(_: Sizes) -> ChannelSpec:
-    """The state that the whole-body controller was given, by its robot model, every control tick."""
+    """The state that the whole-body controller was given, by its robot model, and the load with which it counted."""
     fields = (
         _real("com", 3, "m", "world", "CoM"),
         _real("com_velocity", 3, "m/s", "world", "CoM velocity"),
         _real("dcm", 2, "m", "world", "divergent component of motion"),
         _real("base_position", 3, "m", "world", "base"),
         _real("base_velocity", 6, "m/s, rad/s", "base", "linear, angular"),
+        _real("external_force", 3, "N", "world", "lasting, horizontal"),
+        _real("external_moment", 3, "N m", "world", "of it about the CoM"),
+        _scalar("mass", "kg", "of the robot with all that it carries"),
     )
     return ChannelSpec("/estimate", "Estimate", fields, estimate.__doc__ or "")
 

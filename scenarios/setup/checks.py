@@ -24,7 +24,7 @@ from surefoot.scenarios.setup.walk_checks import (
     walk_problems,
 )
 
-_SENSED = ("source", "zmp_noise", "com_noise")
+_SENSED = ("source", "zmp_noise", "com_noise", "force_estimate")
 """What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
 
 AVAILABLE: dict[Key, tuple[Any, ...]] = {
@@ -204,6 +204,7 @@ def _without_body(draft: Draft) -> Iterator[Problem]:
 _NO_CONTACT = (
     ("terrain", "friction"),
     ("terrain", "height_noise"),
+    ("sensing", "force_estimate"),
     ("start", "angle_noise"),
     ("errors", "friction"),
     ("errors", "torso_com"),

@@ -11,7 +11,10 @@ from surefoot.wbc.types import GRAVITY, Array, WbcReference
 
 
 class CentreOfMass:
-    """CoM acceleration by the law of ``surefoot.wbc.balance``, from the sole forces: c'' = Σ R_k f_k / m - g."""
+    """CoM acceleration by the law of ``surefoot.wbc.balance``, from the forces: c'' = (Σ R_k f_k + f) / m - g.
+
+    The force f is that of a lasting load (see ``RobotTerms.bear``).
+    """
 
     name, size = "CoM", 3
 
@@ -25,12 +28,14 @@ class CentreOfMass:
         per_mass = scale * (WRENCH_UNIT / terms.mass)
         np.multiply(terms.sole_wrench_map[:3], per_mass, out=rows[:, -12:])
         x, y, z = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
-        return x, y, z + GRAVITY
+        fx, fy, fz = terms.load.force.tolist()
+        return x - fx / terms.mass, y - fy / terms.mass, z + GRAVITY - fz / terms.mass
 
 
 class AngularMomentum:
-    """Decay of the angular momentum L about the CoM, per mass: L'/m = Σ [(p_k - c) x R_k f_k + R_k τ_k] / m.
+    """Decay of the angular momentum L about the CoM, per mass: L'/m = (Σ [(p_k - c) x R_k f_k + R_k τ_k] + n) / m.
 
+    The moment n is that of a lasting load (see ``RobotTerms.bear``).
     Newton and Euler for the whole body (e.g. Orin, Goswami and Lee, Autonomous Robots 2013). With F and M the force and
     the moment about the world's origin it is (M - c x F) / m.
     """
@@ -53,6 +58,7 @@ class AngularMomentum:
             (y, -x, 0.0, 0.0, 0.0, per_mass),
         )
         np.matmul(self._about_com, terms.sole_wrench_map, out=rows[:, -12:])
-        decay = -self._decay / terms.mass
+        decay, mass = -self._decay / terms.model_mass, terms.mass
         lx, ly, lz = terms.angular_momentum.tolist()
-        return decay * lx, decay * ly, decay * lz
+        nx, ny, nz = terms.load.moment.tolist()
+        return decay * lx - nx / mass, decay * ly - ny / mass, decay * lz - nz / mass

@@ -8,7 +8,7 @@ import pytest
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.channels import Sizes
-from surefoot.wbc.types import SolveStatus
+from surefoot.wbc.types import ExternalLoad, SolveStatus
 from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
 
 pytestmark = pytest.mark.unit
@@ -38,8 +38,9 @@ def tick(rng, status):
         active=(True, False), felt=(False, True), status=status, iterations=7, primal_residual=1e-9,
         dual_residual=2e-9, acceleration=rng.normal(size=NJ + 6), wrench=rng.normal(size=(2, 6)),
         task_error=rng.normal(size=18),
+        load=ExternalLoad(rng.normal(size=3), rng.normal(size=3), rng.uniform(0.8, 1.2)),
     )  # fmt: skip
-    terms = SimpleNamespace(com=rng.normal(size=3), com_velocity=rng.normal(size=3))
+    terms = SimpleNamespace(com=rng.normal(size=3), com_velocity=rng.normal(size=3), model_mass=100.0)
     state = SimpleNamespace(q=rng.normal(size=NJ + 7), v=rng.normal(size=NJ + 6))
     reference = SimpleNamespace(planned_contact=(True, True), omega=rng.uniform(2, 4))
     return measurement, truth, terms, state, reference, report, rng.normal(size=NJ) * 30
@@ -58,6 +59,11 @@ def test_derived_fields_follow_their_definitions(tmp_path):
     assert log["/wbc"].field("solver").tolist() == [0, 1, 0]
     assert log["/wbc"].field("fallback").tolist() == [0, 0, 1]
     assert log["/contact"].field("felt").tolist() == [[0, 1]] * 3
+    for n, (*_, report, _) in enumerate(ticks):
+        estimate = log["/estimate"]
+        assert estimate.field("mass")[n] == pytest.approx(100.0 * report.load.mass_scale)
+        np.testing.assert_array_equal(estimate.field("external_force")[n], report.load.force)
+        np.testing.assert_array_equal(estimate.field("external_moment")[n], report.load.moment)
     for n, (measurement, truth, terms, _, reference, _, torque) in enumerate(ticks):
         zmp = measured_zmp(measurement.wrench, truth.sole_position, truth.sole_rotation)
         row = {name: log[topic].field(name)[n] for topic, name in (

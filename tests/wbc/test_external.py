@@ -1,0 +1,180 @@
+"""What acts on a robot beside ground and gravity, from momentum and soles, and what the controller makes of it."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from surefoot.wbc.external import LoadObserver
+from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.types import GRAVITY, NO_LOAD, ExternalLoad, FootSensing
+
+pytestmark = pytest.mark.unit
+
+PERIOD, MASS = 0.002, 100.0
+FORCE, MOMENT = np.array([-30.0, 20.0, 0.0]), np.array([-9.0, -12.0, 5.0])
+LOAD = ExternalLoad(FORCE, MOMENT, 1.15)
+
+
+def observed(scale=1.0, pull=lambda time: np.zeros(3), duration=1.0, fault=None):
+    """Loads at every tick of a body, far from the origin, that its feet shake and that is pulled 0.8 m over its CoM."""
+    rng, observer, loads = np.random.default_rng(5), LoadObserver(MASS, PERIOD), []
+    mass, weight = scale * MASS, np.array([0.0, 0.0, -scale * MASS * GRAVITY])
+    com, momentum = np.array([40.0, -7.0, 1.0]), np.array([20.0, -30.0, 5.0])
+    spin = np.cross(com, momentum)
+    for tick in range(round(duration / PERIOD)):
+        ground, acting = rng.normal(scale=(200.0, 200.0, 300.0)) - weight, pull(tick * PERIOD)
+        point, torque = com + rng.normal(scale=0.2, size=3), rng.normal(scale=20.0, size=3)
+        felt = np.concatenate((ground, np.cross(point, ground) + torque))
+        if tick:
+            before = momentum
+            momentum = momentum + PERIOD * (ground + weight + acting)
+            com = com + PERIOD * 0.5 * (momentum + before) / mass
+            lever = com + np.array([0.0, 0.0, 0.8])
+            spin = spin + PERIOD * (felt[3:] + np.cross(com, weight) + np.cross(lever, acting))
+        turning = (spin - np.cross(com, momentum)) / scale
+        wrench_map = np.hstack((np.eye(6), np.zeros((6, 6))))
+        terms = SimpleNamespace(
+            com=com, com_velocity=momentum / mass, angular_momentum=turning, sole_wrench_map=wrench_map
+        )
+        wrench = np.concatenate((felt, np.zeros(6))).reshape(2, 6)
+        loads.append(observer.update(terms, wrench if fault is None else fault(tick, wrench)))
+    return loads
+
+
+@pytest.mark.parametrize("scale", [0.75, 1.0, 1.25])
+def test_the_observer_finds_a_lasting_force_its_moment_and_the_weight_however_the_body_is_shaken(scale):
+    load = observed(scale, lambda time: np.array([40.0, -15.0, 0.0]))[-1]
+    np.testing.assert_allclose(load.force, [40.0, -15.0, 0.0], atol=0.1)
+    np.testing.assert_allclose(load.moment, [12.0, 32.0, 0.0], atol=0.1)
+    assert load.mass_scale == pytest.approx(scale, abs=1e-6)
+
+
+def test_the_weight_is_known_within_a_tenth_of_a_second_and_never_jumps():
+    scales = np.array([load.mass_scale for load in observed(1.15, duration=0.2)])
+    assert scales[50] == pytest.approx(1.15)
+    assert np.abs(np.diff(scales)).max() <= 0.04 + 1e-12
+
+
+@pytest.mark.parametrize(("force", "time"), [(600.0, 0.1), (60.0, 0.11)])
+def test_of_a_push_little_counts_and_nothing_when_it_is_over(force, time):
+    loads = observed(pull=lambda now: np.array([force, -force, 0.0]) * (0.413 <= now < 0.413 + time))
+    assert max(np.abs(load.force).max() for load in loads) <= 40.0
+    assert max(np.abs(load.moment).max() for load in loads) <= 12.0
+    over = round((0.413 + time + 0.12) / PERIOD)
+    assert all(load is NO_LOAD for load in (*loads[:206], *loads[over:]))
+
+
+def test_a_force_counts_soon_wholly_when_it_lasts_and_no_longer_than_it_acts():
+    loads = observed(pull=lambda now: np.array([90.0, 0.0, 0.0]) * (0.4 <= now < 0.9), duration=1.2)
+    force = np.array([load.force[0] for load in loads])
+    assert force[: round(0.4 / PERIOD)].max() == 0.0
+    assert force[round(0.5 / PERIOD)] == pytest.approx(40.0)
+    np.testing.assert_allclose(force[round(0.65 / PERIOD) : round(0.9 / PERIOD)], 90.0, atol=0.1)
+    assert np.abs(force[round(1.05 / PERIOD) :]).max() == 0.0
+    assert np.abs(np.diff(force)).max() <= 20.0 + 1e-9
+
+
+def test_what_is_short_and_small_is_none():
+    loads = observed(pull=lambda now: np.array([9.0, 9.0, 0.0]) * (0.4 <= now < 0.5))
+    assert all(load is NO_LOAD for load in loads)
+
+
+@pytest.mark.parametrize("scale", [0.991, 1.009])
+def test_what_is_small_is_none(scale):
+    assert all(load is NO_LOAD for load in observed(scale, lambda time: np.array([2.7, -2.7, 0.0])))
+
+
+def test_readings_that_are_no_numbers_and_flight_tell_nothing():
+    def pull(time):
+        return np.array([40.0, 0.0, 0.0])
+
+    def broken(tick, wrench):
+        return np.full_like(wrench, np.nan) if tick in (300, 301) else wrench
+
+    assert observed(pull=pull, fault=broken)[-1].force[0] == pytest.approx(40.0, abs=0.1)
+    flying = observed(1.0, fault=lambda tick, wrench: 0.0 * wrench)
+    assert {load.mass_scale for load in flying} == {1.0}
+
+
+def scaled(model, factor):
+    other = pin.Model(model)
+    for k, inertia in enumerate(model.inertias):
+        other.inertias[k] = pin.Inertia(factor * inertia.mass, inertia.lever, factor * inertia.inertia)
+    return other
+
+
+def test_a_robot_that_bears_weight_is_one_with_heavier_bodies(robot, rng):
+    state = robot.moved(rng, 0.3, 1.0)
+    terms, heavy = RobotTerms(robot.model, robot.frames), RobotTerms(scaled(robot.model, 1.15), robot.frames)
+    terms.update(state.q, state.v)
+    heavy.update(state.q, state.v)
+    terms.bear(replace(NO_LOAD, mass_scale=1.15))
+    np.testing.assert_allclose(terms.mass_matrix, heavy.mass_matrix, atol=1e-9)
+    np.testing.assert_allclose(terms.bias, heavy.bias, atol=1e-9)
+    assert terms.mass == pytest.approx(heavy.mass)
+    np.testing.assert_allclose(terms.com_velocity, heavy.com_velocity, atol=1e-12)
+
+
+def test_a_load_does_the_work_of_its_force_and_moment_on_the_torso(robot, rng):
+    state = robot.moved(rng, 0.3, 1.0)
+    terms = RobotTerms(robot.model, robot.frames)
+    terms.update(state.q, state.v)
+    free = terms.bias.copy()
+    turning = terms.torso_rotation @ terms.torso_velocity
+    frame = robot.model.getFrameId(robot.frames.torso)
+    moving = pin.getFrameVelocity(robot.model, terms.data, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED).linear
+    at_com = moving + np.cross(turning, terms.com - terms.torso_position)
+    terms.bear(replace(LOAD, mass_scale=1.0))
+    assert (free - terms.bias) @ state.v == pytest.approx(FORCE @ at_com + MOMENT @ turning)
+
+
+def test_an_update_ends_a_load(robot, rng):
+    state = robot.moved(rng)
+    used, fresh = RobotTerms(robot.model, robot.frames), RobotTerms(robot.model, robot.frames)
+    used.update(state.q, state.v)
+    used.bear(LOAD)
+    used.update(state.q, state.v)
+    fresh.update(state.q, state.v)
+    assert (used.mass, used.load) == (fresh.mass, NO_LOAD)
+    np.testing.assert_array_equal(used.mass_matrix, fresh.mass_matrix)
+    np.testing.assert_array_equal(used.bias, fresh.bias)
+
+
+def test_the_controller_moves_a_loaded_robot_as_an_unloaded_one(robot, references):
+    """By Newton and Euler the soles carry the load beside the motion, which is about the same in both."""
+    answers = []
+    # The point that drives the pendulum stays under the CoM; the ZMP is where the load moves it.
+    leant = np.array([FORCE[0] + MOMENT[1], FORCE[1] - MOMENT[0]]) / (1.15 * MASS * GRAVITY)
+    for load, offset in ((NO_LOAD, np.zeros(2)), (LOAD, leant)):
+        controller = robot.controller()
+        terms = controller.observe(SimpleNamespace(q=robot.standing, v=np.zeros(robot.nv)))
+        terms.bear(load)
+        reference = references[0](zmp_offset=offset)
+        qp = controller.build(terms, reference, controller.schedule.update(reference, FootSensing((490.0, 490.0))))
+        answer = controller.interpret(terms, controller.solve(qp)[1])
+        answers.append(answer.acceleration.copy())
+        momentum = pin.computeCentroidalMap(robot.model, robot.model.createData(), robot.standing)
+        changes = load.mass_scale * momentum @ answer.acceleration
+        soles = terms.sole_wrench_map @ answer.wrench.ravel()
+        weight = np.array([0.0, 0.0, load.mass_scale * MASS * GRAVITY])
+        np.testing.assert_allclose(soles[:3] + load.force - weight, changes[:3], atol=1e-3)
+        moment = soles[3:] - np.cross(terms.com, soles[:3]) + load.moment
+        np.testing.assert_allclose(moment, changes[3:], atol=1e-3)
+    np.testing.assert_allclose(*answers, atol=0.15)
+
+
+def test_the_controller_estimates_only_what_it_is_given_wrenches_for(robot, references, loaded):
+    reference, wrench = references[0](), np.zeros((2, 6))
+    wrench[:, 2] = 0.6 * MASS * GRAVITY
+    scales = []
+    for sensing in (loaded, replace(loaded, wrench=wrench)):
+        controller = robot.controller()
+        for _ in range(60):
+            controller.observe(SimpleNamespace(q=robot.standing, v=np.zeros(robot.nv)))
+            report = controller.update(reference, sensing)
+        scales.append(report.load.mass_scale)
+    assert scales[0] == 1.0
+    assert scales[1] == pytest.approx(1.2)

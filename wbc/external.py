@@ -1,0 +1,143 @@
+"""What acts on the robot beside gravity and the ground, and how heavy it is, from what its soles feel.
+
+Momentum changes by forces alone: over a span T the contact forces F and moments M about the origin, a force f and a
+moment about the CoM n from elsewhere, and the weight give, with the momentum p and the moment of momentum L about the
+origin (of which masses all are the model's times one factor s)
+
+    s m (g + Δv_z / T) = mean F_z,    f = s Δp / T - mean F,    n + c x f = s ΔL / T - mean M - s m c x g.
+
+No acceleration is measured for that, and how the robot moves and stands does not matter. It is the momentum observer
+of De Luca and Mattone (ICRA 2003), with means over spans and their medians in place of its low-pass. What lasts is told
+from a push, which has done what it does when it is over and may be hard: of what is new only little counts.
+"""
+
+import math
+
+import numpy as np
+
+from surefoot.wbc.model import RobotTerms, cross
+from surefoot.wbc.types import GRAVITY, NO_LOAD, Array, ExternalLoad
+
+SPAN = 0.02
+"""Time over which forces are held against the change of momentum [s]."""
+
+SPANS = 13
+"""Spans whose median is what lasts: a push for less than half of them, 0.12 s, is not in it."""
+
+LATEST = 3
+"""Spans whose median is what acts now: what lasts counts no longer than that."""
+
+KEPT = (4.0, 8.0)
+"""Force [N] and moment about the CoM [N·m] of what lasts that are none, and from which on all of it counts; undisturbed
+walks leave 1.2 N and 1.2 N·m."""
+
+SUDDEN = (10.0, 20.0)
+"""Likewise of what acts now; walking at 1 m/s leaves 8 N and 6 N·m."""
+
+BOUND = (40.0, 12.0)
+"""No more force and moment counts of what acts now and has not lasted: it may be a push, soon over [N, N·m]."""
+
+WEIGHT = (0.01, 0.02)
+"""Likewise of what the robot weighs more or less than its model, as a share of that; these leave 0.001 [-]."""
+
+RATES = (1000.0, 1000.0, 2.0)
+"""How fast force, moment and share of the weight may change [N/s, N·m/s, 1/s]."""
+
+MOST = 0.8
+"""Largest share of the weight by which the model's is set right [-]."""
+
+LEAST_PRESS = 0.3
+"""In less than this share of the weight on its soles, nearly in flight, no robot tells how heavy it is [-]."""
+
+_ROWS = (2, 3, 1)
+"""Numbers of an estimate: force x, y; moment x, y, z; share of the weight."""
+
+
+class LoadObserver:
+    """Estimates what lasts of an external force, and the true mass.
+
+    Args:
+        mass: the model's [kg].
+        period: time between two updates [s].
+
+    Attributes:
+        load: as estimated; `NO_LOAD` while there is none.
+    """
+
+    def __init__(self, mass: float, period: float) -> None:
+        self._mass, self._ticks = mass, max(1, round(SPAN / period))
+        self._span = self._ticks * period
+        self._felt, self._com = np.zeros(6), np.zeros(3)
+        self._momentum: Array | None = None
+        self._count = 0
+        self._spans = np.empty((0, sum(_ROWS)))
+        self._most, self._bound = np.repeat(RATES, _ROWS) * self._span, np.repeat(BOUND, _ROWS[:2])
+        self._estimate = np.zeros(sum(_ROWS))
+        self.load = NO_LOAD
+
+    def update(self, terms: RobotTerms, wrench: Array) -> ExternalLoad:
+        """The load as it is now known; call it once per control tick.
+
+        Args:
+            terms: of the state now.
+            wrench: of the soles, in their frames, shape (2, 6) [N, N·m].
+        """
+        if self._momentum is None:
+            self._momentum = self._moving(terms)
+            return self.load
+        self._felt += terms.sole_wrench_map @ wrench.ravel()
+        self._com += terms.com
+        self._count += 1
+        if self._count == self._ticks:
+            self._end_span(self._momentum, self._moving(terms))
+        return self.load
+
+    def _moving(self, terms: RobotTerms) -> Array:
+        """Momentum and moment of momentum about the origin, by the model's masses, shape (6,) [N·s, N·m·s]."""
+        momentum = self._mass * terms.com_velocity
+        return np.concatenate((momentum, terms.angular_momentum + cross(terms.com, momentum)))
+
+    def _end_span(self, before: Array, moving: Array) -> None:
+        """Hold the forces of a span against its change of momentum."""
+        felt, com, change = self._felt / self._ticks, self._com / self._ticks, (moving - before) / self._span
+        self._momentum, self._count = moving, 0
+        self._felt[:], self._com[:] = 0.0, 0.0
+        weight = self._mass * GRAVITY
+        pressing = float(change[2]) + weight
+        known = min(pressing, float(felt[2])) > LEAST_PRESS * weight
+        scale = float(felt[2]) / pressing if known else 1.0 + float(self._estimate[-1])
+        x, y, _, *moment = (scale * change - felt).tolist()
+        turning = cross(com, np.array([x, y, -scale * weight])).tolist()
+        span = [x, y, *(n - t for n, t in zip(moment, turning, strict=True)), scale - 1.0]
+        if math.isfinite(sum(span)):
+            self._spans = np.concatenate((self._spans[1 - SPANS :], [span]))
+            self._follow()
+
+    def _follow(self) -> None:
+        """Let the load follow what lasts."""
+        lasting, latest = _median(self._spans), _median(self._spans[-LATEST:])
+        share = _ramp(np.array([min(max(float(lasting[-1]), -MOST), MOST)]), WEIGHT)
+        if len(self._spans) < SPANS:
+            pull = np.zeros(len(lasting) - 1)
+        else:
+            kept = np.where(lasting * latest > 0.0, np.minimum(np.abs(lasting), np.abs(latest)), 0.0)
+            kept = _ramp(np.copysign(kept, latest)[:-1], KEPT)
+            sudden = np.clip(_ramp(latest[:-1], SUDDEN), -self._bound, self._bound)
+            pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
+        wanted = np.concatenate((pull, share))
+        self._estimate = self._estimate + np.clip(wanted - self._estimate, -self._most, self._most)
+        self.load = NO_LOAD
+        if self._estimate.any():
+            x, y, *moment, more = self._estimate.tolist()
+            self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
+
+
+def _ramp(values: Array, limits: tuple[float, float]) -> Array:
+    """Values of which nothing counts up to the first limit, all from the second one on."""
+    none, full = limits
+    return values * np.clip((np.abs(values) - none) / (full - none), 0.0, 1.0)
+
+
+def _median(spans: Array) -> Array:
+    """The median of each column; `numpy.median` takes ten times as long."""
+    return np.asarray(np.sort(spans, axis=0)[len(spans) // 2])

@@ -67,6 +67,7 @@ class Stepper:
         early: the swing foot has landed before its time.
         fixed: the next footstep may not be shifted any more.
         adapted: place or time of the next footstep are being adapted.
+        adapts: whether footsteps may be adapted at all.
     """
 
     def __init__(self, queue: StepQueue, window: int, legs: Legs | None = None) -> None:
@@ -80,7 +81,7 @@ class Stepper:
         self.early = False
         self.fixed = False
         self.adapted = False
-        self._adapts = parameters.step_adaptation is not StepAdaptation.NONE and self._terrain.free_footholds
+        self.adapts = parameters.step_adaptation is not StepAdaptation.NONE and self._terrain.free_footholds
         self.sample_time = parameters.sample_time
         self._lead = parameters.touchdown_lead / parameters.sample_time
         self.clock = Clock(self.sample_time)
@@ -113,10 +114,15 @@ class Stepper:
         return None if stance is None else stance.other
 
     @property
+    def remaining(self) -> int:
+        """Footsteps in sight that have not landed."""
+        return len(self.footsteps.feet) - 1 - self.row
+
+    @property
     def free(self) -> tuple[bool, bool]:
         """Whether the next two footsteps exist and may be shifted."""
-        remaining = len(self.footsteps.feet) - 1 - self.row
-        return (self._adapts and remaining >= 1 and not self.fixed, self._adapts and remaining >= 2)
+        remaining = self.remaining
+        return (self.adapts and remaining >= 1 and not self.fixed, self.adapts and remaining >= 2)
 
     @property
     def left(self) -> float:

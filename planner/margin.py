@@ -71,6 +71,26 @@ class Amends:
         return self if landed == self.landed else Amends(landed)
 
 
+FALL, FALL_TICKS = 0.05, 4
+"""How far outside what is captured the DCM is, for how many ticks on end, of who will fall [m, -]."""
+
+
+class Alarm:
+    """Knows a fall before it comes.
+
+    Attributes:
+        given: whether one is coming; it stays.
+    """
+
+    def __init__(self) -> None:
+        self.given, self._ticks = False, 0
+
+    def update(self, margin: float) -> None:
+        """Take the margin of a tick, with all that may be done [m]."""
+        self._ticks = self._ticks + 1 if margin < -FALL else 0
+        self.given |= self._ticks >= FALL_TICKS
+
+
 class Reserve:
     """What steps that are moved capture.
 

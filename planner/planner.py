@@ -12,7 +12,7 @@ from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.planner.laws.constraints import StepContext
 from surefoot.planner.laws.law import Motion, MotionProblem
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.planner.margin import MOST_STEPS, Amends, Reserve, planned_margin
+from surefoot.planner.margin import MOST_STEPS, Alarm, Amends, Reserve, planned_margin
 from surefoot.planner.model.jerk import block_moves, predict, trajectory
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.plan import WalkPlan
@@ -97,7 +97,7 @@ class WalkingPlanner:
         timing = adaptation is not StepAdaptation.LOCATION
         self._recovery = None if legs is None else Recovery(legs, p, timing)
         self._reserve = None if self._recovery is None else Reserve(self._recovery, p, half_size)
-        self._amends = Amends()
+        self._amends, self._alarm = Amends(), Alarm()
         self._stepper = Stepper(queue, self._outlook.reach + 1, legs)
         check_height(heights, gait, self._stepper.samples(self._outlook.reach), queue.support_heights)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
@@ -179,6 +179,9 @@ class WalkingPlanner:
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         situation = Situation.of(state.time, stepper, local, feet, support, window)
         margins = self._margins(situation, local, support, window)
+        # Steps that a law moves of its own accord may save more than the margin says.
+        if self._reserve is not None or not stepper.adapts:
+            self._alarm.update(margins[1])
         catch = self._catch(situation)
         left = stepper.time_left
         if catch is not None and stepper.end_in(catch.left, state.time):
@@ -334,4 +337,5 @@ class WalkingPlanner:
             age=age,
             late_touchdown=self._stepper.waited,
             early_touchdown=self._stepper.early,
+            falling=self._alarm.given,
         )

@@ -107,6 +107,7 @@ class PlanStatus:
         age: number of ticks since the last plan in which both axes were solved; 0 for a fresh one.
         late_touchdown: ticks for which the phase clock has waited for the touchdown.
         early_touchdown: the swing foot landed before its time; its foothold is fixed, the clock is not moved.
+        falling: no step will save the body any more, as far as the planner can tell.
     """
 
     solver: SolverStatus
@@ -116,6 +117,7 @@ class PlanStatus:
     age: int
     late_touchdown: int
     early_touchdown: bool
+    falling: bool = False
 
 
 @dataclass(frozen=True, slots=True)

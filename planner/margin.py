@@ -71,7 +71,7 @@ class Amends:
         return self if landed == self.landed else Amends(landed)
 
 
-FALL, FALL_TICKS = 0.05, 4
+FALL, FALL_TICKS = 0.02, 5
 """How far outside what is captured the DCM is, for how many ticks on end, of who will fall [m, -]."""
 
 

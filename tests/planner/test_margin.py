@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from surefoot.planner.margin import Amends, Reserve, planned_margin
+from surefoot.planner.margin import FALL, FALL_TICKS, Alarm, Amends, Reserve, planned_margin
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
@@ -265,6 +265,22 @@ def test_who_falls_was_outside_before(stand):
     _, made, fallen = plans(stand, 1.6)
     assert fallen is not None
     assert min(plan.balance.movable for plan in made if plan.time < fallen - 0.1) < -0.03
+
+
+def test_a_fall_is_told_after_some_ticks_on_end_outside_and_stays_told(stand):
+    alarm = Alarm()
+    for margin in [-2.0 * FALL] * (FALL_TICKS - 1) + [0.0] + [-2.0 * FALL] * (FALL_TICKS - 1) + [-0.5 * FALL] * 20:
+        alarm.update(margin)
+        assert not alarm.given
+    for _ in range(FALL_TICKS):
+        alarm.update(-2.0 * FALL)
+    alarm.update(1.0)
+    assert alarm.given
+    _, made, fallen = plans(stand, 1.6)
+    told = [plan.time for plan in made if plan.status.falling]
+    assert told[0] < fallen
+    _, made, _ = plans(stand, 0.4)
+    assert not any(plan.status.falling for plan in made)
 
 
 def test_amends_are_of_one_landing():

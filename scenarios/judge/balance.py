@@ -128,13 +128,13 @@ def dcm_error_rms(run: RunView) -> list[float] | None:
     return rms(position + velocity / prediction[:, 5:])
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/plan": ("capture_margin",)}, tolerance=(0.005, SHARE))
+@metric(unit="m", shown=(1e3, "mm"), reads={"/plan": ("capture_margin",)})
 def capture_margin_min(run: RunView) -> float | None:
     """Least that the DCM was inside what the steps to come could capture, moved as far as they may be [m]."""
     return _least(run.log["/plan"].field("capture_margin")[:, 1])
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/plan": ("step_shift",)}, least=0.0, tolerance=(0.001, SHARE))
+@metric(unit="m", shown=(1e3, "mm"), reads={"/plan": ("step_shift",)}, least=0.0)
 def step_shift(run: RunView) -> float | None:
     """Farthest that a plan moved the next landing from where it nominally was [m]."""
     return _most(np.linalg.norm(run.log["/plan"].field("step_shift"), axis=1))

@@ -57,6 +57,25 @@ def robot_legs() -> LegInertia:
     return closed_loop(resolve(load_scenario("diagonal-walk")), NoLog()).planning.planner.parameters.leg
 
 
+def print_margins(steps: int) -> None:
+    """What of a tick is the margin, of a walk whose steps may be moved."""
+    gait, legs = GaitParameters(steps=steps, step_length=0.2), resolve(load_scenario("walk")).legs
+    feet = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
+    planner, spent = WalkingPlanner(gait, feet, 0.22, 0.11, legs=legs), []
+    margins = planner._margins
+
+    def timed(*given):
+        start = time.perf_counter()
+        found = margins(*given)
+        spent.append(time.perf_counter() - start)
+        return found
+
+    planner._margins = timed
+    walk_pendulum(planner, feet, gait.duration, com=np.array([0.0, 0.0, 1.0]), substeps=2)
+    median, p90, p99 = np.percentile(spent, (50, 90, 99)) * 1e6
+    print(f"{'capturability margin, of a tick':<42} {median:>10.0f} {p90:>10.0f} {p99:>10.0f}")
+
+
 def print_ticks(steps: int) -> None:
     gait = GaitParameters(steps=steps, lateral_step=0.1)
     side = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]])
@@ -87,6 +106,7 @@ def main() -> None:
     options = parser.parse_args()
     print_matrices()
     print_ticks(options.steps)
+    print_margins(options.steps)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """What the planner hands over at every tick, and the references that follow from it at any instant."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -13,6 +13,7 @@ from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import (
     Array,
+    Balance,
     CentroidalState,
     FeetState,
     Foot,
@@ -50,6 +51,7 @@ class WalkPlan:
             level: a foot that rolls turns about its toe edge.
         roll: pitch of the foot that leaves the ground next or has just left it, None for one that stays level.
         status: how the plan was made.
+        balance: what is left to the body, and what of it the plan makes use of.
     """
 
     time: float
@@ -73,6 +75,7 @@ class WalkPlan:
     swing: SwingTrajectory | None
     roll: FootRoll | None
     status: PlanStatus
+    balance: Balance = field(default_factory=Balance)
 
 
 class Planner(Protocol):

@@ -7,10 +7,12 @@ import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations, check_height
+from surefoot.planner.geometry import signed_distance
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.planner.laws.constraints import StepContext
 from surefoot.planner.laws.law import Motion, MotionProblem
 from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.planner.margin import MOST_STEPS, Alarm, Amends, Reserve, planned_margin
 from surefoot.planner.model.jerk import block_moves, predict, trajectory
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.plan import WalkPlan
@@ -20,6 +22,7 @@ from surefoot.planner.references.window import Outlook, Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.types import (
     Array,
+    Balance,
     CentroidalState,
     FeetState,
     Foot,
@@ -97,6 +100,8 @@ class WalkingPlanner:
             legs = replace(legs, across=None)
         timing = adaptation is not StepAdaptation.LOCATION
         self._recovery = None if legs is None else Recovery(legs, p, timing)
+        self._reserve = None if self._recovery is None else Reserve(self._recovery, p, half_size)
+        self._amends, self._alarm = Amends(), Alarm()
         self._stepper = Stepper(queue, self._outlook.reach + 1, legs)
         check_height(heights, gait, self._stepper.samples(self._outlook.reach), queue.support_heights)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
@@ -169,27 +174,39 @@ class WalkingPlanner:
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         stepper = self._stepper
         stepper.advance(feet)
+        self._amends = self._amends.since(stepper.landed)
         self._obey(state.time)
         stepper.fix_imminent(state.time)
         support, local, window = self._sight(state)
         if self._steps_out(local, window):
             support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
-        catch = self._catch(state.time, local, feet, support, window)
+        situation = Situation.of(state.time, stepper, local, feet, support, window)
+        margins = self._margins(situation, local, support, window)
+        # Steps that a law moves of its own accord may save more than the margin says.
+        if self._reserve is not None or not stepper.adapts:
+            self._alarm.update(margins[1])
+        catch = self._catch(situation)
         if catch is not None and catch.more and stepper.stops:
             stepper.go_on()
             support, local, window = self._sight(state)
-            catch = self._catch(state.time, local, feet, support, window)
+            catch = self._catch(Situation.of(state.time, stepper, local, feet, support, window))
+        left = stepper.time_left
         if catch is not None and stepper.end_in(catch.left, state.time):
             window = self._window(state, support, local)
+            self._amends.delay += stepper.time_left - left
         problem = self._problem(local, feet, support, window, catch)
         # TVMPC, or the law that stands in its place.
         motion = self.motion = self._law.plan(problem)
-        footsteps = stepper.upcoming(state.time, motion.shifts @ support.rotation.T)
+        shifts = motion.shifts @ support.rotation.T
+        footsteps = stepper.upcoming(state.time, shifts)
+        if stepper.free[0]:
+            self._amends.shift = shifts[0]
         if stepper.swing_foot is not None:
             held = motion.solver is SolverStatus.HELD
             stepper.swing_to(footsteps[0].footstep, state.time, feet, held)
-        self._plan = self._world_plan(state.time, support, window, local, motion, footsteps)
+        balance = Balance(*margins, self._amends.shift, self._amends.delay)
+        self._plan = self._world_plan(state.time, support, window, local, motion, footsteps, balance)
         return self._plan
 
     def _sight(self, state: CentroidalState) -> tuple[Support, Array, Window]:
@@ -228,13 +245,30 @@ class WalkingPlanner:
         stepper.go_on(None if stance is None else stance.other)
         return True
 
-    def _catch(self, time: float, local: Array, feet: FeetState, support: Support, window: Window) -> Catch | None:
+    def _margins(
+        self, situation: Situation | None, local: Array, support: Support, window: Window
+    ) -> tuple[float, float]:
+        """How far the DCM is inside what the CoP alone captures, and with steps moved [m]."""
+        stepper, p, dcm = self._stepper, self.parameters, local[:, 0] + local[:, 1] / window.omega[0]
+        planned = planned_margin(dcm, window, p.sample_time, p.foot_margin)
+        if situation is None:
+            return (max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm)),) * 2
+        if self._reserve is None or not stepper.adapts:
+            return planned, planned
+        # Where any ground will do, steps are added when there are no more.
+        steps = MOST_STEPS if stepper.wide else min(stepper.remaining, MOST_STEPS)
+        moved = self._reserve.margins(situation, steps, fixed=not stepper.free[0])
+        return planned, max(planned, float(moved[-1]))
+
+    def _catch(self, situation: Situation | None) -> Catch | None:
         """What is made of the next step where the CoP alone does not hold the body."""
-        if self._recovery is None:
+        stepper = self._stepper
+        if self._recovery is None or situation is None or not stepper.free[0]:
             return None
-        situation = Situation.of(time, self._stepper, local, feet, support, window)
-        catch = None if situation is None else self._recovery.catch(situation)
-        self._stepper.adapted |= catch is not None
+        if stepper.swing_foot is not None and stepper.swing is None:
+            return None
+        catch = self._recovery.catch(situation)
+        stepper.adapted |= catch is not None
         return catch
 
     def _world_plan(
@@ -245,6 +279,7 @@ class WalkingPlanner:
         local: Array,
         motion: Motion,
         footsteps: tuple[PlannedFootstep, ...],
+        balance: Balance,
     ) -> WalkPlan:
         """What a tick has decided, in the world frame."""
         stepper, reference, to_world = self._stepper, window.reference, support.rotation.T
@@ -277,6 +312,7 @@ class WalkingPlanner:
             swing=stepper.swing,
             roll=stepper.roll(time),
             status=self._status(motion),
+            balance=balance,
         )
 
     def _problem(
@@ -339,4 +375,5 @@ class WalkingPlanner:
             age=age,
             late_touchdown=self._stepper.waited,
             early_touchdown=self._stepper.early,
+            falling=self._alarm.given,
         )

@@ -68,7 +68,7 @@ class Situation:
     def of(
         cls, time: float, stepper: Stepper, local: Array, feet: FeetState, support: Support, window: Window
     ) -> "Situation | None":
-        """That of a tick; None where no step is to come, or none that may be moved.
+        """That of a tick; None where no step is to come.
 
         Args:
             time: now [s].
@@ -80,7 +80,7 @@ class Situation:
         """
         phase, rotation, moving = stepper.info, support.rotation, np.zeros(2)
         swings = phase.kind is PhaseKind.SINGLE
-        if not (phase.leads_to and stepper.free[0]) or (swings and stepper.swing is None):
+        if not phase.leads_to:
             return None
         step = stepper.queue.steps[phase.leads_to]
         foot, swing = step.place.foot, stepper.queue.lift_off(phase.leads_to)
@@ -99,7 +99,7 @@ class Situation:
             double=0.0 if swings else phase.left,
             single=phase.left if swings else swing.samples * stepper.sample_time,
             cycle=stepper.queue.gait.period,
-            shortest=yet * math.sqrt(_PEAK * abs(step.climb) / _CLIMBING),
+            shortest=yet * math.sqrt(PEAK * abs(step.climb) / _CLIMBING),
             room=stepper.room(0),
             adapted=stepper.adapted,
             last=stepper.stops,
@@ -162,7 +162,7 @@ _WORTH = 0.001
 _CLIMBING = 5.0
 """Vertical acceleration of the body with which it may be lifted or lowered onto a step [m/s^2]."""
 
-_PEAK, _BRAKING, _GAINING = 5.77, 1.9, 3.9
+PEAK, _BRAKING, _GAINING = 5.77, 1.9, 3.9
 """Greatest acceleration of a quintic to rest over way / T², and what of it a speed / T takes off at its end and its
 begin [-]."""
 
@@ -174,10 +174,14 @@ class Recovery:
         legs: what they can do.
         parameters: of the planner.
         timing: whether times may change.
+
+    Attributes:
+        legs: what they can do.
+        timing: whether times may change.
     """
 
     def __init__(self, legs: Legs, parameters: PlannerParameters, timing: bool) -> None:
-        self.legs, self._timing = legs, timing
+        self.legs, self.timing = legs, timing
         self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
 
     def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
@@ -232,7 +236,8 @@ class Recovery:
         stretch = np.hypot(*(com - hip).T) - self.legs.radius
         cost = _TIME * ((doubles - now.double) ** 2 + (singles - now.single) ** 2) / now.cycle**2
         cost = cost + _STRETCH * np.maximum(stretch, 0.0) ** 2
-        low, high = self._swung(now, singles)
+        swung = self.swung(now, singles)
+        low, high = -swung[2:].T, swung[:2].T
         growth = np.exp(omega * now.cycle)
         # What the CoP holds until the step after it, or in a stand on both feet for ever.
         held_next = growth * _HELD * now.reference.half_size[-1] if now.last else (growth - 1.0) * half
@@ -258,24 +263,27 @@ class Recovery:
 
     def _times(self, now: Situation, fine: bool) -> tuple[Array, Array]:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
-        if fine or not self._timing:
+        if fine or not self.timing:
             return np.array([now.double]), np.array([now.single])
         singles = _around(now.single, max(SHORTEST["single"], now.shortest))
         doubles = _around(now.double, SHORTEST["double"]) if now.double else np.zeros(1)
         grid = np.meshgrid(doubles, singles, indexing="ij")
         return grid[0].ravel(), grid[1].ravel()
 
-    def _swung(self, now: Situation, singles: Array) -> tuple[Array, Array]:
-        """Boxes to which the foot can be swung in times, lower and upper corners, shape (n, 2) each [m].
+    def swung(self, now: Situation, singles: Array) -> Array:
+        """Where the foot can be swung to in times: front, left, minus back and minus right edge, shape (4, n) [m].
 
         It may always be swung as hard as it nominally is.
         """
-        time, (here, speed) = np.maximum(singles - self._lead, self._sample_time)[:, None], now.swing
-        usual = np.abs(_PEAK * (now.nominal - here) / time[-1] ** 2 - _BRAKING * speed / time[-1])
-        most = np.maximum(self.legs.acceleration, usual) * time**2
-        onward = (most + _BRAKING * np.abs(speed) * time) / _PEAK
-        back = (most - _GAINING * np.abs(speed) * time) / _PEAK
-        return here - np.where(speed > 0.0, back, onward), here + np.where(speed > 0.0, onward, back)
+        time, edges = np.maximum(singles - self._lead, self._sample_time), []
+        usual, (here, speeds) = float(time[-1]), now.swing.tolist()
+        for side in (1.0, -1.0):
+            for at, speed, aim, most in zip(here, speeds, now.nominal.tolist(), self.legs.acceleration, strict=True):
+                hardest = max(most, abs(PEAK * (aim - at) / (usual * usual) - _BRAKING * speed / usual))
+                onward = side * speed
+                edges.append((side * at, hardest, (_BRAKING if onward > 0.0 else _GAINING) * onward))
+        place, hardest, onward = np.array(edges).T[:, :, None]
+        return np.asarray(place + (hardest * time**2 + onward * time) / PEAK)
 
 
 def _shared(box: tuple[Array, Array], room: Array) -> tuple[Array, Array] | None:

@@ -1,5 +1,6 @@
 """Values that cross the planner's boundary. World frame, SI units; arrays are float64."""
 
+import math
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -121,6 +122,7 @@ class PlanStatus:
         age: number of ticks since the last plan in which both axes were solved; 0 for a fresh one.
         late_touchdown: ticks for which the phase clock has waited for the touchdown.
         early_touchdown: the swing foot landed before its time; its foothold is fixed, the clock is not moved.
+        falling: no step will save the body any more, as far as the planner can tell.
     """
 
     solver: SolverStatus
@@ -130,6 +132,25 @@ class PlanStatus:
     age: int
     late_touchdown: int
     early_touchdown: bool
+    falling: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Balance:
+    """What is left to the body, and what of it a plan makes use of; NaN from a planner that does not tell.
+
+    Attributes:
+        planned: how far the DCM is inside what the CoP alone captures, all steps where and when they are planned, or
+            inside the support where none is to come; negative outside, by the worse axis [m].
+        movable: the same where the steps to come may be moved as far as legs, and what may be adapted, let them [m].
+        shift: by how much the next landing is moved from where it nominally is, world frame, shape (2,) [m].
+        delay: how much later than nominally it is made to come [s].
+    """
+
+    planned: float = math.nan
+    movable: float = math.nan
+    shift: Array = field(default_factory=lambda: np.full(2, math.nan))
+    delay: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,6 +68,7 @@ class Stepper:
         fixed: the next footstep may not be shifted any more.
         adapted: place or time of the next footstep are being adapted.
         wide: whether footsteps may land anywhere in reach, and those after them are shifted with them.
+        adapts: whether footsteps may be adapted at all.
     """
 
     def __init__(self, queue: StepQueue, window: int, legs: Legs | None = None) -> None:
@@ -84,7 +85,7 @@ class Stepper:
         self.wide = self._terrain.free_footholds
         # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
         adapts = parameters.step_adaptation is not StepAdaptation.NONE
-        self._adapts = adapts and (self.wide or legs is not None)
+        self.adapts = adapts and (self.wide or legs is not None)
         self.sample_time = parameters.sample_time
         self._lead = parameters.touchdown_lead / parameters.sample_time
         self.clock = Clock(self.sample_time)
@@ -117,10 +118,15 @@ class Stepper:
         return None if stance is None else stance.other
 
     @property
+    def remaining(self) -> int:
+        """Footsteps in sight that have not landed."""
+        return len(self.footsteps.feet) - 1 - self.row
+
+    @property
     def free(self) -> tuple[bool, bool]:
         """Whether the next two footsteps exist and may be shifted."""
-        remaining = len(self.footsteps.feet) - 1 - self.row
-        return (self._adapts and remaining >= 1 and not self.fixed, self._adapts and remaining >= 2)
+        remaining = self.remaining
+        return (self.adapts and remaining >= 1 and not self.fixed, self.adapts and remaining >= 2)
 
     @property
     def left(self) -> float:
@@ -156,7 +162,7 @@ class Stepper:
     @property
     def stands(self) -> bool:
         """Whether no foot is to swing before the robot stands, which may be moved to step."""
-        return self._adapts and self.info.leads_to == 0
+        return self.adapts and self.info.leads_to == 0
 
     @property
     def stops(self) -> bool:

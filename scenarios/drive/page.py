@@ -21,7 +21,7 @@ from surefoot.scenarios.drive.server import PageServer
 from surefoot.scenarios.drive.session import Gait, Input, Pace, Push, Reset, Status, Velocity
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.scenarios.show.replay.content import Array
-from surefoot.scenarios.show.replay.page import AXES, BALANCE, FEET_NAMES
+from surefoot.scenarios.show.replay.page import AXES, BALANCE, FEET_NAMES, MARGINS
 from surefoot.scenarios.show.replay.scene import LOCALHOST, PORT, ViserScene, rgb, serving
 from surefoot.scenarios.simulation import Tick
 
@@ -227,9 +227,10 @@ class _Page(Template):
 def _page(viewer: str, port: int, walk: Walk) -> str:
     """Viser's page, told where its server is, with the controls beside it."""
     gait = {key: float(getattr(walk.gait, key)) for key in GAIT_RANGES}
-    curves = [
-        {"name": name, "color": palette.hexadecimal(color), "planned": dashed} for name, color, dashed, *_ in BALANCE
-    ]
+    curves, margins = (
+        [{"name": name, "color": palette.hexadecimal(color), "planned": dashed} for name, color, dashed, *_ in drawn]
+        for drawn in (BALANCE, MARGINS)
+    )
     feet = [
         {"name": name, "color": palette.hexadecimal(color), "planned": False}
         for name, color in zip(FEET_NAMES, palette.FEET, strict=True)
@@ -237,7 +238,7 @@ def _page(viewer: str, port: int, walk: Walk) -> str:
     data = {
         "charts": [
             {"label": label, "digits": digits, "curves": drawn}
-            for (label, digits), drawn in zip(AXES, (curves, curves, feet), strict=True)
+            for (label, digits), drawn in zip(AXES, (curves, curves, margins, feet), strict=True)
         ],
         "limits": _numbers(LIMITS),
         "gait": {key: [*GAIT_RANGES[key], value] for key, value in gait.items()},

@@ -114,8 +114,8 @@ class Pictures:
             look_at=np.array(self._look_at),
         )
 
-    def values(self, tick: Tick) -> tuple[list[float], list[float], list[float]]:
-        """What the charts show: ZMP, CoM, DCM, then as planned, ahead and to the left of the stance foot; forces.
+    def values(self, tick: Tick) -> tuple[list[float], ...]:
+        """What the charts show: ZMP, CoM, DCM, then as planned, ahead and left of the stance foot; margins; forces.
 
         After `picture` of the same tick.
         """
@@ -129,7 +129,8 @@ class Pictures:
         yaw = float(np.mean([foot.yaw for foot in feet]))
         cosine, sine = math.cos(yaw), math.sin(yaw)
         x, y = (points - place).T
-        return (cosine * x + sine * y).tolist(), (cosine * y - sine * x).tolist(), measurement.wrench[:, 2].tolist()
+        ahead, left, balance = cosine * x + sine * y, cosine * y - sine * x, plan.balance
+        return ahead.tolist(), left.tolist(), [balance.planned, balance.movable], measurement.wrench[:, 2].tolist()
 
     @property
     def alone(self) -> int:

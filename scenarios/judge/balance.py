@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
-from surefoot.scenarios.judge.metric import metric, reduction
+from surefoot.scenarios.judge.metric import SHARE, metric, reduction
 
 Rows = NDArray[np.intp]
 
@@ -126,6 +126,35 @@ def dcm_error_rms(run: RunView) -> list[float] | None:
     position = truth.field("com")[rows, :2] - prediction[:, :2]
     velocity = truth.field("com_velocity")[rows, :2] - prediction[:, 3:5]
     return rms(position + velocity / prediction[:, 5:])
+
+
+@metric(unit="m", shown=(1e3, "mm"), reads={"/plan": ("capture_margin",)})
+def capture_margin_min(run: RunView) -> float | None:
+    """Least that the DCM was inside what the steps to come could capture, moved as far as they may be [m]."""
+    return _least(run.log["/plan"].field("capture_margin")[:, 1])
+
+
+@metric(unit="m", shown=(1e3, "mm"), reads={"/plan": ("step_shift",)}, least=0.0)
+def step_shift(run: RunView) -> float | None:
+    """Farthest that a plan moved the next landing from where it nominally was [m]."""
+    return _most(np.linalg.norm(run.log["/plan"].field("step_shift"), axis=1))
+
+
+@metric(unit="s", reads={"/plan": ("step_delay",)}, least=0.0, tolerance=(0.001, SHARE))
+def step_timing(run: RunView) -> float | None:
+    """Most by which a plan made the next landing come sooner or later than nominally [s]."""
+    return _most(np.abs(run.log["/plan"].field("step_delay")))
+
+
+def _least(values: Array) -> float | None:
+    """The least of those that a planner has told; None where it tells none."""
+    told = values[np.isfinite(values)]
+    return float(told.min()) if len(told) else None
+
+
+def _most(values: Array) -> float | None:
+    least = _least(-values)
+    return None if least is None else -least
 
 
 def rms(error: Array) -> list[float] | None:

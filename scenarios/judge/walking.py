@@ -36,6 +36,16 @@ def fall_time(run: RunView) -> float | None:
     return float(run.time[fallen[0]]) if len(fallen) else None
 
 
+@metric(unit="s", reads={**FALL_READS, "/plan": ("falling",)}, tolerance=(0.05, 0.0))
+def fall_warning(run: RunView) -> float | None:
+    """How long before a fall the planner knew of it, negative where it said so of none that came [s]."""
+    known = np.flatnonzero(run.log["/plan"].field("falling"))
+    if not len(known):
+        return None
+    told, fallen = float(run.log["/plan"].time[known[0]]), fall_time(run)
+    return told - float(run.time[-1]) if fallen is None else fallen - told
+
+
 @metric(unit="s", reads={"/truth": ()}, least=0.0, tolerance=(0.001, 0.0))
 def duration(run: RunView) -> float:
     """Simulated time [s]."""

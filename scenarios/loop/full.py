@@ -37,6 +37,8 @@ from surefoot.sim.measurement import Measurement
 from surefoot.sim.pushes import Push
 from surefoot.sim.world import World
 from surefoot.wbc.controller import Sole, WholeBodyController
+from surefoot.wbc.falling import GivingWay
+from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.statics import standing_torque
 from surefoot.wbc.tasks import TASKS, TaskFactory
@@ -103,7 +105,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     estimator = (parts.estimator or ESTIMATORS[walk.sensing.source])(walk)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    walker = SimulatedRobot(walk, world, controller, estimator, body_recorder, view)
+    walker = SimulatedRobot(walk, world, controller, estimator, body.limits, body_recorder, view)
     faults = FaultSchedule(walk.faults, walk.rates.control)
     planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands)
     return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
@@ -117,6 +119,7 @@ class SimulatedRobot:
         world: reset to the start.
         controller: of the robot.
         estimator: gives the state that the controller gets.
+        limits: of the joints.
         recorder: of its channels.
         view: of what MCAP viewers show.
 
@@ -134,6 +137,7 @@ class SimulatedRobot:
         world: World,
         controller: WholeBodyController,
         estimator: Estimator,
+        limits: JointLimits,
         recorder: Recorder,
         view: BodyView,
     ) -> None:
@@ -149,6 +153,7 @@ class SimulatedRobot:
         self._zero_torque = np.zeros(controller.layout.joints)
         self._landed, self._load = (True, True), NO_LOAD
         self._estimates = walk.sensing.force_estimate
+        self._giving_way = GivingWay(limits)
         self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
         self.measurement: Measurement
         self.state: RobotState
@@ -192,7 +197,9 @@ class SimulatedRobot:
         sensing = FootSensing(forces, wrench if self._estimates else None)
         report = self.controller.update(self._reference, sensing, self._faults.active("qp_failure", tick))
         self._landed, self._load = report.active, report.load
-        self._torque = self._zero_torque if self._faults.active("torque_loss", tick) else report.torque
+        # Who falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
+        torque = self._giving_way.torque(self.state.q[7:], self.state.v[6:]) if plan.status.falling else report.torque
+        self._torque = self._zero_torque if self._faults.active("torque_loss", tick) else torque
         self.report = report
         return report.build_time, report.solve_time
 

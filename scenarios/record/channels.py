@@ -168,6 +168,10 @@ def plan(n: Sizes) -> ChannelSpec:
         _real("slack", 2, "m", "", "of the ZMP bounds and of the terminal bound"),
         _int("held", "1: no new plan, the last one is held"),
         _int("infeasible", "1: the profile's hard constraints had no solution and were softened by the slack"),
+        _real("capture_margin", 2, "m", "", "of the DCM inside what is captured: steps as planned, steps moved"),
+        _real("step_shift", 2, "m", "world", "by how much the next landing is moved from where it nominally is"),
+        _scalar("step_delay", "s", "how much later than nominally the next landing is made to come"),
+        _int("falling", "1: no step will save the body any more"),
     )
     return ChannelSpec("/plan", "Plan", fields, plan.__doc__ or "")
 

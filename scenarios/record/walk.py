@@ -90,11 +90,11 @@ class WalkRecorder:
 
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
         """A new plan with its horizon and footsteps."""
-        status = plan.status
+        status, balance = plan.status, plan.balance
         self._plan.append(
             time_ns, plan.com, plan.com_velocity, plan.zmp, plan.zmp_reference, plan.jerk, plan.omega,
             status.solver, (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD,
-            status.infeasible,
+            status.infeasible, (balance.planned, balance.movable), balance.shift, balance.delay, status.falling,
         )  # fmt: skip
         ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
         self._footsteps.append(

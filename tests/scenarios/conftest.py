@@ -1,7 +1,7 @@
 """A robot, robots and a closed loop that need neither engine: the log is filled with motion of known metrics."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -45,7 +45,8 @@ class Motion:
     """What the fake loop writes; the defaults meet the default criteria of a scenario of two steps.
 
     Each half second: stand, step on the left foot, step on the right foot, stand. The soles turn from the first yaw by
-    the second over the run; the pause holds the CoM on both feet from 1 s on.
+    the second over the run; the pause holds the CoM on both feet from 1 s on. The margins of the plans are told, untold
+    (NaN) or absent, as before there were any; a fall is known 0.2 s before.
     """
 
     duration: float = 4.0
@@ -56,6 +57,7 @@ class Motion:
     yaw: tuple[float, float] = (0.0, 0.0)
     pause: float = 0.0
     fall_at: float = np.inf
+    margins: str = "told"
     stop_at: float = np.inf
     end: End | None = None
     raises: BaseException | None = None
@@ -73,7 +75,10 @@ class Motion:
 class _Loop:
     def __init__(self, motion: Motion, writer: LogWriter) -> None:
         self.motion = motion
-        self.out = {make.__name__: writer.channel(make(SIZES)) for make in CHANNELS}
+        specs = {make.__name__: make(SIZES) for make in CHANNELS}
+        if motion.margins == "absent":
+            specs["plan"] = replace(specs["plan"], fields=specs["plan"].fields[:-4])
+        self.out = {name: writer.channel(spec) for name, spec in specs.items()}
 
     def run(self, on_progress: Callable[[Progress], None]) -> None:
         motion = self.motion
@@ -135,11 +140,14 @@ class _Loop:
         com = self.com(times) - np.array(self.motion.plan_offset)
         velocity = np.zeros((51, 3))
         velocity[:, 0] = np.where((times >= 0.5 - 1e-9) & (times < 1.5 - 1e-9), self.motion.speed, 0.0)
-        status = (0, [0, 0], 0, 0)
+        status, balance = (0, [0, 0], 0, 0), ([0.05, 0.3 - 0.1 * time], [0.003, -0.004], -0.02)
+        if self.motion.margins == "untold":
+            balance = [np.nan] * 2, [np.nan] * 2, np.nan
+        told = () if self.motion.margins == "absent" else (*balance, time >= self.motion.fall_at - 0.2)
         flat = np.zeros((51, 2))
         given = (self.com(time) + np.array([0.001, 0.0, 0.0]), velocity[0])
         self.out["planner_state"].append(ns, *given, np.zeros(2), *given, np.zeros(2), np.zeros(2))
-        self.out["plan"].append(ns, com, velocity, flat, flat, np.zeros((50, 2)), np.full(51, 3.13), *status)
+        self.out["plan"].append(ns, com, velocity, flat, flat, np.zeros((50, 2)), np.full(51, 3.13), *status, *told)
 
 
 @pytest.fixture

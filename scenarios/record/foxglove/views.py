@@ -96,7 +96,9 @@ class PointView:
 
     def events(self, time_ns: int, contact: tuple[bool, bool], force: Array, plan: WalkPlan, lost: bool) -> None:
         """Say what has changed since the last control tick; ``force`` is the push, shape (2,) [N]."""
-        self._events.update(time_ns, contact, bool(np.dot(force, force)), plan.status.solver is _HELD, lost)
+        self._events.update(
+            time_ns, contact, bool(np.dot(force, force)), plan.status.solver is _HELD, plan.status.falling, lost
+        )
 
     def picture(
         self, tick: int, time_ns: int, com: Array, com_velocity: Array, zmp: Array, plan: WalkPlan, sample: PlanSample
@@ -117,9 +119,11 @@ class EventLog:
 
     def __init__(self, writer: LogWriter) -> None:
         self._channel = writer.message_channel(TOPIC, published(Log), "what happens, in words")
-        self._last = ((True, True), False, False, False)
+        self._last = ((True, True), False, False, False, False)
 
-    def update(self, time_ns: int, contact: tuple[bool, bool], pushed: bool, fallback: bool, fallen: bool) -> None:
+    def update(
+        self, time_ns: int, contact: tuple[bool, bool], pushed: bool, fallback: bool, falling: bool, fallen: bool
+    ) -> None:
         """Say what has changed since the last call; before the first one the robot stood in peace.
 
         Args:
@@ -127,12 +131,13 @@ class EventLog:
             contact: feet that stand, (left, right).
             pushed: whether a push acts.
             fallback: whether the controller or the planner goes on without a solution.
+            falling: whether the planner knows that a fall is coming.
             fallen: whether the robot has fallen.
         """
-        now = (contact, pushed, fallback, fallen)
+        now = (contact, pushed, fallback, falling, fallen)
         if now == self._last:
             return
-        (last_contact, was_pushed, fell_back, had_fallen), self._last = self._last, now
+        (last_contact, was_pushed, fell_back, was_falling, had_fallen), self._last = self._last, now
         for foot, before, after in zip(_FEET, last_contact, contact, strict=True):
             if after != before:
                 kind = "touchdown" if after else "lift-off"
@@ -142,6 +147,8 @@ class EventLog:
         if fallback != fell_back:
             words = "no solution, the fallback acts" if fallback else "solved again, the fallback ends"
             self._say(time_ns, Log.WARNING, "fallback", words)
+        if falling and not was_falling:
+            self._say(time_ns, Log.ERROR, "falling", "no step will save the robot, a fall is coming")
         if fallen and not had_fallen:
             self._say(time_ns, Log.ERROR, "fall", "the robot falls")
 
@@ -187,7 +194,7 @@ class BodyView:
         """Say what has changed since the last control tick."""
         force = measurement.external_force
         fallback = report.status >= _FALLBACK or plan.status.solver is _HELD
-        self._events.update(time_ns, report.active, bool(np.dot(force, force)), fallback, fallen)
+        self._events.update(time_ns, report.active, bool(np.dot(force, force)), fallback, plan.status.falling, fallen)
 
     def picture(
         self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample

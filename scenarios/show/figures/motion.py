@@ -53,7 +53,7 @@ def strips(view: LogView) -> tuple[tuple[float, float], ...]:
 def draw_balance(area: Area, view: LogView, background: Background) -> None:
     """Draw positions, in strips of a few seconds each, then errors over all the time."""
     stretches = strips(view)
-    parts = area.subfigures(len(stretches) + 1, 1, squeeze=False, height_ratios=[*[2.6] * len(stretches), 2.0])[:, 0]
+    parts = area.subfigures(len(stretches) + 1, 1, squeeze=False, height_ratios=[*[2.6] * len(stretches), 2.9])[:, 0]
     for number, (part, stretch) in enumerate(zip(parts[:-1], stretches, strict=True)):
         axes = time_axes(part, view, BALANCE_TITLE if number == 0 else "", (1.0, 1.0), stretch)
         background.shade(axes)
@@ -69,13 +69,22 @@ def draw_balance(area: Area, view: LogView, background: Background) -> None:
 
 
 def _draw_errors(area: Area, view: LogView, background: Background) -> None:
-    axes = time_axes(area, view, "", (1.0, 1.0))
-    background.shade(axes)
+    *axes, margin = time_axes(area, view, "", (1.0, 1.0, 1.0))
+    background.shade([*axes, margin])
     for axis, one in enumerate(axes):
         one.set_ylabel(f"{_directions(view)[axis]}\nerror [mm]")
         with or_say(one):
             _errors(one, view, axis)
+    margin.set_ylabel("capture\nmargin [m]")
+    with or_say(margin):
+        planned, movable = view.field("/plan", "capture_margin", 2).T
+        margin.axhline(0.0, color=GREY, linewidth=0.6)
+        reference_curve(
+            margin, view.time("/plan"), planned, "DCM inside what is captured, steps as planned", DCM_PLANNED
+        )
+        curve(margin, view.time("/plan"), movable, "the same, steps moved", DCM, linewidth=1.2)
     legend(axes[0], 3)
+    legend(margin, 2)
 
 
 def _directions(view: LogView) -> tuple[str, str]:

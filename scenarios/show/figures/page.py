@@ -48,7 +48,7 @@ class Family:
 
 
 FIGURES: dict[str, Family] = {
-    "balance": Family(draw_balance, (_A3, 6.0), longer=2.7),
+    "balance": Family(draw_balance, (_A3, 7.0), longer=2.7),
     "top-view": Family(top_view.draw, (_A3, 5.5), over_time=False),
     "height": Family(draw_height, (_A4, 4.5)),
     "feet": Family(draw_feet, (_A4, 4.5)),
@@ -70,7 +70,7 @@ class Row:
 
 
 _COMPACT = (
-    Row(5.1, ("balance",)),
+    Row(6.0, ("balance",)),
     Row(3.6, ("top-view", "height")),
     Row(3.9, ("feet", "torques")),
     Row(3.3, ("soles", "grip")),
@@ -78,7 +78,7 @@ _COMPACT = (
     Row(3.3, ("solver",)),
 )
 _WIDE = (
-    Row(4.8, ("balance",)),
+    Row(5.7, ("balance",)),
     Row(0.9, ("top-view",)),
     Row(3.1, ("height", "feet")),
     Row(3.3, ("soles", "grip")),

@@ -70,14 +70,22 @@ BALANCE = (
 )
 """Points seen from the stance foot: name, colour, whether planned, topic, field and its size."""
 
-AXES = (("forward of the stance foot [m]", 3), ("left of the stance foot [m]", 3), ("normal force [N]", 0))
+MARGINS = (("steps as planned", DCM_PLANNED, True), ("steps moved", DCM, False))
+"""The columns of ``/plan.capture_margin``: name, colour, whether dashed."""
+
+AXES = (
+    ("forward of the stance foot [m]", 3),
+    ("left of the stance foot [m]", 3),
+    ("DCM inside what is captured [m]", 3),
+    ("normal force [N]", 0),
+)
 """Label of each chart, and digits after the point."""
 
 FEET_NAMES = ("left foot", "right foot")
 
 
 def charts(view: LogView, time: Array) -> tuple[Chart, ...]:
-    """Balance seen from the stance foot, and the forces under the feet, at the times of the frames."""
+    """Balance seen from the stance foot, its margins, and the forces under the feet, at the times of the frames."""
     forward, left = [], []
     for name, color, planned, topic, field, size in BALANCE:
         try:
@@ -86,8 +94,17 @@ def charts(view: LogView, time: Array) -> tuple[Chart, ...]:
             continue
         forward.append(Curve(name, color, planned, seen[:, 0]))
         left.append(Curve(name, color, planned, seen[:, 1]))
-    drawn = (forward, left, _forces(view, time))
+    drawn = (forward, left, _margins(view, time), _forces(view, time))
     return tuple(Chart(label, digits, tuple(curves)) for (label, digits), curves in zip(AXES, drawn, strict=True))
+
+
+def _margins(view: LogView, time: Array) -> Iterator[Curve]:
+    try:
+        margins = _sampled(view, "/plan", "capture_margin", 2, time)
+    except MissingError:
+        return
+    for (name, color, dashed), values in zip(MARGINS, margins.T, strict=True):
+        yield Curve(name, color, dashed, values)
 
 
 def _forces(view: LogView, time: Array) -> Iterator[Curve]:

@@ -12,9 +12,10 @@ from surefoot.scenarios.loop.run import run_scenario
 pytestmark = pytest.mark.unit
 
 NAMES = (
-    "fell fall_time duration steps_planned place_error heading_error steps_taken touchdowns_missed standing_time_final "
-    "standing_time_between zmp_inside_fraction "
+    "fell fall_time fall_warning duration steps_planned place_error heading_error steps_taken touchdowns_missed "
+    "standing_time_final standing_time_between zmp_inside_fraction "
     "zmp_excursion_max cop_ratio_p99 cop_ratio_max zmp_error_rms zmp_error_max com_error_rms dcm_error_rms "
+    "capture_margin_min step_shift step_timing "
     "footstep_error_max stair_edge_margin_min swing_clearance_min foot_slip_max stance_twist_max stance_tilt_max "
     "unplanned_flight_time self_contact_time torque_ratio_max knee_torque_rms torque_at_limit_fraction "
     "joint_limit_margin_min joint_speed_ratio_max knee_angle_mean cost_of_transport speed_mean "
@@ -36,6 +37,7 @@ def test_all_names_of_the_contract_are_there(metrics, motion):
     assert " ".join(found) == NAMES
     assert [name for name, value in found.items() if value is None] == [
         "fall_time",
+        "fall_warning",
         "place_error",
         "heading_error",
         "stair_edge_margin_min",
@@ -177,3 +179,26 @@ def test_a_log_of_something_else(tmp_path):
         pass
     with pytest.raises(LogError, match="does not describe a run"):
         compute(read(tmp_path / "log.mcap"))
+
+
+def test_margins_and_what_was_made_of_steps(metrics, motion):
+    """The margin falls by 0.1 m/s from 0.3 m; each plan moves the next landing by 3 and 4 mm and makes it sooner."""
+    found = metrics(motion())
+    assert found["capture_margin_min"] == pytest.approx(0.3 - 0.1 * 3.98)
+    assert found["step_shift"] == pytest.approx(0.005)
+    assert found["step_timing"] == pytest.approx(0.02)
+    assert found["fall_warning"] is None
+
+
+def test_a_fall_is_known_before_it_comes(metrics, motion):
+    found = metrics(motion(fall_at=1.2))
+    assert found["fall_warning"] == pytest.approx(0.2, abs=0.021)
+    assert found["fall_time"] == pytest.approx(1.2)
+
+
+@pytest.mark.parametrize("how", [{"margins": "absent"}, {"margins": "untold"}])
+def test_a_log_without_margins_tells_none(metrics, motion, how):
+    """That of a version before them, and that of a planner of one's own, whose plans have none."""
+    found = metrics(motion(**how))
+    assert {found[name] for name in ("capture_margin_min", "step_shift", "step_timing")} == {None}
+    assert found["dcm_error_rms"] is not None

@@ -47,7 +47,7 @@ def texts(figure: Figure) -> list[str]:
 def test_the_page_has_every_figure_with_units_on_its_axes(body):
     figure = page(LogView(read(body)), "header")
     labels = [axes.get_ylabel() for axes in figure.findobj(Axes)]
-    assert len(labels) == 4 + 1 + 2 + 2 + 3 + 2 + 3 + 6 + 3
+    assert len(labels) == 5 + 1 + 2 + 2 + 3 + 2 + 3 + 6 + 3
     assert [label for label in labels if "[" not in label] == 2 * [""]
     assert {"x [m]", "friction [%]", "beyond the plan [mm]"} <= set(labels)  # no feet are planned in this log
     words = texts(figure)

@@ -54,8 +54,9 @@ def test_a_page_is_whole_and_alone(surefoot, log_path, tmp_path):
     assert [file.name for file in tmp_path.iterdir()] == ["walk.html"]
     data = json.loads(re.findall(r"<script id=surefoot-data type=application/json>(.*?)</script>", text)[0])
     assert data["layers"][:2] == ["/Ground", "/Robot"]
-    forward, left, force = data["charts"]
-    assert [chart["label"][-3:] for chart in (forward, left, force)] == ["[m]", "[m]", "[N]"]
+    forward, left, margins, force = data["charts"]
+    assert [chart["label"][-3:] for chart in data["charts"]] == ["[m]", "[m]", "[m]", "[N]"]
+    assert [curve["name"] for curve in margins["curves"]] in ([], ["steps as planned", "steps moved"])
     assert [curve["name"] for curve in force["curves"]] == ["left foot", "right foot"]
     assert {curve["name"] for curve in left["curves"]} >= {"ZMP", "CoM", "DCM", "ZMP planned"}
     assert all(len(curve["values"]) == len(data["time"]) for chart in data["charts"] for curve in chart["curves"])

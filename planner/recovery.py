@@ -131,7 +131,7 @@ _MARGIN = 0.02
 _HELD = 0.85
 """Share of the ZMP box of a stand that holds the body without a step [-]."""
 
-ASTRIDE, CALM = 0.05, 0.005
+ASTRIDE, CALM = 0.03, 0.005
 """Distance of a foot from where it was to stand beside the other one from which on it is brought there, and the DCM
 error up to which the robot is calm enough for that [m]."""
 

@@ -200,6 +200,14 @@ def stance_tilt_max(run: RunView) -> float | None:
     return max(largest, default=None)
 
 
+@metric(
+    shown=(1.0, "body weights"), reads={"/contact": ("normal_force",)}, body=True, least=0.0, tolerance=(0.02, 0.02)
+)
+def contact_force_peak(run: RunView) -> float:
+    """Greatest normal force on both soles together, over the weight [-]."""
+    return float(run.field("/contact", "normal_force").sum(axis=1).max() / (run.constants.mass * GRAVITY))
+
+
 @metric(unit="s", reads=_STANCE_READS, body=True, least=0.0)
 def unplanned_flight_time(run: RunView) -> float:
     """How long, after the first load, no foot carried load though one was planned in contact [s]."""

@@ -123,7 +123,7 @@ class _Loop:
         joints = np.array([0.1, 0.3, 0.1, -0.5])
         out["measurement"].append(ns, joints, np.full(4, 0.5), np.full(4, -10.0), zero3, zero3, zero6, zero6, zero3)
         out["truth"].append(ns, np.zeros(11), np.zeros(10), com, velocity, zero3, *soles, 0.01, 0, 0)
-        out["estimate"].append(ns, com + np.array([0.001, 0, 0]), velocity, com[:2], zero3, zero6)
+        out["estimate"].append(ns, com + np.array([0.001, 0, 0]), velocity, com[:2], zero3, zero6, zero3, zero3, 100.0)
         zmp = np.array([*(center + offset), 0.0])
         out["contact"].append(ns, zmp, 490.0 * np.array(loaded), loaded, loaded, loaded, cop, cop)
         out["reference"].append(

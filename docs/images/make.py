@@ -107,8 +107,10 @@ OF_CAMPAIGNS = (
     "robustness.png",
     "courses.png",
     "drive.gif",
+    *(f"recovery-{name}.gif" for name in ("forward", "crossing", "standing", "sideways", "stairs", "lasting")),
 )
-"""Pictures of campaigns that take hours, which `campaigns.py` draws from their results, one as it drew them before."""
+"""Pictures that others draw: `campaigns.py` those of campaigns that take hours, one as it drew it before, `courses.py`,
+`drive.py` and `recoveries.py`."""
 
 
 def main() -> None:

@@ -162,7 +162,7 @@ class Stepper:
     @property
     def stands(self) -> bool:
         """Whether no foot is to swing before the robot stands, which may be moved to step."""
-        return self.adapts and self.info.leads_to == 0
+        return self.adapts and self.info.leads_to == 0 and self.stops
 
     @property
     def stops(self) -> bool:

@@ -185,6 +185,16 @@ def test_a_stop_is_made_once_its_last_foot_swings(stand):
     assert kinds[1].startswith("SDD")
 
 
+def test_who_goes_on_without_standing_does_not_stop(schedule, stop_and_go):
+    """Between two bouts with no time to stand there are two double supports."""
+    queue = schedule(stop_and_go).queue
+    kinds = "".join(phase.kind.name[0] if phase.kind is not PhaseKind.STAND else "-" for phase in queue.phases)
+    assert kinds == "-DSDSDSD-DSDSDDSD-DSDSD-"
+    stopping = [at for at, phase in enumerate(queue.phases) if queue.stops(phase)]
+    # From the double support before the last step of a bout on.
+    assert stopping == [0, 5, 6, 7, 8, 14, 15, 16, 17, 20, 21, 22, 23]
+
+
 @pytest.mark.parametrize("foot", [Foot.LEFT, Foot.RIGHT])
 def test_a_robot_that_stands_steps_with_either_foot(stand, foot):
     gait = GaitParameters(steps=2, step_length=0.3, single_support=0.5, double_support=0.12, initial_stand=9.0)

@@ -37,6 +37,10 @@ SUDDEN = (10.0, 20.0)
 BOUND = (40.0, 12.0)
 """No more force and moment counts of what acts now and has not lasted: it may be a push, soon over [N, N·m]."""
 
+PUSH = (50.0, 60.0)
+"""Force that acts now which is still taken for one that will last, and which is a push, of which nothing counts [N]: to
+lean into a push that is soon over felled small feet."""
+
 WEIGHT = (0.01, 0.02)
 """Likewise of what the robot weighs more or less than its model, as a share of that; these leave 0.001 [-]."""
 
@@ -123,6 +127,7 @@ class LoadObserver:
             kept = np.where(lasting * latest > 0.0, np.minimum(np.abs(lasting), np.abs(latest)), 0.0)
             kept = _ramp(np.copysign(kept, latest)[:-1], KEPT)
             sudden = np.clip(_ramp(latest[:-1], SUDDEN), -self._bound, self._bound)
+            sudden = sudden * min(max((PUSH[1] - math.hypot(*latest[:2])) / (PUSH[1] - PUSH[0]), 0.0), 1.0)
             pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
         wanted = np.concatenate((pull, share))
         self._estimate = self._estimate + np.clip(wanted - self._estimate, -self._most, self._most)

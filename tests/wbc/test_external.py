@@ -68,13 +68,20 @@ def test_of_a_push_little_counts_and_nothing_when_it_is_over(force, time):
 
 
 def test_a_force_counts_soon_wholly_when_it_lasts_and_no_longer_than_it_acts():
-    loads = observed(pull=lambda now: np.array([90.0, 0.0, 0.0]) * (0.4 <= now < 0.9), duration=1.2)
-    force = np.array([load.force[0] for load in loads])
-    assert force[: round(0.4 / PERIOD)].max() == 0.0
-    assert force[round(0.5 / PERIOD)] == pytest.approx(40.0)
-    np.testing.assert_allclose(force[round(0.65 / PERIOD) : round(0.9 / PERIOD)], 90.0, atol=0.1)
-    assert np.abs(force[round(1.05 / PERIOD) :]).max() == 0.0
-    assert np.abs(np.diff(force)).max() <= 20.0 + 1e-9
+    """One that is as hard as a push only once it has lasted longer than one."""
+    for pull, soon in ((48.0, 40.0), (90.0, 0.0)):
+        loads = observed(pull=lambda now, pull=pull: np.array([pull, 0.0, 0.0]) * (0.4 <= now < 0.9), duration=1.2)
+        force = np.array([load.force[0] for load in loads])
+        assert force[: round(0.4 / PERIOD)].max() == 0.0
+        assert force[round(0.5 / PERIOD)] == pytest.approx(soon)
+        np.testing.assert_allclose(force[round(0.65 / PERIOD) : round(0.9 / PERIOD)], pull, atol=0.1)
+        assert np.abs(force[round(1.05 / PERIOD) :]).max() == 0.0
+        assert np.abs(np.diff(force)).max() <= 20.0 + 1e-9
+
+
+def test_nobody_leans_into_a_push():
+    loads = observed(pull=lambda now: np.array([70.0, 60.0, 0.0]) * (0.4 <= now < 0.5), duration=0.8)
+    assert all(load is NO_LOAD for load in loads)
 
 
 def test_what_is_short_and_small_is_none():

@@ -54,10 +54,10 @@ def duration(run: RunView) -> float:
 
 @metric(needs=(), reads={"/command": ("yaw_rate", "heading"), "/reference": ("step", "phase")}, least=0.0)
 def steps_planned(run: RunView) -> int:
-    """Footsteps asked for; of a walk that is told while it goes on where to go, those that have begun."""
-    if not run.has("/command") or not _led(run):
-        return run.constants.steps_planned
-    return int(run.field("/reference", "step")[run.single_support].max(initial=0))
+    """Footsteps asked for, with those that a recovery added; those begun of a walk that is told where to go."""
+    asked = 0 if run.has("/command") and _led(run) else run.constants.steps_planned
+    begun = run.field("/reference", "step")[run.single_support] if run.has("/reference") else np.zeros(0)
+    return max(asked, int(begun.max(initial=0)))
 
 
 _PLACE_READS: Reads = {"/truth": ("left_sole", "right_sole"), "/command": ("place", "heading")}

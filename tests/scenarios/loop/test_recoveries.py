@@ -21,7 +21,7 @@ NATURAL = (
 WALKING = (*NATURAL, "gait.steps=6", "gait.step_length=0.36")
 STANDING = (
     *NATURAL,
-    "duration=5.5",
+    "duration=7.0",
     "criteria={fell: false, standing_time_final: {min: 0.5}, wbc_fallbacks: {max: 0}}",
 )
 FORWARD, LEFT, RIGHT = 0.0, 0.5 * math.pi, -0.5 * math.pi

@@ -50,7 +50,6 @@ def test_the_rise_of_the_paper_is_out_of_reach_of_legs(tmp_path):
     assert reasons(tmp_path, "stair-climbing", *flight) == ()
     found = reasons(tmp_path, "stair-climbing", *flight, "planner.rise=double")
     assert found[0].startswith("fell is true at ")
-    assert any(reason.startswith("wbc_fallbacks is ") for reason in found)
 
 
 @pytest.mark.long

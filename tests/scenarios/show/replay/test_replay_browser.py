@@ -115,9 +115,9 @@ def test_the_charts_show_the_time_of_the_timeline(page: Browser) -> None:
         seen.append((page.run(CURSORS), page.run(KEYS)))
     span = 29 / 30  # the last frame of one second
     for (cursors, _), seconds in zip(seen, (0.2, 0.7), strict=True):
-        assert cursors == pytest.approx(3 * [seconds / span], abs=1e-3)
+        assert cursors == pytest.approx(4 * [seconds / span], abs=1e-3)
     assert seen[0][1][0] != seen[1][1][0]
-    assert "left foot 900" in seen[0][1][2]
+    assert "left foot 900" in seen[0][1][3]
 
 
 def test_it_stands_still_when_paused_and_moves_when_played(page: Browser) -> None:

@@ -200,7 +200,7 @@ class Recovery:
 
     def catch(self, now: Situation) -> Catch | None:
         """What is made of the next step; None where nothing has to be."""
-        t, omega, count = self._sample_time, float(now.omega[0]), len(now.stiffness)
+        t, count = self._sample_time, len(now.stiffness)
         lift = min(round(now.double / t), count - 3)
         land = min(max(round((now.double + now.single) / t), lift + 1), count - 2)
         # The DCM that keeps bounded what comes, and what a shift of the step does to it.
@@ -213,32 +213,30 @@ class Recovery:
         fine = bool((np.abs(now.dcm - nominal[0]) <= (1.0 - fade) * box + fade * _MARGIN).all())
         if fine and not now.adapted:
             return None
-        half = _AUTHORITY * box
-        doubles, singles = self._times(now, fine)
-        spread, grown = np.exp(omega * doubles), np.exp(omega * singles)
-        # The constant CoP on the foot, and beside the moving one before it, that are nominal.
-        growth = np.exp(omega * now.single)
-        centre = (landed - growth * nominal[lift]) / (1.0 - growth)
-        lifted, start = np.broadcast_to(now.dcm, (len(singles), 2)), centre
-        if now.double:
-            growth, start = np.exp(omega * now.double), point[0]
-            beside = growth * nominal[0] - moving_cop(start, centre, omega, np.array([now.double]))[0] - nominal[lift]
-            lifted = spread[:, None] * now.dcm - moving_cop(start, centre, omega, doubles)
-            lifted = lifted - (spread[:, None] - 1.0) * (beside / (growth - 1.0))
-        astray = grown[:, None] * (lifted - centre) + centre - landed
-        most = (grown * spread - 1.0)[:, None] * half
-        held = np.clip(astray, -most, most)
-        wanted = now.nominal + (astray - held) / gain
-        cop = centre + half * held / np.maximum(most, 1e-9)
-        com = pendulum_com(now.com, now.dcm, 0.5 * (start + cop), spread)
-        com = pendulum_com(com, lifted, cop, grown)
+        times, half = self._times(now, fine), _AUTHORITY * box
+        left, com = _landing(now, times, nominal[[0, lift]], landed, half)
+        return self._cheapest(now, times, now.nominal + left / gain, com, (gain, half))
+
+    def _cheapest(
+        self, now: Situation, times: tuple[Array, Array], wanted: Array, com: Array, means: tuple[float, Array]
+    ) -> Catch | None:
+        """The cheapest of some times, with the box of where the step then lands; None where it has no place to.
+
+        Args:
+            now: the situation.
+            times: of double and single support, the present ones last, shape (n,) each [s].
+            wanted: where the step would have to land to leave nothing, shape (n, 2) [m].
+            com: CoM when it lands, shape (n, 2) [m].
+            means: gain of a shift [-], and half sizes of what the CoP has of its box, shape (2,) [m].
+        """
+        (doubles, singles), (gain, half) = times, means
         hip = 0.5 * now.side * self.legs.hip_width * np.array([0.0, 1.0])
         stretch = np.hypot(*(com - hip).T) - self.legs.radius
         cost = _TIME * ((doubles - now.double) ** 2 + (singles - now.single) ** 2) / now.cycle**2
         cost = cost + _STRETCH * np.maximum(stretch, 0.0) ** 2
         swung = self.swung(now, singles)
         low, high = -swung[2:].T, swung[:2].T
-        growth = np.exp(omega * now.cycle)
+        growth = np.exp(float(now.omega[0]) * now.cycle)
         # What the CoP holds until the step after it, or in a stand on both feet for ever.
         held_next = growth * _HELD * now.reference.half_size[-1] if now.last else (growth - 1.0) * half
         options = []
@@ -284,6 +282,38 @@ class Recovery:
                 edges.append((side * at, hardest, (_BRAKING if onward > 0.0 else _GAINING) * onward))
         place, hardest, onward = np.array(edges).T[:, :, None]
         return np.asarray(place + (hardest * time**2 + onward * time) / PEAK)
+
+
+def _landing(
+    now: Situation, times: tuple[Array, Array], nominal: Array, landed: Array, half: Array
+) -> tuple[Array, Array]:
+    """What no CoP holds of the DCM when the step lands, and the CoM then, shape (n, 2) each [m].
+
+    Args:
+        now: the situation.
+        times: of double and single support, shape (n,) each [s].
+        nominal: DCM now and when the foot leaves the ground that the steps as planned keep bounded, shape (2, 2) [m].
+        landed: the same when it lands, shape (2,) [m].
+        half: half sizes of what the CoP has of its box, shape (2,) [m].
+    """
+    omega, (present, lift_off) = float(now.omega[0]), nominal
+    doubles, singles = times
+    spread, grown = np.exp(omega * doubles), np.exp(omega * singles)
+    # The constant CoP on the foot, and beside the moving one before it, that are nominal.
+    growth = np.exp(omega * now.single)
+    centre = (landed - growth * lift_off) / (1.0 - growth)
+    lifted, start = np.broadcast_to(now.dcm, (len(singles), 2)), centre
+    if now.double:
+        growth, start = np.exp(omega * now.double), now.reference.point[0]
+        beside = growth * present - moving_cop(start, centre, omega, np.array([now.double]))[0] - lift_off
+        lifted = spread[:, None] * now.dcm - moving_cop(start, centre, omega, doubles)
+        lifted = lifted - (spread[:, None] - 1.0) * (beside / (growth - 1.0))
+    astray = grown[:, None] * (lifted - centre) + centre - landed
+    most = (grown * spread - 1.0)[:, None] * half
+    held = np.clip(astray, -most, most)
+    cop = centre + half * held / np.maximum(most, 1e-9)
+    com = pendulum_com(now.com, now.dcm, 0.5 * (start + cop), spread)
+    return astray - held, pendulum_com(com, lifted, cop, grown)
 
 
 def _shared(box: tuple[Array, Array], room: Array) -> tuple[Array, Array] | None:

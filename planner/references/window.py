@@ -225,8 +225,8 @@ class Outlook:
             frame = support.rotation, support.origin
             feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]), deviation)
             # While a step is adapted it is made at every tick, from the last one.
-            adapted = self._offsets is not None and (deviation is not None or not clock.steady)
-            guess = self._offsets.guess(clock.now, support.key, count) if self._offsets and adapted else None
+            last_made = None if deviation is None and clock.steady else self._offsets
+            guess = None if last_made is None else last_made.guess(clock.now, support.key, count)
             values = self._made_offset(chain, feet, point[:count], heights, position, guess)
             self._offsets = OffsetTable(clock.now, support.key, values)
         return self._offsets.since(clock.now, self._count)

@@ -172,7 +172,7 @@ class Stepper:
     @property
     def astride(self) -> float:
         """How far from where it was to the robot has one foot from the other, if it stands; else zero [m]."""
-        if not self.stands or self.phase.kind is not PhaseKind.STAND:
+        if self.phase.kind is not PhaseKind.STAND:
             return 0.0
         here, place = self.footsteps.position, [self.queue.steps[self.landed - back].place.position for back in (0, 1)]
         return float(np.hypot(*(here[self.row] - here[self.row - 1] - place[0] + place[1])[:2]))

@@ -298,6 +298,7 @@ BODY = {
     "unplanned_flight_time": flight,
     "torque_ratio_max": lambda raw: np.max(np.abs(raw["/torque", "command"]) / raw.of["torque_limit"]),
     "knee_torque_rms": lambda raw: rms(raw["/torque", "command"][raw.walking][:, knees(raw)].ravel()),
+    "contact_force_peak": lambda raw: raw["/contact", "normal_force"].sum(axis=1).max() / (raw.of["mass"] * G),
     "joint_limit_margin_min": margin,
     "joint_speed_ratio_max": lambda raw: np.max(np.abs(raw["/truth", "v"][:, 6:]) / raw.of["velocity_limit"]),
     "knee_angle_mean": lambda raw: np.abs(raw["/truth", "q"][raw.walking, 7:][:, knees(raw)]).mean(),

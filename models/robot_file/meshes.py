@@ -6,14 +6,11 @@ be seen, and takes a fraction of the time. Quadric edge collapse (Garland and He
 """
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 
-import coal
 import fast_simplification
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
@@ -23,96 +20,33 @@ Faces = NDArray[np.int64]
 Triangles = tuple[Array, Faces]
 """Vertices, shape (n, 3) [m], and their indices in each triangle, counter-clockwise from outside, shape (m, 3)."""
 
+MOST_FACES = 25_000
+"""Triangles of a whole robot: what looks right at half a megabyte of text."""
+
 GRID = 0.1
 """Side of the cells in which vertices become one, over the edge of the triangles to be [-]."""
 
 _PACKED = 21
 """Bits of each of the three coordinates of a cell in one integer."""
 
-_STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-_STL_HEADER = 84
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LinkMesh:
-    """What a link looks like, or a part of it of one colour.
-
-    Attributes:
-        name: of the geometry object.
-        joint: index of the joint that moves it.
-        vertices: in the frame of that joint, shape (n, 3) [m].
-        faces: vertices of each triangle, counter-clockwise from outside, shape (m, 3).
-        rgba: colour and opacity, 0 to 1.
-    """
-
-    name: str
-    joint: int
-    vertices: Array
-    faces: Faces
-    rgba: tuple[float, float, float, float]
-
-
-def loader() -> coal.MeshLoader:
-    """For `pinocchio.buildGeomFromUrdf`: reads each file once, with the cheapest of bounding volumes."""
-    return coal.CachedMeshLoader(coal.BV_AABB)
-
-
-def links_meshes(
-    geometry: pin.GeometryModel, most_faces: int, given: Mapping[str, Triangles] | None = None
-) -> tuple[LinkMesh, ...]:
-    """The meshes of a robot, with so few triangles that all together have about `most_faces` at most.
+def decimated(parts: Sequence[Triangles], most_faces: int = MOST_FACES) -> tuple[Triangles, ...]:
+    """The meshes of a robot with so few triangles that all together have about `most_faces` at most.
 
     Args:
-        geometry: shapes of a robot; those that are no meshes are left out.
+        parts: meshes, each in any frame; vertices may be there once for each of their triangles.
         most_faces: triangles of the whole robot.
-        given: of meshes that are not in files, by the name of the geometry object and in its frame.
 
-    Raises:
-        RobotError: a file is missing or no mesh.
+    Returns:
+        each in its frame, in the order of the parts; one that is too small to be seen has no triangle.
     """
-    things = [thing for thing in geometry.geometryObjects if is_mesh(thing, given)]
-    parts = [_placed(triangles(thing, given), thing.placement) for thing in things]
     areas = np.array([_area(part) for part in parts])
     if not areas.sum() > 0.0:
-        return ()
+        return tuple(parts)
     cell = GRID * np.sqrt(2.0 * areas.sum() / most_faces)
     coarse = [merged(part, cell) for part in parts]
     shares = _shares(np.array([len(faces) for _, faces in coarse]), np.sqrt(areas), most_faces)
-    small = [_decimated(part, share) for part, share in zip(coarse, shares.tolist(), strict=True)]
-    return tuple(
-        LinkMesh(thing.name, thing.parentJoint, *part, colour(thing))
-        for thing, part in zip(things, small, strict=True)
-        if len(part[1])
-    )
-
-
-def is_mesh(thing: pin.GeometryObject, given: Mapping[str, Triangles] | None = None) -> bool:
-    """Whether a shape is a mesh and no primitive."""
-    return thing.name in (given or {}) or thing.geometry.getObjectType() == coal.OT_BVH
-
-
-def triangles(thing: pin.GeometryObject, given: Mapping[str, Triangles] | None = None) -> Triangles:
-    """All triangles of a mesh, in the frame of the object and with its scale.
-
-    Raises:
-        RobotError: its file is missing or no mesh.
-    """
-    if thing.name in (given or {}):
-        return (given or {})[thing.name]
-    path, scale = Path(thing.meshPath), np.asarray(thing.meshScale)
-    try:
-        vertices, faces = (_stl(path) if path.suffix.lower() == ".stl" else None) or _any_format(path)
-    except (OSError, ValueError, RuntimeError) as error:
-        reason = " ".join(str(error).split())[:200]
-        raise RobotError(("model",), f"mesh {path} cannot be read, {reason}", "give a STL, OBJ or DAE file") from None
-    return vertices * scale, faces if scale.prod() > 0.0 else faces[:, ::-1]
-
-
-def colour(thing: pin.GeometryObject) -> tuple[float, float, float, float]:
-    """Of the description, or else the first one in the mesh's file or beside it, or else the reader's grey."""
-    red, green, blue, opacity = (round(float(part), 4) for part in thing.meshColor)
-    own = None if thing.overrideMaterial else _colour_in_file(Path(thing.meshPath))
-    return (*own, 1.0) if own else (red, green, blue, opacity)
+    return tuple(_collapsed(part, share) for part, share in zip(coarse, shares.tolist(), strict=True))
 
 
 def hull(vertices: Array, most: int) -> Triangles:
@@ -156,6 +90,18 @@ def merged(part: Triangles, cell: float) -> Triangles:
     return _used(vertices[first], renamed.T[(a != b) & (b != c) & (c != a)])
 
 
+def colour_in_file(path: Path) -> tuple[float, float, float] | None:
+    """Red, green and blue of the first material of an OBJ or DAE, for shapes to which a URDF gives none."""
+    patterns = {".obj": r"(?m)^\s*Kd\s+([^\n]+)", ".dae": r"<diffuse>\s*<color[^>]*>([^<]+)"}
+    pattern = patterns.get(path.suffix.lower())
+    file = path.with_suffix(".mtl") if path.suffix.lower() == ".obj" else path
+    found = re.search(pattern, file.read_text(errors="replace")) if pattern and file.is_file() else None
+    if found is None:
+        return None
+    red, green, blue = (min(max(float(part), 0.0), 1.0) for part in found[1].split()[:3])
+    return red, green, blue
+
+
 def _outermost(corners: Array, most: int) -> Array:
     """So many of the points that their hull is nearly that of all: time and again those farthest outside join it."""
     chosen = np.unique(np.concatenate((corners.argmin(axis=0), corners.argmax(axis=0))))
@@ -186,7 +132,7 @@ def _shares(wanted: NDArray[np.int_], weights: Array, most: int) -> NDArray[np.i
     return share.astype(np.int64)
 
 
-def _decimated(part: Triangles, most: int) -> Triangles:
+def _collapsed(part: Triangles, most: int) -> Triangles:
     vertices, faces = part
     if len(faces) <= most:
         return part
@@ -201,39 +147,6 @@ def _used(vertices: Array, faces: Faces) -> Triangles:
     return vertices[kept], renamed.reshape(faces.shape).astype(np.int64)
 
 
-def _placed(part: Triangles, placement: pin.SE3) -> Triangles:
-    vertices, faces = part
-    return vertices @ placement.rotation.T + placement.translation, faces
-
-
 def _area(part: Triangles) -> float:
     a, b, c = part[0][part[1]].transpose(1, 0, 2)
     return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-
-
-def _stl(path: Path) -> Triangles | None:
-    """Corners of the triangles of a binary STL file; None if it is of the textual kind."""
-    data = path.read_bytes()
-    if len(data) < _STL_HEADER or (len(data) - _STL_HEADER) % _STL.itemsize:
-        return None
-    corners = np.frombuffer(data, _STL, offset=_STL_HEADER)["corners"].reshape(-1, 3).astype(np.float64)
-    return corners, np.arange(len(corners)).reshape(-1, 3)
-
-
-def _any_format(path: Path) -> Triangles:
-    """By the reader of Pinocchio's collision library."""
-    shape = coal.MeshLoader(coal.BV_OBB).load(str(path), np.ones(3))
-    faces = ((face[0], face[1], face[2]) for face in map(shape.tri_indices, range(shape.num_tris)))
-    return np.array(shape.vertices()), np.array(list(faces), dtype=np.int64).reshape(-1, 3)
-
-
-def _colour_in_file(path: Path) -> tuple[float, float, float] | None:
-    """Diffuse colour of the first material of an OBJ or DAE."""
-    patterns = {".obj": r"(?m)^\s*Kd\s+([^\n]+)", ".dae": r"<diffuse>\s*<color[^>]*>([^<]+)"}
-    pattern = patterns.get(path.suffix.lower())
-    file = path.with_suffix(".mtl") if path.suffix.lower() == ".obj" else path
-    found = re.search(pattern, file.read_text(errors="replace")) if pattern and file.is_file() else None
-    if found is None:
-        return None
-    red, green, blue = (min(max(float(part), 0.0), 1.0) for part in found[1].split()[:3])
-    return red, green, blue

@@ -6,17 +6,23 @@ import pinocchio as pin
 from surefoot.wbc.model import BodyFrames
 from surefoot.wbc.types import Array
 
+LEVER = 0.1
+"""At which the reference robot's sole moments count as forces [m]."""
 
-def standing_torque(model: pin.Model, frames: BodyFrames, q: Array, foot: int | None = None) -> Array:
+
+def standing_torque(
+    model: pin.Model, frames: BodyFrames, q: Array, lever: float = LEVER, foot: int | None = None
+) -> Array:
     """Joint torques, shape (nj,) [N·m], of static equilibrium at configuration q, shape (nq,).
 
     The base rows of g(q) = S τ + Σ J_kᵀ w_k leave the two sole wrenches w_k free in six directions; the smallest ones
-    are taken, with moments counted at a lever of 0.1 m.
+    are taken.
 
     Args:
         model: the robot.
         frames: its soles.
         q: configuration.
+        lever: at which moments count as forces [m].
         foot: the one that bears all, 0 the left one; None for both.
     """
     data = model.createData()
@@ -28,7 +34,7 @@ def standing_torque(model: pin.Model, frames: BodyFrames, q: Array, foot: int | 
         for name in (frames.soles if foot is None else (frames.soles[foot],))
     ]
     transposed = np.vstack(jacobians).T
-    scale = np.tile([1.0, 1.0, 1.0, 0.1, 0.1, 0.1], len(jacobians))
+    scale = np.tile([1.0, 1.0, 1.0, lever, lever, lever], len(jacobians))
     wrenches = scale * np.linalg.lstsq(transposed[:6] * scale, gravity[:6], rcond=None)[0]
     torque: Array = gravity[6:] - transposed[6:] @ wrenches
     return torque

@@ -187,7 +187,7 @@ def _standing(body: Body, side: float) -> tuple[TorqueMargin, Array]:
     if not found.reached:
         return TorqueMargin("", math.inf, math.inf), found.q
     foot = None if side == 0.0 else int(side < 0.0)
-    torque = standing_torque(body.model, body.frames, found.q, foot)
+    torque = standing_torque(body.model, body.frames, found.q, foot=foot)
     shares = np.abs(torque) / robot.torque_limit
     worst = int(np.argmax(shares))
     return TorqueMargin(robot.joint_names[worst], float(shares[worst]), float(abs(torque[worst]))), found.q

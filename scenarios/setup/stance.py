@@ -8,6 +8,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.models.joints import meeting_point
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.planner.model.leg_chain import LegChain, Link, Vector
@@ -194,7 +195,8 @@ def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.boo
     apart = np.linalg.norm(np.diff(at, axis=0), axis=1)
     knee = 1 + int(np.argmax(apart[1:] * apart[:-1]))
     parts = [_lumped(model, data, joints) for joints in (chain[:knee], chain[knee : knee + 1], chain[knee + 1 :])]
-    return _Leg(at[knee - 1], at[knee], at[knee + 1], data.oMf[frame].translation.copy(), *parts)
+    hip = meeting_point(model, data, chain[:knee])
+    return _Leg(hip, at[knee], at[knee + 1], data.oMf[frame].translation.copy(), *parts)
 
 
 def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:

@@ -146,7 +146,7 @@ class _Translation:
         metric, key = known(str(name).partition(".")[0]), ("criteria", name)
         if metric is None:
             return
-        factor = _factor(self.size, metric.unit)
+        factor = _against(self.after.size, self.before.size, metric.unit)
         if isinstance(bound, dict):
             for side, limit in bound.items():
                 self._put(bound, side, (*key, side), _times(limit, factor))
@@ -157,7 +157,7 @@ class _Translation:
         """The value for the other robot."""
         with suppress(PydanticCustomError):
             value = Unit(unit).number(value)
-        scaled = _times(value, self.size.factor(unit))
+        scaled = _times(value, _against(self.after.size, self.before.size, unit))
         if key == ("gait", "com_height") and _is_number(value):
             return com_height(value, self.before, self.after)
         if key == ("gait", "step_width") and _is_number(value):
@@ -253,19 +253,24 @@ def default_of(model: type[BaseModel], name: str, size: Similarity) -> Any:
     """Default of a key for a robot of a size, but for what follows from more than that."""
     field = model.model_fields[name]
     unit = unit_of(field.annotation, field.metadata)
-    return field.default if unit in ("", "Hz") else _times(field.default, size.factor(unit))
+    return field.default if unit in ("", "Hz") else _times(field.default, _against(size, REFERENCE_SIZE, unit))
 
 
 def _bound(name: str, bound: Bound, size: Similarity) -> Bound:
     metric = known(name)
-    factor = 1.0 if metric is None else _factor(size, metric.unit)
+    factor = 1.0 if metric is None else _against(size, REFERENCE_SIZE, metric.unit)
     return Bound(**{side: _times(limit, factor) for side, limit in bound if limit is not None})
 
 
-def _factor(size: Similarity, unit: str) -> float:
-    """Factor of a metric's unit; 1 for one that a package has made up, and for bytes."""
+def _against(after: Similarity, before: Similarity, unit: str) -> float:
+    """Factor of a unit from one size to another; 1 for bytes, and for what a package has made up.
+
+    Times go with the planner's clock, whose rate is whole: phases then last as many samples as they did.
+    """
+    if unit == "s":
+        return clock(Rates(), before).planner / clock(Rates(), after).planner
     try:
-        return size.factor(unit)
+        return after.over(before).factor(unit)
     except ValueError:
         return 1.0
 

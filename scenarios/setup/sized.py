@@ -99,11 +99,6 @@ class _Translation:
     before: RobotFacts
     after: RobotFacts
 
-    @property
-    def size(self) -> Similarity:
-        """One robot's size against the other's."""
-        return self.after.size.over(self.before.size)
-
     def run(self) -> None:
         """Translate every number that has a unit; what is of a wrong type stays for the schema to tell."""
         values = self.source.value
@@ -118,7 +113,7 @@ class _Translation:
         if isinstance(given[0], dict) and given[0]:
             values["planner"] = dict(given[1]) if isinstance(given[1], dict) else {}
             with suppress(ValueError, TypeError):
-                rates = clock(Rates(**given[0]), self.size)
+                rates = clock(Rates(**given[0]), self.after.size.time / self.before.size.time)
                 values["rates"], values["planner"]["sample_time"] = rates.model_dump(), 1.0 / rates.planner
 
     def _group(self, model: type[BaseModel], values: Any, key: Key) -> None:
@@ -140,7 +135,9 @@ class _Translation:
             if isinstance(value, dict):
                 self._controller(getattr(parameters, entry.name), value, at)
             elif "unit" in entry.metadata and _is_number(value):
-                self._put(values, entry.name, at, self.size.times(value, entry.metadata["unit"]))
+                units = entry.metadata["unit"].split(", ")
+                factors = [_against(self.after.size, self.before.size, unit) for unit in units]
+                self._put(values, entry.name, at, _times(value, factors[0] if len(factors) == 1 else factors))
 
     def _criterion(self, criteria: dict[str, Any], name: str, bound: Any) -> None:
         metric, key = known(str(name).partition(".")[0]), ("criteria", name)
@@ -179,7 +176,7 @@ def com_height(value: float, before: RobotFacts, after: RobotFacts) -> float:
         before: facts of it.
         after: of the other one.
     """
-    return after.size.over(before.size).length * (value - before.com_above_hip) + after.com_above_hip
+    return after.size.length / before.size.length * (value - before.com_above_hip) + after.com_above_hip
 
 
 def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:
@@ -187,16 +184,16 @@ def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:
 
     So no foot lands nearer to the other one than in the scenario as it was written; arguments as of `com_height`.
     """
-    length = after.size.over(before.size).length
+    length = after.size.length / before.size.length
     wider = (
         getattr(after, name) - length * getattr(before, name) for name in ("hip_width", "shank_spacing", "foot_width")
     )
-    return length * value + max(0.0, *wider)
+    return float(length * value + max(0.0, *wider))
 
 
-def clock(rates: Rates, size: Similarity) -> Rates:
-    """Rates for a robot of a size: the planner's the nearest whole one, the others so many times faster as before."""
-    planner = max(1, round(rates.planner / size.time))
+def clock(rates: Rates, time: float) -> Rates:
+    """Rates where times are longer by a factor: the planner's the nearest whole one, the others in step with it."""
+    planner = max(1, round(rates.planner / time))
     control = planner * max(1, rates.control // rates.planner)
     return Rates(planner=planner, control=control, physics=control * max(1, rates.physics // rates.control))
 
@@ -225,7 +222,7 @@ def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scena
 
 def _clock(scenario: Scenario, size: Similarity) -> tuple[Rates, float]:
     """Rates, and sample time [s], of which those that are not given follow the robot and the ones that are."""
-    usual, given = clock(Rates(), size), scenario.rates.model_fields_set
+    usual, given = clock(Rates(), size.time), scenario.rates.model_fields_set
     planner = scenario.rates.planner if "planner" in given else usual.planner
     control = scenario.rates.control if "control" in given else planner * (usual.control // usual.planner)
     physics = scenario.rates.physics if "physics" in given else control * (usual.physics // usual.control)
@@ -263,14 +260,9 @@ def _bound(name: str, bound: Bound, size: Similarity) -> Bound:
 
 
 def _against(after: Similarity, before: Similarity, unit: str) -> float:
-    """Factor of a unit from one size to another; 1 for bytes, and for what a package has made up.
-
-    Times go with the planner's clock, whose rate is whole: phases then last as many samples as they did.
-    """
-    if unit == "s":
-        return clock(Rates(), before).planner / clock(Rates(), after).planner
+    """Factor of a unit from one size to another; 1 for bytes, and for what a package has made up."""
     try:
-        return after.over(before).factor(unit)
+        return after.factor(unit) / before.factor(unit)
     except ValueError:
         return 1.0
 
@@ -294,9 +286,12 @@ def _is_number(value: Any) -> bool:
     return all(isinstance(part, int | float) and not isinstance(part, bool) for part in several)
 
 
-def _times(value: Any, factor: float) -> Any:
-    """A number, or a list or tuple of numbers, times a factor; all else as it is."""
+def _times(value: Any, factor: float | list[float]) -> Any:
+    """A number, or a list or tuple of numbers, times a factor or one for each; all else as it is."""
     if isinstance(value, list | tuple):
-        return type(value)(_times(part, factor) for part in value)
+        factors = factor if isinstance(factor, list) else [factor] * len(value)
+        return type(value)(_times(part, one) for part, one in zip(value, factors, strict=False))
+    if isinstance(factor, list):
+        return value
     plain = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     return value * factor if plain and factor != 1.0 else value

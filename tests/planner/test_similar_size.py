@@ -100,7 +100,8 @@ def test_one_number_of_the_reference_is_enough_to_tell(monkeypatch):
 
 
 def test_a_robot_of_any_size_walks_the_same_walk_scaled():
-    size = Similarity(0.6, 0.2)
+    size = Similarity((50 / 65) ** 2, 0.2)
     full, other = (walked(one, **STORIES["walk"]) for one in (REFERENCE_SIZE, size))
-    np.testing.assert_allclose(other.com, 0.6 * full.com, rtol=1e-6, atol=1e-7)
-    assert other.time[-1] == pytest.approx(math.sqrt(0.6) * full.time[-1])
+    assert size.time == pytest.approx(math.sqrt(size.length), rel=1e-15)
+    np.testing.assert_allclose(other.com, size.length * full.com, rtol=1e-6, atol=1e-7)
+    np.testing.assert_allclose(other.time, size.time * full.time)

@@ -24,7 +24,7 @@ from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metrics import known
-from surefoot.scenarios.setup.robot import RobotFacts, Robots
+from surefoot.scenarios.setup.robot import RobotFacts, Robots, stance_widening
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
@@ -35,10 +35,10 @@ _SOLES = ("foot_length", "foot_width")
 G = TypeVar("G", bound=BaseModel)
 
 
-def robot_size(name: str, robots: Robots) -> Similarity:
-    """Size of a robot; the reference's where there is none of that name, which others tell."""
+def robot_size(name: str, robots: Robots) -> tuple[Similarity, float]:
+    """Size of a robot, and by what it stands wider [m]; the reference's where none has that name, which others tell."""
     facts = None if name == REFERENCE else _facts(name, RobotSettings(), robots)
-    return REFERENCE_SIZE if facts is None else facts.size
+    return (REFERENCE_SIZE, 0.0) if facts is None else (facts.size, stance_widening(facts, facts.size))
 
 
 def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:

@@ -215,10 +215,11 @@ class Draft:
 
     @cached_property
     def usual(self) -> PlannerParameters:
-        """Parameters of a planner for this robot, whatever the scenario says; it may step as wide as it stands wider."""
+        """Parameters of a planner for this robot, whatever the scenario says."""
         return self._widened(PlannerParameters())
 
     def _widened(self, parameters: PlannerParameters) -> PlannerParameters:
+        # Who stands wider steps as much wider.
         scaled = self.size.scaled(parameters)
         near, far = scaled.reach_width
         return replace(scaled, reach_width=(near, far + self.wider))

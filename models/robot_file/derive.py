@@ -1,25 +1,27 @@
 """From a robot file to a description: everything that the file does not say, derived from the model."""
 
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.models.robot_file.legs import SIDES, Leg, at, find_legs, rest, solved
-from surefoot.models.robot_file.reduced import Reduced, points_of, reduced
+from surefoot.models.robot_file.legs import SIDES, at, find_legs, rest, solved
+from surefoot.models.robot_file.meshes import decimated
+from surefoot.models.robot_file.reduced import Reduced, reduced
 from surefoot.models.robot_file.schema import RobotFile, matched
+from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.source import read_source
 from surefoot.models.robot_file.text import IMU, Parts, robot_text
 from surefoot.models.robot_file.touch import Hull, find_hulls, overlapping, shape_name
-from surefoot.models.robot_file.upper import Upper, find_upper, hanging, swings
+from surefoot.models.robot_file.upper import find_upper, hanging, swings
 from surefoot.models.types import Array, JointRoles, RobotDescription, RobotError, nearest
 
 BEND = 0.65
 """Bend of the knees in walking, as that of humanoid100, whose CoM is then 1.00 m above its soles [rad]."""
 
 HANGING, _WIDER, _WIDEST = 0.12, 0.05, 0.8
-"""Angle of the arms from the vertical in front view, by what it grows until they are free, and where that ends [rad]."""
+"""Angle of the arms from the vertical in front view, by what it grows until they are free, and its end [rad]."""
 
 _CLEAR = 0.01
 """Distance that upright shanks keep, over the leg's length of humanoid100 [m]."""
@@ -31,8 +33,7 @@ _REFERENCE = 0.94
 """Length of the leg of humanoid100, in which the lengths above are given [m]."""
 
 
-@dataclass(frozen=True, slots=True)
-class Derived:
+class Derived(NamedTuple):
     """A description, and how it came to be.
 
     Attributes:
@@ -160,9 +161,20 @@ class _Deriver:
             sole=(self.sole[0], self.sole[1]),
             height=self.leg_length - float(self.legs[0].hip[2]),
             hulls=self.hulls if hulls is None else hulls,
-            looks=self.reduced.visual if looks else nothing,
+            looks=self._looks() if looks else nothing,
             excluded=excluded,
         )
+
+    def _looks(self) -> list[list[Shape]]:
+        """What is drawn, with as many triangles as a viewer needs."""
+        joints = [joint for joint, group in enumerate(self.reduced.visual) for _ in group]
+        shapes = [shape for group in self.reduced.visual for shape in group]
+        small = decimated([(shape.vertices, shape.faces) for shape in shapes])
+        looks: list[list[Shape]] = [[] for _ in range(self.model.njoints)]
+        for joint, shape, (vertices, faces) in zip(joints, shapes, small, strict=True):
+            if len(faces):
+                looks[joint].append(Shape(shape.link, vertices, faces, shape.rgba))
+        return looks
 
     def _excluded(self, postures: list[Array]) -> list[tuple[str, str]]:
         bodies = {joint: self.reduced.bodies[joint - 1] for joint in self.hulls}

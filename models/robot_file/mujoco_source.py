@@ -1,4 +1,4 @@
-"""An MJCF as a Pinocchio model: what MuJoCo compiled, with its defaults and includes, and not what another reader makes of it."""
+"""An MJCF as a Pinocchio model: what MuJoCo compiled of it, with all defaults and includes."""
 
 from pathlib import Path
 

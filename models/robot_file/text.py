@@ -1,6 +1,5 @@
 """A reduced model as normalised MJCF text with all digits, which both engines read alike."""
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
@@ -13,7 +12,6 @@ from surefoot.models.mjcf import Role, add_defaults, numbers
 from surefoot.models.robot_file.legs import SIDES, Leg
 from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.touch import Hull, shape_name
-from surefoot.models.types import Array
 
 SOLE_THICKNESS = 0.02
 """Of the contact box over the leg's length [-]."""
@@ -141,15 +139,15 @@ class _Tree:
 
 
 def _add_inertial(body: ElementTree.Element, inertia: pin.Inertia) -> None:
-    I = inertia.inertia
-    full = numbers((I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]))
+    about = inertia.inertia
+    full = numbers(about[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
     attributes = {"pos": numbers(inertia.lever), "mass": repr(float(inertia.mass)), "fullinertia": full}
     ElementTree.SubElement(body, "inertial", attributes)
 
 
 def _pose(placement: pin.SE3) -> dict[str, str]:
     x, y, z, w = pin.Quaternion(placement.rotation).normalized().coeffs().tolist()
-    if w < 0.0 or math.isclose(w, 0.0, abs_tol=1e-15) and min(x, y, z) < 0.0:
+    if w < 0.0:
         x, y, z, w = -x, -y, -z, -w
     return {"pos": numbers(placement.translation + 0.0), "quat": numbers((w, x, y, z))}
 

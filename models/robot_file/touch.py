@@ -1,18 +1,16 @@
 """Which links touch each other, and which are kept apart: convex hulls, and pairs of them."""
 
 import itertools
+from contextlib import suppress
 from dataclasses import dataclass
 
 import mujoco
-import numpy as np
-from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from surefoot.models.robot_file.legs import Leg
+from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.reduced import Reduced, points_of
-from surefoot.models.robot_file.shapes import hull_faces
 from surefoot.models.robot_file.upper import Upper
-from surefoot.models.types import Array
+from surefoot.models.types import Array, RobotError
 
 MOST_POINTS = 80
 _LIGHTEST = 0.004
@@ -31,7 +29,7 @@ class Hull:
 
     joint: int
     vertices: Array
-    faces: NDArray[np.int64]
+    faces: Faces
 
 
 def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[int, Hull]:
@@ -49,27 +47,9 @@ def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[in
     found = {}
     for joint in sorted(wanted):
         points = points_of(reduced.collision[joint] or reduced.visual[joint])
-        vertices = support_points(points, MOST_POINTS)
-        if vertices is not None:
-            found[joint] = Hull(joint, vertices, hull_faces(vertices))
+        with suppress(RobotError):  # what is flat or has no shape touches nothing
+            found[joint] = Hull(joint, *hull(points, MOST_POINTS))
     return found
-
-
-def support_points(points: Array, most: int) -> Array | None:
-    """Vertices of the convex hull, or the farthest ones along even directions where there are more; None if flat."""
-    if len(points) < 4:
-        return None
-    try:
-        vertices = points[np.sort(ConvexHull(points).vertices)]
-    except QhullError:
-        return None
-    if len(vertices) <= most:
-        return vertices
-    k = np.arange(most) + 0.5
-    height, turn = 1.0 - 2.0 * k / most, k * np.pi * (1.0 + np.sqrt(5.0))
-    flat = np.sqrt(1.0 - height**2)
-    directions = np.column_stack((flat * np.cos(turn), flat * np.sin(turn), height))
-    return vertices[np.unique(np.argmax(directions @ vertices.T, axis=1))]
 
 
 def overlapping(

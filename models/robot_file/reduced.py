@@ -280,12 +280,12 @@ def _turn(model: pin.Model, feet: tuple[int, ...], file: RobotFile, notes: list[
     for frame in model.frames:
         if frame.parentJoint == 1 and frame.type != pin.FrameType.JOINT:
             frame.placement = back * frame.placement
-    return quarter * np.pi / 2
+    return float(quarter * np.pi / 2)
 
 
 def _body(model: pin.Model, joint: int) -> str:
     """Name of the link that a joint moves."""
-    return next(f.name for f in model.frames if f.parentJoint == joint and f.type == pin.FrameType.BODY)
+    return str(next(f.name for f in model.frames if f.parentJoint == joint and f.type == pin.FrameType.BODY))
 
 
 def _by_joint(model: pin.Model, shapes: tuple[Shape, ...]) -> tuple[tuple[Shape, ...], ...]:

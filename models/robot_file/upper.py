@@ -20,6 +20,9 @@ _ROOM = 0.25
 _STEPS, _NEARNESS = 100, 0.02
 
 
+Arms = tuple[tuple[int, ...], tuple[int, ...]] | tuple[()]
+
+
 @dataclass(frozen=True, slots=True)
 class Upper:
     """Everything but the legs, by joint index.
@@ -32,7 +35,7 @@ class Upper:
 
     torso: int
     waist: tuple[int, ...]
-    arms: tuple[tuple[int, ...], tuple[int, ...]] | tuple[()]
+    arms: Arms
 
 
 def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Upper:
@@ -54,14 +57,13 @@ def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Uppe
     return Upper(torso, tuple(j for j in model.supports[torso] if j > 1), arms)
 
 
-def _arms(
-    model: pin.Model, others: list[int], legs: tuple[Leg, Leg]
-) -> tuple[tuple[int, ...], tuple[int, ...]] | tuple[()]:
+def _arms(model: pin.Model, others: list[int], legs: tuple[Leg, Leg]) -> Arms:
     data, q = model.createData(), pin.neutral(model)
     q[7:] = rest(model)
     pin.centerOfMass(model, data, q)
     height = float(np.linalg.norm(legs[0].hip - legs[0].sole.placement.translation))
-    best, arms = 0.0, ()
+    best = 0.0
+    arms: Arms = ()
     for left in others:
         for right in others:
             if model.parents[left] != model.parents[right]:

@@ -366,6 +366,11 @@ class Scenario(Group):
 
     name: str = Field(default="scenario", min_length=1, max_length=100, pattern=NAME, description="name")
     robot: str = Field(default=DEFAULTS["robot"], description="name of a robot, see `surefoot list`")
+    sized_for: str | None = Field(
+        default=None,
+        description="name of the robot for which lengths, times, forces and the like of this file are written; for "
+        "another robot they are scaled to its size, null: they are meant as they are",
+    )
     fidelity: Literal["full", "pendulum"] = Field(
         default="full", description="whole body in MuJoCo, or the pendulum alone"
     )

@@ -243,6 +243,7 @@ def run_constants(walk: Walk) -> RunConstants:
             for box in walk.true_terrain.boxes
         ),
         plane=walk.true_terrain.plane,
+        size=(walk.size.length, walk.size.mass),
     )
 
 

@@ -16,6 +16,7 @@ from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import idle_commands, never_act
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
 from surefoot.scenarios.setup.robot import RobotFacts, Robots
+from surefoot.scenarios.setup.sized import default_of
 from surefoot.scenarios.setup.walk_checks import (
     command_problems,
     commanded_step_problems,
@@ -40,7 +41,7 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
     """List what does not fit together."""
     commands = command_problems(draft)
     if commands:
-        draft = Draft(draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)}))
+        draft = Draft(draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)}), draft.size)
     clock = [*_rates(draft), *_pushes(draft)]
     return [
         *commands,
@@ -240,13 +241,13 @@ def _without_effect(draft: Draft) -> Iterator[str]:
     instead = next((name for name in ("velocity", "footsteps", "waypoints") if getattr(keys.gait, name)), None)
     for name in EQUAL_STEPS if instead else ():
         means = instead == "waypoints" and name == "step_length"
-        if not means and getattr(keys.gait, name) != Gait.model_fields[name].default:
+        if not means and getattr(keys.gait, name) != default_of(Gait, name, draft.size):
             yield f"gait.{name} has no effect beside gait.{instead}"
     yield from _unshaped(draft)
     point = keys.fidelity == "pendulum"
     for group, name in _NO_CONTACT if point else _POINT_ONLY:
         settings = getattr(keys, group)
-        if getattr(settings, name) != type(settings).model_fields[name].default:
+        if getattr(settings, name) != default_of(type(settings), name, draft.size):
             yield f"{group}.{name} has no effect on a {'pendulum' if point else 'whole body'}"
     if point and keys.wbc is not None:
         yield "wbc has no effect on a pendulum"
@@ -258,9 +259,9 @@ def _unshaped(draft: Draft) -> Iterator[str]:
         shaping = ("kind", "friction", *draft.kind.keys)
     except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
         return
-    for name, field in TerrainSettings.model_fields.items():
+    for name in TerrainSettings.model_fields:
         elsewhere = name not in shaping
-        if elsewhere and getattr(terrain, name) != field.default:
+        if elsewhere and getattr(terrain, name) != default_of(TerrainSettings, name, draft.size):
             yield f"terrain.{name} has no effect on terrain.kind {terrain.kind}"
 
 

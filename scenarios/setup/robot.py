@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
@@ -26,6 +27,7 @@ class RobotFacts:
         shank_spacing: lateral distance of the soles at which upright shanks keep apart [m].
         swing_acceleration: of the sole of a straight leg, forward and sideways, with two thirds of the torque
             of its hip [m/s^2].
+        size: against the reference robot, without what it carries.
     """
 
     bodies: tuple[str, ...]
@@ -36,6 +38,7 @@ class RobotFacts:
     foot_width: float
     shank_spacing: float
     swing_acceleration: tuple[float, float]
+    size: Similarity = REFERENCE_SIZE
 
 
 class Robots(Protocol):
@@ -65,11 +68,17 @@ class RegisteredRobots:
 
     def facts(self, name: str, options: RobotSettings) -> RobotFacts:
         """Facts of a robot with its options; which body carries the payload does not matter to them."""
-        return facts_of(describe(name, options.model_copy(update={"payload_body": None})))
+        described = describe(name, options.model_copy(update={"payload_body": None}))
+        return replace(facts_of(described), size=size_of(described, options))
+
+
+def size_of(description: "RobotDescription", options: RobotSettings) -> Similarity:
+    """Size of a robot against the reference robot, without the payload that its options say."""
+    return Similarity.of(description.leg_length, float(description.mass) - options.payload_mass)
 
 
 def facts_of(description: "RobotDescription") -> RobotFacts:
-    """What of a robot bounds a scenario."""
+    """What of a robot bounds a scenario, but for its size, which goes without its payload."""
     return RobotFacts(
         bodies=description.bodies,
         leg_length=description.leg_length,

@@ -21,7 +21,7 @@ from surefoot.wbc.model import BodyFrames
 Array = NDArray[np.float64]
 
 SOLE_SINKAGE = 5e-5
-"""How far the soles sink into the simulated ground under the robot's weight [m]."""
+"""How far the reference robot's soles sink into the simulated ground under its weight [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,10 +118,10 @@ def disturbed(q: Array, walk: Walk, body: Body) -> Array:
     return result.q
 
 
-def pressed(q: Array) -> Array:
-    """The configuration, shape (nq,), sunk in so far that the ground carries it from the first instant."""
+def pressed(q: Array, length: float = 1.0) -> Array:
+    """The configuration, shape (nq,), of a robot of a size [-], sunk in so far that the ground carries it at once."""
     sunk = q.copy()
-    sunk[2] -= SOLE_SINKAGE
+    sunk[2] -= SOLE_SINKAGE * length
     return sunk
 
 

@@ -216,6 +216,7 @@ class _Deriver:
     ) -> RobotDescription:
         model = self.model
         left, right = self.legs
+        room = _CLEAR * self.leg_length / _REFERENCE
         return RobotDescription(
             name=self.file.name,
             mjcf=mjcf,
@@ -234,9 +235,7 @@ class _Deriver:
             imu_site=IMU,
             hip_width=float(np.linalg.norm(left.hip - right.hip)),
             leg_length=self.leg_length,
-            shank_spacing=shank_spacing(
-                at(model, straight), self.legs, self.hulls, _CLEAR * self.leg_length / _REFERENCE
-            ),
+            shank_spacing=shank_spacing(at(model, straight), self.legs, self.hulls, room),
             nominal_joint_positions=fixed(posture),
             straight_joint_positions=fixed(straight),
             com_height=com_height,

@@ -1,7 +1,6 @@
 """A model with the joints that walk: others locked, limits and rotors complete, x of the base ahead."""
 
 import fnmatch
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.models.joints import is_revolute
-from surefoot.models.robot_file.paths import resolve
+from surefoot.models.robot_file.files import srdf_of
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.robot_file.source import Source
@@ -73,7 +72,7 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     full, notes = source.model, source.notes
     names = tuple(full.names)[2:]
     _set_limits(full, file, names)
-    srdf = _srdf(file, path)
+    srdf = srdf_of(file, path)
     rotors, states = _read_srdf(srdf, names)
     _set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
     feet = file.soles()
@@ -104,23 +103,6 @@ def _set_limits(model: pin.Model, file: RobotFile, names: tuple[str, ...]) -> No
             values[model.joints[model.getJointId(name)].idx_v] = value
         setattr(model, f"upper{field}", values)
         setattr(model, f"lower{field}", -values)
-
-
-def _srdf(file: RobotFile, path: Path) -> Path | None:
-    """The SRDF that the file names, or the one beside the model that is of a robot of its name.
-
-    Raises:
-        RobotError: the file names one that is not there.
-    """
-    if file.srdf is not None:
-        place = resolve(file.srdf, path.parent, "srdf")
-        if not place.is_file():
-            raise RobotError(("srdf",), f"srdf {file.srdf} of {file.name} is not there", f"put it at {place}")
-        return place
-    of = re.search(r'<robot\b[^>]*\bname\s*=\s*"([^"]*)"', path.read_text(encoding="utf-8"))
-    beside = [*path.parent.glob("*.srdf"), *(path.parent.parent / "srdf").glob("*.srdf")]
-    named = [place for place in sorted(beside) if of and f'name="{of[1]}"' in place.read_text(encoding="utf-8")[:2000]]
-    return named[0] if len(named) == 1 else None
 
 
 def _read_srdf(path: Path | None, names: tuple[str, ...]) -> tuple[dict[str, float], dict[str, dict[str, float]]]:

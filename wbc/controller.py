@@ -101,8 +101,8 @@ class WholeBodyController:
         parameters: WbcParameters,
         limbs: pin.GeometryModel | None = None,
         arm_joints: tuple[int, int] | None = None,
-        arm_back: tuple[float, float] = (1.0, 1.0),
         tasks: Sequence[Task] = (),
+        arm_back: tuple[float, float] = (1.0, 1.0),
     ) -> None:
         """Build the QP for a robot.
 

@@ -8,11 +8,11 @@ import pinocchio as pin
 
 from surefoot.models.robot_file.legs import at, find_legs, rest, solved
 from surefoot.models.robot_file.meshes import decimated
-from surefoot.models.robot_file.reduced import Reduced, reduced
+from surefoot.models.robot_file.reduced import SITES, Reduced, reduced
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.source import read_source
-from surefoot.models.robot_file.text import IMU, Parts, robot_text
+from surefoot.models.robot_file.text import Parts, robot_text
 from surefoot.models.robot_file.touch import Hull, find_hulls, kept_apart, limbs, overlapping, shank_spacing
 from surefoot.models.robot_file.upper import find_upper, hanging, swings
 from surefoot.models.types import Array, JointRoles, RobotDescription, RobotError, nearest
@@ -60,6 +60,11 @@ def derive(file: RobotFile, path: Path) -> Derived:
     source = read_source(file, path)
     model = reduced(file, source, path)
     return _Deriver(file, model).derived()
+
+
+def source_model(file: RobotFile, path: Path) -> pin.Model:
+    """The model of a file as its text is made of it: reduced, with x of the base ahead; for comparisons."""
+    return reduced(file, read_source(file, path), path).model
 
 
 class _Deriver:
@@ -227,12 +232,12 @@ class _Deriver:
             velocity_limit=fixed(model.upperVelocityLimit[6:]),
             position_lower=fixed(model.lowerPositionLimit[7:]),
             position_upper=fixed(model.upperPositionLimit[7:]),
-            sole_sites=("left_sole", "right_sole"),
+            sole_sites=(SITES[1], SITES[2]),
             sole_length=self.sole[0],
             sole_width=self.sole[1],
             pelvis_body=self.reduced.bodies[0],
             torso_body=self.reduced.bodies[self.upper.torso - 1],
-            imu_site=IMU,
+            imu_site=SITES[0],
             hip_width=float(np.linalg.norm(left.hip - right.hip)),
             leg_length=self.leg_length,
             shank_spacing=shank_spacing(at(model, straight), self.legs, self.hulls, room),

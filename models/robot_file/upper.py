@@ -9,7 +9,7 @@ from surefoot.models.joints import world_axis
 from surefoot.models.robot_file.legs import Leg, rest
 from surefoot.models.robot_file.reduced import Reduced
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.models.types import Array
+from surefoot.models.types import Array, RobotError
 
 _ASIDE, _ALIKE = 0.02, 0.1
 _LATERAL = 0.8
@@ -43,6 +43,9 @@ def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Uppe
 
     Arms are the heaviest two alike branches of one body on either side; that body is the torso. Without arms it is the
     heaviest body above the legs.
+
+    Raises:
+        RobotError: the file names a torso that is none.
     """
     model = reduced.model
     below = {joint for leg in legs for joint in leg.joints}
@@ -50,6 +53,9 @@ def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Uppe
     arms = _arms(model, others, legs)
     if file.torso is not None:
         torso = reduced.joint_of(file.torso, "torso")
+        if torso in below:
+            what = f"torso of {file.name} is '{file.torso}', which is part of a leg"
+            raise RobotError(("torso",), what, "name a link above the legs")
     elif arms:
         torso = int(model.parents[arms[0][0]])
     else:

@@ -24,7 +24,7 @@ from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metrics import known
-from surefoot.scenarios.setup.robot import RobotFacts, Robots, stance_widening
+from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
@@ -43,7 +43,7 @@ def robot_size(name: str, robots: Robots) -> tuple[Similarity, float]:
 
 def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:
     with suppress(ParameterError, PluginError, LookupError):
-        return robots.facts(name, options) if name in robots.names() else None
+        return robots.facts(name, options) if is_known(name, robots) else None
     return None
 
 
@@ -63,7 +63,7 @@ def say_for(source: Source, overrides: Overrides, robots: Robots) -> None:
     origin, robot = named.value.get(_KEY), named.value.get("robot", REFERENCE)
     if origin is None:
         return
-    if origin not in robots.names():
+    if not is_known(origin, robots):
         right = nearest(str(origin), robots.names())
         source.problems.append(Problem((_KEY,), f"unknown robot '{origin}' in {_KEY}", right))
     source.value.pop(_KEY, None)

@@ -1,0 +1,152 @@
+"""Meshes of links, small enough to stand inside a text: decimated ones to look at, convex hulls to touch with.
+
+A CAD system's meshes have some hundred thousand triangles, of which a viewer needs a twentieth. Vertices in one cell of
+a grid much finer than the triangles to be become one first: that closes seams between parts, drops what is too small to
+be seen, and takes a fraction of the time. Quadric edge collapse (Garland and Heckbert, 1997) does the rest.
+"""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import fast_simplification
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
+
+from surefoot.models.types import Array, RobotError
+
+Faces = NDArray[np.int64]
+Triangles = tuple[Array, Faces]
+"""Vertices, shape (n, 3) [m], and their indices in each triangle, counter-clockwise from outside, shape (m, 3)."""
+
+MOST_FACES = 25_000
+"""Triangles of a whole robot: what looks right at half a megabyte of text."""
+
+GRID = 0.1
+"""Side of the cells in which vertices become one, over the edge of the triangles to be [-]."""
+
+_PACKED = 21
+"""Bits of each of the three coordinates of a cell in one integer."""
+
+
+def decimated(parts: Sequence[Triangles], most_faces: int = MOST_FACES) -> tuple[Triangles, ...]:
+    """The meshes of a robot with so few triangles that all together have about `most_faces` at most.
+
+    Args:
+        parts: meshes, each in any frame; vertices may be there once for each of their triangles.
+        most_faces: triangles of the whole robot.
+
+    Returns:
+        each in its frame, in the order of the parts; one that is too small to be seen has no triangle.
+    """
+    areas = np.array([_area(part) for part in parts])
+    if not areas.sum() > 0.0:
+        return tuple(parts)
+    cell = GRID * np.sqrt(2.0 * areas.sum() / most_faces)
+    coarse = [merged(part, cell) for part in parts]
+    shares = _shares(np.array([len(faces) for _, faces in coarse]), np.sqrt(areas), most_faces)
+    return tuple(_collapsed(part, share) for part, share in zip(coarse, shares.tolist(), strict=True))
+
+
+def hull(vertices: Array, most: int) -> Triangles:
+    """Convex hull of points; if it has too many corners, of those that make most of it.
+
+    Args:
+        vertices: shape (n, 3) [m].
+        most: corners of the hull.
+
+    Raises:
+        RobotError: the points lie in a plane.
+    """
+    try:
+        corners = vertices[ConvexHull(vertices).vertices]
+        if len(corners) > most:
+            corners = _outermost(corners, most)
+        found = ConvexHull(corners)
+    except (QhullError, ValueError):
+        what = f"a mesh of {len(vertices)} vertices has no volume"
+        raise RobotError(("model",), what, "give collision shapes with a thickness") from None
+    a, b, c = corners[found.simplices].transpose(1, 0, 2)
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), found.equations[:, :3]) < 0.0
+    faces = found.simplices.astype(np.int64)
+    faces[inward] = faces[inward][:, ::-1]
+    return corners, faces
+
+
+def merged(part: Triangles, cell: float) -> Triangles:
+    """A mesh whose vertices in one cell of a grid are one, without what became of triangles inside a cell.
+
+    Args:
+        part: vertices and faces.
+        cell: side of the cells [m].
+    """
+    vertices, faces = part
+    low, extent = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
+    cell = max(cell, extent / (2**_PACKED - 2))
+    x, y, z = np.rint((vertices - low) / cell).astype(np.int64).T
+    _, first, place = np.unique(x | y << _PACKED | z << 2 * _PACKED, return_index=True, return_inverse=True)
+    a, b, c = renamed = place[faces].T
+    return _used(vertices[first], renamed.T[(a != b) & (b != c) & (c != a)])
+
+
+def colour_in_file(path: Path) -> tuple[float, float, float] | None:
+    """Red, green and blue of the first material of an OBJ or DAE, for shapes to which a URDF gives none."""
+    patterns = {".obj": r"(?m)^\s*Kd\s+([^\n]+)", ".dae": r"<diffuse>\s*<color[^>]*>([^<]+)"}
+    pattern = patterns.get(path.suffix.lower())
+    file = path.with_suffix(".mtl") if path.suffix.lower() == ".obj" else path
+    found = re.search(pattern, file.read_text(errors="replace")) if pattern and file.is_file() else None
+    if found is None:
+        return None
+    red, green, blue = (min(max(float(part), 0.0), 1.0) for part in found[1].split()[:3])
+    return red, green, blue
+
+
+def _outermost(corners: Array, most: int) -> Array:
+    """So many of the points that their hull is nearly that of all: time and again those farthest outside join it."""
+    chosen = np.unique(np.concatenate((corners.argmin(axis=0), corners.argmax(axis=0))))
+    chosen = np.union1d(chosen, [np.linalg.norm(corners - corners[chosen].mean(axis=0), axis=1).argmax()])
+    while len(chosen) < most:
+        found = ConvexHull(corners[chosen], qhull_options="QJ")
+        outside = corners @ found.equations[:, :3].T + found.equations[:, 3]
+        farthest = outside.argmax(axis=0)
+        order = np.argsort(-outside.max(axis=0), kind="stable")
+        new = [point for point in dict.fromkeys(farthest[order].tolist()) if point not in chosen]
+        if not new:
+            break
+        chosen = np.union1d(chosen, new[: (most - len(chosen) + 1) // 2])
+    farthest_out: Array = corners[chosen]
+    return farthest_out
+
+
+def _shares(wanted: NDArray[np.int_], weights: Array, most: int) -> NDArray[np.int64]:
+    """Triangles for each mesh: by its weight, and what some do not need for the others; never more than it has."""
+    share = np.zeros(len(wanted))
+    hungry = np.ones(len(wanted), dtype=bool)
+    while hungry.any():
+        share[hungry] = weights[hungry] * (most - share[~hungry].sum()) / weights[hungry].sum()
+        full = hungry & (share >= wanted)
+        if not full.any():
+            break
+        share[full], hungry[full] = wanted[full], False
+    return share.astype(np.int64)
+
+
+def _collapsed(part: Triangles, most: int) -> Triangles:
+    vertices, faces = part
+    if len(faces) <= most:
+        return part
+    size = float(np.ptp(vertices, axis=0).max())  # the thresholds of the library are for meshes of about unit size
+    vertices, faces = fast_simplification.simplify(vertices / size, faces.astype(np.int32), target_count=max(most, 4))
+    return _used(np.asarray(size * vertices, dtype=np.float64), np.asarray(faces, dtype=np.int64))
+
+
+def _used(vertices: Array, faces: Faces) -> Triangles:
+    """Without vertices of no triangle."""
+    kept, renamed = np.unique(faces, return_inverse=True)
+    return vertices[kept], renamed.reshape(faces.shape).astype(np.int64)
+
+
+def _area(part: Triangles) -> float:
+    a, b, c = part[0][part[1]].transpose(1, 0, 2)
+    return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())

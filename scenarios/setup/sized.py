@@ -105,18 +105,27 @@ class _Translation:
         options = values.get("robot_options")
         for name in _SOLES if isinstance(options, dict) else ():
             options.pop(name, None)
-        gait = values.setdefault("gait", {})
-        for name in _RULES if isinstance(gait, dict) else ():
+        gait, terrain = values.setdefault("gait", {}), values.get("terrain")
+        for name in _POSTURE if isinstance(gait, dict) else ():
             gait.setdefault(name, Gait.model_fields[name].default)
+        given = [
+            group.get(name) for group, name in ((gait, "step_length"), (terrain, "tread")) if isinstance(group, dict)
+        ]
         self._group(Scenario, values, ())
+        if isinstance(terrain, dict) and len(given) == 2 and given[0] == given[1] is not None:
+            # Steps from tread to tread stay such.
+            gait["step_length"] = terrain["tread"]
         self._controller(WbcParameters(), values.get("wbc"), ("wbc",))
         for name, bound in values["criteria"].items() if isinstance(values.get("criteria"), dict) else ():
             self._criterion(values["criteria"], name, bound)
-        given = values.get("rates"), values.get("planner")
-        if isinstance(given[0], dict) and given[0]:
-            values["planner"] = dict(given[1]) if isinstance(given[1], dict) else {}
+        self._rates(values)
+
+    def _rates(self, values: dict[str, Any]) -> None:
+        given, planner = values.get("rates"), values.get("planner")
+        if isinstance(given, dict) and given:
+            values["planner"] = dict(planner) if isinstance(planner, dict) else {}
             with suppress(ValueError, TypeError):
-                rates = clock(Rates(**given[0]), self.after.size.time / self.before.size.time)
+                rates = clock(Rates(**given), self.after.size.time / self.before.size.time)
                 values["rates"], values["planner"]["sample_time"] = rates.model_dump(), 1.0 / rates.planner
 
     def _group(self, model: type[BaseModel], values: Any, key: Key) -> None:
@@ -157,7 +166,7 @@ class _Translation:
         """The value for the other robot."""
         with suppress(PydanticCustomError):
             value = Unit(unit).number(value)
-        rule = _RULES.get(str(key[-1])) if key[:-1] == ("gait",) and _is_number(value) else None
+        rule = _RULES.get(key) if _is_number(value) else None
         if rule is not None:
             return rule(value, self.before, self.after)
         return _times(value, _against(self.after.size, self.before.size, unit))
@@ -192,11 +201,24 @@ def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:
     return float(length * value + max(0.0, *wider))
 
 
-_RULES: dict[str, Callable[[float, RobotFacts, RobotFacts], float]] = {
-    "com_height": com_height,
-    "step_width": step_width,
+def tread(value: float, before: RobotFacts, after: RobotFacts) -> float:
+    """Depth of a tread for another robot: scaled, and deeper by what its soles are longer than scaled ones [m].
+
+    So no sole lands nearer to an edge; arguments as of `com_height`.
+    """
+    length = after.size.length / before.size.length
+    return length * value + max(0.0, after.foot_length - length * before.foot_length)
+
+
+_RULES: dict[Key, Callable[[float, RobotFacts, RobotFacts], float]] = {
+    ("gait", "com_height"): com_height,
+    ("gait", "step_width"): step_width,
+    ("terrain", "tread"): tread,
 }
-"""Keys of the gait that follow from more of a robot than its size."""
+"""Keys that follow from more of a robot than its size."""
+
+_POSTURE = ("com_height", "step_width")
+"""Those of them that every walk has."""
 
 
 def clock(rates: Rates, time: float) -> Rates:
@@ -214,9 +236,9 @@ def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scena
     before, after = (_facts(name, RobotSettings(), robots) for name in (REFERENCE, scenario.robot))
     gait, changed = scenario.gait, {}
     if before is not None and after is not None:
-        for name, rule in _RULES.items():
+        for name in _POSTURE:
             if name not in gait.model_fields_set:
-                changed[name] = rule(getattr(gait, name), before, after)
+                changed[name] = _RULES["gait", name](getattr(gait, name), before, after)
     rates, sample_time = _clock(scenario, size)
     update: dict[str, Any] = {
         "gait": followed.gait.model_copy(update=changed),

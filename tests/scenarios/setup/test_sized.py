@@ -15,7 +15,7 @@ from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.robot import RegisteredRobots
-from surefoot.scenarios.setup.sized import clock, com_height, step_width
+from surefoot.scenarios.setup.sized import clock, com_height, step_width, tread
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.similarity import Similarity
 
@@ -134,6 +134,16 @@ def test_legs_are_bent_as_much_and_feet_no_nearer():
     assert width == pytest.approx(0.05 + 0.08 - 0.25 * full.hip_width)
     assert width - wide.foot_width >= 0.25 * (0.2 - full.foot_width)
     assert step_width(0.2, full, replace(wide, hip_width=0.01, shank_spacing=0.01, foot_width=0.01)) == 0.05
+
+
+def test_treads_are_as_deep_as_soles_ask_for():
+    robots = RegisteredRobots()
+    soles = RobotSettings(foot_length=0.2, foot_width=0.1)
+    full, other = robots.facts("humanoid100", soles), robots.facts("small", RobotSettings())
+    assert tread(0.3, full, replace(other, foot_length=0.04)) == 0.075
+    assert tread(0.3, full, replace(other, foot_length=0.06)) == pytest.approx(0.085)
+    stairs = load("stair-climbing", {"robot": "small"})
+    assert stairs.gait.step_length == stairs.terrain.tread == pytest.approx(0.05 + 0.25 * (0.22 - 0.075))
 
 
 def test_a_payload_is_no_size():

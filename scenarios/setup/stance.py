@@ -146,7 +146,8 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
     """The legs' inertia, from a standing configuration; both legs alike.
 
     The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
-    the thigh, what is below the next joint to the foot. Lateral offsets within a leg are left out.
+    the thigh, what is below the next joint to the foot; hip and ankle are where the axes there come nearest to
+    each other. Lateral offsets within a leg are left out.
 
     Args:
         model: the robot.
@@ -197,13 +198,14 @@ def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.boo
     at = [data.oMi[j].translation.copy() for j in chain]
     apart = np.linalg.norm(np.diff(at, axis=0), axis=1)
     knee = 1 + int(np.argmax(apart[1:] * apart[:-1]))
-    parts = [_lumped(model, data, joints) for joints in (chain[:knee], chain[knee : knee + 1], chain[knee + 1 :])]
-    hip = _hip(model, data, chain[:knee])
-    return _Leg(hip, at[knee], at[knee + 1], data.oMf[frame].translation.copy(), *parts)
+    groups = chain[:knee], chain[knee : knee + 1], chain[knee + 1 :]
+    parts = [_lumped(model, data, joints) for joints in groups]
+    hip, ankle = (_pivot(model, data, group) for group in (groups[0], groups[2]))
+    return _Leg(hip, at[knee], ankle, data.oMf[frame].translation.copy(), *parts)
 
 
-def _hip(model: pin.Model, data: pin.Data, joints: list[int]) -> Array:
-    """The point on the pitch axis that is nearest to all axes of the hip: what a leg swings about."""
+def _pivot(model: pin.Model, data: pin.Data, joints: list[int]) -> Array:
+    """The point of a hip or an ankle on its pitch axis, nearest to all its axes: what a link swings about."""
     meeting = meeting_point(model, data, joints)
     lateral = data.oMi[1].rotation[:, 1]
     pitch = max(joints, key=lambda joint: abs(float(world_axis(model, data, joint) @ lateral)))

@@ -118,7 +118,7 @@ def robot_mjcf(
     """
     root = ElementTree.Element("mujoco", model=name)
     ElementTree.SubElement(root, "compiler", angle="radian", autolimits="true")
-    _add_defaults(root)
+    add_defaults(root)
     asset = ElementTree.SubElement(root, "asset")
     for material, attributes in materials.items():
         ElementTree.SubElement(asset, "material", {"name": material, **attributes})
@@ -134,7 +134,8 @@ def robot_mjcf(
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def _add_defaults(root: ElementTree.Element) -> None:
+def add_defaults(root: ElementTree.Element) -> None:
+    """Add the default class of each role: what it touches, and the group by which viewers tell it."""
     top = ElementTree.SubElement(root, "default")
     for role in Role:
         group = {Role.VISUAL: "1", Role.SOLE: "2", Role.COLLISION: "3"}[role]

@@ -49,9 +49,11 @@ class JointRoles:
     Attributes:
         left_leg: from the hip to the ankle, in the order of the chain.
         right_leg: likewise.
-        knees: left and right; at zero the leg is straight.
+        knees: left and right.
         waist: between pelvis and torso, in the order of the chain.
-        arm_swing: left and right joint that swings the arm, back with positive angles; None without such arms.
+        arm_swing: left and right joint that swings the arm; None without such arms.
+        knee_bend: sign of the angles that bend the left and the right knee.
+        arm_back: sign of the angles that swing the left and the right arm back.
     """
 
     left_leg: tuple[str, ...]
@@ -59,11 +61,23 @@ class JointRoles:
     knees: tuple[str, str]
     waist: tuple[str, ...] = ()
     arm_swing: tuple[str, str] | None = None
+    knee_bend: tuple[float, float] = (1.0, 1.0)
+    arm_back: tuple[float, float] = (1.0, 1.0)
 
     @property
     def legs(self) -> tuple[str, ...]:
         """Joints of the left leg, then of the right one."""
         return self.left_leg + self.right_leg
+
+
+_OF_JOINTS = (
+    "torque_limit",
+    "velocity_limit",
+    "position_lower",
+    "position_upper",
+    "nominal_joint_positions",
+    "straight_joint_positions",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +111,7 @@ class RobotDescription:
         shank_spacing: lateral distance of the sole centres at which upright shanks keep a centimetre apart; soles may
             be narrower [m].
         nominal_joint_positions: mild crouch with relaxed arms, the start of an IK, shape (nj,) [rad].
+        straight_joint_positions: straight legs on level soles under the hips, arms hanging, shape (nj,) [rad].
         com_height: nominal CoM height above the soles in walking [m].
         bodies: all body names.
         kept_apart: pairs of named contact shapes of different limbs that the controller keeps apart.
@@ -121,6 +136,7 @@ class RobotDescription:
     leg_length: float
     shank_spacing: float
     nominal_joint_positions: Array
+    straight_joint_positions: Array
     com_height: float
     bodies: tuple[str, ...]
     kept_apart: tuple[tuple[str, str], ...]
@@ -140,7 +156,7 @@ class RobotDescription:
         return tuple(self.joint_names.index(name) for name in names)
 
     def _check_joint_arrays(self) -> None:
-        for name in ("torque_limit", "velocity_limit", "position_lower", "position_upper", "nominal_joint_positions"):
+        for name in _OF_JOINTS:
             values = np.asarray(getattr(self, name))
             if values.shape != (len(self.joint_names),):
                 what = f"{name} of {self.name} has the shape {values.shape}"

@@ -91,6 +91,7 @@ def describe(options: RobotOptions) -> RobotDescription:
         leg_length=LEG,
         shank_spacing=0.11,  # the contact shapes of the shanks are a decimetre thick
         nominal_joint_positions=_mild_crouch(tuple(joint.name for joint in joints)),
+        straight_joint_positions=_constant([0.0] * len(joints)),
         com_height=1.0,
         bodies=tuple(body.name for body in bodies),
         kept_apart=_KEPT_APART,

@@ -1,0 +1,318 @@
+"""From a robot file to a description: everything that the file does not say, derived from the model."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.models.robot_file.legs import SIDES, at, find_legs, rest, solved
+from surefoot.models.robot_file.meshes import decimated
+from surefoot.models.robot_file.reduced import Reduced, reduced
+from surefoot.models.robot_file.schema import RobotFile, matched
+from surefoot.models.robot_file.shapes import Shape
+from surefoot.models.robot_file.source import read_source
+from surefoot.models.robot_file.text import IMU, Parts, robot_text
+from surefoot.models.robot_file.touch import Hull, find_hulls, overlapping, shape_name
+from surefoot.models.robot_file.upper import find_upper, hanging, swings
+from surefoot.models.types import Array, JointRoles, RobotDescription, RobotError, nearest
+
+BEND = 0.65
+"""Bend of the knees in walking, as that of humanoid100, whose CoM is then 1.00 m above its soles [rad]."""
+
+HANGING, _WIDER, _WIDEST = 0.12, 0.05, 0.8
+"""Angle of the arms from the vertical in front view, by what it grows until they are free, and its end [rad]."""
+
+_CLEAR = 0.01
+"""Distance that upright shanks keep, over the leg's length of humanoid100 [m]."""
+
+_NEAR = 0.005
+"""Distance in the posture, over the leg's length, below which links may overlap for good [-]."""
+
+_REFERENCE = 0.94
+"""Length of the leg of humanoid100, in which the lengths above are given [m]."""
+
+
+class Derived(NamedTuple):
+    """A description, and how it came to be.
+
+    Attributes:
+        description: the robot, at the size of its model.
+        derived: what was derived and from what, one line each.
+        notes: what was altered, left out or looks wrong, one line each.
+    """
+
+    description: RobotDescription
+    derived: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def derive(file: RobotFile, path: Path) -> Derived:
+    """Describe the robot of a file.
+
+    Args:
+        file: the robot file.
+        path: of its model.
+
+    Raises:
+        RobotError: the model cannot be read or does not walk on two legs.
+    """
+    source = read_source(file, path)
+    model = reduced(file, source, path)
+    return _Deriver(file, model).derived()
+
+
+class _Deriver:
+    """Holds what is found while a robot is described."""
+
+    def __init__(self, file: RobotFile, reduced: Reduced) -> None:
+        self.file, self.reduced, self.model = file, reduced, reduced.model
+        self.lines: list[str] = []
+        self.legs = find_legs(reduced, file)
+        self.upper = find_upper(reduced, file, self.legs)
+        self.hulls = find_hulls(reduced, self.legs, self.upper)
+        self.sole = tuple(min(getattr(leg.sole, side) for leg in self.legs) for side in ("length", "width"))
+        self.leg_length = self._leg_length()
+
+    def derived(self) -> Derived:
+        """The whole description."""
+        straight, posture = self._postures()
+        excluded = self._excluded([straight, posture])
+        mjcf = robot_text(self._parts(excluded, looks=True))
+        com_height = self._com_height(posture)
+        description = self._description(mjcf, straight, posture, com_height, excluded)
+        self._say(description, excluded)
+        return Derived(description, tuple(self.lines), tuple(self.reduced.notes))
+
+    def _leg_length(self) -> float:
+        """Hip centre to sole, the longer one of both straight legs [m]."""
+        lengths = []
+        for leg in self.legs:
+            data = at(self.model, solved(self.model, leg, rest(self.model), 0.0))
+            lengths.append(float(leg.hip[2] - (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[2]))
+        if min(lengths) <= 0.0:
+            what = f"the soles of {self.file.name} are not below its hips with straight legs"
+            raise RobotError(("model",), what, "z of the floating base must point up")
+        return max(lengths)
+
+    def _postures(self) -> tuple[Array, Array]:
+        """Joint angles with straight legs, and in a mild crouch; the upper body alike in both [rad]."""
+        base = self._upper_posture()
+        straight, crouch = base.copy(), base.copy()
+        for leg in self.legs:
+            for angles, bend in ((straight, 0.0), (crouch, BEND)):
+                angles[:] = solved(self.model, leg, angles, bend)
+        names = tuple(self.model.names)[2:]
+        for name, angle in self._given_posture().items():
+            place = names.index(name)
+            crouch[place] = angle
+            if place + 2 not in {joint for leg in self.legs for joint in leg.joints}:
+                straight[place] = angle
+        return straight, crouch
+
+    def _given_posture(self) -> dict[str, float]:
+        """Angles that the file gives, by a state of the SRDF or by patterns."""
+        posture, names = self.file.posture, tuple(self.model.names)[2:]
+        if isinstance(posture, str):
+            states = self.reduced.states
+            if posture not in states:
+                what = f"posture of {self.file.name} is '{posture}', which is no state of its SRDF"
+                raise RobotError(("posture",), what, nearest(posture, tuple(states) or ("angles by pattern",)))
+            return {name: angle for name, angle in states[posture].items() if name in names}
+        given = matched(posture or {}, names, "posture", self.file.name)
+        for name, angle in given.items():
+            joint = names.index(name) + 7
+            lower, upper = float(self.model.lowerPositionLimit[joint]), float(self.model.upperPositionLimit[joint])
+            if not lower <= angle <= upper:
+                what = f"posture of {self.file.name} has joint '{name}' at {angle} rad"
+                raise RobotError(("posture", name), what, f"it must lie within {lower:.3f} and {upper:.3f} rad")
+        return given
+
+    def _upper_posture(self) -> Array:
+        """Arms that hang, wide enough to be free of thighs and trunk."""
+        posture, aside = rest(self.model), HANGING
+        if not self.upper.arms:
+            return posture
+        near = _NEAR * self.leg_length
+        others = {1, self.upper.torso, *(leg.joints[leg.knee - 1] for leg in self.legs)}
+        arms = {joint for arm in self.upper.arms for joint in arm[2:]}
+        hulls = {joint: hull for joint, hull in self.hulls.items() if joint in others | arms}
+        text = robot_text(self._parts((), looks=False, hulls=hulls))
+        bodies = {joint: self.reduced.bodies[joint - 1] for joint in hulls}
+        parents = list(self.model.parents)
+        fixed = {self.reduced.bodies[joint - 1] for joint in others}
+        while True:
+            found = hanging(self.model, self.upper, posture, aside)
+            pairs = overlapping(text, [found], bodies, parents, near)
+            if aside > _WIDEST or all((one in fixed) == (other in fixed) for one, other in pairs):
+                return found
+            aside += _WIDER
+
+    def _parts(
+        self, excluded: list[tuple[str, str]] | tuple[()], looks: bool, hulls: dict[int, Hull] | None = None
+    ) -> Parts:
+        nothing: tuple[tuple[()], ...] = ((),) * self.model.njoints
+        return Parts(
+            name=self.file.name,
+            model=self.model,
+            bodies=self.reduced.bodies,
+            legs=self.legs,
+            leg_length=self.leg_length,
+            sole=(self.sole[0], self.sole[1]),
+            height=self.leg_length - float(self.legs[0].hip[2]),
+            hulls=self.hulls if hulls is None else hulls,
+            looks=self._looks() if looks else nothing,
+            excluded=excluded,
+        )
+
+    def _looks(self) -> list[list[Shape]]:
+        """What is drawn, with as many triangles as a viewer needs."""
+        joints = [joint for joint, group in enumerate(self.reduced.visual) for _ in group]
+        shapes = [shape for group in self.reduced.visual for shape in group]
+        small = decimated([(shape.vertices, shape.faces) for shape in shapes])
+        looks: list[list[Shape]] = [[] for _ in range(self.model.njoints)]
+        for joint, shape, (vertices, faces) in zip(joints, shapes, small, strict=True):
+            if len(faces):
+                looks[joint].append(Shape(shape.link, vertices, faces, shape.rgba))
+        return looks
+
+    def _excluded(self, postures: list[Array]) -> list[tuple[str, str]]:
+        bodies = {joint: self.reduced.bodies[joint - 1] for joint in self.hulls}
+        text = robot_text(self._parts((), looks=False))
+        return overlapping(text, postures, bodies, list(self.model.parents), _NEAR * self.leg_length)
+
+    def _com_height(self, posture: Array) -> float:
+        """Of the CoM over the soles in the posture [m]."""
+        if self.file.com_height is not None:
+            return self.file.com_height
+        data, q = self.model.createData(), pin.neutral(self.model)
+        q[7:] = posture
+        com = pin.centerOfMass(self.model, data, q)
+        leg = self.legs[0]
+        return float(com[2] - (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[2])
+
+    def _shank_spacing(self, straight: Array) -> float:
+        """Lateral distance of the soles at which upright shanks keep apart [m]."""
+        data, inner = at(self.model, straight), []
+        for side, leg in zip((1.0, -1.0), self.legs, strict=True):
+            knee = leg.joints[leg.knee]
+            sole = (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[1]
+            points = self.hulls[knee].vertices if knee in self.hulls else np.zeros((1, 3))
+            reach = points @ data.oMi[knee].rotation[1] + data.oMi[knee].translation[1]
+            inner.append(float(side * (sole - (side * reach).min() * side)))
+        return max(sum(inner) + _CLEAR * self.leg_length / _REFERENCE, self.sole[1])
+
+    def _kept_apart(self, excluded: list[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+        """Names of pairs of contact shapes that can meet in walking, as far as they do not overlap for good."""
+        shapes = {joint: shape_name(self.reduced.bodies[joint - 1]) for joint in self.hulls}
+        pairs: list[tuple[str, str]] = []
+        if self.file.keep_apart is not None:
+            for one, other in self.file.keep_apart:
+                joints = [self.reduced.joint_of(link, "keep_apart") for link in (one, other)]
+                missing = [link for joint, link in zip(joints, (one, other), strict=True) if joint not in shapes]
+                if missing:
+                    what = f"keep_apart of {self.file.name} names '{missing[0]}', which has no contact shape"
+                    links = tuple(self.reduced.bodies[joint - 1] for joint in shapes)
+                    raise RobotError(("keep_apart",), what, nearest(missing[0], links))
+                pairs.append((shapes[joints[0]], shapes[joints[1]]))
+            return tuple(pairs)
+        thighs, shanks = ([leg.joints[leg.knee + offset] for leg in self.legs] for offset in (-1, 0))
+        joints = [tuple(thighs), tuple(shanks)]
+        for arm, thigh in zip(self.upper.arms, thighs, strict=False):
+            joints += [(joint, thigh) for joint in self._lower_arm(arm)]
+        apart = {frozenset(pair) for pair in excluded}
+        for one, other in joints:
+            names = frozenset((self.reduced.bodies[one - 1], self.reduced.bodies[other - 1]))
+            if one in shapes and other in shapes and names not in apart:
+                pairs.append((shapes[one], shapes[other]))
+        soles = [f"{side}_sole_box" for side in SIDES]
+        pairs.append((soles[0], soles[1]))
+        pairs += [(soles[side], shapes[shanks[1 - side]]) for side in (0, 1) if shanks[1 - side] in shapes]
+        return tuple(pairs)
+
+    def _lower_arm(self, arm: tuple[int, ...]) -> list[int]:
+        """The hand and the largest link of the lower half of an arm, of those with contact shapes."""
+        hulls = [joint for joint in arm[len(arm) // 2 :] if joint in self.hulls]
+        if not hulls:
+            return []
+        largest = max(hulls, key=lambda joint: float(np.prod(np.ptp(self.hulls[joint].vertices, axis=0))))
+        return sorted({hulls[-1], largest})
+
+    def _roles(self, posture: Array) -> JointRoles:
+        names = self.model.names
+        swing = swings(self.model, self.upper, posture)
+        left, right = self.legs
+        return JointRoles(
+            left_leg=tuple(names[joint] for joint in left.joints),
+            right_leg=tuple(names[joint] for joint in right.joints),
+            knees=(names[left.joints[left.knee]], names[right.joints[right.knee]]),
+            waist=tuple(names[joint] for joint in self.upper.waist),
+            arm_swing=None if swing is None else (names[swing[0][0]], names[swing[0][1]]),
+            knee_bend=(left.bend, right.bend),
+            arm_back=(1.0, 1.0) if swing is None else swing[1],
+        )
+
+    def _description(
+        self, mjcf: str, straight: Array, posture: Array, com_height: float, excluded: list[tuple[str, str]]
+    ) -> RobotDescription:
+        model = self.model
+        left, right = self.legs
+        return RobotDescription(
+            name=self.file.name,
+            mjcf=mjcf,
+            mass=float(sum(inertia.mass for inertia in model.inertias)),
+            joint_names=tuple(model.names)[2:],
+            roles=self._roles(posture),
+            torque_limit=fixed(model.upperEffortLimit[6:]),
+            velocity_limit=fixed(model.upperVelocityLimit[6:]),
+            position_lower=fixed(model.lowerPositionLimit[7:]),
+            position_upper=fixed(model.upperPositionLimit[7:]),
+            sole_sites=("left_sole", "right_sole"),
+            sole_length=self.sole[0],
+            sole_width=self.sole[1],
+            pelvis_body=self.reduced.bodies[0],
+            torso_body=self.reduced.bodies[self.upper.torso - 1],
+            imu_site=IMU,
+            hip_width=float(np.linalg.norm(left.hip - right.hip)),
+            leg_length=self.leg_length,
+            shank_spacing=self._shank_spacing(straight),
+            nominal_joint_positions=fixed(posture),
+            straight_joint_positions=fixed(straight),
+            com_height=com_height,
+            bodies=self.reduced.bodies,
+            kept_apart=self._kept_apart(excluded),
+        )
+
+    def _say(self, robot: RobotDescription, excluded: list[tuple[str, str]]) -> None:
+        """Tell what was derived."""
+        given = self.file.model_fields_set
+        lines = self.lines
+        left, right = self.legs
+        lines.append(f"legs: {', '.join(robot.roles.left_leg)}; {', '.join(robot.roles.right_leg)}")
+        lines.append(
+            f"knees: {' and '.join(robot.roles.knees)}, straight at {left.straight:.3f} and {right.straight:.3f} rad, "
+            f"bent by {'positive' if left.bend > 0 else 'negative'} angles on the left"
+        )
+        by = "as given" if "torso" in given else "which carries the arms" if self.upper.arms else "the heaviest body"
+        lines.append(f"torso: {robot.torso_body}, {by}; waist: {', '.join(robot.roles.waist) or 'none'}")
+        if self.upper.arms:
+            swing = ", ".join(robot.roles.arm_swing or ()) or "none, no joint turns a whole arm about the lateral axis"
+            lines.append(f"arm swing: {swing}")
+        by = "as given" if "sole" in given else "the largest rectangle in the lowest face of the foot"
+        lines.append(f"soles: {robot.sole_length:.3f} x {robot.sole_width:.3f} m, {by}")
+        lines.append(
+            f"leg length: {robot.leg_length:.3f} m from hip centre to sole; hips {robot.hip_width:.3f} m apart"
+        )
+        by = "as given" if "com_height" in given else f"with knees bent by {BEND} rad"
+        lines.append(f"com_height: {robot.com_height:.3f} m, {by}")
+        lines.append(f"shank_spacing: {robot.shank_spacing:.3f} m, from the contact shapes of the shanks")
+        if excluded:
+            told = ", ".join(f"{one} and {other}" for one, other in excluded)
+            lines.append(f"may overlap, since they do in the posture: {told}")
+
+
+def fixed(values: Array) -> Array:
+    """A read-only copy."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,186 @@
+"""The legs of a model: chains, knees, hips, ankles, soles, and the angles of a leg that is straight or bent."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.models.joints import meeting_point, world_axis
+from surefoot.models.robot_file.reduced import Reduced, points_of
+from surefoot.models.robot_file.schema import RobotFile
+from surefoot.models.robot_file.soles import SolePlate, sole_of
+from surefoot.models.types import Array, RobotError
+
+SIDES = ("left", "right")
+FEWEST, MOST = 5, 7
+_LATERAL = 0.7
+_STEPS, _DAMPING = 60, 1e-6
+_ENDS = 0.02
+"""How far solved angles stay from the ends of a joint [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """One leg.
+
+    Attributes:
+        joints: from hip to ankle, indices in the model.
+        knee: its place in that chain.
+        bend: sign of the knee's angle that bends it.
+        straight: angle of the knee that makes the leg longest [rad].
+        sole: what touches the ground.
+        hip: hip centre from the base [m].
+    """
+
+    joints: tuple[int, ...]
+    knee: int
+    bend: float
+    straight: float
+    sole: SolePlate
+    hip: Array
+
+
+def find_legs(reduced: Reduced, file: RobotFile) -> tuple[Leg, Leg]:
+    """Both legs.
+
+    Raises:
+        RobotError: a leg has too few or too many joints, no knee or no sole, or the feet are swapped.
+    """
+    model = reduced.model
+    chains = [tuple(j for j in model.supports[model.frames[frame].parentJoint] if j > 1) for frame in reduced.feet]
+    feet = file.soles()
+    shared = sorted(set(chains[0]) & set(chains[1]))
+    if shared:
+        what = f"both feet of {file.name} hang on joint '{model.names[shared[0]]}'"
+        raise RobotError(("feet",), what, "the floating base must be the body between the legs")
+    for side, chain in zip(SIDES, chains, strict=True):
+        if not FEWEST <= len(chain) <= MOST:
+            what = f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has {len(chain)} joints"
+            raise RobotError(("feet", side), what, f"legs need {FEWEST} to {MOST}, so that a sole can be put anywhere")
+    legs = [_leg(reduced, file, side, chain) for side, chain in enumerate(chains)]
+    _check_sides(reduced, file, legs)
+    return legs[0], legs[1]
+
+
+def at(model: pin.Model, angles: Array) -> pin.Data:
+    """Placements of all joints with the base at the origin and joints at angles, shape (nj,) [rad]."""
+    data, q = model.createData(), pin.neutral(model)
+    q[7:] = angles
+    pin.forwardKinematics(model, data, q)
+    return data
+
+
+def rest(model: pin.Model) -> Array:
+    """Zero, or the nearest angle of each joint, shape (nj,) [rad]."""
+    return np.asarray(np.clip(0.0, model.lowerPositionLimit[7:], model.upperPositionLimit[7:]))
+
+
+def _leg(reduced: Reduced, file: RobotFile, side: int, chain: tuple[int, ...]) -> Leg:
+    model, data = reduced.model, at(reduced.model, rest(reduced.model))
+    candidates = {}
+    for place in range(1, len(chain) - 1):
+        axis = world_axis(model, data, chain[place])
+        if abs(axis[1]) < _LATERAL:
+            continue
+        on = data.oMi[chain[place]].translation
+        ends = (meeting_point(model, data, group) - on for group in (chain[:place], chain[place + 1 :]))
+        above, below = (float(np.linalg.norm(end - axis * (end @ axis))) for end in ends)
+        candidates[place] = above * below
+    if not candidates:
+        what = f"the {SIDES[side]} leg of {file.name} has no joint between its ends that turns about the lateral axis"
+        raise RobotError(
+            ("feet", SIDES[side]), what, "name the links of the feet, below ankle and knee, and check forward"
+        )
+    knee = max(candidates, key=candidates.__getitem__)
+    straight = _longest(model, chain, knee)
+    lower, upper = (float(limit[chain[knee] + 5]) for limit in (model.lowerPositionLimit, model.upperPositionLimit))
+    bend = 1.0 if upper - straight >= straight - lower else -1.0
+    sole = _sole(reduced, file, side, data, chain[-1])
+    return Leg(chain, knee, bend, straight, sole, meeting_point(model, data, chain[:knee]))
+
+
+def _longest(model: pin.Model, chain: tuple[int, ...], knee: int) -> float:
+    """Angle of the knee at which hip and ankle are farthest apart; the distance squared is a + b cos + c sin of it."""
+    squares = []
+    for angle in (0.0, np.pi / 2, np.pi):
+        angles = rest(model)
+        angles[chain[knee] - 2] = angle
+        data = at(model, angles)
+        hip, ankle = (meeting_point(model, data, group) for group in (chain[:knee], chain[knee + 1 :]))
+        squares.append(float((hip - ankle) @ (hip - ankle)))
+    middle = (squares[0] + squares[2]) / 2
+    angle = float(np.arctan2(squares[1] - middle, squares[0] - middle))
+    joint = chain[knee] + 5
+    return float(np.clip(angle, model.lowerPositionLimit[joint], model.upperPositionLimit[joint]))
+
+
+def _sole(reduced: Reduced, file: RobotFile, side: int, data: pin.Data, joint: int) -> SolePlate:
+    """The sole in the file, or of the shapes of everything that the last joint of the leg moves."""
+    upright = np.asarray(data.oMi[joint].rotation.T)
+    link = getattr(file.soles(), SIDES[side])
+    if file.sole is not None:
+        x, y, z = file.sole.centre
+        frame = reduced.model.frames[reduced.feet[side]].placement
+        centre = frame.act(np.array([x, y if side == 0 else -y, z]))
+        return SolePlate(pin.SE3(upright, centre), file.sole.length, file.sole.width)
+    shapes = reduced.collision[joint] or reduced.visual[joint]
+    return sole_of(points_of(shapes), upright, link, file.name)
+
+
+def _check_sides(reduced: Reduced, file: RobotFile, legs: list[Leg]) -> None:
+    """Refuse feet that are swapped: the legs would stand the right way round, but toes and knees point backward.
+
+    Raises:
+        RobotError: they are, or the axis ahead is a wrong one.
+    """
+    data = at(reduced.model, rest(reduced.model))
+    ahead = []
+    for leg in legs:
+        ankle = meeting_point(reduced.model, data, leg.joints[leg.knee + 1 :])
+        toe = data.oMi[leg.joints[-1]].act(leg.sole.placement.translation)[0] - ankle[0]
+        knee = world_axis(reduced.model, data, leg.joints[leg.knee])[1] * leg.bend
+        ahead.append(toe / leg.sole.length if abs(toe) > 0.05 * leg.sole.length else knee)
+    if max(ahead) >= 0.0:
+        return
+    feet = file.soles()
+    if file.forward is not None:
+        what = f"forward of {file.name} is {file.forward}, but toes and knees point the other way"
+        raise RobotError(("forward",), what, "leave it out, or give the opposite axis")
+    what = f"feet of {file.name} look swapped: with '{feet.left}' on the left, toes and knees point backward"
+    raise RobotError(("feet",), what, f"write feet: {{left: {feet.right}, right: {feet.left}}}, or give forward")
+
+
+def solved(model: pin.Model, leg: Leg, angles: Array, bend: float) -> Array:
+    """Angles with the knee bent, the ankle right below the hip, the sole level and pointing ahead, shape (nj,) [rad].
+
+    Damped Gauss-Newton; what the leg's joints and limits do not allow stays as near as it gets.
+    """
+    found = angles.copy()
+    lower, upper = model.lowerPositionLimit[7:], model.upperPositionLimit[7:]
+    free = [joint - 2 for place, joint in enumerate(leg.joints) if place != leg.knee]
+    knee = leg.joints[leg.knee] - 2
+    found[knee] = np.clip(leg.straight + leg.bend * bend, lower[knee], upper[knee])
+    margin = np.minimum(_ENDS, 0.25 * (upper - lower))
+    low, high = (lower + margin)[free], (upper - margin)[free]
+    for _ in range(_STEPS):
+        error = _misplaced(model, leg, found)
+        if np.abs(error).max() < 1e-13:
+            break
+        J = np.empty((len(error), len(free)))
+        for column, joint in enumerate(free):
+            step = found.copy()
+            step[joint] += 1e-6
+            ahead = _misplaced(model, leg, step)
+            step[joint] -= 2e-6
+            J[:, column] = (ahead - _misplaced(model, leg, step)) / 2e-6
+        change = -np.linalg.solve(J.T @ J + _DAMPING * np.eye(len(free)), J.T @ error)
+        found[free] = np.clip(found[free] + np.clip(change, -0.3, 0.3), low, high)
+    return found
+
+
+def _misplaced(model: pin.Model, leg: Leg, angles: Array) -> Array:
+    """Directions that should be zero, shape (5,): ankle aside of the hip, sole off the level, toes off ahead."""
+    data = at(model, angles)
+    down = meeting_point(model, data, leg.joints[leg.knee + 1 :]) - leg.hip
+    R = (data.oMi[leg.joints[-1]] * leg.sole.placement).rotation
+    return np.concatenate((down[:2] / np.linalg.norm(down), R[:2, 2], R[1:2, 0]))

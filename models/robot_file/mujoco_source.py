@@ -1,0 +1,165 @@
+"""An MJCF as a Pinocchio model: what MuJoCo compiled of it, with all defaults and includes."""
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+
+from surefoot.models.robot_file.schema import RobotFile
+from surefoot.models.robot_file.shapes import Shape, box, capsule, cylinder, ellipsoid, placed, solid
+from surefoot.models.robot_file.source import ROOT, Source, physical
+from surefoot.models.types import Array, RobotError
+
+_HINGE, _SLIDE, _FREE = (
+    int(kind) for kind in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_FREE)
+)
+_MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
+
+
+def read_mjcf(file: RobotFile, path: Path) -> Source:
+    """Read a robot's MJCF.
+
+    Raises:
+        RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
+    """
+    try:
+        mj = mujoco.MjModel.from_xml_path(str(path))
+    except ValueError as error:
+        raise RobotError(("model",), f"{path}: {' '.join(str(error).split())[:200]}", "mend it") from None
+    roots = [body for body in range(1, mj.nbody) if mj.body_parentid[body] == 0 and mj.body_subtreemass[body] > 0]
+    if len(roots) != 1:
+        names = ", ".join(f"'{mj.body(body).name}'" for body in roots) or "none"
+        raise RobotError(("model",), f"{path}: has the bodies {names} in its world", "give a file with one robot alone")
+    return _Reader(mj, file, path, roots[0]).read()
+
+
+class _Reader:
+    """Goes through the bodies of a compiled model; welded ones become part of what they are welded to."""
+
+    def __init__(self, mj: mujoco.MjModel, file: RobotFile, path: Path, root: int) -> None:
+        self._mj, self._file, self._path, self._root = mj, file, path, root
+        self._model = pin.Model()
+        self._model.name = file.name
+        self._place: dict[int, tuple[int, pin.SE3]] = {}
+        self._notes: list[str] = []
+
+    def read(self) -> Source:
+        """The whole robot."""
+        mj = self._mj
+        for body in range(self._root, mj.nbody):
+            if mj.body_rootid[body] == self._root:
+                self._add_body(body)
+        source = Source(self._model, (), (), (), self._notes)
+        self._add_limits()
+        self._add_shapes(source)
+        if mj.dof_damping[6:].any() or mj.dof_frictionloss[6:].any():
+            self._notes.append("damping and friction of joints in the model are left out")
+        return source
+
+    def _add_body(self, body: int) -> None:
+        mj, model = self._mj, self._model
+        name = mj.body(body).name or f"body{body}"
+        first, count = int(mj.body_jntadr[body]), int(mj.body_jntnum[body])
+        if body == self._root:
+            joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), ROOT)
+            offset = pin.SE3.Identity()
+        else:
+            joint, before = self._place[int(mj.body_parentid[body])]
+            offset = before * _placement(mj.body_pos[body], mj.body_quat[body])
+            for index in range(first, first + count):
+                joint, offset = self._add_joint(index, joint, offset, name)
+        self._place[body] = (joint, offset)
+        frame = pin.Frame(name, joint, 0, offset, pin.FrameType.BODY)
+        model.addFrame(frame)
+        model.appendBodyToJoint(joint, self._inertia(body, name), offset)
+
+    def _add_joint(self, index: int, parent: int, offset: pin.SE3, body: str) -> tuple[int, pin.SE3]:
+        """Put a joint at its place in the body; returns it and the body seen from it."""
+        mj = self._mj
+        name, kind, at = mj.joint(index).name or f"{body}_joint", int(mj.jnt_type[index]), mj.jnt_pos[index]
+        if kind not in (_HINGE, _SLIDE):
+            raise RobotError(
+                ("model",), f"{self._path}: joint '{name}' is neither hinge nor slide", "give it as hinges"
+            )
+        if mj.qpos0[mj.jnt_qposadr[index]] != 0.0:
+            raise RobotError(("model",), f"{self._path}: joint '{name}' has a ref", "remove it")
+        unit = mj.jnt_axis[index]
+        joint = pin.JointModelRevoluteUnaligned(unit) if kind == _HINGE else pin.JointModelPrismaticUnaligned(unit)
+        there = pin.SE3(np.eye(3), at)
+        lower, upper = mj.jnt_range[index] if mj.jnt_limited[index] else (-2 * np.pi, 2 * np.pi)
+        one = np.ones(1)
+        added = self._model.addJoint(parent, joint, offset * there, name, one, one, one * lower, one * upper)
+        self._model.armature[self._model.joints[added].idx_v] = mj.dof_armature[mj.jnt_dofadr[index]]
+        return added, there.inverse()
+
+    def _inertia(self, body: int, name: str) -> pin.Inertia:
+        mj = self._mj
+        R = _placement(mj.body_ipos[body], mj.body_iquat[body]).rotation
+        about = R @ np.diag(mj.body_inertia[body]) @ R.T
+        repaired = physical(about, float(mj.body_mass[body]), name, self._file, self._path, self._notes)
+        return pin.Inertia(float(mj.body_mass[body]), mj.body_ipos[body], about if repaired is None else repaired)
+
+    def _add_limits(self) -> None:
+        """Torques from the motors; of speeds an MJCF knows nothing."""
+        mj, model = self._mj, self._model
+        effort, speed = np.zeros(model.nv), np.zeros(model.nv)
+        for joint in range(mj.njnt):
+            name = mj.joint(joint).name
+            if mj.jnt_type[joint] != _FREE and model.existJointName(name):
+                effort[model.joints[model.getJointId(name)].idx_v] = self._torque(joint)
+        model.upperEffortLimit, model.lowerEffortLimit = effort, -effort
+        model.upperVelocityLimit, model.lowerVelocityLimit = speed, -speed
+
+    def _torque(self, joint: int) -> float:
+        """Peak torque of a joint, 0 where the file says nothing [N m]."""
+        mj = self._mj
+        limits = [abs(mj.jnt_actfrcrange[joint]).min()] if mj.jnt_actfrclimited[joint] else []
+        for motor in range(mj.nu):
+            if mj.actuator_trntype[motor] != int(mujoco.mjtTrn.mjTRN_JOINT) or mj.actuator_trnid[motor, 0] != joint:
+                continue
+            gear = abs(mj.actuator_gear[motor, 0])
+            if mj.actuator_forcelimited[motor]:
+                limits.append(gear * abs(mj.actuator_forcerange[motor]).min())
+            elif mj.actuator_ctrllimited[motor] and not mj.actuator_biastype[motor]:
+                limits.append(gear * mj.actuator_gainprm[motor, 0] * abs(mj.actuator_ctrlrange[motor]).min())
+        return float(min(limits, default=0.0))
+
+    def _add_shapes(self, source: Source) -> None:
+        """Sort the geoms into what touches and what is only drawn."""
+        mj = self._mj
+        visual, collision = [], []
+        for geom in range(mj.ngeom):
+            if mj.body_rootid[mj.geom_bodyid[geom]] == self._root:
+                touches = mj.geom_contype[geom] or mj.geom_conaffinity[geom]
+                (collision if touches else visual).extend(self._shape(geom))
+        source.visual, source.collision = tuple(visual or collision), tuple(collision)
+
+    def _shape(self, geom: int) -> list[Shape]:
+        """The geom as triangles; none for planes and fields."""
+        mj = self._mj
+        kind, (a, b, c) = int(mj.geom_type[geom]), mj.geom_size[geom].tolist()
+        material = mj.geom_matid[geom]
+        red, green, blue, alpha = (mj.mat_rgba[material] if material >= 0 else mj.geom_rgba[geom]).tolist()
+        rgba, link = (red, green, blue, alpha), mj.body(mj.geom_bodyid[geom]).name
+        place = _placement(mj.geom_pos[geom], mj.geom_quat[geom])
+        if kind == _MESH:
+            mesh = mj.mesh(mj.geom_dataid[geom])
+            vertices = mj.mesh_vert[mesh.vertadr[0] : mesh.vertadr[0] + mesh.vertnum[0]].astype(np.float64)
+            faces = mj.mesh_face[mesh.faceadr[0] : mesh.faceadr[0] + mesh.facenum[0]].astype(np.int64)
+            return [Shape(link, placed(vertices, place), faces, rgba)]
+        makers = {
+            "SPHERE": lambda: ellipsoid(a, a, a),
+            "CAPSULE": lambda: capsule(a, 2 * b),
+            "CYLINDER": lambda: cylinder(a, 2 * b),
+            "BOX": lambda: box(2 * a, 2 * b, 2 * c),
+            "ELLIPSOID": lambda: ellipsoid(a, b, c),
+        }
+        maker = makers.get(mujoco.mjtGeom(kind).name.removeprefix("mjGEOM_"))
+        return [solid(link, maker(), place, rgba)] if maker else []
+
+
+def _placement(position: Array, quaternion: Array) -> pin.SE3:
+    """Of MuJoCo's position and quaternion w, x, y, z."""
+    w, x, y, z = quaternion
+    return pin.SE3(pin.Quaternion(w, x, y, z).normalized().toRotationMatrix(), np.array(position))

@@ -1,0 +1,58 @@
+"""Where the files of a model are: beside it, or in a package that is installed."""
+
+import os
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+from surefoot.models.types import RobotError
+
+SCHEME = "package://"
+_SHARES = ("cmeel.prefix/share", "share")
+"""Folders of an environment in which packages put their data, from those of ``sys.path``."""
+
+
+def resolve(reference: str, beside: Path, key: str = "model") -> Path:
+    """The file that a reference means, whether or not it is there.
+
+    Args:
+        reference: a path, absolute or from ``beside``, or ``package://NAME/...``; ``file://`` may stand before it.
+        beside: folder of the file in which it stands.
+        key: of the robot file, for messages.
+
+    Raises:
+        RobotError: it is in a package that is not installed.
+    """
+    if not reference.startswith(SCHEME):
+        return Path(os.path.normpath(beside / reference.removeprefix("file://")))
+    name, _, rest = reference.removeprefix(SCHEME).partition("/")
+    roots = [root for root in _roots(name, beside) if root.is_dir()]
+    for root in roots:
+        if (root / rest).is_file():
+            return root / rest
+    if roots:
+        return roots[0] / rest
+    what = f"{key} {reference}: package '{name}' is not installed"
+    raise RobotError(
+        (key,), what, f"install it, for example with pip, or set ROS_PACKAGE_PATH to the folder of '{name}'"
+    )
+
+
+def _roots(name: str, beside: Path) -> list[Path]:
+    """Folders that may be the package of that name, the nearest first."""
+    above = [folder / name if folder.name != name else folder for folder in (beside, *beside.parents)]
+    ros = [Path(place) / name for place in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if place]
+    ros += [
+        Path(place) for place in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if Path(place).name == name
+    ]
+    shares = [Path(place) / share / name for place in sys.path for share in _SHARES]
+    return [*above, *ros, *shares, *_module(name)]
+
+
+def _module(name: str) -> list[Path]:
+    """Folder of the Python package of that name, which is not imported."""
+    try:
+        spec = find_spec(name) if name.isidentifier() else None
+    except (ImportError, ValueError):
+        return []
+    return [Path(place) for place in (spec.submodule_search_locations or ())] if spec else []

@@ -1,0 +1,303 @@
+"""A model with the joints that walk: others locked, limits and rotors complete, x of the base ahead."""
+
+import fnmatch
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.models.joints import is_revolute
+from surefoot.models.robot_file.paths import resolve
+from surefoot.models.robot_file.schema import RobotFile, matched
+from surefoot.models.robot_file.shapes import Shape, placed
+from surefoot.models.robot_file.source import Source
+from surefoot.models.types import Array, RobotError, nearest
+
+_TURNS = {"x": 0, "y": 1, "-x": 2, "-y": 3}
+"""Quarter turns about z from the base's x to the axis that points ahead."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reduced:
+    """What is left of a model, and what is known of its links.
+
+    Attributes:
+        model: joint 1 is the floating base, whose x points ahead; all others are revolute.
+        bodies: name of the link that each joint moves, the floating base first; by joint index less 1.
+        feet: frames of the left and right foot's links.
+        visual: what is drawn, by joint, vertices in the joint's frame.
+        collision: what touches, likewise.
+        turned: angle about z by which the base's frame was turned [rad].
+        states: postures of the SRDF by name.
+        notes: what was derived or altered.
+    """
+
+    model: pin.Model
+    bodies: tuple[str, ...]
+    feet: tuple[int, int]
+    visual: tuple[tuple[Shape, ...], ...]
+    collision: tuple[tuple[Shape, ...], ...]
+    turned: float
+    states: dict[str, dict[str, float]]
+    notes: list[str]
+
+    def joint_of(self, link: str, key: str) -> int:
+        """The joint that moves a link.
+
+        Raises:
+            RobotError: there is no such link.
+        """
+        return int(self.model.frames[frame_of(self.model, link, key)].parentJoint)
+
+
+def frame_of(model: pin.Model, link: str, key: str) -> int:
+    """Index of a link's frame.
+
+    Raises:
+        RobotError: there is no such link.
+    """
+    links = tuple(frame.name for frame in model.frames if frame.type == pin.FrameType.BODY and frame.name != "universe")
+    if link not in links:
+        raise RobotError((key,), f"{key} of {model.name} names '{link}', which is no link of it", nearest(link, links))
+    return int(model.getFrameId(link, pin.FrameType.BODY))
+
+
+def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
+    """Lock what does not walk, complete limits, and turn the base.
+
+    Raises:
+        RobotError: a name or pattern means nothing, or a limit is missing.
+    """
+    full, notes = source.model, source.notes
+    names = tuple(full.names)[2:]
+    _set_limits(full, file, names)
+    srdf = _srdf(file, path)
+    rotors, states = _read_srdf(srdf, names)
+    _set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
+    feet = file.soles()
+    legs = set(_chain(full, feet.left, "feet.left")) | set(_chain(full, feet.right, "feet.right"))
+    locked = _locked(full, file, source, legs)
+    for why in dict.fromkeys(reason for reason, _ in locked.values()):
+        told = ", ".join(full.names[joint] for joint, (reason, _) in locked.items() if reason == why)
+        notes.append(f"locked, {why}: {told}")
+    q = pin.neutral(full)
+    for joint, (_, angle) in locked.items():
+        model_joint = full.joints[joint]
+        if model_joint.nq == 1:
+            q[model_joint.idx_q] = angle
+    model = pin.buildReducedModel(full, list(locked), q)
+    model.name = file.name
+    _require_limits(model)
+    frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
+    turned = _turn(model, frames, file, notes)
+    bodies = tuple(_body(full, full.getJointId(name)) for name in tuple(model.names)[1:])
+    visual, collision = (_by_joint(model, shapes) for shapes in (source.visual, source.collision))
+    return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes)
+
+
+def _set_limits(model: pin.Model, file: RobotFile, names: tuple[str, ...]) -> None:
+    for key, field in (("torque_limit", "EffortLimit"), ("velocity_limit", "VelocityLimit")):
+        values = np.array(getattr(model, f"upper{field}"))
+        for name, value in matched(getattr(file, key), names, key, file.name).items():
+            values[model.joints[model.getJointId(name)].idx_v] = value
+        setattr(model, f"upper{field}", values)
+        setattr(model, f"lower{field}", -values)
+
+
+def _srdf(file: RobotFile, path: Path) -> Path | None:
+    """The SRDF that the file names, or the one beside the model that is of a robot of its name.
+
+    Raises:
+        RobotError: the file names one that is not there.
+    """
+    if file.srdf is not None:
+        place = resolve(file.srdf, path.parent, "srdf")
+        if not place.is_file():
+            raise RobotError(("srdf",), f"srdf {file.srdf} of {file.name} is not there", f"put it at {place}")
+        return place
+    of = re.search(r'<robot\b[^>]*\bname\s*=\s*"([^"]*)"', path.read_text(encoding="utf-8"))
+    beside = [*path.parent.glob("*.srdf"), *(path.parent.parent / "srdf").glob("*.srdf")]
+    named = [place for place in sorted(beside) if of and f'name="{of[1]}"' in place.read_text(encoding="utf-8")[:2000]]
+    return named[0] if len(named) == 1 else None
+
+
+def _read_srdf(path: Path | None, names: tuple[str, ...]) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    """Rotor inertias at the joints [kg m^2], and postures by name [rad]."""
+    if path is None:
+        return {}, {}
+    from xml.etree import ElementTree
+
+    try:
+        root = ElementTree.parse(path).getroot()
+    except ElementTree.ParseError as error:
+        raise RobotError(("srdf",), f"{path}: no XML, {error}", "mend it") from None
+    rotors = {
+        joint.attrib["name"]: float(joint.get("mass", "0")) * float(joint.get("gear_ratio", "1")) ** 2
+        for joint in root.iterfind("rotor_params/joint")
+    }
+    states = {
+        state.get("name", ""): {
+            joint.attrib["name"]: float(joint.get("value", "0").split()[0])
+            for joint in state.iterfind("joint")
+            if joint.get("name") in names
+        }
+        for state in root.iterfind("group_state")
+    }
+    return rotors, states
+
+
+def _set_armature(
+    model: pin.Model, given: dict[str, float], rotors: dict[str, float], srdf: Path | None, notes: list[str]
+) -> None:
+    armature = np.array(model.armature)
+    known = {**{name: value for name, value in rotors.items() if model.existJointName(name)}, **given}
+    for name, value in known.items():
+        armature[model.joints[model.getJointId(name)].idx_v] = value
+    model.armature = armature
+    if rotors and srdf is not None:
+        notes.append(f"armature: from the rotors in {srdf.name}")
+    if not armature.any():
+        notes.append("armature: none known, so joints have no rotors; give armature: {PATTERN: kg m^2} if it has gears")
+
+
+def _chain(model: pin.Model, link: str, key: str) -> list[int]:
+    """Joints from the floating base to a link."""
+    joint = model.frames[frame_of(model, link, key)].parentJoint
+    return [index for index in model.supports[joint] if index > 1]
+
+
+def _locked(model: pin.Model, file: RobotFile, source: Source, legs: set[int]) -> dict[int, tuple[str, float]]:
+    """Joints that are frozen, each with the reason and its angle [rad].
+
+    Raises:
+        RobotError: a pattern matches none, or a joint of a leg cannot turn.
+    """
+    fingers = _fingers(model, legs) if file.lock is None else set()
+    given: dict[str, float | None] = {}
+    patterns = file.lock if isinstance(file.lock, dict) else dict.fromkeys(file.lock or ())
+    names = tuple(model.names)[2:]
+    for pattern, angle in patterns.items():
+        meant = fnmatch.filter(names, pattern)
+        if not meant:
+            what = f"lock of {file.name} has the pattern '{pattern}', which matches no joint"
+            raise RobotError(("lock", pattern), what, nearest(pattern, names))
+        given |= dict.fromkeys(meant, angle)
+    found: dict[int, tuple[str, float]] = {}
+    for joint in range(2, model.njoints):
+        name, one = model.names[joint], model.joints[joint]
+        why = ""
+        if name in given:
+            why = "given in the file"
+        elif not is_revolute(model, joint):
+            why = "not revolute"
+        elif name in source.mimics:
+            why = "follow others"
+        elif joint in fingers:
+            why = "fingers"
+        elif joint not in legs and not model.upperEffortLimit[one.idx_v] > 0.0:
+            why = "without torque"
+        if why and joint in legs and name not in given:
+            what = f"joint '{name}' of {file.name} is in a leg and cannot be driven ({why})"
+            raise RobotError(("feet",), what, "legs need revolute joints; write it into lock if it may be frozen")
+        if why:
+            rest = given.get(name)
+            found[joint] = (why, _at_rest(model, joint) if rest is None else rest)
+    return found
+
+
+def _at_rest(model: pin.Model, joint: int) -> float:
+    one = model.joints[joint]
+    if one.nq != 1:
+        return 0.0
+    return float(np.clip(0.0, model.lowerPositionLimit[one.idx_q], model.upperPositionLimit[one.idx_q]))
+
+
+def _fingers(model: pin.Model, legs: set[int]) -> set[int]:
+    """Joints below a place from which several chains part that are light: what is at the end of an arm."""
+    data = model.createData()
+    pin.computeSubtreeMasses(model, data)
+    total, found = data.mass[0], set()
+    for joint in range(2, model.njoints):
+        children = [child for child in model.children[joint] if child not in legs]
+        if joint in legs or len(children) < 2:
+            continue
+        if sum(data.mass[child] for child in children) < _LIGHT * total:
+            found |= {below for child in children for below in model.subtrees[child]}
+    return found
+
+
+_LIGHT = 0.03
+"""Share of the whole mass that all fingers of a hand stay below [-]."""
+
+
+def _require_limits(model: pin.Model) -> None:
+    """Refuse joints whose motors nobody knows.
+
+    Raises:
+        RobotError: a torque or a speed limit is missing.
+    """
+    for key, what, unit in (("upperEffortLimit", "torque", "N m"), ("upperVelocityLimit", "velocity", "rad/s")):
+        values = getattr(model, key)[6:]
+        unknown = [name for name, value in zip(tuple(model.names)[2:], values, strict=True) if not 0.0 < value < np.inf]
+        if unknown:
+            others = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
+            said = f"joint '{unknown[0]}'{others} of {model.name} have no {what} limit"
+            raise RobotError((f"{what}_limit",), said, f"give {what}_limit: {{PATTERN: {unit}}}; '*' means every joint")
+    pairs = zip(tuple(model.names)[2:], model.lowerPositionLimit[7:], model.upperPositionLimit[7:], strict=True)
+    for name, lower, upper in pairs:
+        if not -np.inf < lower < upper < np.inf:
+            raise RobotError(
+                ("model",), f"joint '{name}' of {model.name} turns from {lower} to {upper} rad", "give limits"
+            )
+
+
+def _turn(model: pin.Model, feet: tuple[int, ...], file: RobotFile, notes: list[str]) -> float:
+    """Turn the frame of the base so that x points ahead; returns the angle about z [rad].
+
+    Ahead is what has the left foot on its left.
+    """
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, pin.neutral(model))
+    left, right = (data.oMf[frame].translation for frame in feet)
+    aside = left - right
+    quarter = round(np.arctan2(-aside[0], aside[1]) / (np.pi / 2)) % 4
+    if file.forward is not None:
+        quarter = _TURNS[file.forward]
+    else:
+        axis = next(name for name, turns in _TURNS.items() if turns == quarter)
+        notes.append(f"forward: {axis} of the base, which has the left foot on its left")
+    if not quarter:
+        return 0.0
+    notes.append(f"the frame of the base is turned by {90 * quarter} deg about z, so that its x points forward")
+    cosine, sine = [(1, 0), (0, 1), (-1, 0), (0, -1)][quarter]
+    back = pin.SE3(np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]]), np.zeros(3))
+    model.inertias[1] = back.act(model.inertias[1])
+    for joint in range(2, model.njoints):
+        if model.parents[joint] == 1:
+            model.jointPlacements[joint] = back * model.jointPlacements[joint]
+    for frame in model.frames:
+        if frame.parentJoint == 1 and frame.type != pin.FrameType.JOINT:
+            frame.placement = back * frame.placement
+    return quarter * np.pi / 2
+
+
+def _body(model: pin.Model, joint: int) -> str:
+    """Name of the link that a joint moves."""
+    return next(f.name for f in model.frames if f.parentJoint == joint and f.type == pin.FrameType.BODY)
+
+
+def _by_joint(model: pin.Model, shapes: tuple[Shape, ...]) -> tuple[tuple[Shape, ...], ...]:
+    """Shapes of each joint, in its frame."""
+    found: list[list[Shape]] = [[] for _ in range(model.njoints)]
+    for shape in shapes:
+        frame = model.frames[model.getFrameId(shape.link, pin.FrameType.BODY)]
+        vertices = placed(shape.vertices, frame.placement)
+        found[frame.parentJoint].append(Shape(shape.link, vertices, shape.faces, shape.rgba))
+    return tuple(tuple(group) for group in found)
+
+
+def points_of(shapes: tuple[Shape, ...]) -> Array:
+    """Vertices of several shapes, shape (n, 3) [m]."""
+    return np.concatenate([shape.vertices for shape in shapes]) if shapes else np.zeros((0, 3))

@@ -1,0 +1,181 @@
+"""Shapes of links as triangles: meshes as they are, boxes, cylinders, spheres and the like as hulls of some points."""
+
+import itertools
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.models.robot_file.meshes import Faces, colour_in_file, hull
+from surefoot.models.robot_file.paths import resolve
+from surefoot.models.types import Array, RobotError
+
+Colour = tuple[float, float, float, float]
+
+GREY: Colour = (0.7, 0.7, 0.72, 1.0)
+_STL_HEAD = 84
+_STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+_AROUND = np.arange(24) * (math.tau / 24)
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What is fixed to a link.
+
+    Attributes:
+        link: frame to which it is fixed.
+        vertices: in that frame, shape (n, 3) [m].
+        faces: corners of triangles, outward, shape (m, 3).
+        rgba: colour.
+    """
+
+    link: str
+    vertices: Array
+    faces: Faces
+    rgba: Colour = GREY
+
+
+def solid(link: str, points: Array, placement: pin.SE3, rgba: Colour = GREY) -> Shape:
+    """The convex hull of points that are given in a frame of their own."""
+    vertices, faces = hull(points, len(points))
+    return Shape(link, placed(vertices, placement), faces, rgba)
+
+
+def placed(points: Array, placement: pin.SE3) -> Array:
+    """Points of one frame in another, shape (n, 3) [m]."""
+    return points @ placement.rotation.T + placement.translation
+
+
+def box(x: float, y: float, z: float) -> Array:
+    """Corners of a box with these full lengths."""
+    return _CORNERS * np.array([x, y, z]) / 2
+
+
+def ellipsoid(a: float, b: float, c: float) -> Array:
+    """Points of an ellipsoid with these semi-axes along x, y and z; poles and equator among them."""
+    rings = [_ring(math.cos(v), math.sin(v)) for v in np.linspace(-math.pi / 2, math.pi / 2, 13)[1:-1]]
+    return np.concatenate((*rings, [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])) * np.array([a, b, c])
+
+
+def cylinder(radius: float, length: float) -> Array:
+    """Points of a cylinder along z."""
+    return np.concatenate([_ring(radius, half) for half in (-length / 2, length / 2)])
+
+
+def capsule(radius: float, length: float) -> Array:
+    """Points of a capsule along z, with its length between the centres of its caps."""
+    ball = ellipsoid(radius, radius, radius)
+    shift = np.array([0.0, 0.0, length / 2])
+    return np.concatenate((ball[ball[:, 2] >= 0] + shift, ball[ball[:, 2] <= 0] - shift))
+
+
+def _ring(radius: float, height: float) -> Array:
+    flat = np.full_like(_AROUND, height)
+    return np.column_stack((radius * np.cos(_AROUND), radius * np.sin(_AROUND), flat))
+
+
+@lru_cache(maxsize=256)
+def _mesh(path: Path) -> tuple[Array, Faces]:
+    """Vertices and faces of a mesh file, as written.
+
+    Raises:
+        RobotError: it cannot be read.
+    """
+    if path.suffix.lower() == ".stl":
+        data = path.read_bytes()
+        count = int.from_bytes(data[80:_STL_HEAD], "little")
+        if len(data) == _STL_HEAD + count * _STL.itemsize:
+            return _welded(np.frombuffer(data, _STL, count, _STL_HEAD)["corners"].reshape(-1, 3))
+    import coal
+
+    try:
+        read = coal.MeshLoader(coal.NODE_TYPE.BV_OBB).load(str(path), np.ones(3))
+    except Exception as error:
+        reason = " ".join(str(error).split())[:150]
+        raise RobotError(("model",), f"mesh {path}: cannot be read, {reason}", "give STL, DAE or OBJ") from None
+    corners = (read.tri_indices(k) for k in range(read.num_tris))
+    faces = np.array([(corner[0], corner[1], corner[2]) for corner in corners], dtype=np.int64)
+    return np.array(read.vertices()), faces.reshape(-1, 3)
+
+
+def _welded(corners: Array) -> tuple[Array, Faces]:
+    """Corners of separate triangles, those at the same place made one."""
+    rows = np.ascontiguousarray(corners, dtype="<f4") + np.float32(0.0)  # minus zero is zero
+    keys, places = np.unique(rows.view(np.dtype((np.void, 12))).ravel(), return_inverse=True)
+    return keys.view("<f4").reshape(-1, 3).astype(np.float64), places.reshape(-1, 3).astype(np.int64)
+
+
+def urdf_shapes(root: ElementTree.Element, path: Path, kind: str) -> tuple[Shape, ...]:
+    """Shapes of all links.
+
+    Args:
+        root: of the URDF.
+        path: of the URDF.
+        kind: visual or collision.
+
+    Raises:
+        RobotError: a mesh is missing or cannot be read.
+    """
+    colours = {
+        name: rgba for material in root.iter("material") if (name := material.get("name")) and (rgba := _rgba(material))
+    }
+    found = []
+    for link in root.findall("link"):
+        for element in link.findall(kind):
+            geometry = element.find("geometry")
+            if geometry is None or not len(geometry):
+                continue
+            material = element.find("material")
+            rgba = None
+            if material is not None:
+                rgba = _rgba(material) or colours.get(material.get("name", ""))
+            found += _urdf_shape(link.get("name", ""), geometry[0], _origin(element), rgba, path)
+    return tuple(found)
+
+
+def _urdf_shape(link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Colour | None, path: Path) -> list[Shape]:
+    if thing.tag == "mesh":
+        reference = thing.get("filename", "")
+        place = resolve(reference, path.parent, "mesh")
+        if not place.is_file():
+            what = f"{path}: mesh {reference} of link '{link}' is not there"
+            raise RobotError(("model",), what, f"put it at {place}, or correct the reference")
+        vertices, faces = _mesh(place)
+        scale = _floats(thing.get("scale"), (1.0, 1.0, 1.0))
+        faces = faces if np.prod(scale) > 0 else faces[:, ::-1]
+        colour = colour_in_file(place) if rgba is None else None
+        rgba = (*colour, 1.0) if colour else rgba or GREY
+        return [Shape(link, placed(vertices * scale, origin), faces, rgba)] if len(faces) else []
+    size = {name: float(value) for name, value in thing.attrib.items() if name in ("radius", "length")}
+    makers = {
+        "box": lambda: box(*_floats(thing.get("size"), (0.0, 0.0, 0.0))),
+        "sphere": lambda: ellipsoid(*[size["radius"]] * 3),
+        "cylinder": lambda: cylinder(size["radius"], size["length"]),
+        "capsule": lambda: capsule(size["radius"], size["length"]),
+    }
+    return [solid(link, makers[thing.tag](), origin, rgba or GREY)] if thing.tag in makers else []
+
+
+def _rgba(material: ElementTree.Element) -> Colour | None:
+    colour = material.find("color")
+    if colour is None:
+        return None
+    r, g, b, a = _floats(colour.get("rgba"), GREY)
+    return float(r), float(g), float(b), float(a)
+
+
+def _origin(element: ElementTree.Element) -> pin.SE3:
+    origin = element.find("origin")
+    if origin is None:
+        return pin.SE3.Identity()
+    zero = (0.0, 0.0, 0.0)
+    return pin.SE3(pin.rpy.rpyToMatrix(_floats(origin.get("rpy"), zero)), _floats(origin.get("xyz"), zero))
+
+
+def _floats(text: str | None, otherwise: tuple[float, ...]) -> Array:
+    return np.array([float(part) for part in text.split()] if text else otherwise)

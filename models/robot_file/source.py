@@ -1,0 +1,150 @@
+"""A URDF or MJCF as a Pinocchio model with a floating base, its shapes, and the files that it is made of."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.models.robot_file.files import text_of
+from surefoot.models.robot_file.schema import RobotFile
+from surefoot.models.robot_file.shapes import Shape, urdf_shapes
+from surefoot.models.types import Array, RobotError
+
+ROOT = "root_joint"
+_REPAIR = 1e-4
+"""Least second moment of a repaired inertia over their sum [-]."""
+
+
+@dataclass(slots=True)
+class Source:
+    """A model as its file has it.
+
+    Attributes:
+        model: joint 1 is the floating base.
+        visual: what is drawn.
+        collision: what touches.
+        mimics: joints that follow others.
+        notes: what was altered or left out while reading.
+    """
+
+    model: pin.Model
+    visual: tuple[Shape, ...]
+    collision: tuple[Shape, ...]
+    mimics: tuple[str, ...] = ()
+    notes: list[str] = field(default_factory=list)
+
+
+def read_source(file: RobotFile, path: Path) -> Source:
+    """Read the model of a robot file.
+
+    Raises:
+        RobotError: it is missing, none that can be read, or physically impossible.
+    """
+    text = text_of(path)
+    kind = re.search(r"<(robot|mujoco|sdf)\b", text)
+    if kind is None or kind[1] == "sdf":
+        raise RobotError(
+            ("model",), f"{path}: neither URDF nor MJCF", "give a file with <robot> or <mujoco> at its root"
+        )
+    if kind[1] == "mujoco":
+        from surefoot.models.robot_file.mujoco_source import read_mjcf
+
+        return read_mjcf(file, path)
+    return _read_urdf(file, path, text)
+
+
+def _read_urdf(file: RobotFile, path: Path, text: str) -> Source:
+    try:
+        root = ElementTree.fromstring(text)
+    except ElementTree.ParseError as error:
+        raise RobotError(("model",), f"{path}: no XML, {error}", "mend it; xacro files have to be expanded") from None
+    source_notes: list[str] = []
+    mimics = tuple(_mended_joints(root, source_notes))
+    _check_inertias(root, file, path, source_notes)
+    flat = ElementTree.tostring(root, encoding="unicode")
+    try:
+        model = pin.buildModelFromXML(flat, pin.JointModelFreeFlyer(), ROOT)
+    except Exception as error:
+        raise RobotError(("model",), f"{path}: {_one_line(error)}", "mend it, so that Pinocchio can read it") from None
+    model.name = file.name
+    visual, collision = (urdf_shapes(root, path, kind) for kind in ("visual", "collision"))
+    return Source(model, visual, collision, mimics, source_notes)
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:200] or type(error).__name__
+
+
+def _mended_joints(root: ElementTree.Element, notes: list[str]) -> Iterator[str]:
+    """Bound joints that turn without end, since both engines then have one angle for each; yields those that mimic."""
+    for joint in root.findall("joint"):
+        name = joint.get("name", "")
+        if joint.get("type") == "continuous":
+            joint.set("type", "revolute")
+            limit = joint.find("limit")
+            if limit is None:
+                limit = ElementTree.SubElement(joint, "limit", effort="0", velocity="0")
+            limit.attrib |= {"lower": str(-2 * np.pi), "upper": str(2 * np.pi)}
+            notes.append(f"joint '{name}' turns without end in the model and one turn either way here")
+        mimic = joint.find("mimic")
+        if mimic is not None:
+            joint.remove(mimic)
+            yield name
+
+
+def _check_inertias(root: ElementTree.Element, file: RobotFile, path: Path, notes: list[str]) -> None:
+    """Refuse or repair what no body can have.
+
+    Raises:
+        RobotError: an inertia is unphysical and not to be repaired.
+    """
+    for link in root.findall("link"):
+        inertial = link.find("inertial")
+        mass, inertia = (None if inertial is None else inertial.find(part) for part in ("mass", "inertia"))
+        if mass is None or inertia is None:
+            continue
+        name, kilograms = link.get("name", ""), float(mass.get("value", "0"))
+        xx, xy, xz, yy, yz, zz = (float(inertia.get(part, "0")) for part in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+        repaired = physical(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), kilograms, name, file, path, notes)
+        if repaired is not None:
+            for part, (i, j) in {
+                "ixx": (0, 0),
+                "ixy": (0, 1),
+                "ixz": (0, 2),
+                "iyy": (1, 1),
+                "iyz": (1, 2),
+                "izz": (2, 2),
+            }.items():
+                inertia.set(part, repr(float(repaired[i, j])))
+
+
+def physical(inertia: Array, mass: float, link: str, file: RobotFile, path: Path, notes: list[str]) -> Array | None:
+    """The inertia that some body has, next to one that none has; None where it needs no repair.
+
+    With Σ = ½ tr(I) 1 - I the second moments of the mass, a body has Σ >= 0: its principal moments fulfil a + b >= c.
+
+    Raises:
+        RobotError: it is unphysical and not to be repaired.
+    """
+    second = 0.5 * np.trace(inertia) * np.eye(3) - inertia
+    moments, axes = np.linalg.eigh(second)
+    total = float(np.abs(moments).sum())
+    if mass < 0.0:
+        raise RobotError(("model",), f"{path}: link '{link}' has the mass {mass} kg", "give one of at least 0 kg")
+    if moments[0] >= -1e-6 * total or total < 1e-12:
+        return None
+    a, b, c = np.linalg.eigvalsh(inertia)
+    if file.inertia == "refuse":
+        what = f"{path}: link '{link}' has principal moments {a:.3g}, {b:.3g}, {c:.3g} kg m^2, of which the two smaller"
+        what += f" ones add up to {c - a - b:.2g} less than the largest: no body has them"
+        raise RobotError(("inertia",), what, "correct them, or write 'inertia: repair' for the nearest that one has")
+    mended = np.maximum(moments, _REPAIR * total)
+    notes.append(
+        f"the inertia of link '{link}' is repaired: its moments {a:.3g}, {b:.3g}, {c:.3g} kg m^2 are of no body"
+    )
+    found: Array = mended.sum() * np.eye(3) - (axes * mended) @ axes.T
+    return found

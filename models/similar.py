@@ -1,0 +1,65 @@
+"""The similar robot of another size: the same shape and the same materials under the same gravity.
+
+With λ the factor of all lengths, Froude similarity gives times √λ and joint speeds 1/√λ; masses go with λ³, moments of
+inertia λ⁵, torques λ⁴ (a weight at a lever). So each quotient without a unit, as torque over limit, stays.
+"""
+
+import math
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import numpy as np
+
+from surefoot.models.mjcf import numbers
+from surefoot.models.types import Array, RobotDescription, RobotError
+
+POWERS: dict[str, dict[str, int]] = {
+    "body": {"pos": 1},
+    "inertial": {"pos": 1, "mass": 3, "diaginertia": 5, "fullinertia": 5},
+    "joint": {"pos": 1, "armature": 5},
+    "geom": {"pos": 1, "size": 1, "fromto": 1},
+    "site": {"pos": 1, "size": 1},
+    "mesh": {"vertex": 1},
+    "motor": {"ctrlrange": 4, "forcerange": 4},
+}
+"""By which power of the size factor the attributes of a robot's MJCF grow; all others have no unit, or are angles."""
+
+
+def scaled(description: RobotDescription, factor: float) -> RobotDescription:
+    """The similar robot that is larger by a factor [-]; of the same name and with the same joint angles.
+
+    Raises:
+        RobotError: the factor is not a positive number.
+    """
+    if not 0.0 < factor < math.inf:
+        what = f"the size of {description.name} shall be scaled by {factor}"
+        raise RobotError(("scale",), what, "it must be a positive number")
+    if factor == 1.0:
+        return description
+    root = ElementTree.fromstring(description.mjcf)
+    for element in root.iter():
+        for attribute, power in POWERS.get(element.tag, {}).items():
+            if attribute in element.attrib:
+                values = element.attrib[attribute].split()
+                element.set(attribute, numbers(factor**power * float(value) for value in values))
+    d = description
+    return replace(
+        d,
+        mjcf=ElementTree.tostring(root, encoding="unicode") + "\n",
+        mass=factor**3 * d.mass,
+        torque_limit=_fixed(factor**4 * d.torque_limit),
+        velocity_limit=_fixed(d.velocity_limit / math.sqrt(factor)),
+        sole_length=factor * d.sole_length,
+        sole_width=factor * d.sole_width,
+        hip_width=factor * d.hip_width,
+        leg_length=factor * d.leg_length,
+        shank_spacing=factor * d.shank_spacing,
+        com_height=factor * d.com_height,
+    )
+
+
+def _fixed(values: Array) -> Array:
+    """The array, read-only."""
+    array = np.asarray(values)
+    array.setflags(write=False)
+    return array

@@ -41,5 +41,5 @@ def meeting_point(model: pin.Model, data: pin.Data, joints: Sequence[int]) -> Ar
         A += across
         b += across @ (data.oMi[joint].translation - last)
     if np.abs(b).max() <= _MEET:
-        return last
+        return np.asarray(last)
     return np.asarray(last + np.linalg.lstsq(A, b, rcond=1e-9)[0])

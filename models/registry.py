@@ -47,6 +47,11 @@ class UnknownRobotError(LookupError):
     """No robot has that name."""
 
 
+def said_of(name: str) -> str:
+    """What a robot file of this package says of its robot in its first line; empty for others."""
+    return SHIPPED[name].read_text(encoding="utf-8").split("\n", 1)[0].lstrip("# ") if name in SHIPPED else ""
+
+
 def robot_names() -> tuple[str, ...]:
     """Names that `describe` accepts."""
     return tuple(ROBOTS)

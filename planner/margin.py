@@ -82,12 +82,13 @@ class Alarm:
         given: whether one is coming; it stays.
     """
 
-    def __init__(self) -> None:
-        self.given, self._ticks = False, 0
+    def __init__(self, length: float = 1.0) -> None:
+        """``length``: size of the robot (see `surefoot.similarity`) [-]."""
+        self.given, self._ticks, self._length = False, 0, length
 
     def update(self, margin: float) -> None:
         """Take the margin of a tick, with all that may be done [m]."""
-        self._ticks = self._ticks + 1 if margin < -FALL else 0
+        self._ticks = self._ticks + 1 if margin < -FALL * self._length else 0
         self.given |= self._ticks >= FALL_TICKS
 
 
@@ -107,7 +108,9 @@ class Reserve:
         legs = recovery.legs
         near, far = np.array([-2.0 * legs.radius, legs.near]), legs.boxes(1.0)[0][1]
         swung = np.sqrt(PEAK * (far - near) / legs.acceleration * (0.5, 1.0)).max()
-        self.cycle = SHORTEST["double"] + max(SHORTEST["single"], parameters.touchdown_lead + float(swung))
+        self._time = time = parameters.size.time
+        shortest = SHORTEST["single"] * time
+        self.cycle = SHORTEST["double"] * time + max(shortest, parameters.touchdown_lead + float(swung))
         self._recovery, self._radius = recovery, legs.radius
         self._boxes = {side: np.stack([_edges(*box) for box in legs.boxes(side)], axis=1)[:, None] for side in (1, -1)}
         # Columns of four edges each.
@@ -174,11 +177,12 @@ class Reserve:
         """Pairs of times of double and single support, the present one last, shape (n,) each [s]."""
         if fixed or not self._recovery.timing:
             return np.array([now.double]), np.array([now.single])
-        least, most = min(now.single, max(SHORTEST["single"], now.shortest)), now.single + _LONGER
+        shortest, longer = SHORTEST["single"] * self._time, _LONGER * self._time
+        least, most = min(now.single, max(shortest, now.shortest)), now.single + longer
         singles = [least + share * (most - least) for share in _SINGLES] + [now.single]
         if not now.double:
             return np.zeros(len(singles)), np.array(singles)
-        doubles = (min(now.double, SHORTEST["double"]), now.double)
+        doubles = (min(now.double, SHORTEST["double"] * self._time), now.double)
         return np.repeat(doubles, len(singles)), np.array(2 * singles)
 
     def _places(self, now: Situation, singles: Array, fixed: bool) -> Array:

@@ -8,6 +8,7 @@ from surefoot.errors import ParameterError
 from surefoot.planner.laws.qp import SOLVERS
 from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.model.leg_chain import LegChain
+from surefoot.similarity import REFERENCE_SIZE, Similarity, quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,12 +27,12 @@ class GroundSearch:
         ParameterError: a number is negative, an acceleration is zero, or one that must be finite is not.
     """
 
-    touchdown_speed: float = 0.005
-    speed: float = 0.15
-    acceleration: float = 1.0
-    hurry_after: float = math.inf
-    hurry_speed: float = 0.5
-    hurry_acceleration: float = 16.0
+    touchdown_speed: float = quantity(0.005, "m/s")
+    speed: float = quantity(0.15, "m/s")
+    acceleration: float = quantity(1.0, "m/s^2")
+    hurry_after: float = quantity(math.inf, "s")
+    hurry_speed: float = quantity(0.5, "m/s")
+    hurry_acceleration: float = quantity(16.0, "m/s^2")
 
     def __post_init__(self) -> None:
         for entry in fields(self):
@@ -87,7 +88,7 @@ class LegInertia:
         ParameterError: the mass is negative or no number, or both legs would outweigh the body.
     """
 
-    mass_ratio: float = 0.0
+    mass_ratio: float = quantity(0.0, "-")
     chain: LegChain | None = None
 
     def __post_init__(self) -> None:
@@ -98,7 +99,9 @@ class LegInertia:
 
 @dataclass(frozen=True, slots=True)
 class PlannerParameters:
-    """Parameters of the walking planner; the defaults are the measured robust formulation.
+    """Parameters of the walking planner; the defaults are the measured robust formulation, for the reference robot.
+
+    Those of a robot of another size are these, scaled by their units (see `surefoot.similarity`).
 
     Attributes:
         sample_time: T_s [s].
@@ -128,36 +131,38 @@ class PlannerParameters:
         touchdown_lead: the swing ends this long before single support does, so that the foot is felt in time [s].
         search: speed of the swing foot at the planned touchdown, and how it goes on while it feels no ground.
         solvers: QP solvers of qpsolvers, in the order in which they are tried (see `planner.laws.law` for the choice).
+        size: of the robot, for what is no parameter: the planner's constants are the reference robot's.
 
     Raises:
         ParameterError: a number is not positive, or not finite where it must be.
     """
 
-    sample_time: float = 0.02
+    sample_time: float = quantity(0.02, "s")
     horizon: int = 50
     preview: int = 100
     moves: tuple[int, ...] = BLOCK_STARTS
-    jerk_limit: float = 60.0
-    jerk_rate_limit: float = math.inf
-    jerk_weight: float = 1e-6
-    terminal_weight: float = 32.0
-    step_weight: float = 30.0
-    zmp_slack: tuple[float, float] = (1e3, 30.0)
-    terminal_slack: tuple[float, float] = (1e3, 10.0)
-    foot_margin: float = 0.9
-    terminal_margin: float = 0.8
+    jerk_limit: float = quantity(60.0, "m/s^3")
+    jerk_rate_limit: float = quantity(math.inf, "m/s^3")
+    jerk_weight: float = quantity(1e-6, "s^6")
+    terminal_weight: float = quantity(32.0, "-")
+    step_weight: float = quantity(30.0, "-")
+    zmp_slack: tuple[float, float] = quantity((1e3, 30.0), "-, m")
+    terminal_slack: tuple[float, float] = quantity((1e3, 10.0), "-, m")
+    foot_margin: float = quantity(0.9, "-")
+    terminal_margin: float = quantity(0.8, "-")
     leg: LegInertia = LegInertia()
     step_adaptation: StepAdaptation = StepAdaptation.CROSSING
-    reach_length: float = 0.4
-    reach_width: tuple[float, float] = (0.08, 0.4)
-    compliance_margin: float = 0.05
-    swing_speed: float = 3.0
-    freeze_time: float = 0.08
-    late_touchdown: float = 0.3
-    apex_share: float = 0.5
-    touchdown_lead: float = 0.03
+    reach_length: float = quantity(0.4, "m")
+    reach_width: tuple[float, float] = quantity((0.08, 0.4), "m")
+    compliance_margin: float = quantity(0.05, "m")
+    swing_speed: float = quantity(3.0, "m/s")
+    freeze_time: float = quantity(0.08, "s")
+    late_touchdown: float = quantity(0.3, "s")
+    apex_share: float = quantity(0.5, "-")
+    touchdown_lead: float = quantity(0.03, "s")
     search: GroundSearch = field(default_factory=GroundSearch)
     solvers: tuple[str, str] = SOLVERS
+    size: Similarity = REFERENCE_SIZE
 
     def __post_init__(self) -> None:
         for entry in fields(self):

@@ -35,7 +35,7 @@ from surefoot.planner.walk.commands import Command, Orders, Twist
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.queue import Ground, StepQueue
-from surefoot.planner.walk.reach import Legs, StepRegion
+from surefoot.planner.walk.reach import GAP, Legs, StepRegion
 from surefoot.planner.walk.source import CommandSource
 from surefoot.planner.walk.stepper import Stepper
 
@@ -101,13 +101,13 @@ class WalkingPlanner:
         timing = adaptation is not StepAdaptation.LOCATION
         self._recovery = None if legs is None else Recovery(legs, p, timing)
         self._reserve = None if self._recovery is None else Reserve(self._recovery, p, half_size)
-        self._amends, self._alarm = Amends(), Alarm()
+        self._amends, self._alarm = Amends(), Alarm(p.size.length)
         self._stepper = Stepper(queue, self._outlook.reach + 1, legs)
         check_height(heights, gait, self._stepper.samples(self._outlook.reach), queue.support_heights)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
         self._law = profile.law(p, heights.standing(gait))
         self._plan: WalkPlan | None = None
-        region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width))
+        region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width), GAP * p.size.length)
         self._region, self._bare = region, not terrain.has_edges
         self._source: CommandSource | None = None
         self._told: tuple[GaitParameters, CommandSource | None] = (gait, None)
@@ -151,7 +151,8 @@ class WalkingPlanner:
         # Steps of a source that is kept are asked for anew, too: their strides follow from the durations.
         source = self._told[1] or self._source
         if command.twist is not None or command.places is not None:
-            source = CommandSource(self.gait, self._region, command.twist or Twist(), command.places or ())
+            size, twist = self.parameters.size, command.twist or Twist()
+            source = CommandSource(self.gait, self._region, twist, command.places or (), size)
         self._told = gait, source
 
     def _obey(self, time: float) -> None:
@@ -231,16 +232,17 @@ class WalkingPlanner:
         stepper = self._stepper
         if self._recovery is None or not stepper.stands:
             return False
+        length = self.parameters.size.length
         error, falls = self._recovery.topples(local[:, 0] + local[:, 1] / window.omega[0], window)
         if not falls:
             # Once it is at rest the robot brings its feet side by side again.
-            calm = np.abs(error).max() < CALM and stepper.astride > ASTRIDE
+            calm = np.abs(error).max() < CALM * length and stepper.astride > ASTRIDE * length
             if calm:
                 stepper.go_on(at_once=False)
             return bool(calm)
         # The foot that carries stays, and the other one is brought to it.
         stance = None
-        if stepper.phase.kind is PhaseKind.STAND and abs(error[1]) > ASIDE:
+        if stepper.phase.kind is PhaseKind.STAND and abs(error[1]) > ASIDE * length:
             stance = Foot.LEFT if error[1] > 0.0 else Foot.RIGHT
         stepper.go_on(None if stance is None else stance.other)
         return True

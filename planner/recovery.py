@@ -183,6 +183,7 @@ class Recovery:
     def __init__(self, legs: Legs, parameters: PlannerParameters, timing: bool) -> None:
         self.legs, self.timing = legs, timing
         self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
+        self._size = parameters.size
 
     def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
         """DCM error of a robot that stands, or will without another step, and whether no CoP can hold it.
@@ -210,7 +211,7 @@ class Recovery:
         nominal, landed, gain = bounded[:, :2], bounded[land, :2], max(float(bounded[land, 2]), _LEAST_GAIN)
         fade = float(decays(now.stiffness[: land + 1], now.omega[: land + 1], t)[-1])
         box = now.reference.half_size[lift]
-        fine = bool((np.abs(now.dcm - nominal[0]) <= (1.0 - fade) * box + fade * _MARGIN).all())
+        fine = bool((np.abs(now.dcm - nominal[0]) <= (1.0 - fade) * box + fade * _MARGIN * self._size.length).all())
         if fine and not now.adapted:
             return None
         times, half = self._times(now, fine), _AUTHORITY * box
@@ -233,7 +234,8 @@ class Recovery:
         hip = 0.5 * now.side * self.legs.hip_width * np.array([0.0, 1.0])
         stretch = np.hypot(*(com - hip).T) - self.legs.radius
         cost = _TIME * ((doubles - now.double) ** 2 + (singles - now.single) ** 2) / now.cycle**2
-        cost = cost + _STRETCH * np.maximum(stretch, 0.0) ** 2
+        shift, stretched, second_shift = self._size.times((_PLACE, _STRETCH, _SECOND), "1/m^2")
+        cost = cost + stretched * np.maximum(stretch, 0.0) ** 2
         swung = self.swung(now, singles)
         low, high = -swung[2:].T, swung[:2].T
         growth = np.exp(float(now.omega[0]) * now.cycle)
@@ -248,7 +250,7 @@ class Recovery:
             short = wanted - place
             second = np.maximum(gain * growth * np.abs(short) - held_next, 0.0)
             second[:, 1] *= np.where(now.side * short[:, 1] > 0.0, _OUTWARD, 1.0)
-            total = cost + _PLACE * ((place - now.nominal) ** 2).sum(axis=1) + _SECOND * (second**2).sum(axis=1)
+            total = cost + shift * ((place - now.nominal) ** 2).sum(axis=1) + second_shift * (second**2).sum(axis=1)
             best = int(np.argmin(total))
             best = best if total[best] < total[-1] - _WORTH else len(total) - 1
             options.append((total[best], best, place[best], box, bool(second[best].any())))
@@ -263,8 +265,9 @@ class Recovery:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
         if fine or not self.timing:
             return np.array([now.double]), np.array([now.single])
-        singles = _around(now.single, max(SHORTEST["single"], now.shortest))
-        doubles = _around(now.double, SHORTEST["double"]) if now.double else np.zeros(1)
+        time = self._size.time
+        singles = _around(now.single, max(SHORTEST["single"] * time, now.shortest), time)
+        doubles = _around(now.double, SHORTEST["double"] * time, time) if now.double else np.zeros(1)
         grid = np.meshgrid(doubles, singles, indexing="ij")
         return grid[0].ravel(), grid[1].ravel()
 
@@ -322,9 +325,9 @@ def _shared(box: tuple[Array, Array], room: Array) -> tuple[Array, Array] | None
     return (low, high) if (low <= high).all() else None
 
 
-def _around(time: float, least: float) -> Array:
-    """Times about one, which is the last [s]."""
-    times = time + _CHANGES
+def _around(time: float, least: float, scale: float) -> Array:
+    """Times about one, which is the last, by changes of this scale [s, s, -]."""
+    times = time + scale * _CHANGES
     return np.append(times[times >= min(time, least)], time)
 
 

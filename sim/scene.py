@@ -6,12 +6,15 @@ from surefoot.models.types import RobotDescription
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.errors import WorldError
 from surefoot.sim.terrain import add_terrain
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 GRAVITY = 9.81
 """[m/s^2], downwards."""
 
 
-def world_mjcf(description: RobotDescription, terrain: Terrain, timestep: float) -> str:
+def world_mjcf(
+    description: RobotDescription, terrain: Terrain, timestep: float, size: Similarity = REFERENCE_SIZE
+) -> str:
     """The whole world as one MJCF document, every number with all its digits.
 
     The text is composed and not written by MuJoCo, whose writer rounds to six digits.
@@ -20,6 +23,7 @@ def world_mjcf(description: RobotDescription, terrain: Terrain, timestep: float)
         description: the robot.
         terrain: the ground.
         timestep: physics step [s].
+        size: of the robot, with which the ground's compliance goes.
     """
     root = ElementTree.fromstring(description.mjcf)
     _add_options(root, timestep)
@@ -30,7 +34,7 @@ def world_mjcf(description: RobotDescription, terrain: Terrain, timestep: float)
         what = f"the MJCF of {description.name} lacks a worldbody or asset element"
         raise WorldError(("description", "mjcf"), what, "it must have both")
     _add_floor_materials(asset)
-    add_terrain(worldbody, terrain)
+    add_terrain(worldbody, terrain, size)
     _add_sun(worldbody, description.pelvis_body)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"

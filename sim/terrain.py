@@ -8,13 +8,19 @@ from xml.etree import ElementTree
 
 from surefoot.models.mjcf import numbers
 from surefoot.planner.ground.terrain import Box, Terrain
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 GROUND = "ground"
 """Name of the ground plane's geom; boxes are `terrain_0`, `terrain_1`, ..."""
 
 
-def add_terrain(worldbody: ElementTree.Element, terrain: Terrain) -> None:
-    """Add the ground plane and the boxes to a worldbody element."""
+SETTLING, SINKING = 0.01, 0.0001
+"""Time constant of the ground [s] and depth over which it grows rigid [m], for the reference robot: 5 ms critically
+damped, nearly rigid from the first micrometre, so that a standing sole sinks in by micrometres."""
+
+
+def add_terrain(worldbody: ElementTree.Element, terrain: Terrain, size: Similarity = REFERENCE_SIZE) -> None:
+    """Add the ground plane and the boxes to a worldbody element, as stiff for the size of the robot as for others."""
     surface = {
         "contype": "1",
         "conaffinity": "0",
@@ -22,9 +28,8 @@ def add_terrain(worldbody: ElementTree.Element, terrain: Terrain) -> None:
         "priority": "1",
         "group": "0",
         "friction": numbers((terrain.friction, 0.0, 0.0)),
-        # 5 ms critically damped, nearly rigid from the first micrometre: a standing sole sinks in by micrometres.
-        "solref": "0.01 1",
-        "solimp": "0.95 0.99 0.0001",
+        "solref": f"{SETTLING * size.time!r} 1",
+        "solimp": f"0.95 0.99 {SINKING * size.length!r}",
     }
     plane = {"name": GROUND, "type": "plane", "size": "0 0 1", "material": "floor"}
     place = {"pos": numbers((0.0, 0.0, terrain.plane))} if terrain.plane != 0.0 else {}

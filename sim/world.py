@@ -14,6 +14,7 @@ from surefoot.sim.measurement import Array, Measurement
 from surefoot.sim.pushes import Push, PushSchedule, physics_window
 from surefoot.sim.scene import world_mjcf
 from surefoot.sim.sensors import SensorReader
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 _LOG = logging.getLogger(__name__)
 
@@ -29,6 +30,7 @@ class World:
         terrain: the ground.
         physics_rate: physics steps per second [Hz].
         pushes: forces on bodies of the robot.
+        size: of the robot, with which the ground's compliance goes.
 
     Raises:
         WorldError: a push names an unknown body or has a negative time, no duration or a force that is not finite.
@@ -42,7 +44,12 @@ class World:
     """
 
     def __init__(
-        self, description: RobotDescription, terrain: Terrain, physics_rate: int, pushes: Sequence[Push] = ()
+        self,
+        description: RobotDescription,
+        terrain: Terrain,
+        physics_rate: int,
+        pushes: Sequence[Push] = (),
+        size: Similarity = REFERENCE_SIZE,
     ) -> None:
         for index, push in enumerate(pushes):
             _check_push(push, description, ("pushes", index))
@@ -50,7 +57,7 @@ class World:
         self.physics_rate = physics_rate
         self.tick = 0
         _log_warnings()
-        self._mjcf = world_mjcf(description, terrain, 1.0 / physics_rate)
+        self._mjcf = world_mjcf(description, terrain, 1.0 / physics_rate, size)
         self.model = _compiled(self._mjcf)
         self.data = mujoco.MjData(self.model)
         self._pushes = PushSchedule(pushes, [self.model.body(push.body).id for push in pushes], physics_rate)

@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from surefoot.similarity import Similarity
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.cone import CONE_ROWS, wrench_cone
@@ -31,7 +32,13 @@ ACCEPTED_VIOLATION = 1e-3
 """A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""
 
 TOE_DEPTH = 0.003
-"""Half length of the strip that stands for a toe edge in its wrench cone [m]."""
+"""Half length of the strip that stands for a toe edge in its wrench cone [m].
+
+Constants here are the reference robot's; see `surefoot.similarity`."""
+
+FADE, FADE_DAMPING = 0.05, 0.02
+"""Time in which the last torque fades out [s], and torque of a joint's damper at 1 rad/s meanwhile over its largest one
+[s/rad]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +102,7 @@ class WholeBodyController:
         limbs: pin.GeometryModel | None = None,
         arm_joints: tuple[int, int] | None = None,
         tasks: Sequence[Task] = (),
+        arm_back: tuple[float, float] = (1.0, 1.0),
     ) -> None:
         """Build the QP for a robot.
 
@@ -108,36 +116,38 @@ class WholeBodyController:
             control_period: time between two updates [s].
             parameters: weights and gains.
             limbs: shapes with the collision pairs that are kept apart; None looks at none.
-            arm_joints: which joints are the left and the right shoulder pitch, positive angles swinging back; None for
-                arms that do not swing.
+            arm_joints: which joints are the left and the right shoulder pitch; None for arms that do not swing.
+            arm_back: sign of the angles of these that swing the arms back.
             tasks: others, after the default ones.
 
         Raises:
             ValueError: a frame does not exist, a sole has no extent, or a task no name of its own, size or weight.
         """
-        self.terms = RobotTerms(model, frames)
+        size, limits = parameters.size, parameters.size.scaled(limits)
+        self.terms = RobotTerms(model, frames, WRENCH_UNIT * size.factor("N"))
         self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
         self.qp: QpData = allocate(self.layout)
         self._separation = Separation(model, limbs, parameters.separation) if limbs is not None else None
         gaps = self.layout.separation
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
-        self._hard = HardConstraints(self.qp, self.layout, _cones(sole), limits, parameters.contact)
+        self._hard = HardConstraints(self.qp, self.layout, _cones(sole, size), limits, parameters.contact)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
-        arms = ArmSwing(arm_joints, parameters.arm_swing) if arm_joints and parameters.arm_swing else None
+        arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and parameters.arm_swing else None
         weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
-        default = default_tasks(weights, gains, parameters.balance, self._region, toe)
+        default = default_tasks(weights, gains, parameters.balance, self._region, toe, size.length)
         diagonal = (
-            Regularisation(weights),
+            Regularisation(weights, size.length),
             Posture(weights, gains, posture, leg_joints, arms),
-            ForceDistribution(weights),
+            ForceDistribution(weights, self.terms.wrench_unit),
         )
         self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal)
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
-        self._observer = LoadObserver(self.terms.mass, control_period)
+        self._observer = LoadObserver(self.terms.mass, control_period, size)
         self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
-        self._limits, self._toe, self._period = limits, toe, control_period
+        self._limits, self._toe = limits, toe
+        self._fading = control_period / (FADE * size.time), FADE_DAMPING * size.time
         self._edge: tuple[int, Array] | None = None
         self._torque_rows, self._wrench_flat = self.qp.A[self.layout.torque_rows], np.zeros(12)
         wrench, error = self._wrench_flat.reshape(2, 6), np.zeros_like(self.tasks.target)
@@ -227,7 +237,7 @@ class WholeBodyController:
         np.add(answer.torque, terms.bias[6:], out=answer.torque)
         self._clip(answer.torque)
         answer.acceleration[:] = x[:nv]
-        np.multiply(x[nv:], WRENCH_UNIT, out=self._wrench_flat)
+        np.multiply(x[nv:], terms.wrench_unit, out=self._wrench_flat)
         if self._edge is not None:
             foot, to_sole = self._edge
             answer.wrench[foot] = to_sole @ answer.wrench[foot]
@@ -247,14 +257,15 @@ class WholeBodyController:
         np.maximum(torque, -self._limits.torque, out=torque)
 
     def _fade(self, torque: Array, v: Array) -> None:
-        """Fade the last torque out within about 50 ms while damping the joints whose velocity is known."""
+        """Fade the last torque out while damping the joints whose velocity is known."""
         rate = np.where(np.isfinite(v[6:]), v[6:], 0.0)
-        torque += self._period / 0.05 * (-0.02 * self._limits.torque * rate - torque)
+        share, damping = self._fading
+        torque += share * (-damping * self._limits.torque * rate - torque)
         self._clip(torque)
 
 
-def _cones(sole: Sole) -> tuple[Array, Array]:
+def _cones(sole: Sole, size: Similarity) -> tuple[Array, Array]:
     """Rows of the wrench cones of the sole and of its toe edge; the pyramid lies inside the circular cone."""
     share, friction = sole.cop_share, sole.friction / np.sqrt(2.0)
     width = share * sole.half_width
-    return wrench_cone(share * sole.half_length, width, friction), wrench_cone(TOE_DEPTH, width, friction)
+    return wrench_cone(share * sole.half_length, width, friction), wrench_cone(TOE_DEPTH * size.length, width, friction)

@@ -7,7 +7,7 @@ import numpy as np
 from surefoot.wbc.contacts import ContactState
 from surefoot.wbc.limits import AccelerationBounds, JointLimits
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.qp import FOOT_ROWS, WRENCH_UNIT, QpData, QpLayout
+from surefoot.wbc.qp import FOOT_ROWS, QpData, QpLayout
 from surefoot.wbc.tunable import check, number
 from surefoot.wbc.types import Array
 
@@ -90,7 +90,7 @@ class HardConstraints:
 
     def _motion(self, terms: RobotTerms) -> None:
         self._mass[:] = terms.mass_matrix
-        np.multiply(terms.contact_jacobian.T, -WRENCH_UNIT, out=self._forces)
+        np.multiply(terms.contact_jacobian.T, -terms.wrench_unit, out=self._forces)
         np.negative(terms.bias, out=self._motion_lower)
         np.add(self._motion_lower, self._torque_span, out=self._motion_upper)
         self._motion_lower -= self._torque_span
@@ -116,7 +116,7 @@ class HardConstraints:
         self._contact_lower[:] = target
         self._contact_upper[:] = target
         left, right = contacts.force_cap
-        self._force_caps[:] = (left / WRENCH_UNIT, right / WRENCH_UNIT)
+        self._force_caps[:] = (left / terms.wrench_unit, right / terms.wrench_unit)
 
     def _follow(self, k: int, terms: RobotTerms, active: bool) -> None:
         if active:

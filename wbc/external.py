@@ -9,12 +9,16 @@ origin (of which masses all are the model's times one factor s)
 No acceleration is measured for that, and how the robot moves and stands does not matter. It is the momentum observer
 of De Luca and Mattone (ICRA 2003), with means over spans and their medians in place of its low-pass. What lasts is told
 from a push, which has done what it does when it is over and may be hard: of what is new only little counts.
+
+Times, forces and moments below are the reference robot's (see `surefoot.similarity`).
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.model import RobotTerms, cross
 from surefoot.wbc.types import GRAVITY, NO_LOAD, Array, ExternalLoad
 
@@ -63,19 +67,23 @@ class LoadObserver:
     Args:
         mass: the model's [kg].
         period: time between two updates [s].
+        size: of the robot.
 
     Attributes:
         load: as estimated; `NO_LOAD` while there is none.
     """
 
-    def __init__(self, mass: float, period: float) -> None:
-        self._mass, self._ticks = mass, max(1, round(SPAN / period))
+    def __init__(self, mass: float, period: float, size: Similarity = REFERENCE_SIZE) -> None:
+        self._mass, self._ticks = mass, max(1, round(SPAN * size.time / period))
         self._span = self._ticks * period
         self._felt, self._com = np.zeros(6), np.zeros(3)
         self._momentum: Array | None = None
         self._count = 0
         self._spans = np.empty((0, sum(_ROWS)))
-        self._most, self._bound = np.repeat(RATES, _ROWS) * self._span, np.repeat(BOUND, _ROWS[:2])
+        self._most = np.repeat(size.times(RATES, "N/s, N·m/s, 1/s"), _ROWS) * self._span
+        pull = np.repeat([size.factor("N"), size.factor("N·m")], _ROWS[:2])
+        self._bound, self._push = np.repeat(BOUND, _ROWS[:2]) * pull, size.times(PUSH, "N")
+        self._kept, self._sudden = (tuple(limit * pull for limit in limits) for limits in (KEPT, SUDDEN))
         self._estimate = np.zeros(sum(_ROWS))
         self.load = NO_LOAD
 
@@ -125,9 +133,10 @@ class LoadObserver:
             pull = np.zeros(len(lasting) - 1)
         else:
             kept = np.where(lasting * latest > 0.0, np.minimum(np.abs(lasting), np.abs(latest)), 0.0)
-            kept = _ramp(np.copysign(kept, latest)[:-1], KEPT)
-            sudden = np.clip(_ramp(latest[:-1], SUDDEN), -self._bound, self._bound)
-            sudden = sudden * min(max((PUSH[1] - math.hypot(*latest[:2])) / (PUSH[1] - PUSH[0]), 0.0), 1.0)
+            kept = _ramp(np.copysign(kept, latest)[:-1], self._kept)
+            sudden = np.clip(_ramp(latest[:-1], self._sudden), -self._bound, self._bound)
+            none, push = self._push
+            sudden = sudden * min(max((push - math.hypot(*latest[:2])) / (push - none), 0.0), 1.0)
             pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
         wanted = np.concatenate((pull, share))
         self._estimate = self._estimate + np.clip(wanted - self._estimate, -self._most, self._most)
@@ -137,10 +146,10 @@ class LoadObserver:
             self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
 
 
-def _ramp(values: Array, limits: tuple[float, float]) -> Array:
+def _ramp(values: Array, limits: tuple[Any, ...]) -> Array:
     """Values of which nothing counts up to the first limit, all from the second one on."""
     none, full = limits
-    return values * np.clip((np.abs(values) - none) / (full - none), 0.0, 1.0)
+    return np.asarray(values * np.clip((np.abs(values) - none) / (full - none), 0.0, 1.0))
 
 
 def _median(spans: Array) -> Array:

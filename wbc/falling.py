@@ -7,11 +7,12 @@ fall out; soft stops before the ends of the ranges keep joints inside.
 
 import numpy as np
 
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.types import Array
 
 DAMPING = 0.05
-"""Torque of a damper at 1 rad/s over the largest torque of its joint [s/rad]."""
+"""Torque of a damper at 1 rad/s over the largest torque of its joint, of the reference robot [s/rad]."""
 
 STOP, STIFFNESS = 0.15, 2.0
 """How far before the end of its range a joint is turned back [rad], a quarter of the range at most, and by how much of
@@ -23,14 +24,16 @@ class GivingWay:
 
     Args:
         limits: of the joints.
+        size: of the robot.
     """
 
-    def __init__(self, limits: JointLimits) -> None:
+    def __init__(self, limits: JointLimits, size: Similarity = REFERENCE_SIZE) -> None:
         before = np.minimum(STOP, 0.25 * (limits.upper - limits.lower))
+        self._damping = DAMPING * size.time
         self._most, self._lower, self._upper = limits.torque, limits.lower + before, limits.upper - before
 
     def torque(self, position: Array, velocity: Array) -> Array:
         """Joint torques within their limits, shape (nj,) [N·m]; positions and velocities likewise [rad, rad/s]."""
         inside = np.clip(position, self._lower, self._upper)
-        share = STIFFNESS * (inside - position) - DAMPING * velocity
+        share = STIFFNESS * (inside - position) - self._damping * velocity
         return np.asarray(self._most * np.clip(share, -1.0, 1.0))

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.similarity import quantity
 from surefoot.wbc.types import Array
 
 
@@ -23,8 +24,8 @@ class JointLimits:
     velocity: Array
     lower: Array
     upper: Array
-    position_horizon: float = 0.04
-    velocity_horizon: float = 0.02
+    position_horizon: float = quantity(0.04, "s")
+    velocity_horizon: float = quantity(0.02, "s")
 
 
 class AccelerationBounds:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from surefoot.wbc.qp import WRENCH_UNIT
 from surefoot.wbc.types import GRAVITY, NO_LOAD, Array, ExternalLoad
 
 _LOCAL = pin.ReferenceFrame.LOCAL
@@ -43,6 +44,7 @@ class RobotTerms:
         model_mass: total mass of the model [kg].
         mass: total mass [kg].
         load: what else acts on the robot.
+        wrench_unit: of the QP's wrench variables [N, N·m].
         mass_matrix: M, shape (nv, nv).
         bias: Coriolis, centrifugal, gravity and load terms h, shape (nv,).
         com, com_velocity, angular_momentum: centroidal state in the world frame, shape (3,) each.
@@ -57,8 +59,8 @@ class RobotTerms:
         torso_jacobian: angular rows, shape (3, nv); torso_velocity, torso_bias: shape (3,).
     """
 
-    def __init__(self, model: pin.Model, frames: BodyFrames) -> None:
-        """Allocate all terms.
+    def __init__(self, model: pin.Model, frames: BodyFrames, wrench_unit: float = WRENCH_UNIT) -> None:
+        """Allocate all terms; the wrench unit is the reference robot's unless given.
 
         Raises:
             ValueError: if a frame does not exist or the model's gravity is not ``GRAVITY`` downwards.
@@ -74,7 +76,7 @@ class RobotTerms:
         self._soles = tuple(_frame_id(model, name) for name in frames.soles)
         self._torso = _frame_id(model, frames.torso)
         self.mass = self.model_mass = float(sum(inertia.mass for inertia in model.inertias))
-        self.load = NO_LOAD
+        self.load, self.wrench_unit = NO_LOAD, wrench_unit
         # Views of Pinocchio's own memory need no copy. M is symmetric and column-major: its transpose is contiguous.
         self.mass_matrix: Array = data.M.T
         self._mass_diagonal: Array = np.einsum("ii->i", data.M)

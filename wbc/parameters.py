@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from surefoot.errors import ParameterError
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.balance import BalanceGains
 from surefoot.wbc.contacts import ContactParameters
 from surefoot.wbc.dynamics import ContactGains
@@ -16,6 +17,8 @@ from surefoot.wbc.tunable import check, number
 class WbcParameters:
     """Everything one may turn; each number carries its unit and meaning as metadata of its dataclass field.
 
+    The defaults are those of the reference robot; `Similarity.scaled` makes them those of a robot of another size.
+
     Attributes:
         weights: of the tasks.
         gains: of the tasks.
@@ -26,6 +29,7 @@ class WbcParameters:
         solver: the solver tried first, chosen by ``benchmarks/qp_solvers.py``.
         second_solver: the one tried when the first fails.
         arm_swing: swing of the shoulders per stride.
+        size: of the robot, for what is no parameter.
 
     Raises:
         ParameterError: there is no such solver, or a number is out of its range.
@@ -40,6 +44,7 @@ class WbcParameters:
     solver: str = field(default="equality-first", metadata={"doc": "QP solver that is tried first"})
     second_solver: str = field(default="proxqp", metadata={"doc": "QP solver that is tried when the first fails"})
     arm_swing: float = number(0.6, "rad/m", "swing of the shoulders per stride")
+    size: Similarity = REFERENCE_SIZE
 
     def __post_init__(self) -> None:
         check(self, "wbc")

@@ -10,8 +10,10 @@ from surefoot.wbc.types import Array
 FOOT_ROWS = 6
 EQUALITY_ROWS = 2 * FOOT_ROWS + 6
 WRENCH_UNIT = 100.0
-"""Unit of the wrench variables [N, N·m]. With forces in units near their size over that of the accelerations, H has a
-condition number of about 1e5; in newtons it had 1e8."""
+"""Unit of the wrench variables of the reference robot; that of others goes with their mass [N, N·m].
+
+With forces in units near their size over that of the accelerations, H has a condition number of about 1e5; in newtons
+it had 1e8."""
 UNBOUNDED = 1e9
 """Stands for an absent bound: far beyond any physical value, yet finite for every solver."""
 
@@ -21,7 +23,7 @@ class QpLayout:
     """Where everything is in the QP.
 
     Variables ``x = [q̈ (nv), w_left (6), w_right (6)]`` with sole wrenches in the sole frames, in units of
-    ``WRENCH_UNIT``; rows: contact of the left
+    ``RobotTerms.wrench_unit``; rows: contact of the left
     and of the right foot (6 each), equations of motion (6 of the floating base, then nj joint torques), wrench cones
     (2 x cone_rows), distances between limbs (separation_rows).
 

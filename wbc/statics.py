@@ -6,12 +6,15 @@ import pinocchio as pin
 from surefoot.wbc.model import BodyFrames
 from surefoot.wbc.types import Array
 
+LEVER = 0.1
+"""At which the reference robot's sole moments count as forces [m]."""
 
-def standing_torque(model: pin.Model, frames: BodyFrames, q: Array) -> Array:
+
+def standing_torque(model: pin.Model, frames: BodyFrames, q: Array, lever: float = LEVER) -> Array:
     """Joint torques, shape (nj,) [N·m], of static equilibrium on both soles at configuration q, shape (nq,).
 
     The base rows of g(q) = S τ + Σ J_kᵀ w_k leave the two sole wrenches w_k free in six directions; the smallest ones
-    are taken, with moments counted at a lever of 0.1 m.
+    are taken, with moments counted at a lever [m].
     """
     data = model.createData()
     gravity = pin.computeGeneralizedGravity(model, data, q)
@@ -21,7 +24,7 @@ def standing_torque(model: pin.Model, frames: BodyFrames, q: Array) -> Array:
         pin.getFrameJacobian(model, data, model.getFrameId(name), pin.ReferenceFrame.LOCAL) for name in frames.soles
     ]
     transposed = np.vstack(jacobians).T
-    scale = np.tile([1.0, 1.0, 1.0, 0.1, 0.1, 0.1], 2)
+    scale = np.tile([1.0, 1.0, 1.0, lever, lever, lever], 2)
     wrenches = scale * np.linalg.lstsq(transposed[:6] * scale, gravity[:6], rcond=None)[0]
     torque: Array = gravity[6:] - transposed[6:] @ wrenches
     return torque

@@ -1,6 +1,7 @@
 """A robot file as a description: derived or from the cache, in its size, with options; and what was derived."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 from surefoot.models.belief import with_load
@@ -84,16 +85,24 @@ def _similar(file: RobotFile, path: Path, options: RobotOptions) -> Explanation:
 
 
 def _derived(file: RobotFile, path: Path) -> Explanation:
-    """From the cache if nothing has changed since, at the size of the model."""
-    from surefoot.models.robot_file.files import model_files
+    """At the size of the model; from the cache if nothing has changed since."""
+    from surefoot.models.robot_file.files import model_files, srdf_of
 
     model = resolve(file.model, path.parent)
-    key = cache.digest([path, *model_files(model)])
+    srdf = srdf_of(file, model)
+    files = (path.absolute(), *model_files(model), *((srdf,) if srdf else ()))
+    return _unchanged(path, model, files, tuple((place.stat().st_mtime_ns, place.stat().st_size) for place in files))
+
+
+@lru_cache(maxsize=16)
+def _unchanged(path: Path, model: Path, files: tuple[Path, ...], _changed: tuple[tuple[int, int], ...]) -> Explanation:
+    """Once per process, as long as no file has another time or size."""
+    key = cache.digest(list(files))
     kept = cache.load(key)
     if kept is None:
         from surefoot.models.robot_file.derive import derive
 
-        kept = derive(file, model)
+        kept = derive(read(path), model)
         cache.store(key, *kept)
     return Explanation(*kept)
 

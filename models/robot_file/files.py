@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 from surefoot.models.robot_file.paths import resolve
+from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.types import RobotError
 
 
@@ -38,3 +39,20 @@ def text_of(path: Path) -> str:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is no text"
         raise RobotError(("model",), f"{path}: cannot be read, {reason}", "give the path of a URDF or MJCF") from None
+
+
+def srdf_of(file: RobotFile, path: Path) -> Path | None:
+    """The SRDF that the file names, or the one beside the model that is of a robot of its name.
+
+    Raises:
+        RobotError: the file names one that is not there.
+    """
+    if file.srdf is not None:
+        place = resolve(file.srdf, path.parent, "srdf")
+        if not place.is_file():
+            raise RobotError(("srdf",), f"srdf {file.srdf} of {file.name} is not there", f"put it at {place}")
+        return place
+    of = re.search(r'<robot\b[^>]*\bname\s*=\s*"([^"]*)"', text_of(path))
+    beside = [*path.parent.glob("*.srdf"), *(path.parent.parent / "srdf").glob("*.srdf")]
+    named = [place for place in sorted(beside) if of and f'name="{of[1]}"' in place.read_text(encoding="utf-8")[:2000]]
+    return named[0] if len(named) == 1 else None

@@ -128,7 +128,8 @@ class _Reader:
     def _add_shapes(self, source: Source) -> None:
         """Sort the geoms into what touches and what is only drawn."""
         mj = self._mj
-        visual, collision = [], []
+        visual: list[Shape] = []
+        collision: list[Shape] = []
         for geom in range(mj.ngeom):
             if mj.body_rootid[mj.geom_bodyid[geom]] == self._root:
                 touches = mj.geom_contype[geom] or mj.geom_conaffinity[geom]

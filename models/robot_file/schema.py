@@ -133,7 +133,8 @@ def _refusal(path: Path, fault: Any, lines: Mapping[tuple[str, ...], int]) -> Ro
     place = f"{path}:{lines[known]}" if known else str(path)
     dotted = ".".join(known or key[:1])
     if fault["type"] == "extra_forbidden":
-        group = {(): RobotFile, ("feet",): Feet, ("sole",): Sole}.get(key[:-1], RobotFile)
+        groups: dict[tuple[str, ...], type[BaseModel]] = {("feet",): Feet, ("sole",): Sole}
+        group = groups.get(key[:-1], RobotFile)
         return RobotError(key, f"{place}: unknown key '{'.'.join(key)}'", nearest(key[-1], tuple(group.model_fields)))
     if fault["type"] == "missing":
         return RobotError(key, f"{place}: lacks {'.'.join(key)}", f"give {_example(key)}")

@@ -48,18 +48,19 @@ def solid(link: str, points: Array, placement: pin.SE3, rgba: Colour = GREY) -> 
 
 def placed(points: Array, placement: pin.SE3) -> Array:
     """Points of one frame in another, shape (n, 3) [m]."""
-    return points @ placement.rotation.T + placement.translation
+    return np.asarray(points @ placement.rotation.T + placement.translation)
 
 
 def box(x: float, y: float, z: float) -> Array:
     """Corners of a box with these full lengths."""
-    return _CORNERS * np.array([x, y, z]) / 2
+    return np.asarray(_CORNERS * np.array([x, y, z]) / 2)
 
 
 def ellipsoid(a: float, b: float, c: float) -> Array:
     """Points of an ellipsoid with these semi-axes along x, y and z; poles and equator among them."""
     rings = [_ring(math.cos(v), math.sin(v)) for v in np.linspace(-math.pi / 2, math.pi / 2, 13)[1:-1]]
-    return np.concatenate((*rings, [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])) * np.array([a, b, c])
+    unit = np.concatenate((*rings, [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]))
+    return np.asarray(unit * np.array([a, b, c]))
 
 
 def cylinder(radius: float, length: float) -> Array:

@@ -10,13 +10,13 @@ import pinocchio as pin
 from surefoot.models.joints import axis_of
 from surefoot.models.mjcf import Role, add_defaults, numbers
 from surefoot.models.robot_file.legs import SIDES, Leg
+from surefoot.models.robot_file.reduced import SITES
 from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.touch import Hull, shape_name
 
 SOLE_THICKNESS = 0.02
 """Of the contact box over the leg's length [-]."""
 
-IMU = "imu"
 _ROUND = 5
 """Decimals of what is only drawn [m]."""
 
@@ -87,7 +87,7 @@ class _Tree:
         _add_inertial(body, model.inertias[joint])
         if joint == 1:
             ElementTree.SubElement(body, "freejoint", name=f"{name}_free")
-            ElementTree.SubElement(body, "site", name=IMU, pos="0.0 0.0 0.0", size="0.005", group="4")
+            ElementTree.SubElement(body, "site", name=SITES[0], pos="0.0 0.0 0.0", size="0.005", group="4")
         else:
             self._add_joint(body, joint)
         self._add_looks(body, joint)

@@ -9,7 +9,7 @@ from surefoot.models.joints import world_axis
 from surefoot.models.robot_file.legs import Leg, rest
 from surefoot.models.robot_file.reduced import Reduced
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.models.types import Array
+from surefoot.models.types import Array, RobotError
 
 _ASIDE, _ALIKE = 0.02, 0.1
 _LATERAL = 0.8
@@ -18,6 +18,9 @@ _ROOM = 0.25
 """Angle that relaxed arms stay from the ends of their joints, or a sixth of the range if that is less [rad]."""
 
 _STEPS, _NEARNESS = 100, 0.02
+
+
+Arms = tuple[tuple[int, ...], tuple[int, ...]] | tuple[()]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +35,7 @@ class Upper:
 
     torso: int
     waist: tuple[int, ...]
-    arms: tuple[tuple[int, ...], tuple[int, ...]] | tuple[()]
+    arms: Arms
 
 
 def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Upper:
@@ -40,6 +43,9 @@ def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Uppe
 
     Arms are the heaviest two alike branches of one body on either side; that body is the torso. Without arms it is the
     heaviest body above the legs.
+
+    Raises:
+        RobotError: the file names a torso that is none.
     """
     model = reduced.model
     below = {joint for leg in legs for joint in leg.joints}
@@ -47,6 +53,9 @@ def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Uppe
     arms = _arms(model, others, legs)
     if file.torso is not None:
         torso = reduced.joint_of(file.torso, "torso")
+        if torso in below:
+            what = f"torso of {file.name} is '{file.torso}', which is part of a leg"
+            raise RobotError(("torso",), what, "name a link above the legs")
     elif arms:
         torso = int(model.parents[arms[0][0]])
     else:
@@ -54,14 +63,13 @@ def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Uppe
     return Upper(torso, tuple(j for j in model.supports[torso] if j > 1), arms)
 
 
-def _arms(
-    model: pin.Model, others: list[int], legs: tuple[Leg, Leg]
-) -> tuple[tuple[int, ...], tuple[int, ...]] | tuple[()]:
+def _arms(model: pin.Model, others: list[int], legs: tuple[Leg, Leg]) -> Arms:
     data, q = model.createData(), pin.neutral(model)
     q[7:] = rest(model)
     pin.centerOfMass(model, data, q)
     height = float(np.linalg.norm(legs[0].hip - legs[0].sole.placement.translation))
-    best, arms = 0.0, ()
+    best = 0.0
+    arms: Arms = ()
     for left in others:
         for right in others:
             if model.parents[left] != model.parents[right]:

@@ -131,34 +131,37 @@ class Terrain:
             margins[carrying] = corner_inside.min(axis=1)[carrying]
         return margins
 
-    def room(self, position: NDArray[np.float64], yaw: float, half_size: NDArray[np.float64]) -> NDArray[np.float64]:
+    def room(
+        self, position: NDArray[np.float64], yaw: float, half_size: NDArray[np.float64], length: float = 1.0
+    ) -> NDArray[np.float64]:
         """How far a sole may be moved on the face that carries it, ahead and to the left of where it was to land.
 
         Args:
             position: where it was to, shape (3,) [m].
             yaw: its heading [rad].
             half_size: half of its length and width, shape (2,) [m].
+            length: size of the robot (see `surefoot.similarity`) [-].
 
         Returns:
             Least and greatest way, shape (2, 2) [m]; without bounds where footsteps may land anywhere.
         """
         if self.free_footholds:
             return np.array([[-np.inf] * 2, [np.inf] * 2])
-        axes = frame_rotation(yaw).T
-        moved = position[:2] + (np.vstack((-axes, axes))[:, None] * _WAYS[:, None]).reshape(-1, 2)
+        axes, ways, kept = frame_rotation(yaw).T, length * _WAYS, length * _KEPT
+        moved = position[:2] + (np.vstack((-axes, axes))[:, None] * ways[:, None]).reshape(-1, 2)
         soles = moved[:, None] + (half_size * _CORNERS) @ axes
         level = position[2] - (moved - position[:2]) @ (normal := self.normal(*position[:2]))[:2] / normal[2]
-        off = (self.edge_margins(moved, soles) < _KEPT) | (np.abs(self.heights(moved) - level) > _KEPT)
+        off = (self.edge_margins(moved, soles) < kept) | (np.abs(self.heights(moved) - level) > kept)
         # A shank leans over its foot: beyond it nothing may rise so near.
-        beyond = (soles.reshape(4, -1, 2) + _SHANK * np.vstack((-axes, axes))[:, None]).reshape(-1, 2)
-        off |= (self.heights(beyond).reshape(len(moved), -1) - level[:, None] > _KEPT).any(axis=1)
+        beyond = (soles.reshape(4, -1, 2) + length * _SHANK * np.vstack((-axes, axes))[:, None]).reshape(-1, 2)
+        off |= (self.heights(beyond).reshape(len(moved), -1) - level[:, None] > kept).any(axis=1)
         first = np.argmax(np.column_stack((off.reshape(4, -1), np.ones(4, dtype=np.bool_))), axis=1)
-        way = np.append(0.0, _WAYS)[first].reshape(2, 2)
+        way = np.append(0.0, ways)[first].reshape(2, 2)
         return np.array([-way[0], way[1]])
 
 
 _WAYS = 0.01 * np.arange(1.0, 41.0)
-"""Ways by which a sole might be moved on its face [m]."""
+"""Ways by which a sole might be moved on its face, of the reference robot as all lengths here [m]."""
 
 _CORNERS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
 

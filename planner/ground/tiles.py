@@ -12,7 +12,7 @@ from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
 from surefoot.planner.types import Array
 
 TILE = 0.5
-"""Side of a tile, as of a paving slab [m]."""
+"""Side of a tile, as of a paving slab, for the reference robot [m]."""
 
 AROUND = 2
 """How many tiles are laid around the one that a footstep is on, to each side [-]."""
@@ -36,11 +36,13 @@ class Tiles:
         noise: half range of the heights about 0 [m].
         seed: of the heights, and of where the tiles lie and how they are turned.
         level: how far the level box at the start reaches beyond the centres of the feet [m].
+        side: of a tile [m].
     """
 
     noise: float
     seed: int
     level: float = 0.15
+    side: float = TILE
 
     def build(self, site: Site) -> Terrain:
         """See `GroundShape`; the feet start on a level box at height 0, and no tile that reaches under it is higher."""
@@ -48,24 +50,24 @@ class Tiles:
         start = self._start(site)
         boxes = [start]
         for cell in self.cells(site):
-            centre = origin + rotation[:2, :2] @ (TILE * (cell + 0.5))
+            centre = origin + rotation[:2, :2] @ (self.side * (cell + 0.5))
             height = self.noise * (2.0 * float(self._random(*(cell + _MIDDLE))[0]) - 1.0)
-            if start.top(centre[None])[1][0] > -math.sqrt(0.5) * TILE:
+            if start.top(centre[None])[1][0] > -math.sqrt(0.5) * self.side:
                 height = -abs(height)
-            boxes.append(self._box(centre, np.full(2, 0.5 * TILE), height, rotation))
+            boxes.append(self._box(centre, np.full(2, 0.5 * self.side), height, rotation))
         return Terrain(tuple(boxes), site.friction, plane=-self.noise)
 
     def cells(self, site: Site) -> NDArray[np.int64]:
         """Which tiles of the grid are laid, ordered, shape (n, 2)."""
         rotation, origin = self._grid(site)
-        under = np.floor((site.footsteps().position[:, :2] - origin) @ rotation[:2, :2] / TILE).astype(np.int64)
+        under = np.floor((site.footsteps().position[:, :2] - origin) @ rotation[:2, :2] / self.side).astype(np.int64)
         return np.unique((under[:, None] + _WINDOW).reshape(-1, 2), axis=0)
 
     def _grid(self, site: Site) -> tuple[Array, Array]:
         """Axes of the grid, shape (3, 3), and one of its corners in the world, shape (2,) [m]."""
         turn, along, across = self._random()
         rotation = sole_rotation(site.yaw + 0.5 * math.pi * float(turn), 0.0, 0.0)
-        return rotation, site.origin + rotation[:2, :2] @ (TILE * np.array([along, across]))
+        return rotation, site.origin + rotation[:2, :2] @ (self.side * np.array([along, across]))
 
     def _start(self, site: Site) -> Box:
         first, second = site.footsteps().position[:2, :2]

@@ -22,7 +22,7 @@ def limited(jerk: float, last: float, parameters: PlannerParameters) -> float:
 
 
 _GAIN = 4.0
-"""Rate k at which a DCM error decays while the ZMP stays inside its box [1/s]."""
+"""Rate k at which a DCM error decays while the ZMP stays inside its box, of the reference robot [1/s]."""
 
 
 class DcmFeedback:
@@ -43,7 +43,7 @@ class DcmFeedback:
         """See `MotionPlanner`."""
         p, omega = self._parameters, problem.omega[:, None]
         nominal = nominal_dcm(problem.stiffness, problem.omega, problem.reference.point, p.sample_time)
-        gain = 1.0 + _GAIN / omega
+        gain = 1.0 + p.size.times(_GAIN, "1/s") / omega
         offset = problem.reference.point - gain * nominal
         jerk = np.column_stack([self._axis(problem, axis, gain[:, 0], offset[:, axis]) for axis in range(2)])
         return Motion(jerk, np.zeros((2, 2)), np.zeros(2), np.zeros(2))

@@ -16,7 +16,7 @@ _PREVIEW = 80
 """Samples of the reference that the law looks ahead, N_l: 1.6 s."""
 
 _JERK_WEIGHT = 1e-6
-"""Cost R of a squared jerk against Q_e = 1 for a squared ZMP error."""
+"""Cost R of a squared jerk against Q_e = 1 for a squared ZMP error, of the reference robot [s^6]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +37,16 @@ class PreviewGains:
     system: Array
 
 
-def preview_gains(sample_time: float, stiffness: float, samples: int = _PREVIEW) -> PreviewGains:
+def preview_gains(
+    sample_time: float, stiffness: float, samples: int = _PREVIEW, jerk_weight: float = _JERK_WEIGHT
+) -> PreviewGains:
     """Gains that minimise Σ Q_e e² + R Δu² with integral action.
 
     Args:
         sample_time: T [s].
         stiffness: λ = g / z_c, constant [1/s^2].
         samples: N_l.
+        jerk_weight: R [s^6].
     """
     A, b = jerk_model(sample_time)
     B = b[:, None]
@@ -51,8 +54,8 @@ def preview_gains(sample_time: float, stiffness: float, samples: int = _PREVIEW)
     A1 = np.block([[np.eye(1), C @ A], [np.zeros((3, 1)), A]])
     B1 = np.vstack((C @ B, B))
     Q = np.diag([1.0, 0.0, 0.0, 0.0])
-    P = solve_discrete_are(A1, B1, Q, np.array([[_JERK_WEIGHT]]))
-    weight = 1.0 / (_JERK_WEIGHT + float((B1.T @ P @ B1)[0, 0]))
+    P = solve_discrete_are(A1, B1, Q, np.array([[jerk_weight]]))
+    weight = 1.0 / (jerk_weight + float((B1.T @ P @ B1)[0, 0]))
     K = weight * (B1.T @ P @ A1)
     closed = A1 - B1 @ K
     preview, carried = np.empty(samples), -closed.T @ P[:, :1]
@@ -77,7 +80,8 @@ class ZmpPreview:
     def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
         self._parameters = parameters
         self._stiffness = softening(parameters.leg) * GRAVITY / com_height
-        self._gains = preview_gains(parameters.sample_time, self._stiffness, min(_PREVIEW, parameters.preview))
+        weight = parameters.size.times(_JERK_WEIGHT, "s^6")
+        self._gains = preview_gains(parameters.sample_time, self._stiffness, min(_PREVIEW, parameters.preview), weight)
         self._summed = np.zeros(2)
 
     def plan(self, problem: MotionProblem) -> Motion:

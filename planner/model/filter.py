@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from surefoot.planner.model.jerk import jerk_model
 from surefoot.planner.types import Array
+from surefoot.similarity import quantity
 
 DESIGN_SAMPLE = 0.02
 """Sample time for which the process noise is given [s]."""
@@ -26,13 +27,15 @@ class FilterNoise:
         zmp: of the measured ZMP; large, since it also holds what the point mass has not got [m].
         com: of the measured CoM [m].
         com_velocity: of its measured velocity [m/s].
-        process: of what 20 ms add to position, velocity and acceleration beside the planned jerk [m, m/s, m/s^2].
+        process: of what a sample adds to position, velocity and acceleration beside the planned jerk [m, m/s, m/s^2].
+        sample_time: of that sample [s].
     """
 
-    zmp: float = 0.01
-    com: float = 0.002
-    com_velocity: float = 0.01
-    process: tuple[float, float, float] = (1e-5, 1e-3, 1e-2)
+    zmp: float = quantity(0.01, "m")
+    com: float = quantity(0.002, "m")
+    com_velocity: float = quantity(0.01, "m/s")
+    process: tuple[float, float, float] = quantity((1e-5, 1e-3, 1e-2), "m, m/s, m/s^2")
+    sample_time: float = quantity(DESIGN_SAMPLE, "s")
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +98,7 @@ class CentroidalFilter:
         sensors: tuple[bool, bool, bool] = (True, True, True),
     ) -> None:
         self._transition, self._input = jerk_model(sample_time)
-        self._process = np.diag(np.square(noise.process)) * (sample_time / DESIGN_SAMPLE)
+        self._process = np.diag(np.square(noise.process)) * (sample_time / noise.sample_time)
         self._variance = np.square([noise.zmp, noise.com, noise.com_velocity])
         self._sensors: NDArray[np.bool_] = np.array(sensors)
         self.mean = np.array(mean)

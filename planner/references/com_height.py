@@ -27,14 +27,14 @@ _IMPULSE_LIMIT = 0.95
 """The same where one-sample impulses of a height with velocity jumps are cut off [-]."""
 
 _LEAST_HEIGHT = 0.1
-"""Height over the ZMP that the pendulum never goes below [m]."""
+"""Height over the ZMP that the reference robot's pendulum never goes below [m]."""
 
 _CLIMB_SHARE, _DESCENT_SHARE = 0.8, 1.0
 """Shares of single support in which the level rises and sinks: the knee is bent most, and can lift least, at the begin
 of a climb and at the end of a descent [-]."""
 
 BENT_KNEES = 0.08
-"""How much lower than stretched knees carry it bent ones carry the CoM [m]."""
+"""How much lower than stretched knees carry it bent ones carry the reference robot's CoM [m]."""
 
 
 class Rise(Enum):
@@ -105,11 +105,17 @@ class SmoothHeight:
 
 @dataclass(frozen=True, slots=True)
 class BentKneeHeight(SmoothHeight):
-    """Constant height over the level, `BENT_KNEES` below the gait's: the crouched gait of most humanoids."""
+    """Constant height over the level, lower than the gait's: the crouched gait of most humanoids.
+
+    Attributes:
+        lower: by so much [m].
+    """
+
+    lower: float = BENT_KNEES
 
     def standing(self, gait: GaitParameters) -> float:
         """See `HeightProfile`."""
-        return gait.com_height - BENT_KNEES
+        return gait.com_height - self.lower
 
     def apexes(self, gait: GaitParameters) -> tuple[float, float, float]:
         """See `SmoothHeight`."""
@@ -247,7 +253,12 @@ class HeightPreview:
 
 
 def preview_height(
-    profile: HeightProfile, gait: GaitParameters, samples: PhaseSamples, support_height: Array, zmp_height: Array
+    profile: HeightProfile,
+    gait: GaitParameters,
+    samples: PhaseSamples,
+    support_height: Array,
+    zmp_height: Array,
+    length: float = 1.0,
 ) -> HeightPreview:
     """CoM height and pendulum stiffness of a window, but for the first and the last of its samples.
 
@@ -260,8 +271,9 @@ def preview_height(
         samples: its phases over the window, shape (n + 2,).
         support_height: heights of the support points in sight, shape (m,) [m].
         zmp_height: height of the ground under the ZMP reference, shape (n,) [m].
+        length: size of the robot (see `surefoot.similarity`) [-].
     """
     height = profile.height(gait, samples, support_height)[:, 1:-1]
     limit = _IMPULSE_LIMIT if profile.impulsive else _FALL_LIMIT
     pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
-    return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT))
+    return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT * length))

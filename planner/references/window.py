@@ -134,7 +134,7 @@ class Outlook:
     ) -> None:
         self._gait, self._profile, self._half_size = gait, profile, half_size
         self._leg, self._margin, self._sample_time = parameters.leg, parameters.foot_margin, parameters.sample_time
-        self._count = parameters.horizon + parameters.preview + 1
+        self._count, self._length = parameters.horizon + parameters.preview + 1, parameters.size.length
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
 
@@ -159,7 +159,7 @@ class Outlook:
 
     def com_height(self, samples: PhaseSamples, support: Support, reference: ZmpReference) -> HeightPreview:
         """CoM height and stiffness over the samples of a reference: the paper's vertical motion planner."""
-        return preview_height(self._profile, self._gait, samples, support.heights, reference.height)
+        return preview_height(self._profile, self._gait, samples, support.heights, reference.height, self._length)
 
     def window(
         self,

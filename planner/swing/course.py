@@ -61,38 +61,42 @@ def swing_course(
     if not terrain.has_edges:
         return plain
     start, end = (sole_pose(place.position, place.yaw, place.normal) for place in (leaving, landing))
-    ground = _ground(start, end, terrain, half_size + EDGE_DISTANCE)
-    if np.ptp(ground) <= _LEVEL:
+    ground = _ground(start, end, terrain, half_size, parameters.size.length)
+    length = parameters.size.length
+    if np.ptp(ground) <= _LEVEL * length:
         return plain
     course = _gentlest(start, end, ground, clearance, samples, parameters)
     if course is None:
-        what = f"footstep {number} cannot be swung {EDGE_CLEARANCE:g} m clear of the edges before it"
+        what = f"footstep {number} cannot be swung {EDGE_CLEARANCE * length:g} m clear of the edges before it"
         raise ParameterError(("terrain", "depth"), what, "give the treads more depth, or the swing more height")
     return course
 
 
-def _ground(start: Array, end: Array, terrain: Terrain, half_size: Array) -> Array:
+def _ground(start: Array, end: Array, terrain: Terrain, half_size: Array, length: float) -> Array:
     """Least height of the sole's centre around each point of its way, on which it turns too, shape (81,) [m]."""
     sides = (-1.0, -0.5, 0.0, 0.5, 1.0)
-    outline = half_size * np.array([(u, v) for u, v in product(sides, sides) if max(abs(u), abs(v)) == 1.0])
+    outline = (half_size + EDGE_DISTANCE * length) * np.array(
+        [(u, v) for u, v in product(sides, sides) if max(abs(u), abs(v)) == 1.0]
+    )
     poses = start + _WAY[:, None] * (end - start)
     spread = np.array([outline @ sole_rotation(*pose[3:].tolist())[:, :2].T for pose in poses])
     points = poses[:, None, :2] + spread[:, :, :2]
     heights = terrain.heights(points.reshape(-1, 2)).reshape(spread.shape[:2])
     needed = np.max(heights - spread[:, :, 2], axis=1)
-    at_home = _on_face(points, heights, start) | _on_face(points, heights, end)
-    needed = np.where(at_home, needed, needed + EDGE_CLEARANCE)
+    level = _LEVEL * length
+    at_home = _on_face(points, heights, start, level) | _on_face(points, heights, end, level)
+    needed = np.where(at_home, needed, needed + EDGE_CLEARANCE * length)
     # An edge may lie anywhere between two points.
     around = np.maximum(needed, np.maximum(np.append(needed[1:], -np.inf), np.append(-np.inf, needed[:-1])))
     around[[0, -1]] = start[2], end[2]
     return np.asarray(around)
 
 
-def _on_face(points: Array, heights: Array, pose: Array) -> NDArray[np.bool_]:
+def _on_face(points: Array, heights: Array, pose: Array, level: float) -> NDArray[np.bool_]:
     """Whether all ground under a sole, points (n, k, 2) of heights (n, k), is the plane of the sole's pose, (n,)."""
     normal = sole_rotation(*pose[3:].tolist())[:, 2]
     above = heights - pose[2] + (points - pose[:2]) @ (normal[:2] / normal[2])
-    return np.asarray(np.max(np.abs(above), axis=1) < _LEVEL)
+    return np.asarray(np.max(np.abs(above), axis=1) < level)
 
 
 def _gentlest(
@@ -107,7 +111,7 @@ def _gentlest(
     top = max(higher + clearance, float(ground.max()))
     rises = [SwingCourse(apex, *_GLIDES[0], top - higher) for apex in _APEXES]
     height = np.array([_flown(start, end, course, samples, parameters)[:, 2] for course in rises])
-    needed = np.interp(_shares(samples, parameters), _WAY, ground) - _LEVEL
+    needed = np.interp(_shares(samples, parameters), _WAY, ground) - _LEVEL * parameters.size.length
     clear = np.all(height[:, None] >= needed[None], axis=2)
     up, down, way = top - float(start[2]), top - float(end[2]), float(np.hypot(*(end - start)[:2]))
     apex, glide = np.array(_APEXES), np.array(_GLIDES)

@@ -93,14 +93,15 @@ def bump(s: float) -> tuple[float, float, float]:
     return 64.0 * w**3, 192.0 * w**2 * (1.0 - 2.0 * s), 384.0 * w * ((1.0 - 2.0 * s) ** 2 - w)
 
 
-def stretched(ahead: float, radius: float) -> float:
+def stretched(ahead: float, radius: float, length: float = 1.0) -> float:
     """Pitch that a foot needs so far behind the other one that its leg is too short [rad].
 
     Args:
         ahead: distance of the other foot [m].
         radius: how far from under its hip a sole reaches flat [m].
+        length: size of the robot (see `surefoot.similarity`) [-].
     """
-    return min(max(_PER_WAY * (ahead - _SHORT * radius), 0.0), _MOST)
+    return min(max(_PER_WAY / length * (ahead - _SHORT * radius), 0.0), _MOST)
 
 
 _PER_WAY, _SHORT, _MOST = 3.0, 1.1, 0.5

@@ -17,8 +17,9 @@ FEWEST_SWING_SAMPLES = 4
 _GLIDING = [0, 1, 3, 4, 5]
 """Columns of all but z."""
 
-_LEAST_GLIDE = 0.1
-"""A new target is reached by touchdown instead of by the end of the glide when less than this is left of it [s]."""
+LEAST_GLIDE = 0.1
+"""A new target is reached by touchdown instead of by the end of the glide when less than this is left of it, of the
+reference robot [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,17 +101,20 @@ class SwingTrajectory:
             result[k, 2] -= self.search.motion(float(times[k]) - self.touchdown_time)[0]
         return result
 
-    def retargeted(self, time: float, target: Array, gliding: bool = False) -> "SwingTrajectory":
+    def retargeted(
+        self, time: float, target: Array, gliding: bool = False, least: float = LEAST_GLIDE
+    ) -> "SwingTrajectory":
         """The trajectory that goes on from its own state at `time` to another target.
 
         Args:
             time: instant of the change, before the touchdown [s].
             target: new touchdown position and angles, shape (6,).
             gliding: go on until the touchdown, which takes the least acceleration.
+            least: go on until then as well when less than this is left of the glide [s].
         """
         state = self.evaluate(time)
         start = max(time, self.start_time)
-        keeps = time < self.glide_end - _LEAST_GLIDE and not gliding
+        keeps = time < self.glide_end - least and not gliding
         end = self.glide_end if keeps else self.touchdown_time
         level = _to_rest(state[:, _GLIDING], target[_GLIDING], end - start)
         moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target))

@@ -197,7 +197,7 @@ class StepQueue:
         # The start feet are measured, which may be a few nanometres off the ground.
         climb = round(float(position[2] - start.position[2]), 6)
         swing = unit_swing(single, climb, course, ground.parameters)
-        room = ground.terrain.room(position, path.yaw, ground.half_size)
+        room = ground.terrain.room(position, path.yaw, ground.half_size, ground.parameters.size.length)
         return Step(number, stride, path, place, climb, room, course, swing)
 
     def reorder(self, present: Phase, source: StepSource | None = None) -> None:
@@ -327,7 +327,8 @@ class StepQueue:
         at = self.phases.index(self.lift_off(step)) + 1
         row = step + 1 - self.footsteps.first
         stance, leaving = self.footsteps.footstep(row), self.footsteps.footstep(row - 1)
-        angle = stretched(float(((stance.position - leaving.position)[:2] @ frame_rotation(stance.yaw))[0]), radius)
+        ahead = float(((stance.position - leaving.position)[:2] @ frame_rotation(stance.yaw))[0])
+        angle = stretched(ahead, radius, self.ground.parameters.size.length)
         if at + 1 == len(self.phases) or self.phases[at + 1].kind is not PhaseKind.SINGLE:
             return
         before, swing = self.phases[at : at + 2]

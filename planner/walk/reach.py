@@ -16,6 +16,10 @@ _ROUNDING = 1e-9
 """Places in the region are compared with this tolerance [m, rad]."""
 
 
+GAP = 0.01
+"""Least distance between the reference robot's soles side by side [m]."""
+
+
 @dataclass(frozen=True, slots=True)
 class Landing:
     """Where a foot lands, seen from its stance foot.
@@ -94,7 +98,7 @@ class StepRegion:
     length: float
     width: tuple[float, float]
     sole: tuple[float, float]
-    gap: float = 0.01
+    gap: float = GAP
     turn: float = 0.5
     leg_span: float = math.inf
     hip_width: float = 0.0

@@ -12,6 +12,7 @@ from surefoot.planner.walk.commands import MOST_STEPS, Pose, Twist, fastest
 from surefoot.planner.walk.footsteps import Path
 from surefoot.planner.walk.gait import GaitParameters, Stride
 from surefoot.planner.walk.reach import StepRegion
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,10 +112,10 @@ _SHARE = 0.6
 """Likewise its turn, as a share of the greatest; and what of both a walk to a place makes use of [-]."""
 
 _THERE = 0.002
-"""Distance from a place at which a walk to it is over [m, rad]."""
+"""Distance from a place at which a walk to it is over, of the reference robot [m], or in heading [rad]."""
 
 _AWAY = 0.008
-"""Distance from it at which a robot that stands there goes on [m, rad]."""
+"""Distance from it at which a robot that stands there goes on, likewise [m, rad]."""
 
 _ASTRAY = 1.0
 """Bearing of a place from which on the robot first turns towards it on the spot [rad]."""
@@ -137,6 +138,7 @@ class CommandSource:
         region: where feet may land.
         twist: the velocity to follow.
         places: where to go in its place.
+        size: of the robot.
 
     Attributes:
         twist: the velocity to follow where there are no places to go to.
@@ -144,13 +146,18 @@ class CommandSource:
     """
 
     def __init__(
-        self, gait: GaitParameters, region: StepRegion, twist: Twist = _STANDING, places: tuple[Pose, ...] = ()
+        self,
+        gait: GaitParameters,
+        region: StepRegion,
+        twist: Twist = _STANDING,
+        places: tuple[Pose, ...] = (),
+        size: Similarity = REFERENCE_SIZE,
     ) -> None:
         self._width, self._rest, self._region = gait.step_width, gait.initial_stand, region
         side = 0.5 * (region.width[1] - region.nearest(0.0))
         self._change = np.array([_SOFTLY * region.length, side, _SHARE * region.turn])
         self._most = np.array([min(abs(gait.step_length), region.length), _SHARE * side, _SHARE * region.turn])
-        self.twist, self.places = twist, places
+        self.twist, self.places, self._length = twist, places, size.length
         self._reached: dict[int, int] = {}
 
     def followed(self, period: float) -> Twist:
@@ -194,7 +201,7 @@ class CommandSource:
         """
         way = np.array([place.x - pose.x, place.y - pose.y])
         turn, distance = wrap_angle(place.yaw - pose.yaw), float(np.hypot(*way))
-        if max(distance, abs(turn)) <= near:
+        if max(distance / self._length, abs(turn)) <= near:
             return None
         ahead, _, most_turn = self._most
         if distance > _FAR * ahead:

@@ -7,7 +7,7 @@ import numpy as np
 from surefoot.planner.geometry import sole_pose, wrap_angle
 from surefoot.planner.parameters import StepAdaptation
 from surefoot.planner.swing.heel_off import FootRoll
-from surefoot.planner.swing.trajectory import SwingTrajectory, start_swing, swing_times
+from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
@@ -20,13 +20,13 @@ _LEAST_LEFT = 3.0
 """A phase of which less is left, or would be, until its foot is to touch down keeps its pace [samples]."""
 
 _SAME_GROUND = 1e-3
-"""Footstep shift up to which the ground height is not looked up again [m]."""
+"""Footstep shift up to which the ground height is not looked up again, of the reference robot [m]."""
 
 _SAME_TIME = 1e-3
-"""Difference of a phase's time left that is not worth another pace [s]."""
+"""Difference of a phase's time left that is not worth another pace, likewise [s]."""
 
 _SAME_TARGET = 1e-4
-"""Difference of touchdown pose that is not worth a new swing trajectory [m, rad]."""
+"""Difference of touchdown pose that is not worth a new swing trajectory, likewise [m, rad]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,8 @@ class Stepper:
         # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
         adapts = parameters.step_adaptation is not StepAdaptation.NONE
         self.adapts = adapts and (self.wide or legs is not None)
-        self.sample_time = parameters.sample_time
+        self.sample_time, self._size = parameters.sample_time, parameters.size
+        self._pose = np.repeat([self._size.length, 1.0], 3)
         self._lead = parameters.touchdown_lead / parameters.sample_time
         self.clock = Clock(self.sample_time)
         self._patience = round(parameters.late_touchdown / parameters.sample_time)
@@ -223,7 +224,7 @@ class Stepper:
             Whether that is another one than before.
         """
         before = self.time_left
-        if abs(left - before) < _SAME_TIME:
+        if abs(left - before) < _SAME_TIME * self._size.time:
             return False
         self.clock.take(self.phase.end - self.clock.now, left / self.sample_time)
         self._look_ahead(self.clock.now)
@@ -294,7 +295,7 @@ class Stepper:
             elif not self.wide:
                 shift = np.zeros(2)
             position[:2] += shift
-            if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND:
+            if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND * self._size.length:
                 x, y = float(position[0]), float(position[1])
                 position[2] = self._terrain.height(x, y)
                 normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
@@ -345,9 +346,9 @@ class Stepper:
             course = self.queue.steps[self.phase.step].course
             times = swing_times(time, self.left, course, self._parameters)
             self.swing = start_swing(foot, pose, target, times, course.height, self._parameters)
-        elif not (self.fixed or held) and np.abs(target - self.swing.target).max() > _SAME_TARGET:
+        elif not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
             # Over edges the foot keeps to the times in which its course clears them.
-            self.swing = self.swing.retargeted(time, target, self.adapted and self.wide)
+            self.swing = self.swing.retargeted(time, target, self.adapted and self.wide, LEAST_GLIDE * self._size.time)
 
     def roll(self, time: float) -> FootRoll | None:
         """Pitch of the foot that leaves the ground next or has just left it; None for one that stays level."""

@@ -21,6 +21,7 @@ from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError, Registry
 from surefoot.scenarios.errors import Key, Problem, dotted
 from surefoot.scenarios.file.units import Unit
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -182,7 +183,8 @@ def _named(keys: Any) -> Iterator[tuple[Key, str, Callable[[], Registry[Any]]]]:
 
 def _group(name: str, parameters: Any, doc: str, more: dict[str, Any] | None = None) -> type[Group]:
     """A group with a key for every field of a dataclass, each null by default: the controller's own value."""
-    keys = {entry.name: _key(entry, getattr(parameters, entry.name)) for entry in fields(parameters)}
+    values = {entry: getattr(parameters, entry.name) for entry in fields(parameters)}
+    keys = {entry.name: _key(entry, value) for entry, value in values.items() if not isinstance(value, Similarity)}
     return create_model(name, __base__=Group, __doc__=doc, **keys, **(more or {}))
 
 
@@ -234,16 +236,17 @@ else:
     )
 
 
-def controller_parameters(settings: "ControllerSettings | None") -> WbcParameters:
-    """The controller's parameters with what a scenario changes of them.
+def controller_parameters(settings: "ControllerSettings | None", size: Similarity = REFERENCE_SIZE) -> WbcParameters:
+    """The controller's parameters for a robot of a size, with what a scenario changes of them.
 
     Args:
         settings: the group ``wbc``; None for none.
+        size: of the robot.
 
     Raises:
         ParameterError: a number is out of its range, or a solver unknown.
     """
-    changed: WbcParameters = _changed(WbcParameters(), settings)
+    changed: WbcParameters = _changed(size.scaled(WbcParameters()), settings)
     return changed
 
 
@@ -274,7 +277,7 @@ def _changed(parameters: Any, settings: Any) -> Any:
     """A dataclass with those of its fields that are not null in a group."""
     if settings is None:
         return parameters
-    given = {entry.name: getattr(settings, entry.name) for entry in fields(parameters)}
+    given = {entry.name: getattr(settings, entry.name, None) for entry in fields(parameters)}
     changed = {
         name: _changed(getattr(parameters, name), value) if isinstance(value, BaseModel) else value
         for name, value in given.items()

@@ -36,6 +36,7 @@ class Source:
         value_places: 1-based (line, column) of each value, by path.
         overridden: places of paths that were set from outside the text.
         problems: faults of the text itself, such as a key given twice.
+        written: how values stand in the text that have been translated since, by path.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Source:
     value_places: dict[Key, tuple[int, int]] = field(default_factory=dict)
     overridden: dict[Key, str] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
+    written: dict[Key, str] = field(default_factory=dict)
 
     def spot(self, problem: Problem) -> tuple[int, int]:
         """Line and column of what is at fault, or of the nearest enclosing value; (0, 0) outside the text."""
@@ -59,7 +61,9 @@ class Source:
     def describe(self, problem: Problem) -> str:
         """Say what is wrong and where."""
         line, column = self.spot(problem)
-        return f"{self._override(problem.key) or f'{self.name}:{line}:{column}'}: {problem}"
+        override = self._override(problem.key)
+        written = None if override else self.written.get(problem.key)
+        return f"{override or f'{self.name}:{line}:{column}'}: {problem}" + (f" ({written})" if written else "")
 
     def _override(self, key: Key) -> str | None:
         """Place of the override that set a path, part of it, or a group that the text has not got."""

@@ -75,7 +75,8 @@ def _speed_ratios(run: RunView) -> Array:
 @reduction("/measurement")
 def knee_flexion(run: RunView) -> Array:
     """Mean flexion of the knees at each tick, shape (n,) [rad]."""
-    return np.asarray(np.abs(run.field("/measurement", "joint_position")[:, run.knees]).mean(axis=1))
+    straight = run.constants.knee_straight or 0.0
+    return np.asarray(np.abs(run.field("/measurement", "joint_position")[:, run.knees] - straight).mean(axis=1))
 
 
 @reduction("/measurement")

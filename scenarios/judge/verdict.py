@@ -28,6 +28,7 @@ from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import never_act
+from surefoot.similarity import Similarity
 
 FIRST_METRICS = (
     "steps_taken",
@@ -203,11 +204,12 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     (scenario, absent), gathered = _known_part(log), gathered or digest(log)
     measured = measure(gathered)
     criteria = asked(scenario.criteria, scenario.fidelity)
+    size = Similarity(*RunView(gathered).constants.size)
     untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(RunView(gathered))
-    undone = (*_unacted(log, scenario), *_not_there(measured.values, criteria))
+    undone = (*_unacted(log, scenario, size), *_not_there(measured.values, criteria))
     reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
-    said = (*skipped, *notes(Draft(scenario)), *_degraded(measured.values), *measured.notes)
+    said = (*skipped, *notes(Draft(scenario, size)), *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 
@@ -280,11 +282,11 @@ def _unfinished(log: Log) -> list[str]:
     return [f"the run ended at {end.get('time', '?')} s: {end.get('reason', 'unknown reason')}"]
 
 
-def _unacted(log: Log, scenario: Scenario) -> list[str]:
+def _unacted(log: Log, scenario: Scenario, size: Similarity) -> list[str]:
     """Say what was to happen after the run had ended."""
     end = log.time_range()[1] + 1.0 / scenario.rates.control
     try:
-        return [problem.what for problem in never_act(Draft(scenario), end)]
+        return [problem.what for problem in never_act(Draft(scenario, size), end)]
     except ParameterError as fault:
         return [f"when its pushes and faults act cannot be known: {fault}"]
 

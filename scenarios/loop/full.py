@@ -40,7 +40,7 @@ from surefoot.wbc.controller import Sole, WholeBodyController
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.statics import standing_torque
+from surefoot.wbc.statics import LEVER, standing_torque
 from surefoot.wbc.tasks import TASKS, TaskFactory
 from surefoot.wbc.types import NO_LOAD, FootSensing, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
@@ -91,9 +91,9 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     parts = parts or Parts()
     body = body_of(walk.robot)
     posture = start_posture(walk, body)
-    q = pressed(disturbed(posture, walk, body))
-    world = World(walk.true_robot, walk.true_terrain, walk.rates.physics, walk.pushes)
-    torque = standing_torque(body.model, body.frames, q)
+    q = pressed(disturbed(posture, walk, body), walk.size.length)
+    world = World(walk.true_robot, walk.true_terrain, walk.rates.physics, walk.pushes, walk.size)
+    torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length)
     world.reset(q, torque=torque)
     controller = _controller(walk, body, posture, parts)
     planner = walk.planner(feet_at(body, q), leg_inertia(body.model, body.frames, posture, body.leg_joints))
@@ -153,7 +153,7 @@ class SimulatedRobot:
         self._zero_torque = np.zeros(controller.layout.joints)
         self._landed, self._load = (True, True), NO_LOAD
         self._estimates = walk.sensing.force_estimate
-        self._giving_way = GivingWay(limits)
+        self._giving_way = GivingWay(limits, walk.size)
         self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
         self.measurement: Measurement
         self.state: RobotState
@@ -262,5 +262,6 @@ def _controller(walk: Walk, body: Body, posture: Array, parts: Parts) -> WholeBo
         parameters=walk.controller,
         limbs=limb_shapes(robot, body.model),
         arm_joints=(shoulders[0], shoulders[1]) if shoulders else None,
+        arm_back=robot.roles.arm_back,
         tasks=tuple(make(body.model, body.frames) for make in makers),
     )

@@ -244,7 +244,15 @@ def run_constants(walk: Walk) -> RunConstants:
             for box in walk.true_terrain.boxes
         ),
         plane=walk.true_terrain.plane,
+        size=(walk.size.length, walk.size.mass),
+        knee_straight=_knee_straight(robot),
     )
+
+
+def _knee_straight(robot: "RobotDescription") -> tuple[float, ...]:
+    """Angles of the knees with straight legs, in the order of the joints; empty where they are zero [rad]."""
+    angles = [float(robot.straight_joint_positions[place]) for place in sorted(robot.joint_indices(robot.roles.knees))]
+    return tuple(angles) if any(angles) else ()
 
 
 def _roles(robot: "RobotDescription") -> dict[str, tuple[str, ...]]:

@@ -15,6 +15,7 @@ from surefoot.scenarios.file.schema import Sensing
 from surefoot.scenarios.record.walk import PlannerState
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.types import RobotState
 
 
@@ -63,7 +64,8 @@ ESTIMATORS: Registry[EstimatorMaker] = Registry("surefoot.estimators", None, {"t
 Array = NDArray[np.float64]
 
 VELOCITY_NOISE = 5.0
-"""Standard deviation of the measured CoM velocity over that of the measured CoM [1/s]."""
+"""Standard deviation of the measured CoM velocity over that of the measured CoM; with a unit of the reference robot, as
+all here [1/s]."""
 
 CLIP = 2.0
 """Standard deviations at which noise is clipped: with 0.01 m it stays within the paper's 0.02 m."""
@@ -94,7 +96,8 @@ class PlannerSensing:
     def __init__(self, walk: Walk) -> None:
         sensing = walk.sensing
         com = sensing.com_noise
-        self._deviation = np.repeat([sensing.zmp_noise, com, VELOCITY_NOISE * com], 2).reshape(3, 2)
+        speed = walk.size.times(VELOCITY_NOISE, "1/s") * com
+        self._deviation = np.repeat([sensing.zmp_noise, com, speed], 2).reshape(3, 2)
         self._rng = np.random.default_rng(np.random.SeedSequence(walk.seed, spawn_key=(_STREAM,)))
         self._filter = _filter(walk)
         self._ground = float(walk.stance.position[:, 2].mean())
@@ -140,12 +143,13 @@ def _filter(walk: Walk) -> CentroidalFilter | None:
         return None
     mean = np.zeros((3, 2))
     mean[0] = walk.stance.position[:, :2].mean(axis=0)
-    noise = filter_noise(walk.sensing)
+    noise, prior = filter_noise(walk.sensing, walk.size), walk.size.times(_PRIOR, "m, m/s, m/s^2")
     sensors = ZMP_ONLY if walk.filter == "zmp_only" else (True, True, True)
-    return CentroidalFilter(walk.parameters.sample_time, noise, mean, _PRIOR, sensors)
+    return CentroidalFilter(walk.parameters.sample_time, noise, mean, prior, sensors)
 
 
-def filter_noise(sensing: Sensing) -> FilterNoise:
-    """What the filter counts on: the sensors' own noise, down to what the model can promise."""
-    com = max(sensing.com_noise, LEAST_COM_DEVIATION)
-    return FilterNoise(max(sensing.zmp_noise, LEAST_ZMP_DEVIATION), com, VELOCITY_NOISE * com)
+def filter_noise(sensing: Sensing, size: Similarity = REFERENCE_SIZE) -> FilterNoise:
+    """What the filter counts on: the sensors' own noise, down to what the model of a robot of a size can promise."""
+    com = max(sensing.com_noise, LEAST_COM_DEVIATION * size.length)
+    zmp = max(sensing.zmp_noise, LEAST_ZMP_DEVIATION * size.length)
+    return replace(size.scaled(FilterNoise()), zmp=zmp, com=com, com_velocity=size.times(VELOCITY_NOISE, "1/s") * com)

@@ -15,7 +15,8 @@ from surefoot.scenarios.setup.commands import told_problems
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import idle_commands, never_act
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
-from surefoot.scenarios.setup.robot import RobotFacts, Robots
+from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known
+from surefoot.scenarios.setup.sized import default_of
 from surefoot.scenarios.setup.walk_checks import (
     command_problems,
     commanded_step_problems,
@@ -40,7 +41,7 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
     """List what does not fit together."""
     commands = command_problems(draft)
     if commands:
-        draft = Draft(draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)}))
+        draft = Draft(draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)}), draft.size)
     clock = [*_rates(draft), *_pushes(draft)]
     return [
         *commands,
@@ -116,14 +117,15 @@ def _controller(draft: Draft) -> Iterator[Problem]:
 
 
 def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
-    names = robots.names()
-    if draft.keys.robot not in names:
-        yield Problem(("robot",), f"unknown robot '{draft.keys.robot}'", nearest(draft.keys.robot, names))
+    if not is_known(draft.keys.robot, robots):
+        right = f"{nearest(draft.keys.robot, robots.names())}; a robot file ends in .yaml"
+        yield Problem(("robot",), f"unknown robot '{draft.keys.robot}'", right)
         return
     try:
         facts = robots.facts(draft.keys.robot, draft.keys.robot_options)
     except ParameterError as error:
-        yield Problem(("robot_options", *error.key), error.what, error.right)
+        option = error.key[:1] and error.key[0] in type(draft.keys.robot_options).model_fields
+        yield Problem(("robot_options", *error.key) if option else ("robot",), error.what, error.right)
         return
     except PluginError as error:
         yield Problem(("robot",), error.what, error.right)
@@ -240,13 +242,13 @@ def _without_effect(draft: Draft) -> Iterator[str]:
     instead = next((name for name in ("velocity", "footsteps", "waypoints") if getattr(keys.gait, name)), None)
     for name in EQUAL_STEPS if instead else ():
         means = instead == "waypoints" and name == "step_length"
-        if not means and getattr(keys.gait, name) != Gait.model_fields[name].default:
+        if not means and getattr(keys.gait, name) != default_of(Gait, name, draft.size):
             yield f"gait.{name} has no effect beside gait.{instead}"
     yield from _unshaped(draft)
     point = keys.fidelity == "pendulum"
     for group, name in _NO_CONTACT if point else _POINT_ONLY:
         settings = getattr(keys, group)
-        if getattr(settings, name) != type(settings).model_fields[name].default:
+        if getattr(settings, name) != default_of(type(settings), name, draft.size):
             yield f"{group}.{name} has no effect on a {'pendulum' if point else 'whole body'}"
     if point and keys.wbc is not None:
         yield "wbc has no effect on a pendulum"
@@ -258,9 +260,9 @@ def _unshaped(draft: Draft) -> Iterator[str]:
         shaping = ("kind", "friction", *draft.kind.keys)
     except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
         return
-    for name, field in TerrainSettings.model_fields.items():
+    for name in TerrainSettings.model_fields:
         elsewhere = name not in shaping
-        if elsewhere and getattr(terrain, name) != field.default:
+        if elsewhere and getattr(terrain, name) != default_of(TerrainSettings, name, draft.size):
             yield f"terrain.{name} has no effect on terrain.kind {terrain.kind}"
 
 

@@ -52,7 +52,8 @@ def told_until(draft: "Draft") -> float:
     """Time at which the robot stands after all that it is told, where nothing comes between, or a little later [s]."""
     gait, start, end = draft.gait, draft.keys.start, 0.0
     if draft.keys.gait.waypoints:
-        source = CommandSource(gait, step_region(draft.parameters, _LARGEST_SOLE, _LARGEST_SOLE[1]))
+        sole = draft.size.times(_LARGEST_SOLE, "m")
+        source = CommandSource(gait, step_region(draft.parameters, sole, sole[1]), size=draft.size)
         source.places = waypoints(draft)
         steps = steps_ordered(source, gait, Pose(start.x, start.y, start.yaw))
         end = gait.initial_stand + gait.double_support + (steps + 1) * gait.period

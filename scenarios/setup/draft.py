@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
-from surefoot.planner.ground.tiles import Tiles
+from surefoot.planner.ground.tiles import TILE, Tiles
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.parameters import GroundSearch, PlannerParameters, StepAdaptation
 from surefoot.planner.references.com_height import (
@@ -34,15 +34,19 @@ from surefoot.scenarios.setup.gait import (
     step_region,
 )
 from surefoot.scenarios.setup.terrain import KINDS, TerrainKind
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 _STREAM = 2
 """Random numbers of the ground, apart from those of other things with the same seed."""
 
 LONG_FOOT = 0.3
-"""Feet are at most as long where the scenario says nothing about it [m]."""
+"""Feet are at most as long where the scenario says nothing about it; lengths here are the reference robot's [m]."""
 
 SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
 """Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait [m]."""
+
+FURTHER = 0.1
+"""How much further than the gait's own steps it may be [m]."""
 
 
 class Draft:
@@ -53,10 +57,11 @@ class Draft:
 
     Attributes:
         keys: the scenario as the user wrote it; nobody below this room sees it.
+        size: of its robot.
     """
 
-    def __init__(self, keys: Scenario) -> None:
-        self.keys = keys
+    def __init__(self, keys: Scenario, size: Similarity = REFERENCE_SIZE) -> None:
+        self.keys, self.size = keys, size
 
     @cached_property
     def commanded(self) -> bool:
@@ -81,7 +86,7 @@ class Draft:
     @cached_property
     def duration(self) -> float:
         """Simulated time: as given, or the gait and a while of standing [s]."""
-        return self.gait_duration + FINAL_STAND if self.keys.duration is None else self.keys.duration
+        return self.gait_duration + FINAL_STAND * self.size.time if self.keys.duration is None else self.keys.duration
 
     @cached_property
     def origin(self) -> Array:
@@ -129,8 +134,9 @@ class Draft:
         """What lies in truth where level ground is believed in; None when it is level."""
         keys = self.keys
         noise = keys.errors.ground_noise if keys.fidelity == "full" else None
-        room = 0.5 * max(keys.robot_options.foot_length or 0.0, LONG_FOOT) + keys.start.position_noise
-        return Tiles(noise, keys.seed, room) if noise else None
+        length = self.size.length
+        room = 0.5 * max(keys.robot_options.foot_length or 0.0, LONG_FOOT * length) + keys.start.position_noise
+        return Tiles(noise, keys.seed, room, TILE * length) if noise else None
 
     def _hidden(self, error: GroundError) -> Box:
         """A box that is there and that nobody believes in, laid along the start heading."""
@@ -152,9 +158,9 @@ class Draft:
         Where the ground has steps its heights are believed less: a foot that finds no tread by the end of single
         support hurries after one that lies lower, since waiting for it costs balance.
         """
-        lead = PlannerParameters().touchdown_lead
+        usual = self.size.scaled(PlannerParameters())
         stepped = self.terrain.has_edges and not self.terrain.free_footholds
-        return GroundSearch(hurry_after=lead) if stepped else GroundSearch()
+        return replace(usual.search, hurry_after=usual.touchdown_lead) if stepped else usual.search
 
     @cached_property
     def stance(self) -> FeetState:
@@ -188,25 +194,27 @@ class Draft:
         if planner.profile == "paper" and planner.knee == "stretched":
             return PaperHeight()
         rise = Rise(planner.rise or ("double" if self.keys.fidelity == "pendulum" else "single"))
-        return BentKneeHeight(rise) if planner.knee == "bent" else SmoothHeight(rise)
+        lower = BENT_KNEES * self.size.length
+        return BentKneeHeight(rise, lower) if planner.knee == "bent" else SmoothHeight(rise)
 
     @cached_property
     def standing_height(self) -> float:
         """CoM height over the soles at which the walk begins and ends [m]."""
-        return self.keys.gait.com_height - (BENT_KNEES if self.keys.planner.knee == "bent" else 0.0)
+        bent = self.keys.planner.knee == "bent"
+        return self.keys.gait.com_height - (BENT_KNEES * self.size.length if bent else 0.0)
 
     @cached_property
     def reach(self) -> float:
-        """How far ahead of its stance foot the planner may place a footstep: a decimetre beyond the gait's own [m]."""
-        gait = self.keys.gait
+        """How far ahead of its stance foot the planner may place a footstep: a little beyond the gait's own [m]."""
+        gait, length = self.keys.gait, self.size.length
         if not self.commanded and gait.steps == 0 and not gait.waypoints:
-            return LONGEST_REACH
+            return LONGEST_REACH * length
         own = longest_landing(self.gait) if self.commanded else abs(gait.step_length)
-        return min(max(own + 0.1, SHORTEST_REACH), LONGEST_REACH)
+        return min(max(own + FURTHER * length, SHORTEST_REACH * length), LONGEST_REACH * length)
 
     @cached_property
     def parameters(self) -> PlannerParameters:
-        """The profile's parameters with what the scenario changes of them, for legs without inertia."""
+        """The profile's parameters at this size with what the scenario changes of them, for legs without inertia."""
         keys = self.keys.planner
         chosen: dict[str, Any] = {
             "horizon": keys.horizon,
@@ -216,7 +224,7 @@ class Draft:
             "search": self.search,
         }
         return replace(
-            self.profile.parameters,
+            self.size.scaled(self.profile.parameters),
             sample_time=keys.sample_time,
             reach_length=self.reach,
             step_adaptation=StepAdaptation(keys.step_adaptation),

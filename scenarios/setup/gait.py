@@ -20,7 +20,7 @@ from surefoot.planner.walk.commands import (
     walk_of,
 )
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import StepRegion, landing
+from surefoot.planner.walk.reach import GAP, StepRegion, landing
 from surefoot.scenarios.file.schema import FootstepSettings, Gait, PushSettings, VelocitySettings
 from surefoot.scenarios.setup.robot import RobotFacts
 
@@ -28,7 +28,7 @@ EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
 
 FINAL_STAND = 2.5
-"""Standing after the last double support that ends a run whose duration is not given [s]."""
+"""Standing after the last double support that ends a run whose duration is not given, of the reference robot [s]."""
 
 
 def commanded(keys: Gait) -> bool:
@@ -111,7 +111,8 @@ def step_region(
     """Where commanded steps may land: within the planner's reach, and the legs' if they are given."""
     near, far = parameters.reach_width
     width = (max(near, shank_spacing), far)
-    return StepRegion(parameters.reach_length, width, sole, leg_span=leg_span, hip_width=hip_width)
+    gap = GAP * parameters.size.length
+    return StepRegion(parameters.reach_length, width, sole, gap, leg_span=leg_span, hip_width=hip_width)
 
 
 def leg_span(com_height: float, facts: RobotFacts) -> float:

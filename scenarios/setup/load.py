@@ -1,6 +1,7 @@
 """From a scenario's name, file or log to a checked scenario: every fault of a file is reported at once."""
 
 import json
+import os
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
@@ -32,6 +33,7 @@ from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria_checks import criteria_problems
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
+from surefoot.scenarios.setup.sized import robot_size, say_for, with_defaults
 from surefoot.scenarios.setup.terrain import KINDS
 
 LOG_ENDING = ".mcap"
@@ -155,7 +157,7 @@ def locate(reference: str, overrides: Overrides, refusal: SetupError) -> Scenari
         overrides: ``key=value``.
         refusal: of a part of the stack.
     """
-    source = _source(written(reference), overrides)
+    source = _source(written(reference), overrides, RegisteredRobots())
     return ScenarioError([source.describe(refusal.problem)])
 
 
@@ -164,12 +166,13 @@ def read_scenario(
 ) -> Scenario:
     """Check a scenario as it is `Written`; other arguments and errors as of `load`."""
     robots = robots or RegisteredRobots()
-    source = _source(Written(text, place, stem), overrides)
+    source = _source(Written(text, place, stem), overrides, robots)
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
-    scenario = KINDS[scenario.terrain.kind].completed(scenario)
-    draft = Draft(scenario)
+    size = robot_size(scenario.robot, robots)
+    scenario = with_defaults(KINDS[scenario.terrain.kind].completed(scenario), size, robots)
+    draft = Draft(scenario, size)
     semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *check(draft, robots)]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:
@@ -186,11 +189,11 @@ def key_problems(written: Written, overrides: Overrides) -> list[Problem]:
     Raises:
         ScenarioError: it is no scenario, or an override leads nowhere.
     """
-    return _validated(_source(written, overrides).value)[1]
+    return _validated(_source(written, overrides, RegisteredRobots()).value)[1]
 
 
-def _source(written: Written, overrides: Overrides) -> Source:
-    """The values of a scenario's text with what is set over them.
+def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
+    """The values of a scenario's text, as they are for its robot, with what is set over them.
 
     Raises:
         ScenarioError: it is no group of keys, or an override leads nowhere.
@@ -201,7 +204,11 @@ def _source(written: Written, overrides: Overrides) -> Source:
         raise ScenarioError([f"{name}:1:1: the file is empty; give at least 'name: {written.stem}'"])
     if not isinstance(source.value, dict):
         raise ScenarioError([f"{name}:1:1: a scenario is a group of keys; write 'key: value' lines"])
+    _place_robot(source, Path(written.place).parent)
+    say_for(source, overrides, robots)
     apply_overrides(source, overrides)
+    _place_robot(source, Path.cwd())
+    source.value.pop("sized_for", None)
     source.value.setdefault("name", written.stem)
     return source
 
@@ -211,6 +218,15 @@ def _told(source: Source, problems: list[Problem]) -> list[str]:
     told = [source.describe(problem) for problem in sorted(problems, key=source.spot)[:MOST_TOLD]]
     rest = len(problems) - len(told)
     return [*told, f"{source.name}: {rest} problems more; mend these first"] if rest else told
+
+
+def _place_robot(source: Source, folder: Path) -> None:
+    """Name a robot file by its full path, so that the scenario means the same wherever it is read again."""
+    from surefoot.models.registry import is_file
+
+    robot = source.value.get("robot")
+    if isinstance(robot, str) and is_file(robot):
+        source.value["robot"] = os.path.normpath(folder.absolute() / robot)
 
 
 def _validated(data: Any) -> tuple[Scenario, list[Problem]]:

@@ -8,6 +8,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.models.joints import meeting_point
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.planner.model.leg_chain import LegChain, Link, Vector
@@ -21,7 +22,7 @@ from surefoot.wbc.model import BodyFrames
 Array = NDArray[np.float64]
 
 SOLE_SINKAGE = 5e-5
-"""How far the soles sink into the simulated ground under the robot's weight [m]."""
+"""How far the reference robot's soles sink into the simulated ground under its weight [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,10 +119,10 @@ def disturbed(q: Array, walk: Walk, body: Body) -> Array:
     return result.q
 
 
-def pressed(q: Array) -> Array:
-    """The configuration, shape (nq,), sunk in so far that the ground carries it from the first instant."""
+def pressed(q: Array, length: float = 1.0) -> Array:
+    """The configuration, shape (nq,), of a robot of a size [-], sunk in so far that the ground carries it at once."""
     sunk = q.copy()
-    sunk[2] -= SOLE_SINKAGE
+    sunk[2] -= SOLE_SINKAGE * length
     return sunk
 
 
@@ -142,7 +143,8 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
     """The legs' inertia, from a standing configuration; both legs alike.
 
     The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
-    the thigh, what is below the next joint to the foot. Lateral offsets within a leg are left out.
+    the thigh, what is below the next joint to the foot; hip and ankle are where the axes there come nearest to
+    each other. Lateral offsets within a leg are left out.
 
     Args:
         model: the robot.
@@ -193,8 +195,10 @@ def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.boo
     at = [data.oMi[j].translation.copy() for j in chain]
     apart = np.linalg.norm(np.diff(at, axis=0), axis=1)
     knee = 1 + int(np.argmax(apart[1:] * apart[:-1]))
-    parts = [_lumped(model, data, joints) for joints in (chain[:knee], chain[knee : knee + 1], chain[knee + 1 :])]
-    return _Leg(at[knee - 1], at[knee], at[knee + 1], data.oMf[frame].translation.copy(), *parts)
+    groups = chain[:knee], chain[knee : knee + 1], chain[knee + 1 :]
+    parts = [_lumped(model, data, joints) for joints in groups]
+    hip, ankle = (meeting_point(model, data, group) for group in (groups[0], groups[2]))
+    return _Leg(hip, at[knee], ankle, data.oMf[frame].translation.copy(), *parts)
 
 
 def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:

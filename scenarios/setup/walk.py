@@ -23,8 +23,9 @@ from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings
 from surefoot.scenarios.setup.commands import told
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import PushPoint, leg_span, step_region
-from surefoot.scenarios.setup.robot import describe, facts_of, true_robot
+from surefoot.scenarios.setup.robot import describe, facts_of, size_of, true_robot
 from surefoot.sim.pushes import Push
+from surefoot.similarity import Similarity
 from surefoot.wbc.parameters import WbcParameters
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ LEG_SHARE = 0.9
 at 0.88 m/s a push felled the robot that it took at 0.65 to 0.8 m/s [-]."""
 
 ACROSS = 0.12
-"""How far beyond its stance foot a foot may land to catch the body [m]."""
+"""How far beyond its stance foot a foot may land to catch the body; lengths here are the reference robot's [m]."""
 
 GAP = 0.02
 """Least gap between two soles one of which lands ahead of the other [m]."""
@@ -121,6 +122,11 @@ class Walk:
     pendulum: PendulumSettings
 
     @property
+    def size(self) -> Similarity:
+        """Of the robot, without what it carries."""
+        return self.parameters.size
+
+    @property
     def start_com_height(self) -> float:
         """CoM height in the world at the start [m]."""
         return self.start_height + self.standing_height
@@ -142,8 +148,9 @@ class Walk:
         """What the legs can do to catch the body."""
         facts, apart = facts_of(self.robot), self.parameters.reach_width[0]
         radius = 0.5 * LEG_SHARE * leg_span(self.gait.com_height, facts)
-        clear = self.robot.sole_length + GAP
-        return Legs(radius, facts.hip_width, apart, ACROSS, clear, facts.swing_acceleration)
+        length = self.size.length
+        clear = self.robot.sole_length + GAP * length
+        return Legs(radius, facts.hip_width, apart, ACROSS * length, clear, facts.swing_acceleration)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
         """The planner of this walk: the profile's own, or the walking planner with the profile's law.
@@ -174,10 +181,11 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
     Raises:
         ParameterError: a part refuses its parameters.
     """
-    draft, keys = Draft(scenario), scenario
+    keys = scenario
+    robot = robot or describe(keys.robot, keys.robot_options)
+    draft = Draft(keys, size_of(robot, keys.robot_options))
     if profile is not None:
         draft.profile = profile
-    robot = robot or describe(keys.robot, keys.robot_options)
     near, far = draft.parameters.reach_width
     sole = (robot.sole_length, robot.sole_width)
     region = draft.region(sole, robot.shank_spacing)
@@ -210,7 +218,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         profile=draft.profile,
         # Adaptation leaves at least half the planned gap between soles.
         parameters=replace(draft.parameters, reach_width=(apart, far)),
-        controller=controller_parameters(keys.wbc),
+        controller=controller_parameters(keys.wbc, draft.size),
         tasks=keys.wbc.tasks if keys.wbc is not None else (),
         sensing=keys.sensing,
         filter=_filter(draft),

@@ -9,7 +9,7 @@ from surefoot.wbc.tasks.trunk import Pelvis, Torso
 
 
 def default_tasks(
-    weights: TaskWeights, gains: TaskGains, balance: BalanceGains, region: SupportRegion, toe: float
+    weights: TaskWeights, gains: TaskGains, balance: BalanceGains, region: SupportRegion, toe: float, length: float
 ) -> tuple[Task, ...]:
     """The tasks in the order of their rows.
 
@@ -19,17 +19,18 @@ def default_tasks(
         balance: gains of the CoM law.
         region: where the ZMP may lie; its owner keeps it up to date.
         toe: toe edge from the sole's centre [m].
+        length: size of the robot (see `surefoot.similarity`) [-].
     """
     return (
         CentreOfMass(weights, balance, region),
         AngularMomentum(weights, gains),
         Pelvis(weights, gains),
         Torso(weights, gains),
-        SwingFoot(weights, gains, toe),
+        SwingFoot(weights, gains, toe, length),
     )
 
 
 DEFAULT_LAYOUT: TaskLayout = layout_of(
-    default_tasks(TaskWeights(), TaskGains(), BalanceGains(), SupportRegion(1.0, 1.0, 1.0), 0.0)
+    default_tasks(TaskWeights(), TaskGains(), BalanceGains(), SupportRegion(1.0, 1.0, 1.0), 0.0, 1.0)
 )
 """Names and sizes of the default tasks, in the order of their rows."""

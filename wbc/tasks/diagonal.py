@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.qp import WRENCH_UNIT
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.types import GRAVITY, Array, WbcReference
 
@@ -28,12 +27,14 @@ class DiagonalTerm(Protocol):
 class Regularisation:
     """No generalised acceleration without a reason: what keeps H positive definite."""
 
-    def __init__(self, weights: TaskWeights) -> None:
-        self._weight = weights.acceleration
+    def __init__(self, weights: TaskWeights, length: float) -> None:
+        """``length``: size of the robot, by which a rotation counts [-]."""
+        self._weight = weights.acceleration, weights.acceleration * length**2
 
     def weigh(self, diagonal: Array) -> None:
         """See ``DiagonalTerm.weigh``."""
-        diagonal[:-12] += self._weight
+        diagonal[:3] += self._weight[0]
+        diagonal[3:-12] += self._weight[1]
 
     def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """Nothing: the target is zero."""
@@ -79,23 +80,25 @@ class Posture:
 
     def _swing_arms(self, arms: ArmSwing, terms: RobotTerms, joints: Array) -> None:
         angle, rate = arms.offset(terms)
-        for joint, sign in zip(arms.joints, (1.0, -1.0), strict=True):
+        left, right = arms.back
+        for joint, sign in zip(arms.joints, (left, -right), strict=True):
             joints[joint] += sign * float(self._stiffness[joint] * angle + self._damping[joint] * rate)
 
 
 class ForceDistribution:
     """Sole forces near their planned share of the weight, moments near zero."""
 
-    def __init__(self, weights: TaskWeights) -> None:
-        self._force, self._moment = weights.force, weights.moment
+    def __init__(self, weights: TaskWeights, wrench_unit: float) -> None:
+        """``wrench_unit``: of the wrench variables [N, N·m]."""
+        self._force, self._moment, self._unit = weights.force, weights.moment, wrench_unit
 
     def weigh(self, diagonal: Array) -> None:
         """See ``DiagonalTerm.weigh``."""
-        diagonal[-12:] += np.tile([self._force] * 3 + [self._moment] * 3, 2) * WRENCH_UNIT**2
+        diagonal[-12:] += np.tile([self._force] * 3 + [self._moment] * 3, 2) * self._unit**2
 
     def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """See ``DiagonalTerm.write``."""
         # The diagonal weighs forces in wrench units, their targets are shares of the weight.
-        weight = self._force * WRENCH_UNIT * terms.mass * GRAVITY
+        weight = self._force * self._unit * terms.mass * GRAVITY
         left, right = reference.load_share
         linear[-10::6] = (weight * left, weight * right)

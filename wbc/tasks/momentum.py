@@ -4,7 +4,6 @@ import numpy as np
 
 from surefoot.wbc.balance import BalanceGains, SupportRegion, com_acceleration
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.qp import WRENCH_UNIT
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.task import Vector
 from surefoot.wbc.types import GRAVITY, Array, WbcReference
@@ -25,7 +24,7 @@ class CentreOfMass:
 
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:
         """See ``Task.write``."""
-        per_mass = scale * (WRENCH_UNIT / terms.mass)
+        per_mass = scale * (terms.wrench_unit / terms.mass)
         np.multiply(terms.sole_wrench_map[:3], per_mass, out=rows[:, -12:])
         x, y, z = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
         fx, fy, fz = terms.load.force.tolist()
@@ -49,7 +48,7 @@ class AngularMomentum:
 
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:
         """See ``Task.write``."""
-        per_mass = float(scale[0, 0]) * (WRENCH_UNIT / terms.mass)
+        per_mass = float(scale[0, 0]) * (terms.wrench_unit / terms.mass)
         x, y, z = terms.com.tolist()
         x, y, z = per_mass * x, per_mass * y, per_mass * z
         self._about_com[:] = (

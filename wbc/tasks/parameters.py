@@ -20,10 +20,14 @@ class TaskWeights:
     com_vertical: float = number(2.5, "s^4/m^2", "vertical CoM acceleration")
     angular_momentum: float = number(2.0, "s^4/m^4", "rate of angular momentum over mass")
     orientation: float = number(1.0, "s^4", "angular acceleration of pelvis and torso")
-    swing: float = number(10.0, "s^4/m^2, s^4", "linear and angular acceleration of the swing foot")
+    swing: float = number(
+        10.0, "s^4/m^2", "linear acceleration of the swing foot, and angular one times the robot's size"
+    )
     upper_posture: float = number(0.5, "s^4", "joint acceleration of waist, arms and head")
     leg_posture: float = number(1e-5, "s^4", "joint acceleration of the legs")
-    acceleration: float = number(1e-5, "s^4/m^2, s^4", "any generalised acceleration", positive=True)
+    acceleration: float = number(
+        1e-5, "s^4/m^2", "any generalised acceleration, an angular one times the robot's size", positive=True
+    )
     force: float = number(1e-6, "1/N^2", "sole force less its planned share of the weight", positive=True)
     moment: float = number(1e-4, "1/(N·m)^2", "moment at a sole's centre", positive=True)
 

@@ -16,9 +16,9 @@ class SwingFoot:
 
     name, size = "swing foot", 6
 
-    def __init__(self, weights: TaskWeights, gains: TaskGains, toe: float) -> None:
-        """``toe``: toe edge from the sole's centre [m]."""
-        self.weight = weights.swing
+    def __init__(self, weights: TaskWeights, gains: TaskGains, toe: float, length: float) -> None:
+        """``toe``: toe edge from the sole's centre [m]; ``length``: size of the robot, by which rotations count [-]."""
+        self.weight = weights.swing * np.repeat([1.0, length**2], 3)
         self._gains, self._toe = gains.swing, toe
 
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> tuple[float, ...]:

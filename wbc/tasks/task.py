@@ -19,7 +19,7 @@ class Task(Protocol):
     """An aim of the whole-body QP: J x = a in the sense of weighted least squares.
 
     The variables are x = [q̈ (nv), w_left (6), w_right (6)] with the sole wrenches in the sole frames, in units of
-    ``surefoot.wbc.qp.WRENCH_UNIT``. A task on a motion y(q) with the error e and the velocity ẏ = J_y v asks for
+    ``RobotTerms.wrench_unit``. A task on a motion y(q) with the error e and the velocity ẏ = J_y v asks for
     ÿ = J_y q̈ + J̇_y v to be K e - D ẏ: its J is [J_y, 0] and its a is K e - D ẏ - J̇_y v. Its cost is
     Σ weight (J x - a)² over its rows, with accelerations of about 1 and weights of about 1 to 10 on the default tasks.
 

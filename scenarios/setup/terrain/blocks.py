@@ -42,7 +42,7 @@ class BlocksKind(TerrainKind):
 def blocks_of(draft: "Draft") -> Blocks:
     """The blocks of a scenario in the planner's terms."""
     keys = draft.keys.terrain
-    return Blocks(keys.riser, keys.angle, keys.tread, draft.keys.gait.step_width - BLOCK_GAP)
+    return Blocks(keys.riser, keys.angle, keys.tread, draft.keys.gait.step_width - BLOCK_GAP * draft.size.length)
 
 
 def _extent(draft: "Draft", facts: RobotFacts) -> Iterator[Problem]:
@@ -52,9 +52,9 @@ def _extent(draft: "Draft", facts: RobotFacts) -> Iterator[Problem]:
         yield Problem(("gait", "velocity"), what, "give equal steps or gait.footsteps")
     elif max(gait.steps, len(gait.footsteps)) > MOST_BLOCKS:
         yield Problem(("gait", "steps"), "a field of so many blocks", f"take at most {MOST_BLOCKS} steps")
-    elif gait.step_width <= BLOCK_GAP:
+    elif gait.step_width <= (gap := BLOCK_GAP * draft.size.length):
         what = f"gait.step_width {gait.step_width} m leaves no width for blocks"
-        yield Problem(("gait", "step_width"), what, f"use more than {BLOCK_GAP} m")
+        yield Problem(("gait", "step_width"), what, f"use more than {gap:g} m")
     else:
         yield from climb_problems(draft, facts, risers=2)
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from surefoot.scenarios.setup.draft import Draft
 
 PLATFORM = 1.0
-"""Level ground kept before the first and after the last footstep on a platform [m]."""
+"""Level ground kept before the first and after the last footstep on a platform, for the reference robot [m]."""
 
 FOLDED = 0.5
 """Length of a leg with a deeply bent knee over its length with a straight one [-]."""

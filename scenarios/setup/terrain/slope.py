@@ -35,7 +35,8 @@ class SlopeKind(TerrainKind):
         """See `TerrainKind`."""
         keys = draft.keys.terrain
         start = 0.5 * draft.keys.gait.step_length if keys.start is None else keys.start
-        return Slope(keys.angle, start, way(draft) + PLATFORM, PLATFORM).build(draft.site)
+        platform = PLATFORM * draft.size.length
+        return Slope(keys.angle, start, way(draft) + platform, platform).build(draft.site)
 
     def problems(self, draft: "Draft", facts: RobotFacts) -> list[Problem]:
         """List what makes a slope impossible for a robot and its gait."""

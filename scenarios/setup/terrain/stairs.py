@@ -62,7 +62,7 @@ def stairs_of(draft: "Draft") -> Stairs:
         direction=Direction(keys.direction),
         start=fitted if keys.start is None else keys.start,
         landing=LANDING_TREADS * keys.tread if keys.landing is None else keys.landing,
-        beyond=way(draft) + PLATFORM,
+        beyond=way(draft) + PLATFORM * draft.size.length,
     )
 
 
@@ -71,12 +71,12 @@ def _behind(draft: "Draft") -> float:
 
     Going down the heel also keeps its distance from the riser behind it, or the swing would have to go over that.
     """
-    foot, keys = draft.keys.robot_options.foot_length, draft.keys.terrain
+    foot, keys, length = draft.keys.robot_options.foot_length, draft.keys.terrain, draft.size.length
     if foot is None:
         return 0.0
     room = 0.5 * (keys.tread - foot)
-    behind = min(MOST_BEHIND, max(0.0, 0.5 * room))
-    return behind if keys.direction != "down" else min(behind, max(0.0, room - HEEL_ROOM))
+    behind = min(MOST_BEHIND * length, max(0.0, 0.5 * room))
+    return behind if keys.direction != "down" else min(behind, max(0.0, room - HEEL_ROOM * length))
 
 
 def _geometry(draft: "Draft") -> Iterator[Problem]:

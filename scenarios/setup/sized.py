@@ -1,0 +1,297 @@
+"""A scenario for a robot of another size: what a file that was written for one robot says of another, and defaults.
+
+A length, time, speed, force or the like means little by itself: 0.3 m are a stroll for one robot and out of reach of
+another. A file says with ``sized_for`` for which robot its numbers are. Named another robot, all of them are multiplied
+by their unit's factor (see `surefoot.similarity`) before anything is set over them; what a user sets is meant as it is.
+Defaults are those of the reference robot and follow the robot's size in every scenario.
+"""
+
+import copy
+import math
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar, get_args
+
+from pydantic import BaseModel
+from pydantic_core import PydanticCustomError
+
+from surefoot.errors import ParameterError
+from surefoot.plugins import PluginError
+from surefoot.scenarios.errors import Key, Problem, nearest
+from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.schema import Rates, RobotSettings, Scenario
+from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
+from surefoot.scenarios.file.units import Unit, unit_of
+from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known
+from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
+from surefoot.wbc.parameters import WbcParameters
+
+_KEY = "sized_for"
+_SOLES = ("foot_length", "foot_width")
+"""Keys of `robot_options` that another robot has its own of."""
+
+G = TypeVar("G", bound=BaseModel)
+
+
+def robot_size(name: str, robots: Robots) -> Similarity:
+    """Size of a robot; the reference's where there is none of that name, which others tell."""
+    facts = None if name == REFERENCE else _facts(name, RobotSettings(), robots)
+    return REFERENCE_SIZE if facts is None else facts.size
+
+
+def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:
+    with suppress(ParameterError, PluginError, LookupError):
+        return robots.facts(name, options) if is_known(name, robots) else None
+    return None
+
+
+def say_for(source: Source, overrides: Overrides, robots: Robots) -> None:
+    """Translate a file that is sized for another robot than it is run with, in place, and take its `sized_for` out.
+
+    Args:
+        source: the file, before anything is set over it.
+        overrides: what will be; the robot may be among it.
+        robots: that may be named.
+
+    Raises:
+        ScenarioError: an override leads nowhere.
+    """
+    named = copy.deepcopy(source)
+    apply_overrides(named, overrides)
+    origin, robot = named.value.get(_KEY), named.value.get("robot", REFERENCE)
+    if origin is None:
+        return
+    if not is_known(origin, robots):
+        right = nearest(str(origin), robots.names())
+        source.problems.append(Problem((_KEY,), f"unknown robot '{origin}' in {_KEY}", right))
+    source.value.pop(_KEY, None)
+    if origin == robot:
+        return
+    before, after = _facts(origin, _soles(source.value), robots), _facts(robot, RobotSettings(), robots)
+    if before is not None and after is not None:
+        _Translation(source, str(origin), before, after).run()
+
+
+def _soles(values: Any) -> RobotSettings:
+    """The soles that a file gives its robot; those of the robot where it says nothing sound."""
+    given = values.get("robot_options")
+    try:
+        return RobotSettings.model_validate({name: given[name] for name in _SOLES if name in given} if given else {})
+    except (ValueError, TypeError):
+        return RobotSettings()
+
+
+@dataclass(frozen=True, slots=True)
+class _Translation:
+    """From a robot to another one.
+
+    Attributes:
+        source: the file.
+        origin: name of the robot that it is written for.
+        before: facts of that one, with the soles that the file gives it.
+        after: of the one that it is run with.
+    """
+
+    source: Source
+    origin: str
+    before: RobotFacts
+    after: RobotFacts
+
+    def run(self) -> None:
+        """Translate every number that has a unit; what is of a wrong type stays for the schema to tell."""
+        values = self.source.value
+        options = values.get("robot_options")
+        for name in _SOLES if isinstance(options, dict) else ():
+            options.pop(name, None)
+        self._group(Scenario, values, ())
+        self._controller(WbcParameters(), values.get("wbc"), ("wbc",))
+        for name, bound in values["criteria"].items() if isinstance(values.get("criteria"), dict) else ():
+            self._criterion(values["criteria"], name, bound)
+        given = values.get("rates"), values.get("planner")
+        if isinstance(given[0], dict) and given[0]:
+            values["planner"] = dict(given[1]) if isinstance(given[1], dict) else {}
+            with suppress(ValueError, TypeError):
+                rates = clock(Rates(**given[0]), self.after.size.time / self.before.size.time)
+                values["rates"], values["planner"]["sample_time"] = rates.model_dump(), 1.0 / rates.planner
+
+    def _group(self, model: type[BaseModel], values: Any, key: Key) -> None:
+        for name, unit, inner in _entries(model):
+            at = (*key, name)
+            if at in (("wbc",), ("rates",), ("planner", "sample_time")) or not isinstance(values, dict):
+                continue
+            value = values.get(name)
+            if inner is not None:
+                members = enumerate(value) if isinstance(value, list) else [(None, value)]
+                for index, member in members:
+                    self._group(inner, member, at if index is None else (*at, index))
+            elif unit:
+                self._put(values, name, at, self._number(value, unit, at))
+
+    def _controller(self, parameters: Any, values: Any, key: Key) -> None:
+        for entry in fields(parameters) if isinstance(values, dict) else ():
+            value, at = values.get(entry.name), (*key, entry.name)
+            if isinstance(value, dict):
+                self._controller(getattr(parameters, entry.name), value, at)
+            elif "unit" in entry.metadata and _is_number(value):
+                units = entry.metadata["unit"].split(", ")
+                factors = [_against(self.after.size, self.before.size, unit) for unit in units]
+                self._put(values, entry.name, at, _times(value, factors[0] if len(factors) == 1 else factors))
+
+    def _criterion(self, criteria: dict[str, Any], name: str, bound: Any) -> None:
+        metric, key = known(str(name).partition(".")[0]), ("criteria", name)
+        if metric is None:
+            return
+        factor = _against(self.after.size, self.before.size, metric.unit)
+        if isinstance(bound, dict):
+            for side, limit in bound.items():
+                self._put(bound, side, (*key, side), _times(limit, factor))
+        else:
+            self._put(criteria, name, key, _times(bound, factor))
+
+    def _number(self, value: Any, unit: str, key: Key) -> Any:
+        """The value for the other robot."""
+        with suppress(PydanticCustomError):
+            value = Unit(unit).number(value)
+        scaled = _times(value, _against(self.after.size, self.before.size, unit))
+        if key == ("gait", "com_height") and _is_number(value):
+            return com_height(value, self.before, self.after)
+        if key == ("gait", "step_width") and _is_number(value):
+            return step_width(value, self.before, self.after)
+        return scaled
+
+    def _put(self, values: dict[str, Any], name: str, key: Key, value: Any) -> None:
+        """Write a value, and remember how it stands in the file."""
+        if value != values.get(name):
+            self.source.written[key] = f"{values[name]} in the file, for {self.origin}"
+            values[name] = value
+
+
+def com_height(value: float, before: RobotFacts, after: RobotFacts) -> float:
+    """CoM height at which the legs are bent as much: the hips at the same share of the leg's length [m].
+
+    Args:
+        value: that of the robot before [m].
+        before: facts of it.
+        after: of the other one.
+    """
+    return after.size.length / before.size.length * (value - before.com_above_hip) + after.com_above_hip
+
+
+def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:
+    """Step width for another robot: scaled, and wider by what its hips, shanks or soles are wider than scaled ones [m].
+
+    So no foot lands nearer to the other one than in the scenario as it was written; arguments as of `com_height`.
+    """
+    length = after.size.length / before.size.length
+    wider = (
+        getattr(after, name) - length * getattr(before, name) for name in ("hip_width", "shank_spacing", "foot_width")
+    )
+    return float(length * value + max(0.0, *wider))
+
+
+def clock(rates: Rates, time: float) -> Rates:
+    """Rates where times are longer by a factor: the planner's the nearest whole one, the others in step with it."""
+    planner = max(1, round(rates.planner / time))
+    control = planner * max(1, rates.control // rates.planner)
+    return Rates(planner=planner, control=control, physics=control * max(1, rates.physics // rates.control))
+
+
+def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scenario:
+    """The scenario with the defaults that follow from the size of its robot; what was given stays as it is."""
+    if size == REFERENCE_SIZE:
+        return scenario
+    followed = _followed(scenario, size)
+    before, after = (_facts(name, RobotSettings(), robots) for name in (REFERENCE, scenario.robot))
+    gait, changed = scenario.gait, {}
+    if before is not None and after is not None:
+        for name, rule in (("com_height", com_height), ("step_width", step_width)):
+            if name not in gait.model_fields_set:
+                changed[name] = rule(getattr(gait, name), before, after)
+    rates, sample_time = _clock(scenario, size)
+    update: dict[str, Any] = {
+        "gait": followed.gait.model_copy(update=changed),
+        "rates": rates,
+        "planner": followed.planner.model_copy(update={"sample_time": sample_time}),
+    }
+    if "criteria" not in scenario.model_fields_set:
+        update["criteria"] = {name: _bound(name, bound, size) for name, bound in scenario.criteria.items()}
+    return followed.model_copy(update=update)
+
+
+def _clock(scenario: Scenario, size: Similarity) -> tuple[Rates, float]:
+    """Rates, and sample time [s], of which those that are not given follow the robot and the ones that are."""
+    usual, given = clock(Rates(), size.time), scenario.rates.model_fields_set
+    planner = scenario.rates.planner if "planner" in given else usual.planner
+    control = scenario.rates.control if "control" in given else planner * (usual.control // usual.planner)
+    physics = scenario.rates.physics if "physics" in given else control * (usual.physics // usual.control)
+    own = "sample_time" in scenario.planner.model_fields_set
+    return Rates(planner=planner, control=control, physics=physics), (
+        scenario.planner.sample_time if own else 1.0 / planner
+    )
+
+
+def _followed(group: G, size: Similarity) -> G:
+    update: dict[str, Any] = {}
+    for name, unit, inner in _entries(type(group)):
+        value = getattr(group, name)
+        if inner is not None:
+            if isinstance(value, BaseModel):
+                update[name] = _followed(value, size)
+            elif value:
+                update[name] = tuple(_followed(member, size) for member in value)
+        elif unit and name not in group.model_fields_set:
+            update[name] = default_of(type(group), name, size)
+    return group.model_copy(update=update)
+
+
+def default_of(model: type[BaseModel], name: str, size: Similarity) -> Any:
+    """Default of a key for a robot of a size, but for what follows from more than that."""
+    field = model.model_fields[name]
+    unit = unit_of(field.annotation, field.metadata)
+    return field.default if unit in ("", "Hz") else _times(field.default, _against(size, REFERENCE_SIZE, unit))
+
+
+def _bound(name: str, bound: Bound, size: Similarity) -> Bound:
+    metric = known(name)
+    factor = 1.0 if metric is None else _against(size, REFERENCE_SIZE, metric.unit)
+    return Bound(**{side: _times(limit, factor) for side, limit in bound if limit is not None})
+
+
+def _against(after: Similarity, before: Similarity, unit: str) -> float:
+    """Factor of a unit from one size to another; 1 for bytes, and for what a package has made up."""
+    try:
+        return after.factor(unit) / before.factor(unit)
+    except ValueError:
+        return 1.0
+
+
+def _entries(model: type[BaseModel]) -> Iterator[tuple[str, str, type[BaseModel] | None]]:
+    """Keys of a group with their units and, where they hold groups, the type of these."""
+    for name, field in model.model_fields.items():
+        inner = None if name == "criteria" else next(_groups(field.annotation), None)
+        yield name, unit_of(field.annotation, field.metadata), inner
+
+
+def _groups(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _groups(part)
+
+
+def _is_number(value: Any) -> bool:
+    several = value if isinstance(value, list) and value else [value]
+    return all(isinstance(part, int | float) and not isinstance(part, bool) for part in several)
+
+
+def _times(value: Any, factor: float | list[float]) -> Any:
+    """A number, or a list or tuple of numbers, times a factor or one for each; all else as it is."""
+    if isinstance(value, list | tuple):
+        factors = factor if isinstance(factor, list) else [factor] * len(value)
+        return type(value)(_times(part, one) for part, one in zip(value, factors, strict=False))
+    if isinstance(factor, list):
+        return value
+    plain = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return value * factor if plain and factor != 1.0 else value

@@ -16,6 +16,7 @@ from types import MappingProxyType
 from pydantic import TypeAdapter
 
 from surefoot.scenarios.errors import LogError
+from surefoot.similarity import Similarity
 
 RECORD = "run"
 """Name of the metadata record."""
@@ -114,6 +115,11 @@ class RunConstants:
     plane: float = 0.0
     size: tuple[float, float] = (1.0, 1.0)
     knee_straight: tuple[float, ...] = ()
+
+    @property
+    def similarity(self) -> Similarity:
+        """The robot's size, with which thresholds of what judges the run go."""
+        return Similarity(*self.size)
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""

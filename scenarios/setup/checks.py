@@ -41,7 +41,8 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
     """List what does not fit together."""
     commands = command_problems(draft)
     if commands:
-        draft = Draft(draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)}), draft.size)
+        keys = draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)})
+        draft = Draft(keys, draft.size, draft.wider)
     clock = [*_rates(draft), *_pushes(draft)]
     return [
         *commands,

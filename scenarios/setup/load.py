@@ -170,9 +170,9 @@ def read_scenario(
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
-    size = robot_size(scenario.robot, robots)
+    size, wider = robot_size(scenario.robot, robots)
     scenario = with_defaults(KINDS[scenario.terrain.kind].completed(scenario), size, robots)
-    draft = Draft(scenario, size)
+    draft = Draft(scenario, size, wider)
     semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *check(draft, robots)]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:

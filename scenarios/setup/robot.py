@@ -84,6 +84,17 @@ def size_of(description: "RobotDescription", options: RobotSettings) -> Similari
     return Similarity.of(description.leg_length, float(description.mass) - options.payload_mass)
 
 
+HIPS, SHANKS = 0.2, 0.11
+"""Distance between the hips of the reference robot, and of its soles at which its shanks keep apart [m]."""
+
+
+def stance_widening(robot: "RobotDescription | RobotFacts", size: Similarity) -> float:
+    """By what a robot of a size has to stand wider than the reference robot, scaled, for its hips or shanks [m]."""
+    if size == REFERENCE_SIZE:
+        return 0.0
+    return max(0.0, robot.hip_width - size.length * HIPS, robot.shank_spacing - size.length * SHANKS)
+
+
 def facts_of(description: "RobotDescription") -> RobotFacts:
     """What of a robot bounds a scenario, but for its size, which goes without its payload."""
     return RobotFacts(

@@ -8,7 +8,7 @@ Defaults are those of the reference robot and follow the robot's size in every s
 
 import copy
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar, get_args
@@ -20,11 +20,11 @@ from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import Rates, RobotSettings, Scenario
+from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metrics import known
-from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known
+from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
@@ -35,10 +35,10 @@ _SOLES = ("foot_length", "foot_width")
 G = TypeVar("G", bound=BaseModel)
 
 
-def robot_size(name: str, robots: Robots) -> Similarity:
-    """Size of a robot; the reference's where there is none of that name, which others tell."""
+def robot_size(name: str, robots: Robots) -> tuple[Similarity, float]:
+    """Size of a robot, and by what it stands wider [m]; the reference's where none has that name, which others tell."""
     facts = None if name == REFERENCE else _facts(name, RobotSettings(), robots)
-    return REFERENCE_SIZE if facts is None else facts.size
+    return (REFERENCE_SIZE, 0.0) if facts is None else (facts.size, stance_widening(facts, facts.size))
 
 
 def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:
@@ -105,6 +105,9 @@ class _Translation:
         options = values.get("robot_options")
         for name in _SOLES if isinstance(options, dict) else ():
             options.pop(name, None)
+        gait = values.setdefault("gait", {})
+        for name in _RULES if isinstance(gait, dict) else ():
+            gait.setdefault(name, Gait.model_fields[name].default)
         self._group(Scenario, values, ())
         self._controller(WbcParameters(), values.get("wbc"), ("wbc",))
         for name, bound in values["criteria"].items() if isinstance(values.get("criteria"), dict) else ():
@@ -154,12 +157,10 @@ class _Translation:
         """The value for the other robot."""
         with suppress(PydanticCustomError):
             value = Unit(unit).number(value)
-        scaled = _times(value, _against(self.after.size, self.before.size, unit))
-        if key == ("gait", "com_height") and _is_number(value):
-            return com_height(value, self.before, self.after)
-        if key == ("gait", "step_width") and _is_number(value):
-            return step_width(value, self.before, self.after)
-        return scaled
+        rule = _RULES.get(str(key[-1])) if key[:-1] == ("gait",) and _is_number(value) else None
+        if rule is not None:
+            return rule(value, self.before, self.after)
+        return _times(value, _against(self.after.size, self.before.size, unit))
 
     def _put(self, values: dict[str, Any], name: str, key: Key, value: Any) -> None:
         """Write a value, and remember how it stands in the file."""
@@ -191,6 +192,13 @@ def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:
     return float(length * value + max(0.0, *wider))
 
 
+_RULES: dict[str, Callable[[float, RobotFacts, RobotFacts], float]] = {
+    "com_height": com_height,
+    "step_width": step_width,
+}
+"""Keys of the gait that follow from more of a robot than its size."""
+
+
 def clock(rates: Rates, time: float) -> Rates:
     """Rates where times are longer by a factor: the planner's the nearest whole one, the others in step with it."""
     planner = max(1, round(rates.planner / time))
@@ -206,7 +214,7 @@ def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scena
     before, after = (_facts(name, RobotSettings(), robots) for name in (REFERENCE, scenario.robot))
     gait, changed = scenario.gait, {}
     if before is not None and after is not None:
-        for name, rule in (("com_height", com_height), ("step_width", step_width)):
+        for name, rule in _RULES.items():
             if name not in gait.model_fields_set:
                 changed[name] = rule(getattr(gait, name), before, after)
     rates, sample_time = _clock(scenario, size)

@@ -159,6 +159,7 @@ def robots() -> FakeRobots:
 def robot() -> SimpleNamespace:
     return SimpleNamespace(
         mjcf="<mujoco/>",
+        leg_length=0.94,
         mass=100.0,
         sole_length=FOOT,
         sole_width=FOOT,

@@ -30,10 +30,10 @@ def check(
     from surefoot.scenarios.sweep.sweep import cores
 
     console = plain_console()
-    description, derived, notes = known(robot)
-    found = examine(description)
+    explained = known(robot)
+    found = examine(explained.description)
     if not as_json:
-        report.print_examination(console, description, derived, notes, found)
+        report.print_examination(console, explained, found)
     width = max(map(len, catalogue.OWN))
     try:
         table = rows(
@@ -47,7 +47,7 @@ def check(
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
     if as_json:
-        typer.echo(json.dumps(report.to_json(description, derived, notes, found, table), allow_nan=False))
+        typer.echo(json.dumps(report.to_json(explained, found, table), allow_nan=False))
     else:
         typer.echo(report.summary(table))
     sound = not found.faults and any(row.outcome in ("walks", "accepted") for row in table)

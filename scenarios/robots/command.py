@@ -52,3 +52,22 @@ def check(
         typer.echo(report.summary(table))
     sound = not found.faults and any(row.outcome in ("walks", "accepted") for row in table)
     raise typer.Exit(0 if sound and not any(row.outcome == "fails" for row in table) else MISSED)
+
+
+@app.command()
+def new(
+    model: Annotated[str, typer.Argument(help="URDF or MJCF: a path, or package://NAME/...")],
+) -> None:
+    """Print a first robot file for a model, to be saved where the model's path is right."""
+    from surefoot.models.robot_file.draft import draft
+    from surefoot.models.types import RobotError
+    from surefoot.scenarios.errors import ScenarioError
+
+    try:
+        made = draft(model, Path())
+    except RobotError as error:
+        raise ScenarioError([str(error)]) from None
+    typer.echo(made.text, nl=False)
+    if made.refusal:
+        typer.echo(f"not yet usable: {made.refusal}", err=True)
+        raise typer.Exit(MISSED)

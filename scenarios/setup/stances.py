@@ -1,0 +1,147 @@
+"""Whether the joints reach the stances that a walk goes through, before it begins.
+
+Between touchdown and lift-off both feet stand, far apart: there legs, knees and ankles come to the ends of their ranges.
+Where the CoM then is follows from the pendulum on its periodic walk: with the ZMP going evenly from one foot to the other
+in double support (duration T_d), and standing still in single support (T_s),
+
+    at the ends of a double support it is (1/2 + k) of the way between the feet from their middle,
+    along the walk  k = -S_d / (ω T_d (C_d + S_d C_s / S_s)),  sideways  k = -S_d / (ω T_d (C_d + S_d S_s / C_s)),
+
+with C, S = cosh, sinh of ω T / 2, by matching place and velocity where the supports meet.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.errors import ParameterError
+from surefoot.planner.types import GRAVITY, Array, Footstep
+from surefoot.planner.walk.footsteps import plan_footsteps
+from surefoot.planner.walk.gait import GaitParameters
+from surefoot.scenarios.setup.stance import Body
+from surefoot.scenarios.setup.walk import Walk
+from surefoot.wbc.ik import PostureTarget
+
+MISSING = 0.015
+"""What a stance may lack before a walk is refused: the controller lets trunk and CoM give way by as much [m, rad]."""
+
+_LOOKED_AT = 1000
+"""Footsteps that are looked at; equal ones once."""
+
+_AT_END = 0.01
+"""A joint that is nearer to the end of its range is at it [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stance:
+    """Both feet on the ground at an end of a double support.
+
+    Attributes:
+        number: of the footstep that begins it.
+        soles: left and right sole, x y z and heading, shape (2, 4) [m, rad].
+        com: where the CoM is, shape (3,) [m].
+        heading: of the trunk [rad].
+        landing: whether the foot has just landed, or the other one is about to leave.
+    """
+
+    number: int
+    soles: Array
+    com: Array
+    heading: float
+    landing: bool
+
+
+def check_stances(walk: Walk, body: Body, q: Array) -> None:
+    """Refuse a walk some stance of which the joints do not reach.
+
+    Args:
+        walk: the walk.
+        body: that shall walk it.
+        q: where it stands at the start, shape (nq,).
+
+    Raises:
+        ParameterError: says at which footstep, and which joint is at the end of its range.
+    """
+    ik = body.ik(body.robot.nominal_joint_positions)
+    for stance in _stances(walk):
+        begin = q.copy()
+        begin[:2] = stance.com[:2]
+        begin[2] += stance.com[2] - walk.start_com_height
+        begin[3:7] = 0.0, 0.0, math.sin(0.5 * stance.heading), math.cos(0.5 * stance.heading)
+        target = PostureTarget(stance.soles[:, :3], stance.soles[:, 3], stance.com, stance.heading)
+        found = ik.solve(target, begin, tolerance=MISSING)
+        if not found.reached:
+            raise _refusal(walk, body, stance, found.q, found.error)
+
+
+def _refusal(walk: Walk, body: Body, stance: Stance, q: Array, error: float) -> ParameterError:
+    robot = body.robot
+    left = np.minimum(q[7:] - robot.position_lower, robot.position_upper - q[7:])
+    ends = [robot.joint_names[j] for j in np.flatnonzero((left < _AT_END) & body.leg_joints)]
+    when = "lands" if stance.landing else "bears the other one's lift-off"
+    what = (
+        f"robot '{robot.name}' cannot stand as it would when footstep {stance.number} {when}: "
+        f"{error:.2f} m or rad are missing"
+    )
+    if ends:
+        what += f" with {' and '.join(repr(name) for name in ends)} at the end of their range"
+    stepped = walk.terrain.has_edges and abs(float(np.ptp(stance.soles[:, 2]))) > 1e-3
+    key, right = ("gait", "step_length"), "take shorter or narrower steps, or another gait.com_height"
+    if stepped:
+        key, right = ("terrain", "riser"), "give lower stairs, or another gait.com_height"
+    return ParameterError(key, what, right)
+
+
+def _stances(walk: Walk) -> Iterator[Stance]:
+    """Both ends of each double support between two steps; of alike ones the first."""
+    gait = replace(walk.gait, steps=min(walk.gait.steps, _LOOKED_AT)) if not walk.gait.bouts else walk.gait
+    footsteps = plan_footsteps(gait, walk.stance, walk.terrain)
+    seen: set[tuple[float, ...]] = set()
+    for row in range(2, min(footsteps.steps, _LOOKED_AT) + 2):
+        stands, lands, lifted = (footsteps.footstep(one) for one in (row - 1, row, row - 2))
+        way, lead = lands.position - stands.position, 0.5 * (lands.position - lifted.position)
+        kind = (*(lands.position - stands.position), *lead, lands.yaw - stands.yaw, float(lands.foot))
+        c, s = math.cos(stands.yaw), math.sin(stands.yaw)
+        key = tuple(
+            round(value, 3)
+            for value in (
+                c * kind[0] + s * kind[1],
+                c * kind[1] - s * kind[0],
+                kind[2],
+                c * kind[3] + s * kind[4],
+                c * kind[4] - s * kind[3],
+                kind[6],
+                kind[7],
+            )
+        )
+        if key in seen:
+            continue
+        seen.add(key)
+        last = row == footsteps.steps + 1
+        for landing in (True,) if last or walk.gait.heel_off > 0.0 else (True, False):
+            yield _stance(walk.gait, stands, lands, (way, lead), row - 1, landing)
+
+
+def _stance(
+    gait: GaitParameters, stands: Footstep, lands: Footstep, ways: tuple[Array, Array], number: int, landing: bool
+) -> Stance:
+    way, lead = ways
+    low = min(float(stands.position[2]), float(lands.position[2]))
+    ahead, aside = (0.5 + share for share in _shares(gait))
+    off = ahead * lead[:2] + aside * (way - lead)[:2]
+    middle = 0.5 * (stands.position + lands.position)[:2]
+    com = np.append(middle + (-off if landing else off), low + gait.com_height)
+    feet = sorted((stands, lands), key=lambda step: int(step.foot))
+    soles = np.array([(*step.position, step.yaw) for step in feet])
+    return Stance(number, soles, com, float(np.mean(soles[:, 3])), landing)
+
+
+def _shares(gait: GaitParameters) -> tuple[float, float]:
+    """The two k of the module's equation, along the walk and sideways [-]."""
+    omega = math.sqrt(GRAVITY / gait.com_height)
+    double, single = (0.5 * omega * time for time in (gait.double_support, gait.single_support))
+    C, S, t = math.cosh(double), math.sinh(double), math.tanh(min(single, 50.0))
+    return -S / (2.0 * double * (C + S / t)), -S / (2.0 * double * (C + S * t))

@@ -121,12 +121,13 @@ class _Translation:
         self._rates(values)
 
     def _rates(self, values: dict[str, Any]) -> None:
+        """The clock; the sample time follows from it."""
         given, planner = values.get("rates"), values.get("planner")
-        if isinstance(given, dict) and given:
-            values["planner"] = dict(planner) if isinstance(planner, dict) else {}
+        if isinstance(planner, dict):
+            planner.pop("sample_time", None)
+        if isinstance(given, dict):
             with suppress(ValueError, TypeError):
-                rates = clock(Rates(**given), self.after.size.time / self.before.size.time)
-                values["rates"], values["planner"]["sample_time"] = rates.model_dump(), 1.0 / rates.planner
+                values["rates"] = clock(Rates(**given), self.after.size.time / self.before.size.time).model_dump()
 
     def _group(self, model: type[BaseModel], values: Any, key: Key) -> None:
         for name, unit, inner in _entries(model):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.robots import command as robots
 from surefoot.scenarios.terminal import BAD_INPUT, Commands, keys_from, set_up_streams
 
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+
+app.add_typer(robots.app, name="robot")
 
 MISSED, DEFECT, INTERRUPTED = 1, 70, 130
 

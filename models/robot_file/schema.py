@@ -24,8 +24,8 @@ class _Group(BaseModel):
 class Feet(_Group):
     """The links that carry the soles."""
 
-    left: str
-    right: str
+    left: str = Field(description="link that carries the left sole")
+    right: str = Field(description="link that carries the right sole")
 
 
 class Sole(_Group):
@@ -41,6 +41,7 @@ class Sole(_Group):
 class RobotFile(_Group):
     """A robot, as its owner describes it: `name`, `model` and `feet`; all else follows from the model unless given.
 
+    A file of a robot that is known by name, in another size, has `name`, `model` and `scale` alone.
     Patterns are names of joints with `*` for anything; where several match, the last one counts.
     """
 

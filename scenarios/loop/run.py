@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from threadpoolctl import threadpool_limits
 
+from surefoot.models.mjcf import without_looks
 from surefoot.planner.laws.profiles import Profile
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
@@ -211,7 +212,7 @@ def open_log(path: Path, walk: Walk) -> LogWriter:
     metadata = {RECORD: run_constants(walk).to_metadata(), "versions": versions()}
     attachments = [
         AttachedFile(SCENARIO_FILE, "application/yaml", walk.text.encode()),
-        AttachedFile("robot.xml", "application/xml", walk.robot.mjcf.encode()),
+        AttachedFile("robot.xml", "application/xml", without_looks(walk.robot.mjcf).encode()),
     ]
     return LogWriter(path, metadata, attachments)
 

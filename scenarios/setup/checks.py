@@ -119,8 +119,7 @@ def _controller(draft: Draft) -> Iterator[Problem]:
 
 def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
     if not is_known(draft.keys.robot, robots):
-        right = f"{nearest(draft.keys.robot, robots.names())}; a robot file ends in .yaml"
-        yield Problem(("robot",), f"unknown robot '{draft.keys.robot}'", right)
+        yield Problem(("robot",), f"unknown robot '{draft.keys.robot}'", nearest(draft.keys.robot, robots.names()))
         return
     try:
         facts = robots.facts(draft.keys.robot, draft.keys.robot_options)

@@ -35,6 +35,9 @@ def faults(line):
     """What of a command line is not there."""
     _, *words = shlex.split(line)
     command = COMMANDS if not words or words[0].startswith("-") else COMMANDS.commands.get(words[0])
+    if isinstance(command, typer.core.TyperGroup) and command is not COMMANDS and words[1:]:
+        _, *words = words
+        command = command.commands.get(words[0])
     if command is None:
         return [words[0]]
     given = [word for text in words for word in re.findall(r"^-[\w-]+", text.strip("()[]"))]
@@ -67,6 +70,8 @@ def test_the_workflow_of_a_ci_server_gives_commands_that_are_there():
 def test_what_is_not_there_is_found():
     assert len(LINES) > 50
     assert faults("surefoot swep x") == ["swep"]
+    assert faults("surefoot robot chek x.yaml") == ["chek"]
+    assert faults("surefoot robot check x.yaml --wak") == ["--wak"]
     assert faults("surefoot compare A B --exit-cod") == ["--exit-cod"]
     assert faults("surefoot run walk --set gait.stride=3 --seed 3") == ["gait.stride"]
     assert faults("surefoot sweep push-map --set phase=x --set phases=x") == ["phases"]

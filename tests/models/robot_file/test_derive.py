@@ -128,7 +128,8 @@ def test_arms_hang_free_of_the_body(tmp_path, shipped) -> None:
 def test_what_the_file_says_counts(tmp_path) -> None:
     text = biped.FILE + (
         "sole: {length: 0.1, width: 0.05, centre: [0.01, 0.005, -0.06]}\ncom_height: 0.55\n"
-        "torque_limit: {'*': 50, left_*: 60}\narmature: {'*_knee': 0.03}\nlock: {'*_elbow': -0.4}\nposture: {'*_yaw': 0.1}\n"
+        "torque_limit: {'*': 50, left_*: 60}\narmature: {'*_knee': 0.03}\n"
+        "lock: {'*_elbow': -0.4}\nposture: {'*_yaw': 0.1}\n"
         "keep_apart: [[left_shank, right_shank]]\n"
     )
     robot = described(tmp_path, text)
@@ -161,9 +162,8 @@ def test_soles_are_level_and_on_one_height(shipped, name) -> None:
 @pytest.mark.parametrize("name", SHIPPED)
 def test_straight_legs_are_as_long_as_said_and_longer_than_bent_ones(shipped, name) -> None:
     robot = shipped[name]
-    heights = []
-    for angles in (robot.straight_joint_positions, robot.nominal_joint_positions):
-        heights.append(-frame(*placed(robot, angles), "left_sole").translation[2])
+    postures = (robot.straight_joint_positions, robot.nominal_joint_positions)
+    heights = [-frame(*placed(robot, angles), "left_sole").translation[2] for angles in postures]
     assert heights[0] > heights[1] + 0.02 * robot.leg_length
     spans = []
     for change in (0.0, -0.1, 0.1):

@@ -17,6 +17,7 @@ BROKEN_MESH = (
 )
 MISSING_MESH = '<link name="cap"><visual><geometry><mesh filename="meshes/cap.stl"/></geometry></visual></link>'
 FIXED = '<joint name="cap_joint" type="fixed"><parent link="base"/><child link="cap"/></joint>'
+PARENT = '<parent link="{}"/><child link="right_yaw_link"/>'
 SWAPPED = "name: biped\nmodel: biped.urdf\nfeet: {left: right_foot, right: left_foot}\n"
 SHORT = "name: biped\nmodel: biped.urdf\nfeet: {left: left_shank, right: right_shank}\n"
 
@@ -105,7 +106,7 @@ MODELS = {
     "one leg": (
         biped.Biped(
             changes={
-                '<parent link="base"/><child link="right_yaw_link"/>': '<parent link="left_foot"/><child link="right_yaw_link"/>'
+                PARENT.format("base"): PARENT.format("left_foot"),
             }
         ),
         "both feet of biped hang on joint 'left_yaw'",
@@ -150,5 +151,5 @@ def test_an_unphysical_inertia_is_repaired_on_demand(tmp_path) -> None:
 
 
 def test_a_file_that_is_not_there(tmp_path) -> None:
-    with pytest.raises(RobotError, match="no.yaml: cannot be read, No such file"):
+    with pytest.raises(RobotError, match=r"no\.yaml: cannot be read, No such file"):
         describe(str(tmp_path / "no.yaml"), RobotOptions())

@@ -1,4 +1,4 @@
-"""A robot of an MJCF: what MuJoCo compiles of it, with defaults, welded bodies, joints beside origins and motors of all kinds."""
+"""A robot of an MJCF as MuJoCo compiles it: defaults, welded bodies, joints beside origins, motors of all kinds."""
 
 from importlib.util import find_spec
 from pathlib import Path
@@ -38,7 +38,8 @@ def leg(side: str, sign: int) -> str:
 
 MOTORS = "".join(
     f"""<motor joint="{side}_yaw" gear="50" ctrlrange="-1 1"/><motor joint="{side}_roll" forcerange="-60 60"/>
-    <position joint="{side}_pitch" forcerange="-90 90" kp="100"/><general joint="{side}_knee" forcerange="-80 80" gear="2"/>
+    <position joint="{side}_pitch" forcerange="-90 90" kp="100"/>
+    <general joint="{side}_knee" forcerange="-80 80" gear="2"/>
     <motor joint="{side}_ankle_pitch" ctrlrange="-30 30"/>"""
     for side in ("left", "right")
 )

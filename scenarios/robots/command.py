@@ -1,0 +1,54 @@
+"""``surefoot robot``: what a robot of one's own is worth, and a first file for it."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from surefoot.scenarios.terminal import Commands
+
+app = typer.Typer(cls=Commands, help="Check a robot of one's own, or write a first file for it.", no_args_is_help=True)
+
+MISSED, INTERRUPTED = 1, 130
+
+
+@app.command()
+def check(
+    robot: Annotated[str, typer.Argument(metavar="FILE", help="A robot file, or the name of a robot.")],
+    walk: Annotated[bool, typer.Option("--walk", help="Run the scenarios that it accepts.")] = False,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
+    out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/robot"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+) -> None:
+    """Say what was derived of a robot, measure it, and which scenarios it takes."""
+    from surefoot.scenarios import catalogue
+    from surefoot.scenarios.robots import report
+    from surefoot.scenarios.robots.examine import examine, known
+    from surefoot.scenarios.robots.walks import rows
+    from surefoot.scenarios.show.console import plain_console
+    from surefoot.scenarios.sweep.sweep import cores
+
+    console = plain_console()
+    description, derived, notes = known(robot)
+    found = examine(description)
+    if not as_json:
+        report.print_examination(console, description, derived, notes, found)
+    width = max(map(len, catalogue.OWN))
+    try:
+        table = rows(
+            robot,
+            walk,
+            jobs or cores(),
+            out,
+            lambda row: None if as_json else report.print_row(console, row, width),
+        )
+    except KeyboardInterrupt:
+        typer.echo("interrupted", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    if as_json:
+        typer.echo(json.dumps(report.to_json(description, derived, notes, found, table), allow_nan=False))
+    else:
+        typer.echo(report.summary(table))
+    sound = not found.faults and any(row.outcome in ("walks", "accepted") for row in table)
+    raise typer.Exit(0 if sound and not any(row.outcome == "fails" for row in table) else MISSED)

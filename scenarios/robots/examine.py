@@ -1,0 +1,208 @@
+"""What a described robot is worth before it walks: engines that agree, legs alike, soles level, torque to spare."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from surefoot.models.consistency import EnginePair
+from surefoot.models.registry import UnknownRobotError, describe
+from surefoot.models.types import RobotDescription, RobotError, RobotOptions
+from surefoot.plugins import PluginError
+from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.setup.gait import leg_span
+from surefoot.scenarios.setup.robot import facts_of
+from surefoot.scenarios.setup.stance import Body, body_of
+from surefoot.wbc.ik import PostureTarget
+from surefoot.wbc.statics import standing_torque
+
+Array = NDArray[np.float64]
+
+PARITY = 1e-9
+"""Engines that differ by more do not compute the same robot; of the largest entry, or absolute below 1 [-]."""
+
+_ALIKE = 1e-3
+"""Relative difference of left and right from which on it is told [-]."""
+
+_STATES = 50
+_LEVEL, _TILT = 1e-4, 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class TorqueMargin:
+    """How much of their torque the joints need to hold a posture.
+
+    Attributes:
+        joint: the one that needs most of its own; empty where the posture cannot be taken.
+        share: of its limit [-].
+        needed: its torque [N m].
+    """
+
+    joint: str
+    share: float
+    needed: float
+
+
+@dataclass(frozen=True, slots=True)
+class Examination:
+    """What was measured of a description.
+
+    Attributes:
+        parity: largest difference between MuJoCo and Pinocchio over random states, of the largest entry of what is
+            compared, or absolute below 1 [-].
+        differences: what is not alike on the left and on the right, one sentence each.
+        sole_height: how much higher the right sole is than the left one in the nominal posture [m].
+        sole_tilt: larger angle of a sole's normal from the vertical there, pelvis upright [rad].
+        both_feet: static torques of standing with the CoM between the soles at its nominal height.
+        one_foot: likewise with the CoM over one sole, which bears all; the worse of both.
+        longest_step: with flat soles at the nominal CoM height [m].
+        touching: bodies that touch each other in that stance, by pairs.
+    """
+
+    parity: float
+    differences: tuple[str, ...]
+    sole_height: float
+    sole_tilt: float
+    both_feet: TorqueMargin
+    one_foot: TorqueMargin
+    longest_step: float
+    touching: tuple[tuple[str, str], ...]
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What keeps it from walking, one sentence each; what is merely unlike is none."""
+        return tuple(self._faults())
+
+    def _faults(self) -> Iterator[str]:
+        if not self.parity <= PARITY:
+            yield f"MuJoCo and Pinocchio differ by {self.parity:.1e}; they must agree within {PARITY:.0e}"
+        if abs(self.sole_height) > _LEVEL:
+            yield (
+                f"in the nominal posture the right sole is {1e3 * self.sole_height:.1f} mm higher than the left one; "
+                "give a posture in which both are on the same ground"
+            )
+        if self.sole_tilt > _TILT:
+            yield (
+                f"in the nominal posture a sole is tilted by {math.degrees(self.sole_tilt):.2f} deg; "
+                "give a posture in which both are level"
+            )
+        for margin, where in ((self.both_feet, "both feet"), (self.one_foot, "one foot")):
+            if not margin.joint:
+                yield f"it cannot stand on {where} at its nominal CoM height; give another com_height"
+            elif margin.share > 1.0:
+                yield (
+                    f"joint '{margin.joint}' needs {margin.needed:.0f} N m to stand on {where}, "
+                    f"{margin.share:.0%} of its limit; give it more torque or a higher com_height"
+                )
+        for one, other in self.touching:
+            yield f"bodies '{one}' and '{other}' touch in the stance; give a posture that keeps them apart"
+
+
+def known(name: str) -> tuple[RobotDescription, tuple[str, ...], tuple[str, ...]]:
+    """A robot by its name or file: its description, what of it was derived, and what else is to be known.
+
+    Raises:
+        ScenarioError: there is none, or its file cannot be used.
+    """
+    try:
+        return describe(name, RobotOptions()), (), ()
+    except (UnknownRobotError, PluginError, RobotError) as error:
+        raise ScenarioError([str(error)]) from None
+
+
+def examine(robot: RobotDescription) -> Examination:
+    """Measure a robot."""
+    body = body_of(robot)
+    height, tilt = _soles(body)
+    both, q = _standing(body, 0.0)
+    sides = [_standing(body, side)[0] for side in (1.0, -1.0)]
+    return Examination(
+        parity=_parity(robot),
+        differences=tuple(_differences(body)),
+        sole_height=height,
+        sole_tilt=tilt,
+        both_feet=both,
+        one_foot=max(sides, key=lambda margin: margin.share),
+        longest_step=leg_span(robot.com_height, facts_of(robot)),
+        touching=_touching(robot, q),
+    )
+
+
+def _parity(robot: RobotDescription) -> float:
+    pair, rng = EnginePair(robot), np.random.default_rng(0)
+    return max(pair.difference(*pair.random_state(rng)).largest for _ in range(_STATES)) / max(1.0, robot.mass)
+
+
+def _differences(body: Body) -> Iterator[str]:
+    """Limits of each pair of leg joints, and masses of the legs."""
+    robot = body.robot
+    masses = []
+    for leg in (robot.roles.left_leg, robot.roles.right_leg):
+        data = body.model.createData()
+        pin.computeSubtreeMasses(body.model, data)
+        masses.append(data.mass[body.model.getJointId(leg[0])])
+    if abs(masses[0] - masses[1]) > _ALIKE * max(masses):
+        yield f"the left leg weighs {masses[0]:.3f} kg, the right one {masses[1]:.3f} kg"
+    pairs = zip(robot.roles.left_leg, robot.roles.right_leg, strict=False)
+    for left, right in pairs:
+        i, j = robot.joint_indices((left, right))
+        for name, unit in (("torque_limit", "N m"), ("velocity_limit", "rad/s")):
+            one, other = float(getattr(robot, name)[i]), float(getattr(robot, name)[j])
+            if abs(one - other) > _ALIKE * max(one, other):
+                kind = name.replace("_", " ")
+                yield f"the {kind} of '{left}' is {one:g} {unit}, that of '{right}' {other:g} {unit}"
+        here, there = (np.array((robot.position_lower[k], robot.position_upper[k])) for k in (i, j))
+        if min(np.abs(here - there).max(), np.abs(here + there[::-1]).max()) > _ALIKE:
+            yield (
+                f"'{left}' turns from {here[0]:.3f} to {here[1]:.3f} rad, "
+                f"'{right}' from {there[0]:.3f} to {there[1]:.3f} rad, which is no mirror image"
+            )
+
+
+def _soles(body: Body) -> tuple[float, float]:
+    """How much higher the right sole is, and the larger tilt, with the pelvis upright in the nominal posture."""
+    q = pin.neutral(body.model)
+    q[7:] = body.robot.nominal_joint_positions
+    data = body.model.createData()
+    pin.framesForwardKinematics(body.model, data, q)
+    left, right = (data.oMf[body.model.getFrameId(name)] for name in body.frames.soles)
+    tilt = max(math.acos(min(1.0, float(sole.rotation[2, 2]))) for sole in (left, right))
+    return float(right.translation[2] - left.translation[2]), tilt
+
+
+def _standing(body: Body, side: float) -> tuple[TorqueMargin, Array]:
+    """Torque that standing takes, and the configuration: on both feet (0), on the left (1) or right one (-1)."""
+    robot = body.robot
+    half = 0.5 * max(robot.hip_width, robot.shank_spacing)
+    soles = np.array([[0.0, half, 0.0], [0.0, -half, 0.0]])
+    target = PostureTarget(soles, np.zeros(2), np.array([0.0, side * half, robot.com_height]), 0.0)
+    q = pin.neutral(body.model)
+    q[2] = robot.leg_length
+    q[7:] = robot.nominal_joint_positions
+    found = body.ik(robot.nominal_joint_positions).solve(target, q)
+    if not found.reached:
+        return TorqueMargin("", math.inf, math.inf), found.q
+    foot = None if side == 0.0 else int(side < 0.0)
+    torque = standing_torque(body.model, body.frames, found.q, foot=foot)
+    shares = np.abs(torque) / robot.torque_limit
+    worst = int(np.argmax(shares))
+    return TorqueMargin(robot.joint_names[worst], float(shares[worst]), float(abs(torque[worst]))), found.q
+
+
+def _touching(robot: RobotDescription, q: Array) -> tuple[tuple[str, str], ...]:
+    """Bodies that touch at a configuration in Pinocchio's convention."""
+    model = mujoco.MjModel.from_xml_string(robot.mjcf)
+    data = mujoco.MjData(model)
+    data.qpos[:] = q
+    data.qpos[3:7] = q[[6, 3, 4, 5]]
+    mujoco.mj_forward(model, data)
+    found = []
+    for contact in data.contact[: data.ncon]:
+        one, other = (model.body(model.geom_bodyid[geom]).name for geom in contact.geom)
+        if contact.dist < 0.0:
+            found.append((one, other))
+    return tuple(dict.fromkeys(found))

@@ -1,0 +1,121 @@
+"""What `surefoot robot check` says, for a person and as JSON."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from rich.console import Console
+
+from surefoot.models.types import RobotDescription
+from surefoot.scenarios.robots.examine import PARITY, Examination, TorqueMargin
+from surefoot.scenarios.robots.walks import Row
+from surefoot.scenarios.show.console import plain_table
+
+_STYLES = {"walks": "bold green", "fails": "bold red", "refused": "yellow", "accepted": None}
+
+
+def print_examination(
+    console: Console, robot: RobotDescription, derived: Sequence[str], notes: Sequence[str], found: Examination
+) -> None:
+    """Print what the robot is, what was derived and what was measured."""
+    table = plain_table("robot", robot.name)
+    for name, value in _facts(robot):
+        table.add_row(name, value)
+    console.print(table)
+    for title, lines in (("derived", derived), ("note", (*notes, *found.differences)), ("fault", found.faults)):
+        for line in lines:
+            console.print(f"{title}: {line}", style="bold red" if title == "fault" else None)
+    table = plain_table("measured", "value")
+    for name, value in _measured(found):
+        table.add_row(name, value)
+    console.print(table)
+
+
+def _facts(robot: RobotDescription) -> Iterator[tuple[str, str]]:
+    yield "mass", f"{robot.mass:.2f} kg"
+    yield "joints", f"{len(robot.joint_names)}, {len(robot.roles.legs)} of them in the legs"
+    for side, leg in (("left", robot.roles.left_leg), ("right", robot.roles.right_leg)):
+        yield f"{side} leg", ", ".join(leg)
+    yield "knees", ", ".join(robot.roles.knees)
+    yield "waist", ", ".join(robot.roles.waist) or "none"
+    yield "arm swing", ", ".join(robot.roles.arm_swing or ()) or "none"
+    yield "pelvis, torso", f"{robot.pelvis_body}, {robot.torso_body}"
+    yield "leg length, hip width", f"{robot.leg_length:.3f} m, {robot.hip_width:.3f} m"
+    yield "soles", f"{robot.sole_length:.3f} x {robot.sole_width:.3f} m"
+    yield "CoM height in walking", f"{robot.com_height:.3f} m"
+
+
+def _measured(found: Examination) -> Iterator[tuple[str, str]]:
+    yield "MuJoCo against Pinocchio", f"{found.parity:.1e}, at most {PARITY:.0e}"
+    yield (
+        "soles in the nominal posture",
+        f"{1e3 * found.sole_height:.2f} mm apart in height, tilted by at most {_deg(found.sole_tilt)}",
+    )
+    yield "torque on both feet", _margin(found.both_feet)
+    yield "torque on one foot", _margin(found.one_foot)
+    yield "longest step with flat soles", f"{found.longest_step:.2f} m"
+    yield "touching in the stance", ", ".join(" and ".join(pair) for pair in found.touching) or "none"
+
+
+def _margin(margin: TorqueMargin) -> str:
+    if not margin.joint:
+        return "no such stance"
+    return f"{margin.share:.0%} of its limit in '{margin.joint}', {margin.needed:.1f} N m"
+
+
+def _deg(angle: float) -> str:
+    return f"{math.degrees(angle):.3f} deg"
+
+
+def print_row(console: Console, row: Row, width: int) -> None:
+    """Print what became of a scenario."""
+    console.print(f"{row.scenario:<{width}}  ", end="")
+    console.print(row.outcome, style=_STYLES[row.outcome])
+    for reason in row.why:
+        console.print(f"  - {reason}")
+
+
+def summary(rows: Sequence[Row]) -> str:
+    """All rows in a sentence."""
+    counts = {
+        outcome: sum(row.outcome == outcome for row in rows) for outcome in ("walks", "accepted", "fails", "refused")
+    }
+    told = ", ".join(f"{count} {outcome}" for outcome, count in counts.items() if count)
+    return f"{len(rows)} scenarios: {told}"
+
+
+def to_json(
+    robot: RobotDescription,
+    derived: Sequence[str],
+    notes: Sequence[str],
+    found: Examination,
+    rows: Sequence[Row],
+) -> dict[str, Any]:
+    """Everything as one object; what could not be measured is null."""
+    return {
+        "robot": robot.name,
+        "facts": dict(_facts(robot)),
+        "derived": list(derived),
+        "notes": [*notes, *found.differences],
+        "faults": list(found.faults),
+        "measured": _finite(asdict(found)),
+        "scenarios": [
+            {
+                "scenario": row.scenario,
+                "outcome": row.outcome,
+                "why": list(row.why),
+                "log": None if row.log is None else str(row.log),
+            }
+            for row in rows
+        ],
+    }
+
+
+def _finite(value: Any) -> Any:
+    """The same without numbers that JSON has not."""
+    if isinstance(value, dict):
+        return {name: _finite(inner) for name, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(inner) for inner in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,101 @@
+"""Which scenarios of the catalogue a robot takes, and which it walks."""
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from surefoot.scenarios import catalogue
+from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.simulation import Simulation
+from surefoot.scenarios.sweep.engine import processes
+
+Outcome = Literal["accepted", "walks", "fails", "refused"]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A scenario and what a robot makes of it.
+
+    Attributes:
+        scenario: name in the catalogue.
+        outcome: accepted (it may be run, and was not), walks (it ran and met every criterion), fails (it ran and did
+            not), or refused before any run.
+        why: it fails or is refused, one sentence each.
+        log: of the run, None where there was none.
+    """
+
+    scenario: str
+    outcome: Outcome
+    why: tuple[str, ...] = ()
+    log: Path | None = None
+
+
+def rows(
+    robot: str, walk: bool, jobs: int, out: Path, on_done: Callable[[Row], None] = lambda _: None
+) -> tuple[Row, ...]:
+    """The catalogue on a robot.
+
+    Args:
+        robot: name or path of its file.
+        walk: whether to run what it accepts.
+        jobs: runs at once.
+        out: directory of the logs.
+        on_done: is told each row as it is known.
+
+    Returns:
+        a row for each scenario, in the order of the catalogue.
+    """
+    found: dict[str, Row] = {}
+    accepted: dict[str, Scenario] = {}
+    for name in catalogue.OWN:
+        try:
+            scenario = load(name, {"robot": robot})
+            Simulation(scenario).close()
+        except (ScenarioError, SetupError) as refusal:
+            found[name] = Row(name, "refused", tuple(str(refusal).splitlines()))
+        else:
+            accepted[name] = scenario
+            found[name] = Row(name, "accepted")
+        if not walk or name not in accepted:
+            on_done(found[name])
+    if walk and accepted:
+        for row in _walked(accepted, jobs, out):
+            found[row.scenario] = row
+            on_done(row)
+    return tuple(found[name] for name in catalogue.OWN)
+
+
+def _walked(accepted: dict[str, Scenario], jobs: int, out: Path) -> Iterator[Row]:
+    with processes(min(jobs, len(accepted))) as pool:
+        futures: dict[Future[Row], str] = {
+            pool.submit(_walk, name, scenario, out): name for name, scenario in accepted.items()
+        }
+        try:
+            for future in as_completed(futures):
+                yield _outcome(futures[future], future)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _outcome(name: str, future: "Future[Row]") -> Row:
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        return Row(name, "fails", ("its process ended unexpectedly, as when memory runs out",))
+
+
+def _walk(name: str, scenario: Scenario, out: Path) -> Row:
+    try:
+        result = run_scenario(scenario, out)
+    except (ScenarioError, SetupError) as refusal:
+        return Row(name, "refused", (" ".join(str(refusal).split()),))
+    except LogError as error:
+        return Row(name, "fails", (str(error),))
+    return Row(name, "walks" if result.verdict.passed else "fails", tuple(result.verdict.reasons), result.log)

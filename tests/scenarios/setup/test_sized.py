@@ -89,6 +89,34 @@ def test_gains_and_rates_that_a_file_gives_are_translated_too():
     walk = read(text, "robot=small")
     assert (walk.wbc.arm_swing, walk.wbc.gains.orientation) == (2.0, (400.0, 40.0))
     assert walk.rates == Rates(physics=4000, control=2000, planner=100)
+    assert walk.planner.sample_time == 0.01
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("sized_for: [1]", "unknown robot '[1]' in sized_for"),
+        ("sized_for: humanoid100\nrobot: [small]", "robot is ['small']; give a word"),
+        ("sized_for: humanoid100\ngait: 3", "gait is 3; give a group of keys"),
+        (
+            "sized_for: humanoid100\ngait: {step_length: [1, {}]}",
+            "give a number ([1, {}] in the file, for humanoid100)",
+        ),
+        (
+            "sized_for: humanoid100\nrates: {planner: x}\nplanner: {sample_time: 1}",
+            "rates.planner is 'x'; give a rate",
+        ),
+        ("sized_for: humanoid100\ncriteria: {speed_mean: {min: [x]}}", "criteria.speed_mean"),
+        (
+            "sized_for: humanoid100\nwbc: {gains: {swing: [1, 2, 3]}, arm_swing: x}",
+            "wbc.arm_swing is 'x'; give a number",
+        ),
+    ],
+)
+def test_what_makes_no_sense_is_told_as_for_any_robot(text, told):
+    with pytest.raises(ScenarioError) as error:
+        read(text, "robot=small") if "robot" not in text else read(text)
+    assert told in str(error.value), str(error.value)
 
 
 @pytest.mark.parametrize("name", ["walk", "stairs-up", "paper-push", "waypoints", "commanded"])

@@ -24,6 +24,7 @@ from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
@@ -35,10 +36,13 @@ _SOLES = ("foot_length", "foot_width")
 G = TypeVar("G", bound=BaseModel)
 
 
-def robot_size(name: str, robots: Robots) -> tuple[Similarity, float]:
-    """Size of a robot, and by what it stands wider [m]; the reference's where none has that name, which others tell."""
-    facts = None if name == REFERENCE else _facts(name, RobotSettings(), robots)
-    return (REFERENCE_SIZE, 0.0) if facts is None else (facts.size, stance_widening(facts, facts.size))
+def draft_of(scenario: Scenario, robots: Robots) -> Draft:
+    """The draft of a scenario with the defaults of its robot; of one that nobody has, which others tell, as it is."""
+    facts = None if scenario.robot == REFERENCE else _facts(scenario.robot, RobotSettings(), robots)
+    if facts is None or facts.size == REFERENCE_SIZE:
+        return Draft(scenario)
+    size = facts.size
+    return Draft(with_defaults(scenario, size, robots), size, stance_widening(facts, size), facts.foot_length)
 
 
 def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:
@@ -105,19 +109,29 @@ class _Translation:
         options = values.get("robot_options")
         for name in _SOLES if isinstance(options, dict) else ():
             options.pop(name, None)
-        gait = values.setdefault("gait", {})
-        for name in _RULES if isinstance(gait, dict) else ():
+        gait, terrain = values.setdefault("gait", {}), values.get("terrain")
+        for name in _POSTURE if isinstance(gait, dict) else ():
             gait.setdefault(name, Gait.model_fields[name].default)
+        given = [
+            group.get(name) for group, name in ((gait, "step_length"), (terrain, "tread")) if isinstance(group, dict)
+        ]
         self._group(Scenario, values, ())
+        if isinstance(terrain, dict) and len(given) == 2 and given[0] == given[1] is not None:
+            # Steps from tread to tread stay such.
+            gait["step_length"] = terrain["tread"]
         self._controller(WbcParameters(), values.get("wbc"), ("wbc",))
         for name, bound in values["criteria"].items() if isinstance(values.get("criteria"), dict) else ():
             self._criterion(values["criteria"], name, bound)
-        given = values.get("rates"), values.get("planner")
-        if isinstance(given[0], dict) and given[0]:
-            values["planner"] = dict(given[1]) if isinstance(given[1], dict) else {}
+        self._rates(values)
+
+    def _rates(self, values: dict[str, Any]) -> None:
+        """The clock; the sample time follows from it."""
+        given, planner = values.get("rates"), values.get("planner")
+        if isinstance(planner, dict):
+            planner.pop("sample_time", None)
+        if isinstance(given, dict):
             with suppress(ValueError, TypeError):
-                rates = clock(Rates(**given[0]), self.after.size.time / self.before.size.time)
-                values["rates"], values["planner"]["sample_time"] = rates.model_dump(), 1.0 / rates.planner
+                values["rates"] = clock(Rates(**given), self.after.size.time / self.before.size.time).model_dump()
 
     def _group(self, model: type[BaseModel], values: Any, key: Key) -> None:
         for name, unit, inner in _entries(model):
@@ -157,7 +171,7 @@ class _Translation:
         """The value for the other robot."""
         with suppress(PydanticCustomError):
             value = Unit(unit).number(value)
-        rule = _RULES.get(str(key[-1])) if key[:-1] == ("gait",) and _is_number(value) else None
+        rule = _RULES.get(key) if _is_number(value) else None
         if rule is not None:
             return rule(value, self.before, self.after)
         return _times(value, _against(self.after.size, self.before.size, unit))
@@ -192,11 +206,24 @@ def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:
     return float(length * value + max(0.0, *wider))
 
 
-_RULES: dict[str, Callable[[float, RobotFacts, RobotFacts], float]] = {
-    "com_height": com_height,
-    "step_width": step_width,
+def tread(value: float, before: RobotFacts, after: RobotFacts) -> float:
+    """Depth of a tread for another robot: scaled, and deeper by what its soles are longer than scaled ones [m].
+
+    So no sole lands nearer to an edge; arguments as of `com_height`.
+    """
+    length = after.size.length / before.size.length
+    return length * value + max(0.0, after.foot_length - length * before.foot_length)
+
+
+_RULES: dict[Key, Callable[[float, RobotFacts, RobotFacts], float]] = {
+    ("gait", "com_height"): com_height,
+    ("gait", "step_width"): step_width,
+    ("terrain", "tread"): tread,
 }
-"""Keys of the gait that follow from more of a robot than its size."""
+"""Keys that follow from more of a robot than its size."""
+
+_POSTURE = ("com_height", "step_width")
+"""Those of them that every walk has."""
 
 
 def clock(rates: Rates, time: float) -> Rates:
@@ -214,9 +241,9 @@ def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scena
     before, after = (_facts(name, RobotSettings(), robots) for name in (REFERENCE, scenario.robot))
     gait, changed = scenario.gait, {}
     if before is not None and after is not None:
-        for name, rule in _RULES.items():
+        for name in _POSTURE:
             if name not in gait.model_fields_set:
-                changed[name] = rule(getattr(gait, name), before, after)
+                changed[name] = _RULES["gait", name](getattr(gait, name), before, after)
     rates, sample_time = _clock(scenario, size)
     update: dict[str, Any] = {
         "gait": followed.gait.model_copy(update=changed),

@@ -15,7 +15,7 @@ from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.robot import RegisteredRobots
-from surefoot.scenarios.setup.sized import clock, com_height, step_width
+from surefoot.scenarios.setup.sized import clock, com_height, step_width, tread
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.similarity import Similarity
 
@@ -89,6 +89,34 @@ def test_gains_and_rates_that_a_file_gives_are_translated_too():
     walk = read(text, "robot=small")
     assert (walk.wbc.arm_swing, walk.wbc.gains.orientation) == (2.0, (400.0, 40.0))
     assert walk.rates == Rates(physics=4000, control=2000, planner=100)
+    assert walk.planner.sample_time == 0.01
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("sized_for: [1]", "unknown robot '[1]' in sized_for"),
+        ("sized_for: humanoid100\nrobot: [small]", "robot is ['small']; give a word"),
+        ("sized_for: humanoid100\ngait: 3", "gait is 3; give a group of keys"),
+        (
+            "sized_for: humanoid100\ngait: {step_length: [1, {}]}",
+            "give a number ([1, {}] in the file, for humanoid100)",
+        ),
+        (
+            "sized_for: humanoid100\nrates: {planner: x}\nplanner: {sample_time: 1}",
+            "rates.planner is 'x'; give a rate",
+        ),
+        ("sized_for: humanoid100\ncriteria: {speed_mean: {min: [x]}}", "criteria.speed_mean"),
+        (
+            "sized_for: humanoid100\nwbc: {gains: {swing: [1, 2, 3]}, arm_swing: x}",
+            "wbc.arm_swing is 'x'; give a number",
+        ),
+    ],
+)
+def test_what_makes_no_sense_is_told_as_for_any_robot(text, told):
+    with pytest.raises(ScenarioError) as error:
+        read(text, "robot=small") if "robot" not in text else read(text)
+    assert told in str(error.value), str(error.value)
 
 
 @pytest.mark.parametrize("name", ["walk", "stairs-up", "paper-push", "waypoints", "commanded"])
@@ -134,6 +162,16 @@ def test_legs_are_bent_as_much_and_feet_no_nearer():
     assert width == pytest.approx(0.05 + 0.08 - 0.25 * full.hip_width)
     assert width - wide.foot_width >= 0.25 * (0.2 - full.foot_width)
     assert step_width(0.2, full, replace(wide, hip_width=0.01, shank_spacing=0.01, foot_width=0.01)) == 0.05
+
+
+def test_treads_are_as_deep_as_soles_ask_for():
+    robots = RegisteredRobots()
+    soles = RobotSettings(foot_length=0.2, foot_width=0.1)
+    full, other = robots.facts("humanoid100", soles), robots.facts("small", RobotSettings())
+    assert tread(0.3, full, replace(other, foot_length=0.04)) == 0.075
+    assert tread(0.3, full, replace(other, foot_length=0.06)) == pytest.approx(0.085)
+    stairs = load("stair-climbing", {"robot": "small"})
+    assert stairs.gait.step_length == stairs.terrain.tread == pytest.approx(0.05 + 0.25 * (0.22 - 0.075))
 
 
 def test_a_payload_is_no_size():

@@ -173,7 +173,6 @@ def robot() -> SimpleNamespace:
         velocity_limit=np.full(4, 10.0),
         position_lower=np.full(4, -0.6),
         position_upper=np.full(4, 2.0),
-        straight_joint_positions=np.zeros(4),
     )
 
 

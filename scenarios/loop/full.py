@@ -31,6 +31,7 @@ from surefoot.scenarios.setup.stance import (
     pressed,
     start_posture,
 )
+from surefoot.scenarios.setup.stances import check_stances
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
@@ -91,6 +92,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     parts = parts or Parts()
     body = body_of(walk.robot)
     posture = start_posture(walk, body)
+    check_stances(walk, body, posture)
     q = pressed(disturbed(posture, walk, body), walk.size.length)
     world = World(walk.true_robot, walk.true_terrain, walk.rates.physics, walk.pushes, walk.size)
     torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length)

@@ -1,8 +1,8 @@
 """Whether the joints reach the stances that a walk goes through, before it begins.
 
-Between touchdown and lift-off both feet stand, far apart: there legs, knees and ankles come to the ends of their ranges.
-Where the CoM then is follows from the pendulum on its periodic walk: with the ZMP going evenly from one foot to the other
-in double support (duration T_d), and standing still in single support (T_s),
+Between touchdown and lift-off both feet stand, far apart: there hips, knees and ankles come to the ends of their ranges.
+Where the CoM then is follows from the pendulum on its periodic walk: with the ZMP going evenly from one foot to the
+other in double support (duration T_d), and standing still in single support (T_s),
 
     at the ends of a double support it is (1/2 + k) of the way between the feet from their middle,
     along the walk  k = -S_d / (ω T_d (C_d + S_d C_s / S_s)),  sideways  k = -S_d / (ω T_d (C_d + S_d S_s / C_s)),
@@ -15,7 +15,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pinocchio as pin
 
 from surefoot.errors import ParameterError
 from surefoot.planner.types import GRAVITY, Array, Footstep
@@ -25,8 +24,12 @@ from surefoot.scenarios.setup.stance import Body
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.wbc.ik import PostureTarget
 
-MISSING = 0.015
+MISSING = 0.01
 """What a stance may lack before a walk is refused: the controller lets trunk and CoM give way by as much [m, rad]."""
+
+SPARE = 0.06
+"""How far from the ends of their ranges the legs' joints are to stay in these stances: the walk itself needs some way
+beside what its periodic likeness does [rad]."""
 
 _LOOKED_AT = 1000
 """Footsteps that are looked at; equal ones once."""
@@ -65,7 +68,9 @@ def check_stances(walk: Walk, body: Body, q: Array) -> None:
     Raises:
         ParameterError: says at which footstep, and which joint is at the end of its range.
     """
-    ik = body.ik(body.robot.nominal_joint_positions)
+    spare = np.where(body.leg_joints, SPARE, 0.0)
+    limits = replace(body.limits, lower=body.limits.lower + spare, upper=body.limits.upper - spare)
+    ik = replace(body, limits=limits).ik(body.robot.nominal_joint_positions)
     for stance in _stances(walk):
         begin = q.copy()
         begin[:2] = stance.com[:2]
@@ -80,11 +85,11 @@ def check_stances(walk: Walk, body: Body, q: Array) -> None:
 def _refusal(walk: Walk, body: Body, stance: Stance, q: Array, error: float) -> ParameterError:
     robot = body.robot
     left = np.minimum(q[7:] - robot.position_lower, robot.position_upper - q[7:])
-    ends = [robot.joint_names[j] for j in np.flatnonzero((left < _AT_END) & body.leg_joints)]
+    ends = [robot.joint_names[j] for j in np.flatnonzero((left < SPARE + _AT_END) & body.leg_joints)]
     when = "lands" if stance.landing else "bears the other one's lift-off"
     what = (
         f"robot '{robot.name}' cannot stand as it would when footstep {stance.number} {when}: "
-        f"{error:.2f} m or rad are missing"
+        f"{error:.3f} m or rad are missing"
     )
     if ends:
         what += f" with {' and '.join(repr(name) for name in ends)} at the end of their range"

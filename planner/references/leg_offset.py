@@ -26,9 +26,10 @@ from surefoot.planner.model.leg_chain import LegChain
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.swing.heel_off import bump
+from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
-from surefoot.planner.walk.phases import PhaseSamples
-from surefoot.planner.walk.queue import StepQueue
+from surefoot.planner.walk.phases import CLOCK_ROUNDING, Phase, PhaseSamples
+from surefoot.planner.walk.queue import StepQueue, unit_swing
 from surefoot.planner.walk.stepper import Deviation
 
 
@@ -99,13 +100,30 @@ def _swings(samples: PhaseSamples, queue: StepQueue) -> tuple[Array, Array, Arra
     for number in np.unique(samples.which).tolist():
         phase, here = samples.phases[number], samples.which == number
         if phase.kind is PhaseKind.SINGLE:
-            way = queue.steps[phase.step].swing.positions(samples.elapsed[here] * samples.sample_time)
+            swing, late = _swing(phase, queue, float(samples.elapsed[here][0]))
+            way = swing.positions((samples.elapsed[here] - late) * samples.sample_time)
             progress[here], height[here] = way[:, 0], way[:, 2]
         if phase.roll is not None:
             start, end, angle = phase.roll
             share = (samples.flow.clock[here] - start) / (end - start)
             pitch[here] = [angle * bump(s)[0] for s in share.tolist()]
     return progress, height, pitch
+
+
+def _swing(phase: Phase, queue: StepQueue, elapsed: float) -> tuple[SwingTrajectory, float]:
+    """The swing of a single support, and how long after the phase it begins [samples].
+
+    A foot is lifted by a plan. Of a phase that begins between two of them it has the rest, and swings the faster.
+
+    Args:
+        phase: the single support.
+        queue: the steps in sight.
+        elapsed: how long it has lasted at one of the samples [samples].
+    """
+    step, late = queue.steps[phase.step], elapsed % 1.0
+    if min(late, 1.0 - late) <= CLOCK_ROUNDING:
+        return step.swing, 0.0
+    return unit_swing(phase.samples - late, step.climb, step.course, queue.ground.parameters), late
 
 
 def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: HeightPreview, softened: Array) -> Array:

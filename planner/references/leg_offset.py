@@ -45,7 +45,7 @@ class Feet:
     Attributes:
         soles: centres of the left and the right sole as if they were level, shape (2, n, 3) [m].
         pitch: of the soles about their toe edges, shape (2, n) [rad].
-        heading: mean of both, shape (n,) [rad].
+        heading: of both, shape (2, n) [rad].
         toe: toe edge from the sole's centre [m].
     """
 
@@ -90,8 +90,7 @@ def nominal_feet(
     left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
     pitch = rolled * np.stack((~left, left))
-    turned = 0.5 * (stance[:, 3] + swing[:, 3]) - np.arctan2(rotation[1, 0], rotation[0, 0])
-    return Feet(soles[..., :3], pitch, turned, toe)
+    return Feet(soles[..., :3], pitch, soles[..., 3] - np.arctan2(rotation[1, 0], rotation[0, 0]), toe)
 
 
 def _swings(samples: PhaseSamples, queue: StepQueue) -> tuple[Array, Array, Array]:
@@ -145,7 +144,7 @@ def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: Heigh
     t = motion.sample_time
     com[0, :2] = _before(motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
     com[0, 2] = _before(height.height[:, 0], t)
-    soles, heading, pitch = feet.soles[:, : n + 1], feet.heading[: n + 1], feet.pitch[:, : n + 1]
+    soles, heading, pitch = feet.soles[:, : n + 1], feet.heading[:, : n + 1], feet.pitch[:, : n + 1]
     rate = chain.momentum_rate(com, soles, heading, t, pitch, feet.toe)
     pressing = GRAVITY + height.height[2]
     offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]

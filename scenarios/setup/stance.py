@@ -143,7 +143,7 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
     """The legs' inertia, from a standing configuration; both legs alike.
 
     The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
-    the thigh, what is below the next joint to the foot. Lateral offsets within a leg are left out.
+    the thigh, what is below the next joint to the foot. The joints of a leg count as in one plane, the CoMs of its links do not.
 
     Args:
         model: the robot.
@@ -171,6 +171,7 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
         foot_mass=left.foot.mass / total,
         foot_centre=_mirrored((left.foot.lever - left.ankle) @ R),
         ankle=_mirrored((left.ankle - left.sole) @ R),
+        foot_outward=_measured((left.foot.lever - left.ankle) @ R[:, 1]),
     )
     return LegInertia(float(np.mean([_point_mass(model, name, q, joints) for name in frames.soles])), chain)
 
@@ -209,7 +210,13 @@ def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:
 def _link(part: pin.Inertia, upper: Array, lower: Array, pitch: Array, total: float) -> Link:
     along, length = lower - upper, float(np.linalg.norm(lower - upper))
     centre = float((part.lever - upper) @ along) / length**2
-    return Link(length, part.mass / total, centre, float(pitch @ part.inertia @ pitch) / total)
+    outward = _measured((part.lever - upper - centre * along) @ pitch)
+    return Link(length, part.mass / total, centre, float(pitch @ part.inertia @ pitch) / total, outward)
+
+
+def _measured(distance: float) -> float:
+    """A distance without the rounding of where it was measured [m]."""
+    return round(float(distance), 9)
 
 
 def _mirrored(vector: Array) -> Vector:

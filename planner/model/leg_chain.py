@@ -1,8 +1,7 @@
 """A walking body as a trunk on two legs of thigh, shank and foot: its posture and angular momentum from CoM and soles.
 
 The trunk does not tilt, each knee bends to where its foot points, the feet stay level. Then the hips follow from the
-CoM, the knees from hips and soles, and with them the mass of every link: each is a rod whose momentum is bilinear in its
-two ends.
+CoM, the knees from hips and soles, and with them the mass of every link: a rod whose momentum is bilinear in its ends.
 """
 
 from dataclasses import dataclass

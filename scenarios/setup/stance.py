@@ -143,7 +143,7 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
     """The legs' inertia, from a standing configuration; both legs alike.
 
     The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
-    the thigh, what is below the next joint to the foot. The joints of a leg count as in one plane, the CoMs of its links do not.
+    the thigh, what is below the next joint to the foot. The joints of a leg count as in one plane; its CoMs do not.
 
     Args:
         model: the robot.

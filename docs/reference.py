@@ -14,6 +14,7 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from surefoot.models.robot_file.schema import RobotFile
 from surefoot.scenarios.file.schema import (
     CommandSettings,
     Fault,
@@ -66,6 +67,11 @@ def keys_table() -> str:
     return "\n".join(["| key | default | meaning |", "|---|---|---|", *_key_rows("", Scenario)])
 
 
+def robot_keys_table() -> str:
+    """Every key of a robot file with its meaning."""
+    return "\n".join(["| key | default | meaning |", "|---|---|---|", *_key_rows("", RobotFile)])
+
+
 def channels_table() -> str:
     """Every channel with its fields, shapes, units and frames."""
     return "\n\n".join(_channel(make(SIZES)) for make in CHANNELS)
@@ -97,6 +103,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "keys": ("scenarios.md", keys_table),
     "metrics": ("scenarios.md", metrics_table),
     "channels": ("log.md", channels_table),
+    "robot-keys": ("robot-files.md", robot_keys_table),
 }
 
 
@@ -161,7 +168,7 @@ def _key_row(name: str, field: FieldInfo) -> str:
 
 def _default(value: Any) -> str:
     if isinstance(value, dict):
-        return "no fall, every step, 1 s of standing"
+        return "no fall, every step, 1 s of standing" if value else "none"
     if value is None:
         return "`null`"
     if isinstance(value, tuple):

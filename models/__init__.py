@@ -1,6 +1,6 @@
 """Robot descriptions: one MJCF text per robot, read by MuJoCo and by Pinocchio."""
 
-from surefoot.models.registry import ROBOTS, UnknownRobotError, describe, robot_names
+from surefoot.models.registry import ROBOTS, UnknownRobotError, describe, explain, robot_names
 from surefoot.models.types import JointRoles, Robot, RobotDescription, RobotError, RobotOptions
 
 __all__ = [
@@ -12,5 +12,6 @@ __all__ = [
     "RobotOptions",
     "UnknownRobotError",
     "describe",
+    "explain",
     "robot_names",
 ]

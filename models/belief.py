@@ -14,8 +14,8 @@ from surefoot.models.types import Array, RobotDescription, RobotError, nearest
 def with_com_raised(description: RobotDescription, height: float) -> RobotDescription:
     """The robot with its trunk's mass sitting higher, so that the whole CoM does with an upright trunk.
 
-    The trunk is every body from the pelvis to the torso. Their CoMs move along their own z axes, which stand upright
-    in standing and nearly so in walking; masses and moments about the CoMs stay.
+    The trunk is every body from the pelvis to the torso. Their CoMs move along what is upright in them with all joints
+    at zero, and nearly so in walking; masses and moments about the CoMs stay.
 
     Args:
         description: the robot.
@@ -28,11 +28,11 @@ def with_com_raised(description: RobotDescription, height: float) -> RobotDescri
         what = f"the CoM of {description.name} shall rise by {height} m"
         raise RobotError(("height",), what, "it must be a finite height")
     root = ElementTree.fromstring(description.mjcf)
-    inertials = list(_trunk(root, description))
-    lift = height * description.mass / sum(float(inertial.attrib["mass"]) for inertial in inertials)
-    for inertial in inertials:
-        x, y, z = (float(value) for value in inertial.attrib["pos"].split())
-        inertial.set("pos", numbers((x, y, z + lift)))
+    trunk = list(_trunk(root, description))
+    lift = height * description.mass / sum(float(inertial.attrib["mass"]) for inertial, _ in trunk)
+    for inertial, up in trunk:
+        place = np.array([float(value) for value in inertial.attrib["pos"].split()])
+        inertial.set("pos", numbers(place + lift * up))
     return replace(description, mjcf=_text(root))
 
 
@@ -106,7 +106,8 @@ def with_load(description: RobotDescription, mass: float, body: str | None = Non
 
 def _scale(inertial: ElementTree.Element, factor: float) -> None:
     inertial.set("mass", repr(factor * float(inertial.attrib["mass"])))
-    inertial.set("diaginertia", numbers(factor * float(value) for value in inertial.attrib["diaginertia"].split()))
+    moments = "diaginertia" if "diaginertia" in inertial.attrib else "fullinertia"
+    inertial.set(moments, numbers(factor * float(value) for value in inertial.attrib[moments].split()))
 
 
 def _inertial(root: ElementTree.Element, description: RobotDescription, name: str) -> ElementTree.Element:
@@ -125,11 +126,22 @@ def _own(body: ElementTree.Element, description: RobotDescription) -> ElementTre
     return inertial
 
 
-def _trunk(root: ElementTree.Element, description: RobotDescription) -> Iterator[ElementTree.Element]:
-    """Inertials of the bodies that contain the torso: the way from the pelvis to it."""
+def _trunk(root: ElementTree.Element, description: RobotDescription) -> Iterator[tuple[ElementTree.Element, Array]]:
+    """Inertials of the bodies that contain the torso, the way from the pelvis to it; and what is up in each."""
+    up = np.array([0.0, 0.0, 1.0])
     for body in root.iter("body"):
         if any(inner.get("name") == description.torso_body for inner in body.iter("body")):
-            yield _own(body, description)
+            up = _seen_from(body, up)
+            yield _own(body, description), up
+
+
+def _seen_from(body: ElementTree.Element, vector: Array) -> Array:
+    """A vector of the parent's frame in that of a body with its joint at zero, shape (3,)."""
+    if "quat" not in body.attrib:
+        return vector
+    w, *axis = (float(value) for value in body.attrib["quat"].split())
+    v = np.array(axis)
+    return np.asarray(vector + 2.0 * np.cross(v, np.cross(v, vector) - w * vector))
 
 
 def _text(root: ElementTree.Element) -> str:

@@ -30,8 +30,8 @@ def world_axis(model: pin.Model, data: pin.Data, joint: int) -> Array:
 def meeting_point(model: pin.Model, data: pin.Data, joints: Sequence[int]) -> Array:
     """The point nearest to the axes of joints, in the world, shape (3,) [m].
 
-    Where axes meet it is exactly the origin of the last joint, if that lies on all of them; where they are parallel, it is
-    the nearest one to that origin.
+    Where the origin of the last joint lies on all axes, it is exactly that; where they are parallel, the point nearest
+    to that origin.
     """
     last = data.oMi[joints[-1]].translation.copy()
     A, b = np.zeros((3, 3)), np.zeros(3)
@@ -41,5 +41,5 @@ def meeting_point(model: pin.Model, data: pin.Data, joints: Sequence[int]) -> Ar
         A += across
         b += across @ (data.oMi[joint].translation - last)
     if np.abs(b).max() <= _MEET:
-        return last
+        return np.asarray(last)
     return np.asarray(last + np.linalg.lstsq(A, b, rcond=1e-9)[0])

@@ -144,6 +144,23 @@ def add_defaults(root: ElementTree.Element) -> None:
         ElementTree.SubElement(ElementTree.SubElement(top, "default", {"class": role.value}), "geom", attributes)
 
 
+def without_looks(mjcf: str) -> str:
+    """A robot's text without the meshes that are only drawn; one without such meshes as it is."""
+    root = ElementTree.fromstring(mjcf)
+    asset, drawn = root.find("asset"), set()
+    for body in root.iter("body"):
+        for geom in body.findall(f"geom[@class='{Role.VISUAL.value}'][@mesh]"):
+            drawn.add(geom.get("mesh"))
+            body.remove(geom)
+    if asset is None or not drawn:
+        return mjcf
+    for mesh in asset.findall("mesh"):
+        if mesh.get("name") in drawn:
+            asset.remove(mesh)
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
 def _add_body(parent: ElementTree.Element, body: Body) -> None:
     element = ElementTree.SubElement(parent, "body", name=body.name, pos=numbers(body.position))
     inertial = {"pos": numbers(body.inertial.com), "mass": repr(body.inertial.mass)}

@@ -6,16 +6,50 @@ Another package needs one file, with a function from options to a description, a
     my-robot = "my_package.robot:MY_ROBOT"    # MY_ROBOT = Robot("my-robot", describe)
 """
 
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 from surefoot.models.humanoid100 import HUMANOID100
 from surefoot.models.types import Robot, RobotDescription, RobotError, RobotOptions, nearest
 from surefoot.plugins import Registry
 
-ROBOTS = Registry("surefoot.robots", Robot, {HUMANOID100.name: HUMANOID100})
+if TYPE_CHECKING:
+    from surefoot.models.robot_file.build import Explanation
+
+ENDINGS = (".yaml", ".yml")
+"""Of robot files."""
+
+
+def is_file(reference: str) -> bool:
+    """Whether a reference to a robot is the path of a robot file, and no name."""
+    return reference.endswith(ENDINGS)
+
+
+def _of_file(path: Path, options: RobotOptions) -> RobotDescription:
+    from surefoot.models.robot_file.build import describe_file
+
+    return describe_file(path, options)
+
+
+SHIPPED = {file.stem: file for file in sorted((Path(__file__).parent / "robots").glob("*.yaml"))}
+"""Robot files that come with this package, by name; their models come with other packages."""
+
+ROBOTS = Registry(
+    "surefoot.robots",
+    Robot,
+    {HUMANOID100.name: HUMANOID100, **{name: Robot(name, partial(_of_file, file)) for name, file in SHIPPED.items()}},
+)
 """Every robot that `robot: NAME` of a scenario can mean."""
 
 
 class UnknownRobotError(LookupError):
     """No robot has that name."""
+
+
+def said_of(name: str) -> str:
+    """What a robot file of this package says of its robot in its first line; empty for others."""
+    return SHIPPED[name].read_text(encoding="utf-8").split("\n", 1)[0].lstrip("# ") if name in SHIPPED else ""
 
 
 def robot_names() -> tuple[str, ...]:
@@ -24,13 +58,15 @@ def robot_names() -> tuple[str, ...]:
 
 
 def describe(name: str, options: RobotOptions) -> RobotDescription:
-    """The robot of that name, built with these options.
+    """The robot of that name or robot file, built with these options.
 
     Raises:
         UnknownRobotError: no robot has that name.
         PluginError: the package that brings it cannot be used.
         RobotError: an option is out of range, or the description contradicts itself.
     """
+    if is_file(name):
+        return _of_file(Path(name), options)
     try:
         robot = ROBOTS[name]
     except KeyError:
@@ -39,3 +75,16 @@ def describe(name: str, options: RobotOptions) -> RobotDescription:
     if description.name != name:
         raise RobotError(("name",), f"robot '{name}' describes itself as '{description.name}'", "use one name for both")
     return description
+
+
+def explain(name: str) -> "Explanation":
+    """A robot by name or robot file, with what of its description was derived and what else is to be known.
+
+    Raises:
+        UnknownRobotError, PluginError, RobotError: as of `describe`.
+    """
+    from surefoot.models.robot_file.build import Explanation, explain
+
+    if is_file(name) or name in SHIPPED:
+        return explain(SHIPPED.get(name, Path(name)))
+    return Explanation(describe(name, RobotOptions()), (), ())

@@ -222,7 +222,7 @@ def walk_pendulum(
         state = CentroidalState(now, position, np.append(pendulum.velocity, end.com_velocity[2]))
         ideal.follow(sampler, now)
         rows.append((now, position, pendulum.zmp, end.zmp_reference, margin))
-        if pendulum.fallen(plans[-1].support_polygon, end.omega):
+        if pendulum.fallen(plans[-1].support_polygon, end.omega, planner.parameters.size.length):
             fall_time = now
     time, positions, zmp, reference, margins = (np.array(column) for column in zip(*rows, strict=True))
     return PendulumTrace(time, positions, zmp, reference, margins, fall_time, tuple(plans))

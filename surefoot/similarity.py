@@ -1,9 +1,10 @@
 """Froude similarity: what becomes of any quantity when the same walk is walked by a robot of another size and mass.
 
-Gravity is the same for all, so that times grow with the root of lengths; lengths and masses are free. A unit therefore
-says all: a quantity in m^a s^b kg^c grows with λ^(a + b/2) μ^c, where λ is the length and μ the mass of a robot over
-those of the reference (R. McNeill Alexander, "Principles of Animal Locomotion", 2003, chapter 4). Every number of this
-project that is a length, a time, a force or the like is written down for the reference robot, once, beside its unit.
+Gravity is the same for all, so that times grow with the root of lengths, τ = √λ; lengths and masses are free. A unit
+therefore says all: a quantity in m^a s^b kg^c grows with λ^a τ^b μ^c, where λ is the length and μ the mass of a robot
+over those of the reference (R. McNeill Alexander, "Principles of Animal Locomotion", 2003, chapter 4). Every number of
+this project that is a length, a time, a force or the like is written down for the reference robot, once, beside its
+unit.
 """
 
 import math
@@ -23,20 +24,26 @@ REFERENCE = "humanoid100"
 LEG_LENGTH, MASS = 0.94, 100.0
 """Its leg from hip centre to sole [m] and its mass [kg]."""
 
+PLANS = 50
+"""Plans that the reference robot makes in a second."""
+
 _DECIMALS = 9
 """Sizes are rounded to so many, so that the reference robot has exactly 1 whatever rounding its sums have."""
 
-_EXPONENTS: Mapping[str, tuple[float, float]] = {
-    "m": (1.0, 0.0),
-    "s": (0.5, 0.0),
-    "kg": (0.0, 1.0),
-    "N": (0.0, 1.0),
-    "J": (1.0, 1.0),
-    "W": (0.5, 1.0),
-    "Hz": (-0.5, 0.0),
-    **dict.fromkeys(("", "-", "1", "rad", "deg", "sample"), (0.0, 0.0)),
+Exponents = tuple[int, int, int]
+"""Of length, time and mass."""
+
+_EXPONENTS: Mapping[str, Exponents] = {
+    "m": (1, 0, 0),
+    "s": (0, 1, 0),
+    "kg": (0, 0, 1),
+    "N": (1, -2, 1),
+    "J": (2, -2, 1),
+    "W": (2, -3, 1),
+    "Hz": (0, -1, 0),
+    **dict.fromkeys(("", "-", "1", "rad", "deg", "sample"), (0, 0, 0)),
 }
-"""Exponents of length and mass of each unit."""
+"""Of the units that others are made of."""
 
 _FACTOR = re.compile(r"(?:\((?P<group>[^()]*)\)|(?P<name>[A-Za-z]*|-|1))(?:\^(?P<power>[0-9]+))?")
 
@@ -68,12 +75,12 @@ class Similarity:
 
     @property
     def time(self) -> float:
-        """Factor of a time [-]."""
-        return math.sqrt(self.length)
+        """τ, factor of a time: √λ as nearly as rates of planner and controller can be whole numbers [-].
 
-    def over(self, other: "Similarity") -> "Similarity":
-        """What it is against another one's."""
-        return Similarity(self.length / other.length, self.mass / other.mass)
+        So that each phase of a walk lasts as many samples as that of the reference robot, which is worth more than the
+        last half percent: half a sample more in each phase doubles how far the CoP wanders.
+        """
+        return PLANS / max(1, round(PLANS / math.sqrt(self.length)))
 
     def factor(self, unit: str) -> float:
         """By what a quantity of this unit is greater than the reference's, exactly 1 for the reference [-].
@@ -81,8 +88,8 @@ class Similarity:
         Raises:
             ValueError: the unit is not known.
         """
-        length, mass = exponents(unit)
-        return float(self.length**length * self.mass**mass)
+        length, time, mass = exponents(unit)
+        return float(self.length**length * self.time**time * self.mass**mass)
 
     def scaled(self, group: T) -> T:
         """A dataclass whose fields have units (see `quantity`), for this size: each number times its unit's factor.
@@ -111,24 +118,24 @@ class Similarity:
 
 
 @lru_cache(maxsize=256)
-def exponents(unit: str) -> tuple[float, float]:
-    """Exponents of λ and μ of a unit such as "m/s^2", "1/(N·m)^2", "N·s/kg" or "-".
+def exponents(unit: str) -> Exponents:
+    """Exponents of λ, τ and μ of a unit such as "m/s^2", "1/(N·m)^2", "N·s/kg" or "-".
 
     Raises:
         ValueError: it is none of these.
     """
-    length, mass, sign = 0.0, 0.0, 1.0
+    length, time, mass = 0, 0, 0
     for index, part in enumerate(_outside(unit.strip(), "/")):
-        sign = 1.0 if index == 0 else -1.0
+        sign = 1 if index == 0 else -1
         for term in _outside(part.replace(" ", "·"), "·"):
             found = _FACTOR.fullmatch(term)
             group = found["group"] if found else None
             if found is None or (group is None and found["name"] not in _EXPONENTS):
                 raise ValueError(f"'{unit}' is no unit that is known; write it with {', '.join(_EXPONENTS)}")
             own = exponents(group) if group is not None else _EXPONENTS[found["name"]]
-            power = sign * float(found["power"] or 1)
-            length, mass = length + power * own[0], mass + power * own[1]
-    return length, mass
+            power = sign * int(found["power"] or 1)
+            length, time, mass = length + power * own[0], time + power * own[1], mass + power * own[2]
+    return length, time, mass
 
 
 def _outside(text: str, mark: str) -> list[str]:

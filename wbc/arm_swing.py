@@ -15,15 +15,17 @@ class ArmSwing:
     sole is ahead of the right one along the pelvis. It needs no phase: it starts, stops and turns with the feet.
 
     Attributes:
-        joints: indices of the left and right shoulder pitch among the actuated joints; positive angles swing back.
+        joints: indices of the left and right shoulder pitch among the actuated joints.
         gain: a [rad/m].
+        back: sign of the angles that swing the left and the right arm back.
     """
 
     joints: tuple[int, int]
     gain: float
+    back: tuple[float, float] = (1.0, 1.0)
 
     def offset(self, terms: RobotTerms) -> tuple[float, float]:
-        """Angle of the left shoulder from the posture and its rate [rad, rad/s]; the right one mirrors it."""
+        """How far the left arm is swung back from the posture, and its rate [rad, rad/s]; the right one mirrors it."""
         forward = terms.base_rotation[:, 0]
         x, y = forward[:2].tolist()
         length = float(np.hypot(x, y))

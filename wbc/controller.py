@@ -102,6 +102,7 @@ class WholeBodyController:
         limbs: pin.GeometryModel | None = None,
         arm_joints: tuple[int, int] | None = None,
         tasks: Sequence[Task] = (),
+        arm_back: tuple[float, float] = (1.0, 1.0),
     ) -> None:
         """Build the QP for a robot.
 
@@ -115,8 +116,8 @@ class WholeBodyController:
             control_period: time between two updates [s].
             parameters: weights and gains.
             limbs: shapes with the collision pairs that are kept apart; None looks at none.
-            arm_joints: which joints are the left and the right shoulder pitch, positive angles swinging back; None for
-                arms that do not swing.
+            arm_joints: which joints are the left and the right shoulder pitch; None for arms that do not swing.
+            arm_back: sign of the angles of these that swing the arms back.
             tasks: others, after the default ones.
 
         Raises:
@@ -133,7 +134,7 @@ class WholeBodyController:
         self._hard = HardConstraints(self.qp, self.layout, _cones(sole, size), limits, parameters.contact)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
-        arms = ArmSwing(arm_joints, parameters.arm_swing) if arm_joints and parameters.arm_swing else None
+        arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and parameters.arm_swing else None
         weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
         default = default_tasks(weights, gains, parameters.balance, self._region, toe, size.length)
         diagonal = (

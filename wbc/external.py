@@ -149,7 +149,7 @@ class LoadObserver:
 def _ramp(values: Array, limits: tuple[Any, ...]) -> Array:
     """Values of which nothing counts up to the first limit, all from the second one on."""
     none, full = limits
-    return values * np.clip((np.abs(values) - none) / (full - none), 0.0, 1.0)
+    return np.asarray(values * np.clip((np.abs(values) - none) / (full - none), 0.0, 1.0))
 
 
 def _median(spans: Array) -> Array:

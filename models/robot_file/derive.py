@@ -1,25 +1,27 @@
 """From a robot file to a description: everything that the file does not say, derived from the model."""
 
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.models.robot_file.legs import SIDES, Leg, at, find_legs, rest, solved
-from surefoot.models.robot_file.reduced import Reduced, points_of, reduced
+from surefoot.models.robot_file.legs import at, find_legs, rest, solved
+from surefoot.models.robot_file.meshes import decimated
+from surefoot.models.robot_file.reduced import SITES, Reduced, reduced
 from surefoot.models.robot_file.schema import RobotFile, matched
+from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.source import read_source
-from surefoot.models.robot_file.text import IMU, Parts, robot_text
-from surefoot.models.robot_file.touch import Hull, find_hulls, overlapping, shape_name
-from surefoot.models.robot_file.upper import Upper, find_upper, hanging, swings
+from surefoot.models.robot_file.text import Parts, robot_text
+from surefoot.models.robot_file.touch import Hull, find_hulls, kept_apart, limbs, overlapping, shank_spacing
+from surefoot.models.robot_file.upper import find_upper, hanging, swings
 from surefoot.models.types import Array, JointRoles, RobotDescription, RobotError, nearest
 
 BEND = 0.65
 """Bend of the knees in walking, as that of humanoid100, whose CoM is then 1.00 m above its soles [rad]."""
 
 HANGING, _WIDER, _WIDEST = 0.12, 0.05, 0.8
-"""Angle of the arms from the vertical in front view, by what it grows until they are free, and where that ends [rad]."""
+"""Angle of the arms from the vertical in front view, by what it grows until they are free, and its end [rad]."""
 
 _CLEAR = 0.01
 """Distance that upright shanks keep, over the leg's length of humanoid100 [m]."""
@@ -31,8 +33,7 @@ _REFERENCE = 0.94
 """Length of the leg of humanoid100, in which the lengths above are given [m]."""
 
 
-@dataclass(frozen=True, slots=True)
-class Derived:
+class Derived(NamedTuple):
     """A description, and how it came to be.
 
     Attributes:
@@ -59,6 +60,11 @@ def derive(file: RobotFile, path: Path) -> Derived:
     source = read_source(file, path)
     model = reduced(file, source, path)
     return _Deriver(file, model).derived()
+
+
+def source_model(file: RobotFile, path: Path) -> pin.Model:
+    """The model of a file as its text is made of it: reduced, with x of the base ahead; for comparisons."""
+    return reduced(file, read_source(file, path), path).model
 
 
 class _Deriver:
@@ -160,9 +166,20 @@ class _Deriver:
             sole=(self.sole[0], self.sole[1]),
             height=self.leg_length - float(self.legs[0].hip[2]),
             hulls=self.hulls if hulls is None else hulls,
-            looks=self.reduced.visual if looks else nothing,
+            looks=self._looks() if looks else nothing,
             excluded=excluded,
         )
+
+    def _looks(self) -> list[list[Shape]]:
+        """What is drawn, with as many triangles as a viewer needs."""
+        joints = [joint for joint, group in enumerate(self.reduced.visual) for _ in group]
+        shapes = [shape for group in self.reduced.visual for shape in group]
+        small = decimated([(shape.vertices, shape.faces) for shape in shapes])
+        looks: list[list[Shape]] = [[] for _ in range(self.model.njoints)]
+        for joint, shape, (vertices, faces) in zip(joints, shapes, small, strict=True):
+            if len(faces):
+                looks[joint].append(Shape(shape.link, vertices, faces, shape.rgba))
+        return looks
 
     def _excluded(self, postures: list[Array]) -> list[tuple[str, str]]:
         bodies = {joint: self.reduced.bodies[joint - 1] for joint in self.hulls}
@@ -179,52 +196,11 @@ class _Deriver:
         leg = self.legs[0]
         return float(com[2] - (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[2])
 
-    def _shank_spacing(self, straight: Array) -> float:
-        """Lateral distance of the soles at which upright shanks keep apart [m]."""
-        data, inner = at(self.model, straight), []
-        for side, leg in zip((1.0, -1.0), self.legs, strict=True):
-            knee = leg.joints[leg.knee]
-            sole = (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[1]
-            points = self.hulls[knee].vertices if knee in self.hulls else np.zeros((1, 3))
-            reach = points @ data.oMi[knee].rotation[1] + data.oMi[knee].translation[1]
-            inner.append(float(side * (sole - (side * reach).min() * side)))
-        return max(sum(inner) + _CLEAR * self.leg_length / _REFERENCE, self.sole[1])
-
-    def _kept_apart(self, excluded: list[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
-        """Names of pairs of contact shapes that can meet in walking, as far as they do not overlap for good."""
-        shapes = {joint: shape_name(self.reduced.bodies[joint - 1]) for joint in self.hulls}
-        pairs: list[tuple[str, str]] = []
-        if self.file.keep_apart is not None:
-            for one, other in self.file.keep_apart:
-                joints = [self.reduced.joint_of(link, "keep_apart") for link in (one, other)]
-                missing = [link for joint, link in zip(joints, (one, other), strict=True) if joint not in shapes]
-                if missing:
-                    what = f"keep_apart of {self.file.name} names '{missing[0]}', which has no contact shape"
-                    links = tuple(self.reduced.bodies[joint - 1] for joint in shapes)
-                    raise RobotError(("keep_apart",), what, nearest(missing[0], links))
-                pairs.append((shapes[joints[0]], shapes[joints[1]]))
-            return tuple(pairs)
-        thighs, shanks = ([leg.joints[leg.knee + offset] for leg in self.legs] for offset in (-1, 0))
-        joints = [tuple(thighs), tuple(shanks)]
-        for arm, thigh in zip(self.upper.arms, thighs, strict=False):
-            joints += [(joint, thigh) for joint in self._lower_arm(arm)]
-        apart = {frozenset(pair) for pair in excluded}
-        for one, other in joints:
-            names = frozenset((self.reduced.bodies[one - 1], self.reduced.bodies[other - 1]))
-            if one in shapes and other in shapes and names not in apart:
-                pairs.append((shapes[one], shapes[other]))
-        soles = [f"{side}_sole_box" for side in SIDES]
-        pairs.append((soles[0], soles[1]))
-        pairs += [(soles[side], shapes[shanks[1 - side]]) for side in (0, 1) if shanks[1 - side] in shapes]
-        return tuple(pairs)
-
-    def _lower_arm(self, arm: tuple[int, ...]) -> list[int]:
-        """The hand and the largest link of the lower half of an arm, of those with contact shapes."""
-        hulls = [joint for joint in arm[len(arm) // 2 :] if joint in self.hulls]
-        if not hulls:
-            return []
-        largest = max(hulls, key=lambda joint: float(np.prod(np.ptp(self.hulls[joint].vertices, axis=0))))
-        return sorted({hulls[-1], largest})
+    def _meeting(self, excluded: list[tuple[str, str]]) -> list[tuple[int, int]]:
+        """Limbs that can meet, but for those that overlap for good."""
+        apart, bodies = {frozenset(pair) for pair in excluded}, self.reduced.bodies
+        pairs = limbs(self.legs, self.upper, self.hulls)
+        return [pair for pair in pairs if frozenset(bodies[joint - 1] for joint in pair) not in apart]
 
     def _roles(self, posture: Array) -> JointRoles:
         names = self.model.names
@@ -245,6 +221,7 @@ class _Deriver:
     ) -> RobotDescription:
         model = self.model
         left, right = self.legs
+        room = _CLEAR * self.leg_length / _REFERENCE
         return RobotDescription(
             name=self.file.name,
             mjcf=mjcf,
@@ -255,20 +232,20 @@ class _Deriver:
             velocity_limit=fixed(model.upperVelocityLimit[6:]),
             position_lower=fixed(model.lowerPositionLimit[7:]),
             position_upper=fixed(model.upperPositionLimit[7:]),
-            sole_sites=("left_sole", "right_sole"),
+            sole_sites=(SITES[1], SITES[2]),
             sole_length=self.sole[0],
             sole_width=self.sole[1],
             pelvis_body=self.reduced.bodies[0],
             torso_body=self.reduced.bodies[self.upper.torso - 1],
-            imu_site=IMU,
+            imu_site=SITES[0],
             hip_width=float(np.linalg.norm(left.hip - right.hip)),
             leg_length=self.leg_length,
-            shank_spacing=self._shank_spacing(straight),
+            shank_spacing=shank_spacing(at(model, straight), self.legs, self.hulls, room),
             nominal_joint_positions=fixed(posture),
             straight_joint_positions=fixed(straight),
             com_height=com_height,
             bodies=self.reduced.bodies,
-            kept_apart=self._kept_apart(excluded),
+            kept_apart=kept_apart(self.reduced, self.file, self.hulls, self._meeting(excluded), self.legs),
         )
 
     def _say(self, robot: RobotDescription, excluded: list[tuple[str, str]]) -> None:

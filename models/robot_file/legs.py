@@ -100,7 +100,7 @@ def _leg(reduced: Reduced, file: RobotFile, side: int, chain: tuple[int, ...]) -
 
 
 def _longest(model: pin.Model, chain: tuple[int, ...], knee: int) -> float:
-    """Angle of the knee at which hip and ankle are farthest apart: their distance squared is a + b cos + c sin of it."""
+    """Angle of the knee at which hip and ankle are farthest apart; the distance squared is a + b cos + c sin of it."""
     squares = []
     for angle in (0.0, np.pi / 2, np.pi):
         angles = rest(model)
@@ -151,7 +151,7 @@ def _check_sides(reduced: Reduced, file: RobotFile, legs: list[Leg]) -> None:
 
 
 def solved(model: pin.Model, leg: Leg, angles: Array, bend: float) -> Array:
-    """Angles with the knee bent, the ankle straight below the hip, the sole level and pointing ahead, shape (nj,) [rad].
+    """Angles with the knee bent, the ankle right below the hip, the sole level and pointing ahead, shape (nj,) [rad].
 
     Damped Gauss-Newton; what the leg's joints and limits do not allow stays as near as it gets.
     """

@@ -2,7 +2,8 @@
 
 A CAD system's meshes have some hundred thousand triangles, of which a viewer needs a twentieth. Vertices in one cell of
 a grid much finer than the triangles to be become one first: that closes seams between parts, drops what is too small to
-be seen, and takes a fraction of the time. Quadric edge collapse (Garland and Heckbert, 1997) does the rest.
+be seen, and takes a fraction of the time. Quadric edge collapse (Garland and Heckbert, 1997) does the rest: first up to
+one error for all meshes, so that each keeps the triangles that it needs, then down to the number that there may be.
 """
 
 import re
@@ -26,6 +27,12 @@ MOST_FACES = 25_000
 GRID = 0.1
 """Side of the cells in which vertices become one, over the edge of the triangles to be [-]."""
 
+PRECISION = 0.08
+"""Unit of length for the thresholds of the collapse, over the root of the robot's area: smaller is finer [-]."""
+
+_CAREFUL, _WILLING = 3.0, 5.0
+"""How the thresholds of the collapse grow: so that it ends at what can be seen, or at the number that is asked for."""
+
 _PACKED = 21
 """Bits of each of the three coordinates of a cell in one integer."""
 
@@ -43,10 +50,11 @@ def decimated(parts: Sequence[Triangles], most_faces: int = MOST_FACES) -> tuple
     areas = np.array([_area(part) for part in parts])
     if not areas.sum() > 0.0:
         return tuple(parts)
-    cell = GRID * np.sqrt(2.0 * areas.sum() / most_faces)
-    coarse = [merged(part, cell) for part in parts]
-    shares = _shares(np.array([len(faces) for _, faces in coarse]), np.sqrt(areas), most_faces)
-    return tuple(_collapsed(part, share) for part, share in zip(coarse, shares.tolist(), strict=True))
+    size = float(np.sqrt(areas.sum()))
+    coarse = [merged(part, GRID * size * np.sqrt(2.0 / most_faces)) for part in parts]
+    plain = [_collapsed(part, 0, size * PRECISION, _CAREFUL) for part in coarse]
+    share = most_faces / max(sum(len(faces) for _, faces in plain), most_faces)
+    return tuple(_collapsed(part, round(share * len(part[1])), size, _WILLING) for part in plain)
 
 
 def hull(vertices: Array, most: int) -> Triangles:
@@ -119,26 +127,14 @@ def _outermost(corners: Array, most: int) -> Array:
     return farthest_out
 
 
-def _shares(wanted: NDArray[np.int_], weights: Array, most: int) -> NDArray[np.int64]:
-    """Triangles for each mesh: by its weight, and what some do not need for the others; never more than it has."""
-    share = np.zeros(len(wanted))
-    hungry = np.ones(len(wanted), dtype=bool)
-    while hungry.any():
-        share[hungry] = weights[hungry] * (most - share[~hungry].sum()) / weights[hungry].sum()
-        full = hungry & (share >= wanted)
-        if not full.any():
-            break
-        share[full], hungry[full] = wanted[full], False
-    return share.astype(np.int64)
-
-
-def _collapsed(part: Triangles, most: int) -> Triangles:
+def _collapsed(part: Triangles, least: int, size: float, aggressiveness: float) -> Triangles:
+    """A mesh whose edges are collapsed until it has `least` triangles, or until that would be seen at this size [m]."""
     vertices, faces = part
-    if len(faces) <= most:
+    if len(faces) <= max(least, 4):
         return part
-    size = float(np.ptp(vertices, axis=0).max())  # the thresholds of the library are for meshes of about unit size
-    vertices, faces = fast_simplification.simplify(vertices / size, faces.astype(np.int32), target_count=max(most, 4))
-    return _used(np.asarray(size * vertices, dtype=np.float64), np.asarray(faces, dtype=np.int64))
+    scaled, corners = vertices / size, faces.astype(np.int32)
+    scaled, corners = fast_simplification.simplify(scaled, corners, target_count=max(least, 4), agg=aggressiveness)
+    return _used(np.asarray(size * scaled, dtype=np.float64), np.asarray(corners, dtype=np.int64))
 
 
 def _used(vertices: Array, faces: Faces) -> Triangles:

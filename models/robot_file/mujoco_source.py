@@ -1,4 +1,4 @@
-"""An MJCF as a Pinocchio model: what MuJoCo compiled, with its defaults and includes, and not what another reader makes of it."""
+"""An MJCF as a Pinocchio model: what MuJoCo compiled of it, with all defaults and includes."""
 
 from pathlib import Path
 
@@ -128,7 +128,8 @@ class _Reader:
     def _add_shapes(self, source: Source) -> None:
         """Sort the geoms into what touches and what is only drawn."""
         mj = self._mj
-        visual, collision = [], []
+        visual: list[Shape] = []
+        collision: list[Shape] = []
         for geom in range(mj.ngeom):
             if mj.body_rootid[mj.geom_bodyid[geom]] == self._root:
                 touches = mj.geom_contype[geom] or mj.geom_conaffinity[geom]

@@ -8,6 +8,9 @@ from pathlib import Path
 from surefoot.models.types import RobotError
 
 SCHEME = "package://"
+_EXTRA = ("jvrc_description", "fourier_robot_descriptions")
+"""Packages of the extra that brings more robots."""
+
 _SHARES = ("cmeel.prefix/share", "share")
 """Folders of an environment in which packages put their data, from those of ``sys.path``."""
 
@@ -33,9 +36,9 @@ def resolve(reference: str, beside: Path, key: str = "model") -> Path:
     if roots:
         return roots[0] / rest
     what = f"{key} {reference}: package '{name}' is not installed"
-    raise RobotError(
-        (key,), what, f"install it, for example with pip, or set ROS_PACKAGE_PATH to the folder of '{name}'"
-    )
+    if name in _EXTRA:
+        raise RobotError((key,), what, "pip install 'surefoot[robots]'")
+    raise RobotError((key,), what, f"install it, or name in ROS_PACKAGE_PATH the folder that holds '{name}'")
 
 
 def _roots(name: str, beside: Path) -> list[Path]:

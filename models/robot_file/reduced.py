@@ -1,7 +1,6 @@
 """A model with the joints that walk: others locked, limits and rotors complete, x of the base ahead."""
 
 import fnmatch
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,11 +8,20 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.models.joints import is_revolute
-from surefoot.models.robot_file.paths import resolve
+from surefoot.models.robot_file.files import srdf_of
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.robot_file.source import Source
 from surefoot.models.types import Array, RobotError, nearest
+
+SITES = ("imu", "left_sole", "right_sole")
+"""Of every description."""
+
+_LEAST = 1e-10
+"""Mass [kg] and moment of inertia [kg m^2] that a body has to have."""
+
+_BALL = 0.02
+"""Radius of gyration that a repaired body gets [m]."""
 
 _TURNS = {"x": 0, "y": 1, "-x": 2, "-y": 3}
 """Quarter turns about z from the base's x to the axis that points ahead."""
@@ -73,7 +81,7 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     full, notes = source.model, source.notes
     names = tuple(full.names)[2:]
     _set_limits(full, file, names)
-    srdf = _srdf(file, path)
+    srdf = srdf_of(file, path)
     rotors, states = _read_srdf(srdf, names)
     _set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
     feet = file.soles()
@@ -92,7 +100,8 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     _require_limits(model)
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
     turned = _turn(model, frames, file, notes)
-    bodies = tuple(_body(full, full.getJointId(name)) for name in tuple(model.names)[1:])
+    bodies = tuple(_body(full, full.getJointId(name), names) for name in tuple(model.names)[1:])
+    _require_inertias(model, bodies, file, notes)
     visual, collision = (_by_joint(model, shapes) for shapes in (source.visual, source.collision))
     return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes)
 
@@ -104,23 +113,6 @@ def _set_limits(model: pin.Model, file: RobotFile, names: tuple[str, ...]) -> No
             values[model.joints[model.getJointId(name)].idx_v] = value
         setattr(model, f"upper{field}", values)
         setattr(model, f"lower{field}", -values)
-
-
-def _srdf(file: RobotFile, path: Path) -> Path | None:
-    """The SRDF that the file names, or the one beside the model that is of a robot of its name.
-
-    Raises:
-        RobotError: the file names one that is not there.
-    """
-    if file.srdf is not None:
-        place = resolve(file.srdf, path.parent, "srdf")
-        if not place.is_file():
-            raise RobotError(("srdf",), f"srdf {file.srdf} of {file.name} is not there", f"put it at {place}")
-        return place
-    of = re.search(r'<robot\b[^>]*\bname\s*=\s*"([^"]*)"', path.read_text(encoding="utf-8"))
-    beside = [*path.parent.glob("*.srdf"), *(path.parent.parent / "srdf").glob("*.srdf")]
-    named = [place for place in sorted(beside) if of and f'name="{of[1]}"' in place.read_text(encoding="utf-8")[:2000]]
-    return named[0] if len(named) == 1 else None
 
 
 def _read_srdf(path: Path | None, names: tuple[str, ...]) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
@@ -242,8 +234,8 @@ def _require_limits(model: pin.Model) -> None:
         values = getattr(model, key)[6:]
         unknown = [name for name, value in zip(tuple(model.names)[2:], values, strict=True) if not 0.0 < value < np.inf]
         if unknown:
-            others = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
-            said = f"joint '{unknown[0]}'{others} of {model.name} have no {what} limit"
+            others, have = (f" and {len(unknown) - 1} more", "have") if len(unknown) > 1 else ("", "has")
+            said = f"joint '{unknown[0]}'{others} of {model.name} {have} no {what} limit"
             raise RobotError((f"{what}_limit",), said, f"give {what}_limit: {{PATTERN: {unit}}}; '*' means every joint")
     pairs = zip(tuple(model.names)[2:], model.lowerPositionLimit[7:], model.upperPositionLimit[7:], strict=True)
     for name, lower, upper in pairs:
@@ -251,6 +243,29 @@ def _require_limits(model: pin.Model) -> None:
             raise RobotError(
                 ("model",), f"joint '{name}' of {model.name} turns from {lower} to {upper} rad", "give limits"
             )
+
+
+def _require_inertias(model: pin.Model, bodies: tuple[str, ...], file: RobotFile, notes: list[str]) -> None:
+    """Refuse bodies without inertia, or give them that of a small ball.
+
+    Raises:
+        RobotError: one has none, and no mass either or is not to be repaired.
+    """
+    for joint, body in enumerate(bodies, start=1):
+        inertia = model.inertias[joint]
+        least = float(np.linalg.eigvalsh(inertia.inertia)[0])
+        if inertia.mass > _LEAST and least > _LEAST:
+            continue
+        if file.inertia == "refuse" or inertia.mass <= _LEAST:
+            what = (
+                f"link '{body}' of {file.name} moves with {inertia.mass:g} kg and a least moment of {least:.2g} kg m^2"
+            )
+            lock = f"lock joint '{model.names[joint]}'" if joint > 1 else "check the model"
+            mass = ", or write 'inertia: repair'" if inertia.mass > _LEAST else ""
+            raise RobotError(("inertia",), what, f"give it an inertia, {lock}{mass}")
+        ball = inertia.mass * _BALL**2
+        model.inertias[joint] = pin.Inertia(inertia.mass, inertia.lever, inertia.inertia + ball * np.eye(3))
+        notes.append(f"link '{body}' has no moment of inertia in the model, and that of a ball of {_BALL} m here")
 
 
 def _turn(model: pin.Model, feet: tuple[int, ...], file: RobotFile, notes: list[str]) -> float:
@@ -280,12 +295,13 @@ def _turn(model: pin.Model, feet: tuple[int, ...], file: RobotFile, notes: list[
     for frame in model.frames:
         if frame.parentJoint == 1 and frame.type != pin.FrameType.JOINT:
             frame.placement = back * frame.placement
-    return quarter * np.pi / 2
+    return float(quarter * np.pi / 2)
 
 
-def _body(model: pin.Model, joint: int) -> str:
-    """Name of the link that a joint moves."""
-    return next(f.name for f in model.frames if f.parentJoint == joint and f.type == pin.FrameType.BODY)
+def _body(model: pin.Model, joint: int, taken: tuple[str, ...]) -> str:
+    """Name of the link that a joint moves; another where a joint or site has it, since frames are found by name."""
+    name = str(next(f.name for f in model.frames if f.parentJoint == joint and f.type == pin.FrameType.BODY))
+    return f"{name}_link" if name in (*taken, *SITES) else name
 
 
 def _by_joint(model: pin.Model, shapes: tuple[Shape, ...]) -> tuple[tuple[Shape, ...], ...]:

@@ -24,8 +24,8 @@ class _Group(BaseModel):
 class Feet(_Group):
     """The links that carry the soles."""
 
-    left: str
-    right: str
+    left: str = Field(description="link that carries the left sole")
+    right: str = Field(description="link that carries the right sole")
 
 
 class Sole(_Group):
@@ -41,6 +41,7 @@ class Sole(_Group):
 class RobotFile(_Group):
     """A robot, as its owner describes it: `name`, `model` and `feet`; all else follows from the model unless given.
 
+    A file of a robot that is known by name, in another size, has `name`, `model` and `scale` alone.
     Patterns are names of joints with `*` for anything; where several match, the last one counts.
     """
 
@@ -133,7 +134,8 @@ def _refusal(path: Path, fault: Any, lines: Mapping[tuple[str, ...], int]) -> Ro
     place = f"{path}:{lines[known]}" if known else str(path)
     dotted = ".".join(known or key[:1])
     if fault["type"] == "extra_forbidden":
-        group = {(): RobotFile, ("feet",): Feet, ("sole",): Sole}.get(key[:-1], RobotFile)
+        groups: dict[tuple[str, ...], type[BaseModel]] = {("feet",): Feet, ("sole",): Sole}
+        group = groups.get(key[:-1], RobotFile)
         return RobotError(key, f"{place}: unknown key '{'.'.join(key)}'", nearest(key[-1], tuple(group.model_fields)))
     if fault["type"] == "missing":
         return RobotError(key, f"{place}: lacks {'.'.join(key)}", f"give {_example(key)}")

@@ -1,4 +1,4 @@
-"""Shapes of links as triangles: meshes as they are, and boxes, cylinders, spheres and the like as hulls of some points."""
+"""Shapes of links as triangles: meshes as they are, boxes, cylinders, spheres and the like as hulls of some points."""
 
 import itertools
 import math
@@ -9,13 +9,14 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
+from surefoot.models.robot_file.meshes import Faces, colour_in_file, hull
 from surefoot.models.robot_file.paths import resolve
 from surefoot.models.types import Array, RobotError
 
-GREY = (0.7, 0.7, 0.72, 1.0)
+Colour = tuple[float, float, float, float]
+
+GREY: Colour = (0.7, 0.7, 0.72, 1.0)
 _STL_HEAD = 84
 _STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
@@ -35,40 +36,31 @@ class Shape:
 
     link: str
     vertices: Array
-    faces: NDArray[np.int64]
-    rgba: tuple[float, float, float, float] = GREY
+    faces: Faces
+    rgba: Colour = GREY
 
 
-def solid(link: str, points: Array, placement: pin.SE3, rgba: tuple[float, float, float, float] = GREY) -> Shape:
+def solid(link: str, points: Array, placement: pin.SE3, rgba: Colour = GREY) -> Shape:
     """The convex hull of points that are given in a frame of their own."""
-    return Shape(link, placed(points, placement), hull_faces(points), rgba)
+    vertices, faces = hull(points, len(points))
+    return Shape(link, placed(vertices, placement), faces, rgba)
 
 
 def placed(points: Array, placement: pin.SE3) -> Array:
     """Points of one frame in another, shape (n, 3) [m]."""
-    return points @ placement.rotation.T + placement.translation
-
-
-def hull_faces(points: Array) -> NDArray[np.int64]:
-    """Triangles of the convex hull, normals outward."""
-    hull = ConvexHull(points)
-    faces = hull.simplices.astype(np.int64)
-    corners = points[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    inward = np.einsum("ij,ij->i", normals, hull.equations[:, :3]) < 0.0
-    faces[inward] = faces[inward][:, ::-1]
-    return faces
+    return np.asarray(points @ placement.rotation.T + placement.translation)
 
 
 def box(x: float, y: float, z: float) -> Array:
     """Corners of a box with these full lengths."""
-    return _CORNERS * np.array([x, y, z]) / 2
+    return np.asarray(_CORNERS * np.array([x, y, z]) / 2)
 
 
 def ellipsoid(a: float, b: float, c: float) -> Array:
     """Points of an ellipsoid with these semi-axes along x, y and z; poles and equator among them."""
     rings = [_ring(math.cos(v), math.sin(v)) for v in np.linspace(-math.pi / 2, math.pi / 2, 13)[1:-1]]
-    return np.concatenate((*rings, [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])) * np.array([a, b, c])
+    unit = np.concatenate((*rings, [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]))
+    return np.asarray(unit * np.array([a, b, c]))
 
 
 def cylinder(radius: float, length: float) -> Array:
@@ -89,7 +81,7 @@ def _ring(radius: float, height: float) -> Array:
 
 
 @lru_cache(maxsize=256)
-def _mesh(path: Path) -> tuple[Array, NDArray[np.int64]]:
+def _mesh(path: Path) -> tuple[Array, Faces]:
     """Vertices and faces of a mesh file, as written.
 
     Raises:
@@ -112,7 +104,7 @@ def _mesh(path: Path) -> tuple[Array, NDArray[np.int64]]:
     return np.array(read.vertices()), faces.reshape(-1, 3)
 
 
-def _welded(corners: Array) -> tuple[Array, NDArray[np.int64]]:
+def _welded(corners: Array) -> tuple[Array, Faces]:
     """Corners of separate triangles, those at the same place made one."""
     rows = np.ascontiguousarray(corners, dtype="<f4") + np.float32(0.0)  # minus zero is zero
     keys, places = np.unique(rows.view(np.dtype((np.void, 12))).ravel(), return_inverse=True)
@@ -140,16 +132,14 @@ def urdf_shapes(root: ElementTree.Element, path: Path, kind: str) -> tuple[Shape
             if geometry is None or not len(geometry):
                 continue
             material = element.find("material")
-            rgba = GREY
+            rgba = None
             if material is not None:
-                rgba = _rgba(material) or colours.get(material.get("name", ""), GREY)
+                rgba = _rgba(material) or colours.get(material.get("name", ""))
             found += _urdf_shape(link.get("name", ""), geometry[0], _origin(element), rgba, path)
     return tuple(found)
 
 
-def _urdf_shape(
-    link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: tuple[float, float, float, float], path: Path
-) -> list[Shape]:
+def _urdf_shape(link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Colour | None, path: Path) -> list[Shape]:
     if thing.tag == "mesh":
         reference = thing.get("filename", "")
         place = resolve(reference, path.parent, "mesh")
@@ -159,6 +149,8 @@ def _urdf_shape(
         vertices, faces = _mesh(place)
         scale = _floats(thing.get("scale"), (1.0, 1.0, 1.0))
         faces = faces if np.prod(scale) > 0 else faces[:, ::-1]
+        colour = colour_in_file(place) if rgba is None else None
+        rgba = (*colour, 1.0) if colour else rgba or GREY
         return [Shape(link, placed(vertices * scale, origin), faces, rgba)] if len(faces) else []
     size = {name: float(value) for name, value in thing.attrib.items() if name in ("radius", "length")}
     makers = {
@@ -167,10 +159,10 @@ def _urdf_shape(
         "cylinder": lambda: cylinder(size["radius"], size["length"]),
         "capsule": lambda: capsule(size["radius"], size["length"]),
     }
-    return [solid(link, makers[thing.tag](), origin, rgba)] if thing.tag in makers else []
+    return [solid(link, makers[thing.tag](), origin, rgba or GREY)] if thing.tag in makers else []
 
 
-def _rgba(material: ElementTree.Element) -> tuple[float, float, float, float] | None:
+def _rgba(material: ElementTree.Element) -> Colour | None:
     colour = material.find("color")
     if colour is None:
         return None

@@ -26,7 +26,7 @@ class SolePlate:
     """The contact rectangle of a foot.
 
     Attributes:
-        placement: in the frame of the foot's joint: origin at the rectangle's centre, x forward, z up out of the ground.
+        placement: in the frame of the foot's joint: origin at the rectangle's centre, x forward, z up.
         length: along x [m].
         width: along y [m].
     """

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
-from surefoot.models.robot_file.paths import resolve
+from surefoot.models.robot_file.files import text_of
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import Shape, urdf_shapes
 from surefoot.models.types import Array, RobotError
@@ -38,33 +38,13 @@ class Source:
     notes: list[str] = field(default_factory=list)
 
 
-def model_files(path: Path) -> tuple[Path, ...]:
-    """The file of a model and all that it refers to, as far as they are there.
-
-    Raises:
-        RobotError: the file is missing.
-    """
-    text = _text(path)
-    folders = [
-        path.parent,
-        *(path.parent / name for name in re.findall(r'(?:mesh|texture|asset)dir\s*=\s*"([^"]*)"', text)),
-    ]
-    found = [path]
-    for reference in sorted(set(re.findall(r'(?:<mesh\b[^>]*?filename|\bfile)\s*=\s*"([^"]+)"', text))):
-        candidates = (resolve(reference, folder) for folder in folders)
-        file = next((file for file in candidates if file.is_file() and file not in found), None)
-        if file is not None:
-            found += model_files(file) if file.suffix in (".xml", ".mjcf") else [file]
-    return tuple(found)
-
-
 def read_source(file: RobotFile, path: Path) -> Source:
     """Read the model of a robot file.
 
     Raises:
         RobotError: it is missing, none that can be read, or physically impossible.
     """
-    text = _text(path)
+    text = text_of(path)
     kind = re.search(r"<(robot|mujoco|sdf)\b", text)
     if kind is None or kind[1] == "sdf":
         raise RobotError(
@@ -75,14 +55,6 @@ def read_source(file: RobotFile, path: Path) -> Source:
 
         return read_mjcf(file, path)
     return _read_urdf(file, path, text)
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
-        raise RobotError(("model",), f"{path}: cannot be read, {reason}", "give the path of a URDF or MJCF") from None
 
 
 def _read_urdf(file: RobotFile, path: Path, text: str) -> Source:

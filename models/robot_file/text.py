@@ -1,6 +1,5 @@
 """A reduced model as normalised MJCF text with all digits, which both engines read alike."""
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
@@ -11,14 +10,13 @@ import pinocchio as pin
 from surefoot.models.joints import axis_of
 from surefoot.models.mjcf import Role, add_defaults, numbers
 from surefoot.models.robot_file.legs import SIDES, Leg
+from surefoot.models.robot_file.reduced import SITES
 from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.touch import Hull, shape_name
-from surefoot.models.types import Array
 
 SOLE_THICKNESS = 0.02
 """Of the contact box over the leg's length [-]."""
 
-IMU = "imu"
 _ROUND = 5
 """Decimals of what is only drawn [m]."""
 
@@ -89,7 +87,7 @@ class _Tree:
         _add_inertial(body, model.inertias[joint])
         if joint == 1:
             ElementTree.SubElement(body, "freejoint", name=f"{name}_free")
-            ElementTree.SubElement(body, "site", name=IMU, pos="0.0 0.0 0.0", size="0.005", group="4")
+            ElementTree.SubElement(body, "site", name=SITES[0], pos="0.0 0.0 0.0", size="0.005", group="4")
         else:
             self._add_joint(body, joint)
         self._add_looks(body, joint)
@@ -141,15 +139,15 @@ class _Tree:
 
 
 def _add_inertial(body: ElementTree.Element, inertia: pin.Inertia) -> None:
-    I = inertia.inertia
-    full = numbers((I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]))
+    about = inertia.inertia
+    full = numbers(about[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
     attributes = {"pos": numbers(inertia.lever), "mass": repr(float(inertia.mass)), "fullinertia": full}
     ElementTree.SubElement(body, "inertial", attributes)
 
 
 def _pose(placement: pin.SE3) -> dict[str, str]:
     x, y, z, w = pin.Quaternion(placement.rotation).normalized().coeffs().tolist()
-    if w < 0.0 or math.isclose(w, 0.0, abs_tol=1e-15) and min(x, y, z) < 0.0:
+    if w < 0.0:
         x, y, z, w = -x, -y, -z, -w
     return {"pos": numbers(placement.translation + 0.0), "quat": numbers((w, x, y, z))}
 

@@ -1,18 +1,19 @@
 """Which links touch each other, and which are kept apart: convex hulls, and pairs of them."""
 
 import itertools
+from contextlib import suppress
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
+import pinocchio as pin
 
-from surefoot.models.robot_file.legs import Leg
+from surefoot.models.robot_file.legs import SIDES, Leg
+from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.reduced import Reduced, points_of
-from surefoot.models.robot_file.shapes import hull_faces
+from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.upper import Upper
-from surefoot.models.types import Array
+from surefoot.models.types import Array, RobotError, nearest
 
 MOST_POINTS = 80
 _LIGHTEST = 0.004
@@ -31,7 +32,7 @@ class Hull:
 
     joint: int
     vertices: Array
-    faces: NDArray[np.int64]
+    faces: Faces
 
 
 def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[int, Hull]:
@@ -49,27 +50,9 @@ def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[in
     found = {}
     for joint in sorted(wanted):
         points = points_of(reduced.collision[joint] or reduced.visual[joint])
-        vertices = support_points(points, MOST_POINTS)
-        if vertices is not None:
-            found[joint] = Hull(joint, vertices, hull_faces(vertices))
+        with suppress(RobotError):  # what is flat or has no shape touches nothing
+            found[joint] = Hull(joint, *hull(points, MOST_POINTS))
     return found
-
-
-def support_points(points: Array, most: int) -> Array | None:
-    """Vertices of the convex hull, or the farthest ones along even directions where there are more; None if flat."""
-    if len(points) < 4:
-        return None
-    try:
-        vertices = points[np.sort(ConvexHull(points).vertices)]
-    except QhullError:
-        return None
-    if len(vertices) <= most:
-        return vertices
-    k = np.arange(most) + 0.5
-    height, turn = 1.0 - 2.0 * k / most, k * np.pi * (1.0 + np.sqrt(5.0))
-    flat = np.sqrt(1.0 - height**2)
-    directions = np.column_stack((flat * np.cos(turn), flat * np.sin(turn), height))
-    return vertices[np.unique(np.argmax(directions @ vertices.T, axis=1))]
 
 
 def overlapping(
@@ -86,7 +69,7 @@ def overlapping(
     """
     model = mujoco.MjModel.from_xml_string(mjcf)
     data = mujoco.MjData(model)
-    found = {}
+    found: dict[tuple[str, str], None] = {}
     for angles in postures:
         data.qpos[7:] = angles
         mujoco.mj_kinematics(model, data)
@@ -102,3 +85,59 @@ def overlapping(
 def shape_name(body: str) -> str:
     """Name of a body's hull."""
     return f"{body}_shape"
+
+
+def shank_spacing(data: pin.Data, legs: tuple[Leg, Leg], hulls: dict[int, Hull], room: float) -> float:
+    """Lateral distance of the soles at which upright shanks keep some room between them [m].
+
+    Args:
+        data: placements with straight legs.
+        legs: both.
+        hulls: contact shapes by joint.
+        room: between the shanks [m].
+    """
+    reach = 0.0
+    for side, leg in zip((1.0, -1.0), legs, strict=True):
+        knee = leg.joints[leg.knee]
+        sole = side * (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[1]
+        points = hulls[knee].vertices if knee in hulls else np.zeros((1, 3))
+        lateral = points @ data.oMi[knee].rotation[1] + data.oMi[knee].translation[1]
+        reach += float(sole - (side * lateral).min())
+    return max(reach + room, min(leg.sole.width for leg in legs))
+
+
+def limbs(legs: tuple[Leg, Leg], upper: Upper, hulls: dict[int, Hull]) -> list[tuple[int, int]]:
+    """Pairs of joints whose bodies can meet in walking: both thighs, both shanks, lower arms and thighs."""
+    thighs, shanks = ([leg.joints[leg.knee + offset] for leg in legs] for offset in (-1, 0))
+    pairs = [(thighs[0], thighs[1]), (shanks[0], shanks[1])]
+    for arm, thigh in zip(upper.arms, thighs, strict=False):
+        lower = [joint for joint in arm[len(arm) // 2 :] if joint in hulls]
+        if lower:
+            largest = max(lower, key=lambda joint: float(np.prod(np.ptp(hulls[joint].vertices, axis=0))))
+            pairs += [(joint, thigh) for joint in sorted({lower[-1], largest})]
+    return pairs
+
+
+def kept_apart(
+    reduced: Reduced, file: RobotFile, hulls: dict[int, Hull], meeting: list[tuple[int, int]], legs: tuple[Leg, Leg]
+) -> tuple[tuple[str, str], ...]:
+    """Names of pairs of contact shapes that are kept apart: as given, or limbs that can meet, and soles.
+
+    Raises:
+        RobotError: the file names a link without a contact shape.
+    """
+    shapes = {joint: shape_name(reduced.bodies[joint - 1]) for joint in hulls}
+    if file.keep_apart is None:
+        pairs = [(shapes[one], shapes[other]) for one, other in meeting if one in shapes and other in shapes]
+        soles, shanks = [f"{side}_sole_box" for side in SIDES], [leg.joints[leg.knee] for leg in legs]
+        across = [(soles[side], shapes[shanks[1 - side]]) for side in (0, 1) if shanks[1 - side] in shapes]
+        return (*pairs, (soles[0], soles[1]), *across)
+    found = []
+    for pair in file.keep_apart:
+        joints = [reduced.joint_of(link, "keep_apart") for link in pair]
+        for joint, link in zip(joints, pair, strict=True):
+            if joint not in shapes:
+                what = f"keep_apart of {file.name} names '{link}', which has no contact shape"
+                raise RobotError(("keep_apart",), what, nearest(link, tuple(reduced.bodies[j - 1] for j in shapes)))
+        found.append((shapes[joints[0]], shapes[joints[1]]))
+    return tuple(found)

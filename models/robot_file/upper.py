@@ -6,10 +6,10 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.models.joints import world_axis
-from surefoot.models.robot_file.legs import Leg, at, rest
+from surefoot.models.robot_file.legs import Leg, rest
 from surefoot.models.robot_file.reduced import Reduced
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.models.types import Array
+from surefoot.models.types import Array, RobotError
 
 _ASIDE, _ALIKE = 0.02, 0.1
 _LATERAL = 0.8
@@ -17,7 +17,10 @@ _SHARE = 0.5
 _ROOM = 0.25
 """Angle that relaxed arms stay from the ends of their joints, or a sixth of the range if that is less [rad]."""
 
-_STEPS, _NEARNESS = 40, 0.02
+_STEPS, _NEARNESS = 100, 0.02
+
+
+Arms = tuple[tuple[int, ...], tuple[int, ...]] | tuple[()]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,14 +35,17 @@ class Upper:
 
     torso: int
     waist: tuple[int, ...]
-    arms: tuple[tuple[int, ...], tuple[int, ...]] | tuple[()]
+    arms: Arms
 
 
 def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Upper:
     """Torso, waist and arms.
 
-    Arms are the heaviest two alike branches of one body on either side; that body is the torso. Without arms the heaviest
-    body above the legs is.
+    Arms are the heaviest two alike branches of one body on either side; that body is the torso. Without arms it is the
+    heaviest body above the legs.
+
+    Raises:
+        RobotError: the file names a torso that is none.
     """
     model = reduced.model
     below = {joint for leg in legs for joint in leg.joints}
@@ -47,6 +53,9 @@ def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Uppe
     arms = _arms(model, others, legs)
     if file.torso is not None:
         torso = reduced.joint_of(file.torso, "torso")
+        if torso in below:
+            what = f"torso of {file.name} is '{file.torso}', which is part of a leg"
+            raise RobotError(("torso",), what, "name a link above the legs")
     elif arms:
         torso = int(model.parents[arms[0][0]])
     else:
@@ -54,14 +63,13 @@ def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Uppe
     return Upper(torso, tuple(j for j in model.supports[torso] if j > 1), arms)
 
 
-def _arms(
-    model: pin.Model, others: list[int], legs: tuple[Leg, Leg]
-) -> tuple[tuple[int, ...], tuple[int, ...]] | tuple[()]:
+def _arms(model: pin.Model, others: list[int], legs: tuple[Leg, Leg]) -> Arms:
     data, q = model.createData(), pin.neutral(model)
     q[7:] = rest(model)
     pin.centerOfMass(model, data, q)
     height = float(np.linalg.norm(legs[0].hip - legs[0].sole.placement.translation))
-    best, arms = 0.0, ()
+    best = 0.0
+    arms: Arms = ()
     for left in others:
         for right in others:
             if model.parents[left] != model.parents[right]:
@@ -106,7 +114,7 @@ def hanging(model: pin.Model, upper: Upper, posture: Array, aside: float) -> Arr
 
     Every body of an arm is sought in that direction from the shoulder, the angles near their rest.
     """
-    found = posture.copy()
+    found, data = posture.copy(), model.createData()
     for side, arm in zip((1.0, -1.0), upper.arms, strict=False):
         joints = np.array(arm) - 2
         lower, upper_limit = model.lowerPositionLimit[7:][joints], model.upperPositionLimit[7:][joints]
@@ -116,31 +124,31 @@ def hanging(model: pin.Model, upper: Upper, posture: Array, aside: float) -> Arr
         found[joints] = calm
         target = np.array([0.0, side * np.sin(aside), -np.cos(aside)])
         for _ in range(_STEPS):
-            error, J = _astray(model, arm, found, target)
+            error, J = _astray(model, data, arm, found, target)
             H = J.T @ J + _NEARNESS * np.eye(len(arm))
             change = np.linalg.solve(H, -J.T @ error - _NEARNESS * (found[joints] - calm))
             found[joints] = np.clip(found[joints] + np.clip(change, -0.3, 0.3), low, high)
     return found
 
 
-def _astray(model: pin.Model, arm: tuple[int, ...], angles: Array, target: Array) -> tuple[Array, Array]:
+def _astray(
+    model: pin.Model, data: pin.Data, arm: tuple[int, ...], angles: Array, target: Array
+) -> tuple[Array, Array]:
     """Directions of the arm's bodies from the shoulder off the target, weighed by mass, and their Jacobian."""
-
-    def errors(values: Array) -> Array:
-        data = at(model, values)
-        shoulder = data.oMi[arm[0]].translation
-        total = sum(model.inertias[joint].mass for joint in arm)
-        rows = []
-        for joint in arm:
-            lever = data.oMi[joint].act(model.inertias[joint].lever) - shoulder
-            weight = np.sqrt(model.inertias[joint].mass / total)
-            rows.append(weight * (lever / max(float(np.linalg.norm(lever)), 1e-9) - target))
-        return np.concatenate(rows)
-
-    error = errors(angles)
-    J = np.empty((len(error), len(arm)))
-    for column, joint in enumerate(arm):
-        step = angles.copy()
-        step[joint - 2] += 1e-6
-        J[:, column] = (errors(step) - error) / 1e-6
-    return error, J
+    q = pin.neutral(model)
+    q[7:] = angles
+    pin.computeJointJacobians(model, data, q)
+    shoulder = data.oMi[arm[0]].translation.copy()
+    total = sum(model.inertias[joint].mass for joint in arm)
+    columns = [joint + 4 for joint in arm]
+    errors, rows = [], []
+    for joint in arm:
+        inertia, place = model.inertias[joint], data.oMi[joint]
+        lever = place.act(inertia.lever) - shoulder
+        length = max(float(np.linalg.norm(lever)), 1e-6)
+        J = pin.getJointJacobian(model, data, joint, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)[:, columns]
+        moves = J[:3] - pin.skew(place.rotation @ inertia.lever) @ J[3:]
+        unit, weight = lever / length, np.sqrt(inertia.mass / total)
+        errors.append(weight * (unit - target))
+        rows.append(weight / length * (moves - np.outer(unit, unit @ moves)))
+    return np.concatenate(errors), np.vstack(rows)

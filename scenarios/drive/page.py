@@ -24,14 +24,16 @@ from surefoot.scenarios.show.replay.content import Array
 from surefoot.scenarios.show.replay.page import AXES, BALANCE, FEET_NAMES, MARGINS
 from surefoot.scenarios.show.replay.scene import LOCALHOST, PORT, ViserScene, rgb, serving
 from surefoot.scenarios.simulation import Tick
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 if TYPE_CHECKING:
     import viser
 
 LIMITS = Velocity(0.6, 0.25, 0.6)
-"""Greatest velocities that the page asks for, either way [m/s, rad/s]."""
+"""Greatest velocities that the page asks for, either way; numbers here are the reference robot's [m/s, rad/s]."""
 
 GAIT_RANGES = {"single_support": (0.35, 1.2), "double_support": (0.08, 0.6), "swing_height": (0.02, 0.12)}
+GAIT_UNITS = {"single_support": "s", "double_support": "s", "swing_height": "m"}
 """Of the sliders [s, s, m]."""
 
 SPEEDS = (1.0, 0.5, 0.25, 0.1)
@@ -70,7 +72,7 @@ class DrivePage:
 
     def __init__(self, viewer: "viser.ViserServer", port: int | None, inputs: "SimpleQueue[Input]") -> None:
         self._viewer, self._inputs = viewer, inputs
-        self._impulse, self._follow = IMPULSE, True
+        self._impulse, self._follow, self._size = IMPULSE, True, REFERENCE_SIZE
         self._pull: Array | None = None
         self._pushed: dict[str, Any] | None = None
         self._pictures: Pictures
@@ -86,7 +88,8 @@ class DrivePage:
         """See `session.Page`; the robot is a `Simulation`, and the same for all runs."""
         self._robot, self._pushed = robot, None
         if self._scene is None:
-            self._pictures = Pictures(robot.walk)
+            self._pictures, self._size = Pictures(robot.walk), robot.walk.size
+            self._impulse = self._size.times(IMPULSE, "N·s")
             self._server.page = _page(_viewer_page(self._viewer.get_port()), self._viewer.get_port(), robot.walk)
         self._pictures.begin()
 
@@ -148,15 +151,16 @@ class DrivePage:
     def _dragged(self, body: str, event: Any) -> None:
         """Pull towards the pointer when it is released; an arrow shows how until then."""
         start, end = np.array(event.start_position), np.array(event.end_position)
-        impulse = PULL * (end - start)
+        pull = self._size.times(PULL, "N·s/m")
+        impulse = pull * (end - start)
         size = float(np.linalg.norm(impulse))
-        impulse *= min(1.0, GREATEST_IMPULSE / max(size, 1e-9))
+        impulse *= min(1.0, self._size.times(GREATEST_IMPULSE, "N·s") / max(size, 1e-9))
         if event.phase == "end":
             self._pull, self._arrow.visible = None, False
-            if size > LEAST_PULL:
+            if size > self._size.times(LEAST_PULL, "N·s"):
                 self._inputs.put(Push(tuple(impulse.tolist()), body))
         else:
-            self._pull, self._arrow.points = impulse, np.stack([start, start + impulse / PULL])[None]
+            self._pull, self._arrow.points = impulse, np.stack([start, start + impulse / pull])[None]
             self._arrow.visible = True
 
     def _told(self, impulse: Array) -> dict[str, float]:
@@ -172,7 +176,7 @@ class DrivePage:
         given = json.loads(text)
         kind = given.pop("kind", None) if isinstance(given, dict) else None
         if kind == "click":
-            self._impulse = _number(given, "impulse", 0.0, GREATEST_IMPULSE)
+            self._impulse = _number(given, "impulse", 0.0, self._size.times(GREATEST_IMPULSE, "N·s"))
         elif kind == "camera":
             self._follow = bool(given.get("follows"))
         elif kind == "layer":
@@ -180,19 +184,30 @@ class DrivePage:
             if self._scene is not None and isinstance(layer, str) and layer in self._scene.layers:
                 self._scene.layers[layer].visible = bool(given.get("shown"))
         else:
-            self._inputs.put(read_input(kind, given))
+            self._inputs.put(read_input(kind, given, self._size))
 
 
-def read_input(kind: str | None, given: Mapping[str, Any]) -> Input:
-    """An input as the page sends it, bent into what may be asked for.
+def _limits(size: Similarity) -> Velocity:
+    """Fastest velocity that a robot of a size is asked for."""
+    return Velocity(*size.times(tuple(asdict(LIMITS).values()), "m/s, m/s, 1/s"))
+
+
+def _gait_ranges(size: Similarity) -> dict[str, tuple[float, float]]:
+    """Ranges of what may be asked of its gait."""
+    return {key: size.times(ends, GAIT_UNITS[key]) for key, ends in GAIT_RANGES.items()}
+
+
+def read_input(kind: str | None, given: Mapping[str, Any], size: Similarity = REFERENCE_SIZE) -> Input:
+    """An input as the page sends it, bent into what may be asked for of a robot of a size.
 
     Raises:
         ValueError: there is no such input, or a value is no number.
     """
     if kind == "velocity":
-        return Velocity(**{key: _number(given, key, -most, most) for key, most in asdict(LIMITS).items()})
+        return Velocity(**{key: _number(given, key, -most, most) for key, most in asdict(_limits(size)).items()})
     if kind == "gait":
-        return Gait(**{key: _number(given, key, *GAIT_RANGES[key]) for key in GAIT_RANGES if key in given})
+        ranges = _gait_ranges(size)
+        return Gait(**{key: _number(given, key, *ranges[key]) for key in ranges if key in given})
     if kind == "pace":
         speed = _number(given, "speed", min(SPEEDS), max(SPEEDS)) if "speed" in given else None
         return Pace(speed, bool(given["paused"]) if "paused" in given else None)
@@ -226,7 +241,8 @@ class _Page(Template):
 
 def _page(viewer: str, port: int, walk: Walk) -> str:
     """Viser's page, told where its server is, with the controls beside it."""
-    gait = {key: float(getattr(walk.gait, key)) for key in GAIT_RANGES}
+    size, ranges = walk.size, _gait_ranges(walk.size)
+    gait = {key: float(getattr(walk.gait, key)) for key in ranges}
     curves, margins = (
         [{"name": name, "color": palette.hexadecimal(color), "planned": dashed} for name, color, dashed, *_ in drawn]
         for drawn in (BALANCE, MARGINS)
@@ -240,10 +256,10 @@ def _page(viewer: str, port: int, walk: Walk) -> str:
             {"label": label, "digits": digits, "curves": drawn}
             for (label, digits), drawn in zip(AXES, (curves, curves, margins, feet), strict=True)
         ],
-        "limits": _numbers(LIMITS),
-        "gait": {key: [*GAIT_RANGES[key], value] for key, value in gait.items()},
+        "limits": _numbers(_limits(size)),
+        "gait": {key: [*ranges[key], value] for key, value in gait.items()},
         "speeds": SPEEDS,
-        "impulse": [IMPULSE, GREATEST_IMPULSE],
+        "impulse": list(size.times((IMPULSE, GREATEST_IMPULSE), "N·s")),
         "layers": LAYERS,
     }
     text = files(__package__).joinpath("drive.html").read_text(encoding="utf-8")

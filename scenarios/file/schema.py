@@ -365,7 +365,9 @@ class Scenario(Group):
     """A walk to simulate and the criteria it must meet."""
 
     name: str = Field(default="scenario", min_length=1, max_length=100, pattern=NAME, description="name")
-    robot: str = Field(default=DEFAULTS["robot"], description="name of a robot, see `surefoot list`")
+    robot: str = Field(
+        default=DEFAULTS["robot"], description="name of a robot, see `surefoot list`, or the path of a robot file"
+    )
     sized_for: str | None = Field(
         default=None,
         description="name of the robot for which lengths, times, forces and the like of this file are written; for "

@@ -95,7 +95,7 @@ def zmp_error_max(run: RunView) -> list[float] | None:
 @reduction("/plan")
 def predicted(run: RunView) -> Array:
     """What each plan predicts for 0.2 s later, shape (plans, 6): CoM, its velocity x y, ω; NaN beyond its horizon."""
-    plan, sample = run.log["/plan"], round(PREDICTION / run.constants.sample_time)
+    plan, sample = run.log["/plan"], round(PREDICTION * run.constants.similarity.time / run.constants.sample_time)
     com, velocity, omega = (plan.field(name) for name in ("com", "com_velocity", "omega"))
     if sample >= com.shape[1]:
         return np.full((len(com), 6), np.nan)
@@ -166,7 +166,7 @@ def rms(error: Array) -> list[float] | None:
 def _predictions(run: RunView) -> tuple[Rows, Array]:
     """Rows of /truth and what was predicted for them; held plans predict nothing."""
     plan = run.log["/plan"]
-    sample = round(PREDICTION / run.constants.sample_time)
+    sample = round(PREDICTION * run.constants.similarity.time / run.constants.sample_time)
     ahead = round(sample * run.constants.sample_time * 1e9)
     rows, near = run.rows_at("/truth", plan.time_ns + ahead)
     plans = np.flatnonzero(near & (plan.field("held") == 0))

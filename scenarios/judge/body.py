@@ -101,7 +101,8 @@ FALLEN_TILT = math.radians(60.0)
 """Torso tilt beyond which a robot has fallen [rad]."""
 
 LOST_DISTANCE = 1.0
-"""Distance of a pendulum's DCM from its ZMP beyond which no foot could catch it: it has fallen [m]."""
+"""Distance of a pendulum's DCM from its ZMP beyond which no foot could catch it, for the reference robot: it has
+fallen [m]."""
 
 
 def lies(height: Any, nominal: float, tilt: Any, touching: Any) -> Any:
@@ -119,15 +120,16 @@ def lies(height: Any, nominal: float, tilt: Any, touching: Any) -> Any:
     return (height < FALLEN_HEIGHT * nominal) | (tilt > FALLEN_TILT) | (touching != 0)
 
 
-def lost(dcm: NDArray[np.float64], zmp: NDArray[np.float64]) -> Any:
+def lost(dcm: NDArray[np.float64], zmp: NDArray[np.float64], length: float = 1.0) -> Any:
     """Whether a pendulum has fallen: its DCM is out of reach of any foot.
 
     Args:
         dcm: shape (2,) or (n, 2) [m].
         zmp: likewise.
+        length: size of the robot (see `surefoot.similarity`) [-].
 
     Returns:
         a truth value, or shape (n,).
     """
     offset = dcm - zmp
-    return np.hypot(offset[..., 0], offset[..., 1]) > LOST_DISTANCE
+    return np.hypot(offset[..., 0], offset[..., 1]) > LOST_DISTANCE * length

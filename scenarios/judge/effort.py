@@ -75,7 +75,8 @@ def _speed_ratios(run: RunView) -> Array:
 @reduction("/measurement")
 def knee_flexion(run: RunView) -> Array:
     """Mean flexion of the knees at each tick, shape (n,) [rad]."""
-    return np.asarray(np.abs(run.field("/measurement", "joint_position")[:, run.knees]).mean(axis=1))
+    straight = run.constants.knee_straight or 0.0
+    return np.asarray(np.abs(run.field("/measurement", "joint_position")[:, run.knees] - straight).mean(axis=1))
 
 
 @reduction("/measurement")
@@ -139,7 +140,7 @@ def cost_of_transport(run: RunView) -> float | None:
     """Joint work, absolute, over weight times the CoM's horizontal way from begin to end [-]."""
     com = run.field("/truth", "com")[:, :2]
     way = float(np.linalg.norm(com[-1] - com[0]))
-    if not way > SHORTEST_WAY:
+    if not way > SHORTEST_WAY * run.constants.similarity.length:
         return None
     work = float(run.reduced(joint_power).sum()) / run.constants.control_rate
     return work / (run.constants.mass * GRAVITY * way)

@@ -120,7 +120,7 @@ def stances(run: RunView, until: int | None = None) -> list[Stance]:
     """
     load, planned = loaded(run)[:until], run.field("/contact", "planned")[:until] != 0
     released = np.cumsum(run.field("/contact", "active")[:until] == 0, axis=0)
-    gap, found = DROPOUT * run.constants.control_rate, []
+    gap, found = DROPOUT * run.constants.similarity.time * run.constants.control_rate, []
     for foot in range(2):
         lift = 0
         for start, end in runs_of(planned[:, foot]):
@@ -159,7 +159,8 @@ def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
     for stance in stances(run, until):
         poses = run.sole(stance.foot)[stance.ticks]
         points = corners(poses, run.constants.foot_length, run.constants.foot_width)
-        touching = points[..., 2] - terrain.heights(points[..., :2].reshape(-1, 2)).reshape(-1, 4) < ON_GROUND
+        height = points[..., 2] - terrain.heights(points[..., :2].reshape(-1, 2)).reshape(-1, 4)
+        touching = height < ON_GROUND * run.constants.similarity.length
         touching = np.column_stack((touching, ~touching.any(axis=1)))
         points = np.concatenate((points, poses[:, None, :3]), axis=1)[..., :2]
         begin = points[np.argmax(touching, axis=0), np.arange(5)]

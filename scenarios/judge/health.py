@@ -55,7 +55,7 @@ OUTSIDE = 0.01
 def forces_match_weight(run: RunView) -> Finding:
     """Whether the normal forces of the feet make the CoM's vertical momentum, over every half second before a fall."""
     ticks, rate, mass = _standing(run), run.constants.control_rate, run.constants.mass
-    width = round(FORCE_WINDOW * rate)
+    width = round(FORCE_WINDOW * run.constants.similarity.time * rate)
     if ticks <= width:
         return judged("contact_forces", False, None, None, "")
     force = run.field("/contact", "normal_force")[:ticks].sum(axis=1) + _push(run)[:ticks, 2]
@@ -85,7 +85,13 @@ def foot_slip(run: RunView) -> Finding:
         f"the {foot} foot slips {1000 * worst.distance:.0f} mm in a stance: the ground has less friction than the "
         "controller counts on, or the foot is planned in contact while it is hardly loaded"
     )
-    return judged("foot_slip", worst.distance > SLIP, float(run.time[worst.tick]), worst.distance, cause)
+    return judged(
+        "foot_slip",
+        worst.distance > SLIP * run.constants.similarity.length,
+        float(run.time[worst.tick]),
+        worst.distance,
+        cause,
+    )
 
 
 def late_touchdowns(run: RunView) -> Finding:
@@ -95,13 +101,14 @@ def late_touchdowns(run: RunView) -> Finding:
     if not late:
         return judged("touchdowns", False, None, None, "")
     worst, missed = int(np.argmax(late)), walking.touchdowns_missed(run)
-    count = sum(value > LATE for value in late)
+    most = LATE * run.constants.similarity.time
+    count = sum(value > most for value in late)
     never = f"{missed} of {len(late)} swings end without their foot ever touching the ground; " if missed else ""
     cause = (
         f"{never}{count} of {len(late)} touchdowns are late, the worst by {1000 * late[worst]:.0f} ms: the ground is "
         "lower than planned, the swing foot lags behind its reference, or its contact is felt too late"
     )
-    warn = missed > 0 or late[worst] > LATE
+    warn = missed > 0 or late[worst] > most
     return judged("touchdowns", warn, float(run.time[swings[worst][1]]), late[worst], cause)
 
 
@@ -198,7 +205,13 @@ def estimator_drift(run: RunView) -> Finding:
         else "it does not grow: noise, delay or a wrong mass model"
     )
     cause = f"the estimated CoM is off by {1000 * error[worst]:.0f} mm, {why}"
-    return judged("estimator", bool(error[worst] > DRIFT), float(run.time[worst]), float(error[worst]), cause)
+    return judged(
+        "estimator",
+        bool(error[worst] > DRIFT * run.constants.similarity.length),
+        float(run.time[worst]),
+        float(error[worst]),
+        cause,
+    )
 
 
 def controller_fallbacks(run: RunView) -> Finding:

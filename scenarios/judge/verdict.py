@@ -204,9 +204,9 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     (scenario, absent), gathered = _known_part(log), gathered or digest(log)
     measured = measure(gathered)
     criteria = asked(scenario.criteria, scenario.fidelity)
-    size = Similarity(*RunView(gathered).constants.size)
+    size = RunView(gathered).constants.similarity
     untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(RunView(gathered))
-    undone = (*_unacted(log, scenario, size), *_not_there(measured.values, criteria))
+    undone = (*_unacted(log, scenario, size), *_not_there(measured.values, criteria, AT_PLACE * size.length))
     reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
     said = (*skipped, *notes(Draft(scenario, size)), *_degraded(measured.values), *measured.notes)
@@ -291,11 +291,11 @@ def _unacted(log: Log, scenario: Scenario, size: Similarity) -> list[str]:
         return [f"when its pushes and faults act cannot be known: {fault}"]
 
 
-def _not_there(metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> Iterator[str]:
-    """Say that the robot is not where it was told to go, unless a criterion says how far from it it may be."""
+def _not_there(metrics: Mapping[str, Any], criteria: Mapping[str, Bound], near: float) -> Iterator[str]:
+    """Say that the robot is not near where it was told to go [m], unless a criterion says how far from it it may be."""
     error = metrics.get("place_error")
-    if error is not None and "place_error" not in criteria and error > AT_PLACE:
-        yield f"the robot is {error:.3g} m from where it was told to go last; it must be within {AT_PLACE:g} m"
+    if error is not None and "place_error" not in criteria and error > near:
+        yield f"the robot is {error:.3g} m from where it was told to go last; it must be within {near:g} m"
 
 
 def _incomplete(log: Log) -> list[str]:

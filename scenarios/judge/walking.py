@@ -139,7 +139,9 @@ def standing_time_between(run: RunView) -> float:
 
 def _still(run: RunView) -> Mask:
     speed = np.linalg.norm(run.field("/truth", "com_velocity"), axis=1)
-    return np.asarray((speed < STILL_SPEED) & (run.field("/contact", "felt") != 0).all(axis=1))
+    return np.asarray(
+        (speed < run.constants.similarity.times(STILL_SPEED, "m/s")) & (run.field("/contact", "felt") != 0).all(axis=1)
+    )
 
 
 def _lying(run: RunView) -> Mask:
@@ -154,7 +156,7 @@ def _lost(run: RunView) -> Mask:
         return np.zeros(run.ticks, dtype=np.bool_)
     omega = run.field("/reference", "omega")[:, None]
     dcm = run.field("/truth", "com")[:, :2] + run.field("/truth", "com_velocity")[:, :2] / omega
-    return np.asarray(lost(dcm, run.field("/contact", "zmp")[:, :2]))
+    return np.asarray(lost(dcm, run.field("/contact", "zmp")[:, :2], run.constants.similarity.length))
 
 
 def runs_of(mask: Mask) -> list[tuple[int, int]]:

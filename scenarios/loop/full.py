@@ -262,5 +262,6 @@ def _controller(walk: Walk, body: Body, posture: Array, parts: Parts) -> WholeBo
         parameters=walk.controller,
         limbs=limb_shapes(robot, body.model),
         arm_joints=(shoulders[0], shoulders[1]) if shoulders else None,
+        arm_back=robot.roles.arm_back,
         tasks=tuple(make(body.model, body.frames) for make in makers),
     )

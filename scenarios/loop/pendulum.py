@@ -155,7 +155,7 @@ class PointMass:
         self._feet = IdealFeet(walk.stance)
         self._plant = plant(walk.pendulum, walk.true_mass, start_position(walk), self._height_error)
         self._can_fall = walk.pendulum.plant == "pendulum"
-        self._height, self._climb = walk.start_com_height, 0.0
+        self._height, self._climb, self._length = walk.start_com_height, 0.0, walk.size.length
         self._contacts, self._support = (False, False), np.zeros((0, 2))
         self._sample: PlanSample
         self._force = np.zeros(2)
@@ -200,7 +200,7 @@ class PointMass:
     def fallen(self, sample: PlanSample) -> bool:
         """Whether no foot could catch the mass any more."""
         dcm = self.state.com[:2] + self.state.com_velocity[:2] / sample.omega
-        return self._can_fall and bool(lost(dcm, self._plant.zmp))
+        return self._can_fall and bool(lost(dcm, self._plant.zmp, self._length))
 
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
         """See `Walker`."""

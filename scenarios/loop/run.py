@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from threadpoolctl import threadpool_limits
 
+from surefoot.models.mjcf import without_looks
 from surefoot.planner.laws.profiles import Profile
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
@@ -211,7 +212,7 @@ def open_log(path: Path, walk: Walk) -> LogWriter:
     metadata = {RECORD: run_constants(walk).to_metadata(), "versions": versions()}
     attachments = [
         AttachedFile(SCENARIO_FILE, "application/yaml", walk.text.encode()),
-        AttachedFile("robot.xml", "application/xml", walk.robot.mjcf.encode()),
+        AttachedFile("robot.xml", "application/xml", without_looks(walk.robot.mjcf).encode()),
     ]
     return LogWriter(path, metadata, attachments)
 
@@ -244,7 +245,14 @@ def run_constants(walk: Walk) -> RunConstants:
         ),
         plane=walk.true_terrain.plane,
         size=(walk.size.length, walk.size.mass),
+        knee_straight=_knee_straight(robot),
     )
+
+
+def _knee_straight(robot: "RobotDescription") -> tuple[float, ...]:
+    """Angles of the knees with straight legs, in the order of the joints; empty where they are zero [rad]."""
+    angles = [float(robot.straight_joint_positions[place]) for place in sorted(robot.joint_indices(robot.roles.knees))]
+    return tuple(angles) if any(angles) else ()
 
 
 def _roles(robot: "RobotDescription") -> dict[str, tuple[str, ...]]:

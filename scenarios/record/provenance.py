@@ -16,6 +16,7 @@ from types import MappingProxyType
 from pydantic import TypeAdapter
 
 from surefoot.scenarios.errors import LogError
+from surefoot.similarity import Similarity
 
 RECORD = "run"
 """Name of the metadata record."""
@@ -88,6 +89,7 @@ class RunConstants:
         roles: names of joints and bodies by role (knees, left_leg, right_leg, torso); a log may lack them.
         velocity_limit: no-load speed by joint; empty in a log that lacks them [rad/s].
         plane: height of the ground plane; a log has it where it is not 0 [m].
+        knee_straight: angles of the knees at which the legs are straight; a log has it where they are not 0 [rad].
         size: length and mass of the robot over the reference's; a log has it where they are not 1 [-].
     """
 
@@ -112,6 +114,12 @@ class RunConstants:
     velocity_limit: tuple[float, ...] = ()
     plane: float = 0.0
     size: tuple[float, float] = (1.0, 1.0)
+    knee_straight: tuple[float, ...] = ()
+
+    @property
+    def similarity(self) -> Similarity:
+        """The robot's size, with which thresholds of what judges the run go."""
+        return Similarity(*self.size)
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""
@@ -120,6 +128,8 @@ class RunConstants:
             del written["plane"]
         if self.size == (1.0, 1.0):
             del written["size"]
+        if not self.knee_straight:
+            del written["knee_straight"]
         return {name: json.dumps(value) for name, value in written.items()}
 
     @classmethod
@@ -150,6 +160,8 @@ class RunConstants:
                 return f"{name}, {getattr(self, name)}"
         if not all(0.0 < part < _GREATEST for part in self.size):
             return f"size, {self.size}"
+        if len(self.knee_straight) not in (0, len(self.roles.get("knees", ()))):
+            return f"knee_straight, {self.knee_straight}"
         if self.steps_planned < 0 or self.fidelity not in ("full", "pendulum"):
             return f"number of steps or fidelity, {self.steps_planned}, {self.fidelity}"
         for name in ("torque_limit", "position_lower", "position_upper"):

@@ -15,7 +15,7 @@ from surefoot.scenarios.setup.commands import told_problems
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import idle_commands, never_act
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
-from surefoot.scenarios.setup.robot import RobotFacts, Robots
+from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known
 from surefoot.scenarios.setup.sized import default_of
 from surefoot.scenarios.setup.walk_checks import (
     command_problems,
@@ -41,7 +41,8 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
     """List what does not fit together."""
     commands = command_problems(draft)
     if commands:
-        draft = Draft(draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)}), draft.size)
+        keys = draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)})
+        draft = Draft(keys, draft.size, draft.wider)
     clock = [*_rates(draft), *_pushes(draft)]
     return [
         *commands,
@@ -117,14 +118,14 @@ def _controller(draft: Draft) -> Iterator[Problem]:
 
 
 def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
-    names = robots.names()
-    if draft.keys.robot not in names:
-        yield Problem(("robot",), f"unknown robot '{draft.keys.robot}'", nearest(draft.keys.robot, names))
+    if not is_known(draft.keys.robot, robots):
+        yield Problem(("robot",), f"unknown robot '{draft.keys.robot}'", nearest(draft.keys.robot, robots.names()))
         return
     try:
         facts = robots.facts(draft.keys.robot, draft.keys.robot_options)
     except ParameterError as error:
-        yield Problem(("robot_options", *error.key), error.what, error.right)
+        option = error.key[:1] and error.key[0] in type(draft.keys.robot_options).model_fields
+        yield Problem(("robot_options", *error.key) if option else ("robot",), error.what, error.right)
         return
     except PluginError as error:
         yield Problem(("robot",), error.what, error.right)

@@ -58,10 +58,11 @@ class Draft:
     Attributes:
         keys: the scenario as the user wrote it; nobody below this room sees it.
         size: of its robot.
+        wider: by what that has to stand wider than the reference robot, scaled [m].
     """
 
-    def __init__(self, keys: Scenario, size: Similarity = REFERENCE_SIZE) -> None:
-        self.keys, self.size = keys, size
+    def __init__(self, keys: Scenario, size: Similarity = REFERENCE_SIZE, wider: float = 0.0) -> None:
+        self.keys, self.size, self.wider = keys, size, wider
 
     @cached_property
     def commanded(self) -> bool:
@@ -158,7 +159,7 @@ class Draft:
         Where the ground has steps its heights are believed less: a foot that finds no tread by the end of single
         support hurries after one that lies lower, since waiting for it costs balance.
         """
-        usual = self.size.scaled(PlannerParameters())
+        usual = self.usual
         stepped = self.terrain.has_edges and not self.terrain.free_footholds
         return replace(usual.search, hurry_after=usual.touchdown_lead) if stepped else usual.search
 
@@ -213,6 +214,17 @@ class Draft:
         return min(max(own + FURTHER * length, SHORTEST_REACH * length), LONGEST_REACH * length)
 
     @cached_property
+    def usual(self) -> PlannerParameters:
+        """Parameters of a planner for this robot, whatever the scenario says."""
+        return self._widened(PlannerParameters())
+
+    def _widened(self, parameters: PlannerParameters) -> PlannerParameters:
+        # Who stands wider steps as much wider.
+        scaled = self.size.scaled(parameters)
+        near, far = scaled.reach_width
+        return replace(scaled, reach_width=(near, far + self.wider))
+
+    @cached_property
     def parameters(self) -> PlannerParameters:
         """The profile's parameters at this size with what the scenario changes of them, for legs without inertia."""
         keys = self.keys.planner
@@ -224,7 +236,7 @@ class Draft:
             "search": self.search,
         }
         return replace(
-            self.size.scaled(self.profile.parameters),
+            self._widened(self.profile.parameters),
             sample_time=keys.sample_time,
             reach_length=self.reach,
             step_adaptation=StepAdaptation(keys.step_adaptation),

@@ -1,6 +1,7 @@
 """From a scenario's name, file or log to a checked scenario: every fault of a file is reported at once."""
 
 import json
+import os
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
@@ -169,9 +170,9 @@ def read_scenario(
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
-    size = robot_size(scenario.robot, robots)
+    size, wider = robot_size(scenario.robot, robots)
     scenario = with_defaults(KINDS[scenario.terrain.kind].completed(scenario), size, robots)
-    draft = Draft(scenario, size)
+    draft = Draft(scenario, size, wider)
     semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *check(draft, robots)]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:
@@ -203,8 +204,10 @@ def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
         raise ScenarioError([f"{name}:1:1: the file is empty; give at least 'name: {written.stem}'"])
     if not isinstance(source.value, dict):
         raise ScenarioError([f"{name}:1:1: a scenario is a group of keys; write 'key: value' lines"])
+    _place_robot(source, Path(written.place).parent)
     say_for(source, overrides, robots)
     apply_overrides(source, overrides)
+    _place_robot(source, Path.cwd())
     source.value.pop("sized_for", None)
     source.value.setdefault("name", written.stem)
     return source
@@ -215,6 +218,15 @@ def _told(source: Source, problems: list[Problem]) -> list[str]:
     told = [source.describe(problem) for problem in sorted(problems, key=source.spot)[:MOST_TOLD]]
     rest = len(problems) - len(told)
     return [*told, f"{source.name}: {rest} problems more; mend these first"] if rest else told
+
+
+def _place_robot(source: Source, folder: Path) -> None:
+    """Name a robot file by its full path, so that the scenario means the same wherever it is read again."""
+    from surefoot.models.registry import is_file
+
+    robot = source.value.get("robot")
+    if isinstance(robot, str) and is_file(robot):
+        source.value["robot"] = os.path.normpath(folder.absolute() / robot)
 
 
 def _validated(data: Any) -> tuple[Scenario, list[Problem]]:

@@ -27,7 +27,9 @@ def published() -> dict[str, Any]:
     """The schema of what `surefoot run` accepts, with the names that installed packages bring."""
     schema = {"$schema": DIALECT, **Scenario.model_json_schema(), "description": DESCRIPTION}
     keys = schema["properties"]
-    keys["robot"]["enum"] = list(RegisteredRobots().names())
+    files = {"type": "string", "pattern": r"\.ya?ml$"}
+    keys["robot"] = {**keys["robot"], "anyOf": [{"enum": list(RegisteredRobots().names())}, files]}
+    keys["robot"].pop("type")
     for key, values in AVAILABLE.items():
         _narrow(schema, key, list(values))
     bounds = {name: _criterion(name, metric) for metric in filter(None, map(known, METRICS)) for name in metric.bounded}

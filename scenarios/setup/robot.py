@@ -72,9 +72,27 @@ class RegisteredRobots:
         return replace(facts_of(described), size=size_of(described, options))
 
 
+def is_known(name: object, robots: Robots) -> bool:
+    """Whether a scenario may name that robot: one of the robots, or a robot file, whatever is in it."""
+    from surefoot.models.registry import is_file
+
+    return isinstance(name, str) and (is_file(name) or name in robots.names())
+
+
 def size_of(description: "RobotDescription", options: RobotSettings) -> Similarity:
     """Size of a robot against the reference robot, without the payload that its options say."""
     return Similarity.of(description.leg_length, float(description.mass) - options.payload_mass)
+
+
+HIPS, SHANKS = 0.2, 0.11
+"""Distance between the hips of the reference robot, and of its soles at which its shanks keep apart [m]."""
+
+
+def stance_widening(robot: "RobotDescription | RobotFacts", size: Similarity) -> float:
+    """By what a robot of a size has to stand wider than the reference robot, scaled, for its hips or shanks [m]."""
+    if size == REFERENCE_SIZE:
+        return 0.0
+    return max(0.0, robot.hip_width - size.length * HIPS, robot.shank_spacing - size.length * SHANKS)
 
 
 def facts_of(description: "RobotDescription") -> RobotFacts:
@@ -83,7 +101,8 @@ def facts_of(description: "RobotDescription") -> RobotFacts:
         bodies=description.bodies,
         leg_length=description.leg_length,
         hip_width=description.hip_width,
-        com_above_hip=_straight_com_height(description.mjcf, description.sole_sites[0]) - description.leg_length,
+        com_above_hip=_straight_com_height(description.mjcf, description.sole_sites[0], _straight(description))
+        - description.leg_length,
         foot_length=description.sole_length,
         foot_width=description.sole_width,
         shank_spacing=description.shank_spacing,
@@ -139,22 +158,28 @@ def _swing_acceleration(description: "RobotDescription") -> tuple[float, float]:
     """See `RobotFacts`: of the left leg, by the joint whose axis is nearest to the one that it needs."""
     joints = description.roles.left_leg
     limits = [float(description.torque_limit[description.joint_names.index(name)]) for name in joints]
-    axes, inertias = _leg_joints(description.mjcf, joints)
+    axes, inertias = _leg_joints(description.mjcf, joints, _straight(description))
     reached = [
         HIP_SHARE * description.leg_length * limit / inertia for limit, inertia in zip(limits, inertias, strict=True)
     ]
-    hips = range(len(joints) // 2)
+    hips = range(joints.index(description.roles.knees[0]))
     pitch, roll = (max(hips, key=lambda k: abs(axes[k][axis])) for axis in (1, 0))
     return reached[pitch], reached[roll]
 
 
+def _straight(description: "RobotDescription") -> tuple[float, ...]:
+    """Joint angles with straight legs [rad]."""
+    return tuple(description.straight_joint_positions.tolist())
+
+
 @lru_cache(maxsize=16)
-def _leg_joints(mjcf: str, joints: tuple[str, ...]) -> tuple[list[list[float]], list[float]]:
-    """Axes in the world of joints with all of them at zero, and the inertias about them [-, kg·m²]."""
+def _leg_joints(mjcf: str, joints: tuple[str, ...], angles: tuple[float, ...]) -> tuple[list[list[float]], list[float]]:
+    """Axes in the world of joints with all of them at angles, and the inertias about them [-, kg·m²]."""
     import mujoco
 
     model = mujoco.MjModel.from_xml_string(mjcf)
     data = mujoco.MjData(model)
+    data.qpos[7:] = angles
     mujoco.mj_forward(model, data)
     axes, inertias = [], []
     for name in joints:
@@ -168,12 +193,13 @@ def _leg_joints(mjcf: str, joints: tuple[str, ...]) -> tuple[list[list[float]], 
 
 
 @lru_cache(maxsize=16)
-def _straight_com_height(mjcf: str, sole: str) -> float:
-    """CoM height above a sole's site with every joint at zero, which is straight legs [m]."""
+def _straight_com_height(mjcf: str, sole: str, angles: tuple[float, ...]) -> float:
+    """CoM height above a sole's site with the joints at angles of straight legs [m]."""
     import mujoco
 
     model = mujoco.MjModel.from_xml_string(mjcf)
     data = mujoco.MjData(model)
+    data.qpos[7:] = angles
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     return float(data.subtree_com[0, 2] - data.site(sole).xpos[2])

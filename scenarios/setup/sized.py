@@ -8,7 +8,7 @@ Defaults are those of the reference robot and follow the robot's size in every s
 
 import copy
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar, get_args
@@ -20,11 +20,11 @@ from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import Rates, RobotSettings, Scenario
+from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metrics import known
-from surefoot.scenarios.setup.robot import RobotFacts, Robots
+from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
@@ -35,15 +35,15 @@ _SOLES = ("foot_length", "foot_width")
 G = TypeVar("G", bound=BaseModel)
 
 
-def robot_size(name: str, robots: Robots) -> Similarity:
-    """Size of a robot; the reference's where there is none of that name, which others tell."""
+def robot_size(name: str, robots: Robots) -> tuple[Similarity, float]:
+    """Size of a robot, and by what it stands wider [m]; the reference's where none has that name, which others tell."""
     facts = None if name == REFERENCE else _facts(name, RobotSettings(), robots)
-    return REFERENCE_SIZE if facts is None else facts.size
+    return (REFERENCE_SIZE, 0.0) if facts is None else (facts.size, stance_widening(facts, facts.size))
 
 
 def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:
     with suppress(ParameterError, PluginError, LookupError):
-        return robots.facts(name, options) if name in robots.names() else None
+        return robots.facts(name, options) if is_known(name, robots) else None
     return None
 
 
@@ -63,7 +63,7 @@ def say_for(source: Source, overrides: Overrides, robots: Robots) -> None:
     origin, robot = named.value.get(_KEY), named.value.get("robot", REFERENCE)
     if origin is None:
         return
-    if origin not in robots.names():
+    if not is_known(origin, robots):
         right = nearest(str(origin), robots.names())
         source.problems.append(Problem((_KEY,), f"unknown robot '{origin}' in {_KEY}", right))
     source.value.pop(_KEY, None)
@@ -99,27 +99,35 @@ class _Translation:
     before: RobotFacts
     after: RobotFacts
 
-    @property
-    def size(self) -> Similarity:
-        """One robot's size against the other's."""
-        return self.after.size.over(self.before.size)
-
     def run(self) -> None:
         """Translate every number that has a unit; what is of a wrong type stays for the schema to tell."""
         values = self.source.value
         options = values.get("robot_options")
         for name in _SOLES if isinstance(options, dict) else ():
             options.pop(name, None)
+        gait, terrain = values.setdefault("gait", {}), values.get("terrain")
+        for name in _POSTURE if isinstance(gait, dict) else ():
+            gait.setdefault(name, Gait.model_fields[name].default)
+        given = [
+            group.get(name) for group, name in ((gait, "step_length"), (terrain, "tread")) if isinstance(group, dict)
+        ]
         self._group(Scenario, values, ())
+        if isinstance(terrain, dict) and len(given) == 2 and given[0] == given[1] is not None:
+            # Steps from tread to tread stay such.
+            gait["step_length"] = terrain["tread"]
         self._controller(WbcParameters(), values.get("wbc"), ("wbc",))
         for name, bound in values["criteria"].items() if isinstance(values.get("criteria"), dict) else ():
             self._criterion(values["criteria"], name, bound)
-        given = values.get("rates"), values.get("planner")
-        if isinstance(given[0], dict) and given[0]:
-            values["planner"] = dict(given[1]) if isinstance(given[1], dict) else {}
+        self._rates(values)
+
+    def _rates(self, values: dict[str, Any]) -> None:
+        """The clock; the sample time follows from it."""
+        given, planner = values.get("rates"), values.get("planner")
+        if isinstance(planner, dict):
+            planner.pop("sample_time", None)
+        if isinstance(given, dict):
             with suppress(ValueError, TypeError):
-                rates = clock(Rates(**given[0]), self.size)
-                values["rates"], values["planner"]["sample_time"] = rates.model_dump(), 1.0 / rates.planner
+                values["rates"] = clock(Rates(**given), self.after.size.time / self.before.size.time).model_dump()
 
     def _group(self, model: type[BaseModel], values: Any, key: Key) -> None:
         for name, unit, inner in _entries(model):
@@ -140,13 +148,15 @@ class _Translation:
             if isinstance(value, dict):
                 self._controller(getattr(parameters, entry.name), value, at)
             elif "unit" in entry.metadata and _is_number(value):
-                self._put(values, entry.name, at, self.size.times(value, entry.metadata["unit"]))
+                units = entry.metadata["unit"].split(", ")
+                factors = [_against(self.after.size, self.before.size, unit) for unit in units]
+                self._put(values, entry.name, at, _times(value, factors[0] if len(factors) == 1 else factors))
 
     def _criterion(self, criteria: dict[str, Any], name: str, bound: Any) -> None:
         metric, key = known(str(name).partition(".")[0]), ("criteria", name)
         if metric is None:
             return
-        factor = _factor(self.size, metric.unit)
+        factor = _against(self.after.size, self.before.size, metric.unit)
         if isinstance(bound, dict):
             for side, limit in bound.items():
                 self._put(bound, side, (*key, side), _times(limit, factor))
@@ -157,12 +167,10 @@ class _Translation:
         """The value for the other robot."""
         with suppress(PydanticCustomError):
             value = Unit(unit).number(value)
-        scaled = _times(value, self.size.factor(unit))
-        if key == ("gait", "com_height") and _is_number(value):
-            return com_height(value, self.before, self.after)
-        if key == ("gait", "step_width") and _is_number(value):
-            return step_width(value, self.before, self.after)
-        return scaled
+        rule = _RULES.get(key) if _is_number(value) else None
+        if rule is not None:
+            return rule(value, self.before, self.after)
+        return _times(value, _against(self.after.size, self.before.size, unit))
 
     def _put(self, values: dict[str, Any], name: str, key: Key, value: Any) -> None:
         """Write a value, and remember how it stands in the file."""
@@ -179,7 +187,7 @@ def com_height(value: float, before: RobotFacts, after: RobotFacts) -> float:
         before: facts of it.
         after: of the other one.
     """
-    return after.size.over(before.size).length * (value - before.com_above_hip) + after.com_above_hip
+    return after.size.length / before.size.length * (value - before.com_above_hip) + after.com_above_hip
 
 
 def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:
@@ -187,16 +195,36 @@ def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:
 
     So no foot lands nearer to the other one than in the scenario as it was written; arguments as of `com_height`.
     """
-    length = after.size.over(before.size).length
+    length = after.size.length / before.size.length
     wider = (
         getattr(after, name) - length * getattr(before, name) for name in ("hip_width", "shank_spacing", "foot_width")
     )
-    return length * value + max(0.0, *wider)
+    return float(length * value + max(0.0, *wider))
 
 
-def clock(rates: Rates, size: Similarity) -> Rates:
-    """Rates for a robot of a size: the planner's the nearest whole one, the others so many times faster as before."""
-    planner = max(1, round(rates.planner / size.time))
+def tread(value: float, before: RobotFacts, after: RobotFacts) -> float:
+    """Depth of a tread for another robot: scaled, and deeper by what its soles are longer than scaled ones [m].
+
+    So no sole lands nearer to an edge; arguments as of `com_height`.
+    """
+    length = after.size.length / before.size.length
+    return length * value + max(0.0, after.foot_length - length * before.foot_length)
+
+
+_RULES: dict[Key, Callable[[float, RobotFacts, RobotFacts], float]] = {
+    ("gait", "com_height"): com_height,
+    ("gait", "step_width"): step_width,
+    ("terrain", "tread"): tread,
+}
+"""Keys that follow from more of a robot than its size."""
+
+_POSTURE = ("com_height", "step_width")
+"""Those of them that every walk has."""
+
+
+def clock(rates: Rates, time: float) -> Rates:
+    """Rates where times are longer by a factor: the planner's the nearest whole one, the others in step with it."""
+    planner = max(1, round(rates.planner / time))
     control = planner * max(1, rates.control // rates.planner)
     return Rates(planner=planner, control=control, physics=control * max(1, rates.physics // rates.control))
 
@@ -209,9 +237,9 @@ def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scena
     before, after = (_facts(name, RobotSettings(), robots) for name in (REFERENCE, scenario.robot))
     gait, changed = scenario.gait, {}
     if before is not None and after is not None:
-        for name, rule in (("com_height", com_height), ("step_width", step_width)):
+        for name in _POSTURE:
             if name not in gait.model_fields_set:
-                changed[name] = rule(getattr(gait, name), before, after)
+                changed[name] = _RULES["gait", name](getattr(gait, name), before, after)
     rates, sample_time = _clock(scenario, size)
     update: dict[str, Any] = {
         "gait": followed.gait.model_copy(update=changed),
@@ -225,7 +253,7 @@ def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scena
 
 def _clock(scenario: Scenario, size: Similarity) -> tuple[Rates, float]:
     """Rates, and sample time [s], of which those that are not given follow the robot and the ones that are."""
-    usual, given = clock(Rates(), size), scenario.rates.model_fields_set
+    usual, given = clock(Rates(), size.time), scenario.rates.model_fields_set
     planner = scenario.rates.planner if "planner" in given else usual.planner
     control = scenario.rates.control if "control" in given else planner * (usual.control // usual.planner)
     physics = scenario.rates.physics if "physics" in given else control * (usual.physics // usual.control)
@@ -253,19 +281,19 @@ def default_of(model: type[BaseModel], name: str, size: Similarity) -> Any:
     """Default of a key for a robot of a size, but for what follows from more than that."""
     field = model.model_fields[name]
     unit = unit_of(field.annotation, field.metadata)
-    return field.default if unit in ("", "Hz") else _times(field.default, size.factor(unit))
+    return field.default if unit in ("", "Hz") else _times(field.default, _against(size, REFERENCE_SIZE, unit))
 
 
 def _bound(name: str, bound: Bound, size: Similarity) -> Bound:
     metric = known(name)
-    factor = 1.0 if metric is None else _factor(size, metric.unit)
+    factor = 1.0 if metric is None else _against(size, REFERENCE_SIZE, metric.unit)
     return Bound(**{side: _times(limit, factor) for side, limit in bound if limit is not None})
 
 
-def _factor(size: Similarity, unit: str) -> float:
-    """Factor of a metric's unit; 1 for one that a package has made up, and for bytes."""
+def _against(after: Similarity, before: Similarity, unit: str) -> float:
+    """Factor of a unit from one size to another; 1 for bytes, and for what a package has made up."""
     try:
-        return size.factor(unit)
+        return after.factor(unit) / before.factor(unit)
     except ValueError:
         return 1.0
 
@@ -289,9 +317,12 @@ def _is_number(value: Any) -> bool:
     return all(isinstance(part, int | float) and not isinstance(part, bool) for part in several)
 
 
-def _times(value: Any, factor: float) -> Any:
-    """A number, or a list or tuple of numbers, times a factor; all else as it is."""
+def _times(value: Any, factor: float | list[float]) -> Any:
+    """A number, or a list or tuple of numbers, times a factor or one for each; all else as it is."""
     if isinstance(value, list | tuple):
-        return type(value)(_times(part, factor) for part in value)
+        factors = factor if isinstance(factor, list) else [factor] * len(value)
+        return type(value)(_times(part, one) for part, one in zip(value, factors, strict=False))
+    if isinstance(factor, list):
+        return value
     plain = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     return value * factor if plain and factor != 1.0 else value

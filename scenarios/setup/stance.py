@@ -143,7 +143,8 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
     """The legs' inertia, from a standing configuration; both legs alike.
 
     The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
-    the thigh, what is below the next joint to the foot. The joints of a leg count as in one plane; its CoMs do not.
+    the thigh, what is below the next joint to the foot; hip and ankle are where the axes there come nearest to
+    each other. The joints count as in one plane, CoMs may lie beside it.
 
     Args:
         model: the robot.
@@ -195,9 +196,10 @@ def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.boo
     at = [data.oMi[j].translation.copy() for j in chain]
     apart = np.linalg.norm(np.diff(at, axis=0), axis=1)
     knee = 1 + int(np.argmax(apart[1:] * apart[:-1]))
-    parts = [_lumped(model, data, joints) for joints in (chain[:knee], chain[knee : knee + 1], chain[knee + 1 :])]
-    hip = meeting_point(model, data, chain[:knee])
-    return _Leg(hip, at[knee], at[knee + 1], data.oMf[frame].translation.copy(), *parts)
+    groups = chain[:knee], chain[knee : knee + 1], chain[knee + 1 :]
+    parts = [_lumped(model, data, joints) for joints in groups]
+    hip, ankle = (meeting_point(model, data, group) for group in (groups[0], groups[2]))
+    return _Leg(hip, at[knee], ankle, data.oMf[frame].translation.copy(), *parts)
 
 
 def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:

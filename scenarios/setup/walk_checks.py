@@ -7,7 +7,6 @@ from itertools import pairwise
 
 from surefoot.errors import ParameterError
 from surefoot.planner.ground.terrain import flat
-from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import highest_apex
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.planner.walk.commands import Twist, fastest
@@ -90,7 +89,7 @@ def _footstep_problem(draft: Draft, facts: RobotFacts, number: int, place: Landi
     gait = draft.keys.gait
     sideways = "lateral_step" if gait.lateral_step else "turn" if gait.turn else "step_width"
     try:
-        check_reach(number, place, replace(draft.size.scaled(PlannerParameters()), reach_length=draft.reach))
+        check_reach(number, place, replace(draft.usual, reach_length=draft.reach))
     except ParameterError as fault:
         name = "step_length" if fault.key[-1] == "ahead" else sideways
         return Problem(("gait", name), fault.what, f"{fault.right}; change gait.{name}")
@@ -135,8 +134,7 @@ def commanded_step_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem
     """Name velocities whose steps are out of reach with the fastest possible, or the first footstep that is."""
     gait = draft.keys.gait
     sole, span = (facts.foot_length, facts.foot_width), leg_span(gait.com_height, facts)
-    usual, reach = draft.size.scaled(PlannerParameters()), LONGEST_REACH * draft.size.length
-    parameters = replace(usual, reach_length=reach)
+    parameters = replace(draft.usual, reach_length=LONGEST_REACH * draft.size.length)
     region = step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
     for index, command in enumerate(gait.velocity):
         right = _too_fast(gait, twist_of(command), region)

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import yaml
 from pydantic import BaseModel
 
-from surefoot.models.registry import ROBOTS
+from surefoot.models.registry import ROBOTS, said_of
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.plugins import OWN_PACKAGE, Registry
 from surefoot.scenarios import catalogue
@@ -21,7 +21,7 @@ from surefoot.scenarios.sweep.spec import shipped
 from surefoot.wbc.tasks import TASKS
 
 _REGISTRIES: Mapping[str, tuple[Registry[Any], Callable[[str], str]]] = {
-    "robot": (ROBOTS, lambda name: ""),
+    "robot": (ROBOTS, said_of),
     "profile": (PROFILES, lambda name: PROFILES[name].doc),
     "terrain": (KINDS, lambda name: _first_line(type(KINDS[name]))),
     "estimator": (ESTIMATORS, lambda name: _first_line(ESTIMATORS[name])),

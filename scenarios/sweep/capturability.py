@@ -233,10 +233,10 @@ def _times(walk: Walk, left: tuple[float, float]) -> tuple[Array, Array]:
     """Double and single support that may be left [s]."""
     if not walk.profile.catches or walk.parameters.step_adaptation is StepAdaptation.LOCATION:
         return np.array(left[:1]), np.array(left[1:])
-    earliest = [min(time, SHORTEST[name]) for name, time in zip(("double", "single"), left, strict=True)]
-    double, single = (
-        np.arange(begin, end, _EVERY) for begin, end in zip(earliest, (left[0], left[1] + _LATER), strict=True)
-    )
+    scale = walk.size.time
+    earliest = [min(time, SHORTEST[name] * scale) for name, time in zip(("double", "single"), left, strict=True)]
+    ends = left[0], left[1] + _LATER * scale
+    double, single = (np.arange(begin, end, _EVERY * scale) for begin, end in zip(earliest, ends, strict=True))
     return np.append(double, left[0]), np.append(single, left[1])
 
 

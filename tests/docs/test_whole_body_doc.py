@@ -12,6 +12,7 @@ from dotted import named
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
+from surefoot.similarity import Similarity
 from surefoot.wbc.controller import Sole
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
@@ -33,7 +34,7 @@ def rows(settings, prefix=""):
         value = getattr(settings, entry.name)
         if "unit" in entry.metadata:
             yield prefix + entry.name, shown(value), entry.metadata["unit"], entry.metadata["doc"]
-        elif not isinstance(value, str):
+        elif not isinstance(value, str | Similarity):
             yield from rows(value, f"{prefix}{entry.name}.")
 
 

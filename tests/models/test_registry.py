@@ -1,17 +1,32 @@
 from dataclasses import replace
 from importlib.metadata import EntryPoint
+from importlib.util import find_spec
 
 import pytest
 
 from surefoot import plugins
 from surefoot.models import ROBOTS, Robot, RobotError, RobotOptions, UnknownRobotError, describe, robot_names
+from surefoot.models.registry import SHIPPED
 
 pytestmark = pytest.mark.unit
+
+FROM_EXTRA = ("gr3", "jvrc1")
+"""Robots whose models the extra ``robots`` brings."""
 
 
 def test_every_name_describes_a_robot() -> None:
     for name in robot_names():
+        if name not in FROM_EXTRA:
+            assert describe(name, RobotOptions()).name == name
+
+
+@pytest.mark.parametrize("name", FROM_EXTRA)
+def test_a_robot_whose_package_is_missing_says_how_to_get_it(name: str) -> None:
+    if find_spec({"jvrc1": "jvrc_description", "gr3": "fourier_robot_descriptions"}[name]):
         assert describe(name, RobotOptions()).name == name
+        return
+    with pytest.raises(RobotError, match=r"is not installed; pip install 'surefoot\[robots\]'"):
+        describe(name, RobotOptions())
 
 
 def test_unknown_robot_gets_the_nearest_name() -> None:
@@ -49,7 +64,7 @@ def test_a_robot_of_another_package_is_found_by_its_entry_point(monkeypatch) -> 
     entry = EntryPoint("shorty", f"{__name__}:SHORTY", "surefoot.robots")
     monkeypatch.setattr(plugins, "entry_points", lambda group: [entry] if group == entry.group else [])
     monkeypatch.setattr(ROBOTS, "_loaded", {})
-    assert robot_names() == ("humanoid100", "shorty")
+    assert robot_names() == ("humanoid100", *SHIPPED, "shorty")
     options = RobotOptions(foot_length=0.2)
     found = describe("shorty", options)
     assert (found.name, found.sole_length) == ("shorty", 0.2)

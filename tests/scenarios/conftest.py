@@ -159,11 +159,14 @@ def robots() -> FakeRobots:
 def robot() -> SimpleNamespace:
     return SimpleNamespace(
         mjcf="<mujoco/>",
+        leg_length=0.94,
         mass=100.0,
         sole_length=FOOT,
         sole_width=FOOT,
         shank_spacing=0.11,
         joint_names=JOINTS,
+        joint_indices=lambda names: tuple(map(JOINTS.index, names)),
+        straight_joint_positions=np.zeros(4),
         roles=SimpleNamespace(knees=JOINTS[1::2], left_leg=JOINTS[:2], right_leg=JOINTS[2:]),
         torso_body="torso",
         torque_limit=np.full(4, 100.0),

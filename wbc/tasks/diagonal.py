@@ -80,7 +80,8 @@ class Posture:
 
     def _swing_arms(self, arms: ArmSwing, terms: RobotTerms, joints: Array) -> None:
         angle, rate = arms.offset(terms)
-        for joint, sign in zip(arms.joints, (1.0, -1.0), strict=True):
+        left, right = arms.back
+        for joint, sign in zip(arms.joints, (left, -right), strict=True):
             joints[joint] += sign * float(self._stiffness[joint] * angle + self._damping[joint] * rate)
 
 

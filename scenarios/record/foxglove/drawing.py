@@ -21,6 +21,7 @@ from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion
 from foxglove_schemas_protobuf.SceneEntity_pb2 import SceneEntity
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
+from foxglove_schemas_protobuf.TriangleListPrimitive_pb2 import TriangleListPrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.descriptor import FileDescriptor
 from google.protobuf.descriptor_pb2 import FileDescriptorProto, FileDescriptorSet
@@ -255,6 +256,10 @@ class Outlines:
         return [(x + u, y + v, z + slope_x * u + slope_y * v + LIFT) for u, v in offsets]
 
 
+FINEST = 2.0**-14
+"""Vertices of meshes are rounded to this: too fine to be seen, and short numbers can be compressed [m]."""
+
+
 def world_scene(mjcf: str) -> SceneUpdate:
     """Turn the geoms of an MJCF text into one entity per body; the ground plane is left to the viewer's grid."""
     entities: dict[int, SceneEntity] = {}
@@ -265,11 +270,11 @@ def world_scene(mjcf: str) -> SceneUpdate:
 
 
 def _drawn(entity: SceneEntity) -> bool:
-    return bool(entity.cubes or entity.spheres or entity.cylinders)
+    return bool(entity.cubes or entity.spheres or entity.cylinders or entity.triangles)
 
 
 def _add(shape: Shape, entity: SceneEntity) -> None:
-    """Add a shape to an entity; meshes, which have no primitive, are left out."""
+    """Add a shape to an entity."""
     turn, tint = np.roll(shape.quaternion, -1), color(shape.color)
     size, place = _vector(2.0 * shape.half_size), pose(shape.position, turn)
     if shape.kind == "box":
@@ -278,6 +283,11 @@ def _add(shape: Shape, entity: SceneEntity) -> None:
         entity.spheres.append(SpherePrimitive(size=size, pose=place, color=tint))
     elif shape.kind in ("cylinder", "capsule"):
         entity.cylinders.append(CylinderPrimitive(size=size, bottom_scale=1.0, top_scale=1.0, pose=place, color=tint))
+    elif shape.mesh is not None:
+        corners = [Point3(x=x, y=y, z=z) for x, y, z in (np.round(shape.mesh.vertices / FINEST) * FINEST).tolist()]
+        entity.triangles.append(
+            TriangleListPrimitive(pose=place, points=corners, color=tint, indices=shape.mesh.faces.ravel().tolist())
+        )
     if shape.kind == "capsule":
         ball = _vector(2.0 * shape.half_size[[0, 0, 0]])
         for end in shape.ends:

@@ -161,6 +161,9 @@ class EventLog:
 SCENE_PERIOD = 10
 """The unchanging scene is repeated, for viewers that join late or see a part of the log [s]."""
 
+SCENE_RATE = 20_000
+"""One with the meshes of a robot so much more seldom that it takes no more than this of the log [B/s]."""
+
 
 _FALLBACK, _HELD = SolveStatus.EQUALITIES_ONLY, SolverStatus.HELD
 
@@ -174,7 +177,6 @@ class BodyView:
 
     def __init__(self, writer: LogWriter, world: World, robot: RobotDescription, control_rate: int) -> None:
         self.every = max(control_rate // RATE, 1)
-        self._scene_every = control_rate * SCENE_PERIOD
         self._poses = BodyPoses(world.model)
         self._torso = self._poses.names.index(robot.torso_body)
         poses, joints = templates.transforms(self._poses.names), templates.joint_states(robot.joint_names)
@@ -186,6 +188,7 @@ class BodyView:
             "/scene/world", published(SceneUpdate), "robot and terrain, each body in its frame"
         )
         self._scene_data = world_scene(world.mjcf()).SerializeToString(deterministic=True)
+        self._scene_every = control_rate * max(SCENE_PERIOD, round(len(self._scene_data) / SCENE_RATE))
         self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
         self._events = EventLog(writer)
         self._levers = np.zeros((2, 3, 2))

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.scenarios.errors import LogError
@@ -133,6 +135,9 @@ def body_poses(model: mujoco.MjModel, configurations: Array) -> tuple[Array, Arr
 Faces = NDArray[np.int64]
 Triangles = tuple[Array, Faces]
 
+CREASE = np.deg2rad(35.0)
+"""Triangles that meet at a larger angle have an edge between them [rad]."""
+
 SEGMENTS = 20
 """Around the axis of a lathed body; half as many from pole to pole."""
 
@@ -160,7 +165,7 @@ def _merged(parts: list[Triangles]) -> Triangles:
 def _triangles(shape: Shape) -> Triangles:
     radius, _, half_length = shape.half_size
     if shape.mesh is not None:
-        return shape.mesh.vertices, shape.mesh.faces
+        return creased(shape.mesh.vertices, shape.mesh.faces)
     if shape.kind == "box":
         return box(shape.half_size)
     if shape.kind == "cylinder":
@@ -168,6 +173,23 @@ def _triangles(shape: Shape) -> Triangles:
     if shape.kind == "capsule":
         return capsule(radius, half_length)
     return ellipsoid(shape.half_size)
+
+
+def creased(vertices: Array, faces: Faces) -> Triangles:
+    """A mesh with the vertices of its sharp edges once for each side, where a viewer's smooth shading then ends."""
+    a, b, c = vertices[faces].transpose(1, 0, 2)
+    normals = np.cross(b - a, c - a)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+    edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    order = np.lexsort(edges.T)
+    same = (edges[order[1:]] == edges[order[:-1]]).all(axis=1)
+    one, other = order[:-1][same] // 3, order[1:][same] // 3
+    smooth = np.einsum("ij,ij->i", normals[one], normals[other]) > np.cos(CREASE)
+    links = coo_array((smooth[smooth], (one[smooth], other[smooth])), shape=(len(faces), len(faces)))
+    _, side = connected_components(links, directed=False)
+    corners = np.stack([faces, np.broadcast_to(side[:, None], faces.shape)], axis=2).reshape(-1, 2)
+    kept, places = np.unique(corners, axis=0, return_inverse=True)
+    return vertices[kept[:, 0]], places.reshape(faces.shape)
 
 
 def ellipsoid(radii: Array) -> Triangles:

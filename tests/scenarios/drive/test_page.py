@@ -22,6 +22,7 @@ from surefoot.scenarios.show.logview import LogView
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.page import charts
 from surefoot.scenarios.show.replay.poses import Window
+from surefoot.similarity import Similarity
 
 pytestmark = pytest.mark.unit
 
@@ -35,6 +36,9 @@ def test_inputs_are_read_and_bent_into_what_may_be_asked_for():
     assert read_input("pace", {"speed": 0.25}) == Pace(speed=0.25)
     assert read_input("pace", {"speed": 0.0}) == Pace(speed=0.1)
     assert read_input("reset", {}) == Reset()
+    small = Similarity(0.25, 0.02)
+    assert read_input("velocity", {"v_x": 9, "v_y": 0, "yaw_rate": 9}, small) == Velocity(0.3, 0.0, 1.2)
+    assert read_input("gait", {"swing_height": 0.07}, small) == Gait(swing_height=0.03)
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import pytest
 from surefoot.scenarios.judge import effort, feet
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.health import foot_slip
+from surefoot.similarity import REFERENCE_SIZE
 
 pytestmark = pytest.mark.unit
 
@@ -57,6 +58,7 @@ class Walk:
         }  # fmt: skip
         constants = SimpleNamespace(
             mass=100.0, foot_length=LENGTH, foot_width=WIDTH, control_rate=RATE, boxes=self.boxes, plane=0.0,
+            similarity=REFERENCE_SIZE,
             velocity_limit=self.velocity_limit, fidelity="full", com_height=0.9,
         )  # fmt: skip
         footstep = _Channel({"foot": [1], "planned": np.array([self.footstep])}, [350])

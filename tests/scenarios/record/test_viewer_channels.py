@@ -13,7 +13,7 @@ from surefoot.models.pinocchio import pinocchio_model
 from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.record.foxglove.drawing import METRES_PER_NEWTON, force_arrow
+from surefoot.scenarios.record.foxglove.drawing import FINEST, METRES_PER_NEWTON, force_arrow, world_scene
 from surefoot.scenarios.record.foxglove.views import RATE
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.robot import describe
@@ -131,6 +131,19 @@ def test_the_scene_has_every_link_in_its_own_frame(log, walk):
     assert set(entities) <= {"world", *describe(walk.robot, walk.robot_options).bodies}
     assert {"torso", "left_foot", "right_shank", "head"} <= set(entities)
     assert all(entity.frame_locked and entity.frame_id == entity.id for entity in entities.values())
+
+
+def test_meshes_are_triangles_in_the_frame_of_their_link(meshed):
+    scene = world_scene(World(meshed.robot, flat(), 1000).mjcf())
+    entities = {entity.id: entity for entity in scene.entities}
+    assert {name for name, entity in entities.items() if entity.triangles} == set(meshed.looks)
+    for body, looks in meshed.looks.items():
+        for triangles, (expected, _) in zip(entities[body].triangles, looks, strict=True):
+            turn = triangles.pose.orientation
+            R = pin.Quaternion(turn.w, turn.x, turn.y, turn.z).toRotationMatrix()
+            points = np.array([vector(point) for point in triangles.points]) @ R.T + vector(triangles.pose.position)
+            np.testing.assert_allclose(points[list(triangles.indices)].reshape(-1, 3, 3), expected, atol=FINEST)
+            assert triangles.color.a == 1.0
 
 
 def test_events_tell_the_story(log):

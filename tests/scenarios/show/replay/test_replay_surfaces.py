@@ -6,7 +6,7 @@ import pytest
 
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.scenarios.show.replay.poses import box, capsule, cylinder, ellipsoid, surfaces
+from surefoot.scenarios.show.replay.poses import box, capsule, creased, cylinder, ellipsoid, surfaces
 
 pytestmark = pytest.mark.unit
 
@@ -58,6 +58,31 @@ def test_a_mesh_is_taken_as_it_is() -> None:
     <worldbody><body><geom type="mesh" mesh="m" mass="1"/></body></worldbody></mujoco>"""
     (surface,) = surfaces(mujoco.MjModel.from_xml_string(text))
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    order = np.lexsort(surface.vertices.round(6).T)
-    assert surface.vertices[order] == pytest.approx(corners[np.lexsort(corners.T)], abs=1e-6)
+    found = np.unique(surface.vertices.round(6) + 0.0, axis=0)
+    assert found == pytest.approx(np.unique(corners, axis=0), abs=1e-6)
     assert volume(surface.vertices, surface.faces) == pytest.approx(1 / 6)
+
+
+def test_sharp_edges_part_the_sides_and_soft_ones_do_not() -> None:
+    cube = np.array([[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)])
+    sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    faces = np.array([[a, *pair] for a, b, c, d in sides for pair in ((b, c), (c, d))])
+    vertices, parted = creased(cube, faces)
+    assert len(vertices) == 6 * 4
+    np.testing.assert_array_equal(vertices[parted], cube[faces])
+    soft, faces = ellipsoid(np.ones(3))
+    _, place = np.unique(soft.round(9), axis=0, return_inverse=True)
+    welded = place[faces]
+    assert len(creased(np.unique(soft.round(9), axis=0), welded)[0]) == len(np.unique(welded))
+
+
+def test_a_robot_with_meshes_has_them_in_their_colours(meshed) -> None:
+    model = mujoco.MjModel.from_xml_string(meshed.robot.mjcf)
+    shown = surfaces(model)
+    for body, looks in meshed.looks.items():
+        for corners, material in looks:
+            color = tuple(model.material(material).rgba[:3].tolist())
+            (surface,) = (s for s in shown if model.body(s.body).name == body and s.color == color)
+            found = surface.vertices[surface.faces].reshape(-1, 9)
+            for triangle in corners.reshape(-1, 9):
+                assert np.abs(found - triangle).max(axis=1).min() < 1e-6

@@ -1,0 +1,62 @@
+"""A robot with meshes for the tests of every folder."""
+
+from dataclasses import dataclass, replace
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from surefoot.models import RobotDescription, RobotOptions, describe
+
+
+@dataclass(frozen=True)
+class Meshed:
+    """humanoid100 with inline meshes.
+
+    Attributes:
+        robot: its description.
+        looks: what is drawn of each body in its frame: vertices of triangles, shape (n, 3, 3) [m], and material.
+        hulls: corners of the contact shapes that are meshes, by name, in the frames of their bodies, shape (n, 3) [m].
+    """
+
+    robot: RobotDescription
+    looks: dict[str, list[tuple[np.ndarray, str]]]
+    hulls: dict[str, np.ndarray]
+
+
+@pytest.fixture(scope="session")
+def meshed() -> Meshed:
+    """Ellipsoids become lopsided octahedra, the capsules of limbs that are kept apart become hulls of random points."""
+    from surefoot.models.mjcf import numbers
+    from surefoot.models.robot_file.meshes import hull
+
+    robot = describe("humanoid100", RobotOptions())
+    root = ElementTree.fromstring(robot.mjcf)
+    rng, looks, hulls = np.random.default_rng(12), {}, {}
+
+    def put(geom: ElementTree.Element, name: str, vertices: np.ndarray, faces: np.ndarray, **more: str) -> None:
+        corners = {"vertex": numbers(vertices.ravel()), "face": " ".join(map(str, faces.ravel().tolist()))}
+        ElementTree.SubElement(root.find("asset"), "mesh", corners, name=name, **more)
+        for unused in ("size", "pos", "quat", "fromto"):
+            geom.attrib.pop(unused, None)
+        geom.attrib |= {"type": "mesh", "mesh": name}
+
+    for body in root.iter("body"):
+        for index, geom in enumerate(body.findall("geom")):
+            name, kind = geom.get("name", f"{body.get('name')}_{index}"), geom.get("type")
+            if kind == "ellipsoid":
+                axes, centre = (np.fromstring(geom.get(key), sep=" ") for key in ("size", "pos"))
+                vertices = (centre + axes * OCTAHEDRON * [[1.0], [0.6], [1.0], [0.9], [1.0], [0.8]]).round(4)
+                put(geom, name, vertices, SIDES, inertia="shell")
+                looks.setdefault(body.get("name"), []).append((vertices[SIDES], geom.get("material")))
+            elif kind == "capsule" and name in {shape for pair in robot.kept_apart for shape in pair}:
+                ends = np.fromstring(geom.get("fromto"), sep=" ").reshape(2, 3)
+                share = rng.random((300, 1))
+                points = share * ends[0] + (1.0 - share) * ends[1] + 0.02 * rng.normal(size=(300, 3))
+                hulls[name], faces = hull(points, 40)
+                put(geom, name, hulls[name], faces)
+    return Meshed(replace(robot, mjcf=ElementTree.tostring(root, encoding="unicode")), looks, hulls)
+
+
+OCTAHEDRON = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
+SIDES = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])

@@ -1,0 +1,140 @@
+"""Robot files by path and name, in other sizes, with options; and a cache that is never stale."""
+
+import biped
+import numpy as np
+import pytest
+
+from surefoot.models import RobotError, RobotOptions, describe
+from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.robot_file import build, cache, derive
+from surefoot.models.similar import scaled
+
+pytestmark = pytest.mark.unit
+
+HALF = "name: half\nmodel: humanoid100\nscale: 0.5\n"
+
+
+@pytest.fixture
+def derived(monkeypatch):
+    """How often a description was derived and not read, from an empty memory."""
+    calls = []
+    plain = derive.derive
+    monkeypatch.setattr(derive, "derive", lambda *args: calls.append(1) or plain(*args))
+    build._unchanged.cache_clear()
+    return calls
+
+
+def same(one, other) -> bool:
+    return all(np.array_equal(getattr(one, name), getattr(other, name)) for name in one.__slots__)
+
+
+def test_a_known_robot_in_another_size(tmp_path) -> None:
+    path = biped.write(tmp_path, None, HALF)
+    found, known = describe(str(path), RobotOptions()), scaled(describe("humanoid100", RobotOptions()), 0.5)
+    assert (found.name, found.mjcf, found.leg_length) == ("half", known.mjcf, 0.47)
+
+
+def test_options_of_a_robot_in_another_size_are_in_its_own_metres_and_kilograms(tmp_path) -> None:
+    path = biped.write(tmp_path, None, HALF)
+    found = describe(str(path), RobotOptions(foot_length=0.1, foot_width=0.05, payload_mass=2.0))
+    assert (found.sole_length, found.sole_width) == pytest.approx((0.1, 0.05))
+    assert found.mass == pytest.approx(12.5 + 2.0)
+
+
+def test_scale_is_the_similar_robot(tmp_path) -> None:
+    one = describe(str(biped.write(tmp_path)), RobotOptions())
+    two = describe(str(biped.write(tmp_path, None, biped.FILE + "scale: 2\n")), RobotOptions())
+    assert same(two, scaled(one, 2.0))
+
+
+def test_options_of_a_robot_file(tmp_path) -> None:
+    path = str(biped.write(tmp_path))
+    own = describe(path, RobotOptions())
+    found = describe(path, RobotOptions(foot_length=0.1, payload_mass=3.0, payload_body="left_foot"))
+    assert (found.sole_length, found.sole_width) == (0.1, own.sole_width)
+    model = pinocchio_model(found)
+    foot = model.frames[model.getFrameId("left_foot")].parentJoint
+    assert found.mass == pytest.approx(own.mass + 3.0)
+    assert model.inertias[foot].mass == pytest.approx(pinocchio_model(own).inertias[foot].mass + 3.0)
+    import mujoco
+
+    box = mujoco.MjModel.from_xml_string(found.mjcf).geom("left_sole_box")
+    assert box.size[:2] == pytest.approx((0.05, own.sole_width / 2))
+
+
+@pytest.mark.parametrize(
+    ("options", "key"),
+    [
+        (RobotOptions(foot_length=1.0), "foot_length"),
+        (RobotOptions(payload_mass=-1.0), "payload_mass"),
+        (RobotOptions(payload_body="tosro"), "payload_body"),
+    ],
+)
+def test_impossible_options_are_refused(tmp_path, options, key) -> None:
+    with pytest.raises(RobotError) as refused:
+        describe(str(biped.write(tmp_path)), options)
+    assert refused.value.key == (key,)
+
+
+def test_what_is_cached_is_what_was_derived(tmp_path, derived) -> None:
+    path = str(biped.write(tmp_path, None, biped.FILE + "# cached\n"))
+    one = describe(path, RobotOptions())
+    build._unchanged.cache_clear()
+    two = describe(path, RobotOptions())
+    assert len(derived) == 1
+    assert same(one, two)
+    assert two.torque_limit.dtype == np.float64
+    assert not two.torque_limit.flags.writeable
+
+
+def test_no_other_content_is_ever_taken_for_it(tmp_path, derived) -> None:
+    """Of the file, the model or a mesh, even one of the same size and time."""
+    mesh = '<link name="cap"><visual><geometry><mesh filename="cap.stl"/></geometry></visual></link>'
+    fixed = '<joint name="cap_joint" type="fixed"><parent link="base"/><child link="cap"/></joint>'
+    body = biped.Biped(extra=mesh + fixed)
+    for x in (b"1", b"2"):
+        corners = [b"0 0 0", b"0 %s 0" % x, b"%s 0 0" % x, b"0 0 1"]
+        faces = b"".join(
+            b"facet normal 0 0 0\nouter loop\n"
+            + b"".join(b"vertex %s\n" % corners[k] for k in face)
+            + b"endloop\nendfacet\n"
+            for face in ((0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2))
+        )
+        (tmp_path / "cap.stl").write_bytes(b"solid cap\n" + faces + b"endsolid cap\n")
+        describe(str(biped.write(tmp_path, body)), RobotOptions())
+        build._unchanged.cache_clear()
+    assert len(derived) == 2
+    describe(str(biped.write(tmp_path, body, biped.FILE + "com_height: 0.5\n")), RobotOptions())
+    changed = body.urdf().replace('effort="80"', 'effort="81"')
+    assert describe(str(biped.write(tmp_path, changed)), RobotOptions()).torque_limit[0] == 81.0
+    assert len(derived) == 4
+
+
+def test_a_cache_that_cannot_be_read_is_made_anew(tmp_path, derived, monkeypatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    path = str(biped.write(tmp_path))
+    one = describe(path, RobotOptions())
+    (kept,) = (tmp_path / "cache" / "surefoot" / "robots").glob("*.json")
+    for text in ("", "[]", '{"description": {}}', kept.read_text().replace("mjcf", "mjfc")):
+        kept.write_text(text)
+        build._unchanged.cache_clear()
+        assert same(describe(path, RobotOptions()), one)
+    assert len(derived) == 5
+
+
+def test_a_folder_that_cannot_be_written_keeps_nothing(tmp_path, derived, monkeypatch) -> None:
+    (tmp_path / "cache").write_text("no folder")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    path = str(biped.write(tmp_path))
+    assert describe(path, RobotOptions()).name == "biped"
+    build._unchanged.cache_clear()
+    describe(path, RobotOptions())
+    assert len(derived) == 2
+
+
+def test_the_code_is_part_of_the_key(tmp_path, monkeypatch) -> None:
+    file = tmp_path / "a"
+    file.write_text("same")
+    one = cache.digest([file])
+    monkeypatch.setattr(cache, "_code", lambda: b"another importer")
+    assert cache.digest([file]) != one

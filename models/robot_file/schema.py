@@ -103,7 +103,8 @@ def read(path: Path) -> RobotFile:
     try:
         return RobotFile.model_validate(values)
     except ValidationError as error:
-        raise _refusal(path, error.errors()[0], lines) from None
+        first = min(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")  # whose name may be misspelt
+        raise _refusal(path, first, lines) from None
 
 
 def _text(path: Path) -> str:

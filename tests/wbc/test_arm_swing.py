@@ -66,3 +66,16 @@ def test_the_controller_swings_the_arms_against_each_other(robot, references):
         left, right = robot.shoulders
         bent[gain] = report.acceleration[6 + left] - report.acceleration[6 + right]
     assert bent[0.6] > bent[0.0] + 1.0
+
+
+def test_arms_that_go_back_by_negative_angles_swing_the_same_way(robot, references):
+    """With both signs turned round, the accelerations of the shoulders are too, against those without a swing."""
+    standing, _ = references
+    found = {}
+    for gain, back in ((0.0, 1.0), (0.6, 1.0), (0.6, -1.0)):
+        controller = robot.controller(WbcParameters(arm_swing=gain), arm_back=(back, back))
+        controller.observe(RobotState(stride(robot), np.zeros(robot.nv)))
+        report = controller.update(standing(), FootSensing((490.0, 490.0)))
+        left, right = robot.shoulders
+        found[gain, back] = report.acceleration[6 + left] - report.acceleration[6 + right]
+    assert found[0.6, 1.0] > found[0.0, 1.0] + 1.0 > found[0.6, -1.0] + 2.0

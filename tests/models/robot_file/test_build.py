@@ -2,9 +2,12 @@
 
 import biped
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from surefoot.models import RobotError, RobotOptions, describe
+from surefoot.models.belief import with_com_raised, with_mass_scaled
+from surefoot.models.consistency import EnginePair
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.robot_file import build, cache, derive
 from surefoot.models.similar import scaled
@@ -138,3 +141,37 @@ def test_the_code_is_part_of_the_key(tmp_path, monkeypatch) -> None:
     one = cache.digest([file])
     monkeypatch.setattr(cache, "_code", lambda: b"another importer")
     assert cache.digest([file]) != one
+
+
+CHEST = (
+    '<link name="chest"><inertial><origin xyz="0.1 0.2 0.3"/><mass value="3"/>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    '<joint name="waist" type="revolute"><parent link="base"/><child link="chest"/>'
+    '<origin xyz="0 0 0.2" rpy="1.1 0.3 -0.5"/><axis xyz="0 0 1"/>'
+    '<limit lower="-1" upper="1" effort="50" velocity="10"/></joint>'
+)
+
+
+@pytest.fixture
+def slanted(tmp_path):
+    """A robot whose trunk's frames do not stand upright."""
+    path = biped.write(tmp_path, biped.Biped(extra=CHEST), biped.FILE + "torso: chest\n")
+    return describe(str(path), RobotOptions())
+
+
+def centre_of_mass(robot):
+    model = pinocchio_model(robot)
+    return pin.centerOfMass(model, model.createData(), pin.neutral(model)).copy()
+
+
+def test_a_com_that_is_higher_than_believed_is_so_however_frames_are_turned(slanted) -> None:
+    assert slanted.roles.waist == ("waist",)
+    moved = centre_of_mass(with_com_raised(slanted, 0.1)) - centre_of_mass(slanted)
+    np.testing.assert_allclose(moved, (0.0, 0.0, 0.1), atol=1e-12)
+
+
+def test_masses_that_are_believed_wrongly_take_their_moments_with_them(slanted) -> None:
+    one, other = (pinocchio_model(robot) for robot in (slanted, with_mass_scaled(slanted, 1.5)))
+    for before, after in zip(one.inertias, other.inertias, strict=True):
+        np.testing.assert_allclose(after.inertia, 1.5 * before.inertia, atol=1e-12)
+    assert EnginePair(with_mass_scaled(slanted, 1.5)).pin_model.nv == one.nv

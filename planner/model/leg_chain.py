@@ -114,6 +114,15 @@ class LegChain:
         sides = np.cross(left, pull)
         return np.asarray(sides[0] - sides[1])
 
+    def joints(
+        self, com: Array, soles: Array, heading: Array, pitch: Array | None = None, toe: float = 0.0
+    ) -> tuple[Array, Array, Array]:
+        """Hips, knees and ankles in the world, shape (2, n, 3) each [m]; arguments as of `momentum_rate`."""
+        frame, legs = _headings(0.5 * (heading[0] + heading[1])), _headings(heading)
+        ankles = soles - com + self._rolled(legs, pitch, toe)[0]
+        hips, knees = self._posture(ankles, frame, legs[..., 0, :])
+        return hips + com, knees + com, ankles + com
+
     def _rolled(self, frame: Array, pitch: Array | None, toe: float) -> tuple[Array, Array]:
         """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, n, 3) each."""
         if pitch is None or not pitch.any():

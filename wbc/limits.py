@@ -14,10 +14,11 @@ class JointLimits:
 
     Attributes:
         torque: largest absolute torque [N·m].
-        velocity: largest absolute velocity [rad/s].
+        velocity: no-load speed [rad/s].
         lower, upper: position range [rad].
         position_horizon: time constant with which a joint may approach its position limit [s].
-        velocity_horizon: time in which the velocity limit must be met [s].
+        velocity_share: of the no-load speed that a joint may have; near it a motor has no torque left [-].
+        velocity_horizon: time in which that must be met [s].
     """
 
     torque: Array
@@ -25,6 +26,7 @@ class JointLimits:
     lower: Array
     upper: Array
     position_horizon: float = quantity(0.04, "s")
+    velocity_share: float = quantity(0.88, "-")
     velocity_horizon: float = quantity(0.02, "s")
 
 
@@ -33,7 +35,8 @@ class AccelerationBounds:
 
     Position: T² q̈ + 2 T q' + q >= q_min and its mirror image, a critically damped approach: a joint with
     q' >= -(q - q_min) / T keeps that property and never passes its limit. Near-straight knees hyperextend without this.
-    Velocity: v + T_v q̈ within its limits. Where the two conflict the position bound wins, so lower <= upper always.
+    Velocity: v + T_v q̈ within a share of the no-load speed. Where the two conflict the position bound wins, so that
+    lower <= upper always.
     """
 
     def __init__(self, limits: JointLimits) -> None:
@@ -42,7 +45,8 @@ class AccelerationBounds:
         self._position_rate = 1.0 / limits.position_horizon**2
         self._velocity_rate = 1.0 / limits.velocity_horizon
         self._positions = np.stack([limits.lower, limits.upper])
-        self._velocities = np.stack([-limits.velocity, limits.velocity])
+        fastest = limits.velocity_share * limits.velocity
+        self._velocities = np.stack([-fastest, fastest])
         self._reach = np.zeros_like(limits.lower)
         self._by_position, self._by_velocity = np.zeros_like(self._positions), np.zeros_like(self._velocities)
 

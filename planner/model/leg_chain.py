@@ -1,7 +1,7 @@
 """A walking body as a trunk on two legs of thigh, shank and foot: its posture and angular momentum from CoM and soles.
 
-The trunk does not turn, the knees bend forward, the feet stay level. Then the hips follow from the CoM, the knees from
-hips and soles, and with them the mass of every link: each is a rod whose momentum is bilinear in its two ends.
+The trunk does not tilt, each knee bends to where its foot points, the feet stay level. Then the hips follow from the
+CoM, the knees from hips and soles, and with them the mass of every link: a rod whose momentum is bilinear in its ends.
 """
 
 from dataclasses import dataclass
@@ -30,6 +30,7 @@ class Link:
         centre: where its CoM is, as a share of the length from the upper joint [-].
         inertia: pitch inertia about its CoM over the body's mass [m^2].
         ahead: how far its CoM lies ahead of the line between the joints, as a share of the length [-].
+        outward: of its CoM from the line of its joints, away from the other leg [m].
     """
 
     length: float
@@ -37,11 +38,12 @@ class Link:
     centre: float
     inertia: float
     ahead: float = 0.0
+    outward: float = 0.0
 
     def mass_matrix(self) -> Array:
         """M with Σ M_ij x_i · x_j' the momentum of the rod with ends x_1, x_2, shape (2, 2) [-].
 
-        But for what the CoM beside the rod has to do with the one on it: see `LegChain._beside`.
+        But for what the CoM beside the rod has to do with the one on it: see `LegChain._ahead_rate`.
         """
         s, spin = self.centre, self.inertia / self.length**2 + self.mass * self.ahead**2
         mixed = self.mass * s * (1.0 - s) - spin
@@ -59,6 +61,7 @@ class LegChain:
         foot_mass: over the body's mass [-].
         foot_centre: CoM of the foot from the ankle: forward, left, up [m].
         ankle: from the sole's centre: forward, left, up [m].
+        foot_outward: of the foot's CoM from its ankle, away from the other leg [m].
     """
 
     hip_half_width: float
@@ -68,6 +71,7 @@ class LegChain:
     foot_mass: float
     foot_centre: Vector
     ankle: Vector
+    foot_outward: float = 0.0
 
     def momentum_rate(
         self,
@@ -83,7 +87,7 @@ class LegChain:
         Args:
             com: CoM, shape (n, 3) [m].
             soles: centres of the left and the right sole, shape (2, n, 3) [m].
-            heading: of trunk, knees and feet, shape (n,) [rad].
+            heading: of the left and the right knee and foot, shape (2, n); the trunk has their mean [rad].
             sample_time: between the samples [s].
             pitch: of the soles about their toe edges, heel up positive, shape (2, n) [rad]; level by default. `soles`
                 are where they would be without it.
@@ -92,43 +96,65 @@ class LegChain:
         Returns:
             At all samples but the first and the last, shape (n - 2, 3) [m^2/s^2].
         """
-        frame = _headings(heading)
-        offsets = self._rolled(frame, pitch, toe)
+        frame, legs = _headings(0.5 * (heading[0] + heading[1])), _headings(heading)
+        offsets = self._rolled(legs, pitch, toe)
         ankles = soles - com + offsets[0]
         foot = ankles + offsets[1]
-        hips, knees = self._posture(ankles, frame)
+        hips, knees = self._posture(ankles, frame, legs[..., 0, :])
         trunk = 0.5 * (hips[0] + hips[1]) + _turned(frame, self.trunk)
         points = np.concatenate((hips, knees, ankles, foot, trunk[None]))
         bend = np.diff(points, 2, axis=1) / sample_time**2
         rate = _crossed(points[:, 1:-1], np.tensordot(self._masses(), bend, 1))
-        return rate + self._beside(hips, knees, ankles, frame[:, 1], sample_time)
+        if self.thigh.outward or self.shank.outward or self.foot_outward:
+            rate += self._outward_rate(bend, legs[:, 1:-1, 1])
+        if self.thigh.ahead or self.shank.ahead:
+            rate += self._ahead_rate((hips, knees, ankles), legs[..., 1, :], sample_time)
+        return rate
 
-    def _beside(self, hips: Array, knees: Array, ankles: Array, left: Array, sample_time: float) -> Array:
-        """What links whose CoM lies beside their rod add to the rate of angular momentum, shape (n - 2, 3) [m^2/s^2].
+    def _ahead_rate(self, joints: tuple[Array, Array, Array], left: Array, sample_time: float) -> Array:
+        """What links whose CoM lies ahead of the line of their joints add, shape (n - 2, 3) [m^2/s^2].
 
-        With a the point of the rod beside the CoM, and b the way from there to it, Σ m (a x b'' + b x a''); b x b'' is
+        With a the point of the line beside the CoM, and b the way from there to it, Σ m (a x b'' + b x a''); b x b'' is
         in the rods' inertia.
         """
-        rate = np.zeros((len(left) - 2, 3))
+        hips, knees, ankles = joints
+        rate = np.zeros((hips.shape[1] - 2, 3))
         for link, upper, lower in ((self.thigh, hips, knees), (self.shank, knees, ankles)):
-            if link.ahead == 0.0:
-                continue
             along = lower - upper
             a, b = upper + link.centre * along, link.ahead * np.cross(along, left)
             a_bend, b_bend = (np.diff(way, 2, axis=1) / sample_time**2 for way in (a, b))
             rate += link.mass * (_crossed(a[:, 1:-1], b_bend) + _crossed(b[:, 1:-1], a_bend))
         return rate
 
+    def _outward_rate(self, bend: Array, left: Array) -> Array:
+        """What the masses that lie beside the lines of the joints add, for accelerations of the points."""
+        hips, knees, ankles, feet = bend[0:2], bend[2:4], bend[4:6], bend[6:8]
+        thigh, shank = self.thigh, self.shank
+        pull = self.foot_mass * self.foot_outward * feet
+        for link, upper, lower in ((thigh, hips, knees), (shank, knees, ankles)):
+            pull = pull + link.mass * link.outward * ((1.0 - link.centre) * upper + link.centre * lower)
+        sides = np.cross(left, pull)
+        return np.asarray(sides[0] - sides[1])
+
+    def joints(
+        self, com: Array, soles: Array, heading: Array, pitch: Array | None = None, toe: float = 0.0
+    ) -> tuple[Array, Array, Array]:
+        """Hips, knees and ankles in the world, shape (2, n, 3) each [m]; arguments as of `momentum_rate`."""
+        frame, legs = _headings(0.5 * (heading[0] + heading[1])), _headings(heading)
+        ankles = soles - com + self._rolled(legs, pitch, toe)[0]
+        hips, knees = self._posture(ankles, frame, legs[..., 0, :])
+        return hips + com, knees + com, ankles + com
+
     def _rolled(self, frame: Array, pitch: Array | None, toe: float) -> tuple[Array, Array]:
-        """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, n, 3) or (n, 3)."""
+        """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, n, 3) each."""
         if pitch is None or not pitch.any():
             return _turned(frame, self.ankle), _turned(frame, self.foot_centre)
         edge = np.array([toe, 0.0, 0.0])
         lever = _pitched(frame, np.array(self.ankle) - edge, pitch)
         return _turned(frame, edge) + lever, _pitched(frame, np.array(self.foot_centre), pitch)
 
-    def _posture(self, ankles: Array, frame: Array) -> tuple[Array, Array]:
-        """Hips and knees from the CoM, shape (2, n, 3) each, for ankles from the CoM."""
+    def _posture(self, ankles: Array, frame: Array, ahead: Array) -> tuple[Array, Array]:
+        """Hips and knees from the CoM, shape (2, n, 3) each, for ankles from the CoM and where the knees point."""
         thigh, shank = self.thigh, self.shank
         at_hip = thigh.mass * (1.0 - thigh.centre)
         at_knee = thigh.mass * thigh.centre + shank.mass * (1.0 - shank.centre)
@@ -142,14 +168,14 @@ class LegChain:
         middle[:, 2] = -0.1
         for _ in range(_ITERATIONS):
             hips = np.stack((middle + apart, middle - apart))
-            knees = self._knees(hips, ankles, frame[:, 0])
+            knees = self._knees(hips, ankles, ahead)
             middle = middle - fixed - (trunk_mass + 2.0 * at_hip) * middle - at_knee * (knees[0] + knees[1])
             if thigh.ahead or shank.ahead:
                 ways = ((thigh, knees - hips), (shank, ankles - knees))
                 beside = sum(link.mass * link.ahead * (way[0] + way[1]) for link, way in ways)
                 middle = middle - np.cross(beside, frame[:, 1])
         hips = np.stack((middle + apart, middle - apart))
-        return hips, self._knees(hips, ankles, frame[:, 0])
+        return hips, self._knees(hips, ankles, ahead)
 
     def _knees(self, hips: Array, ankles: Array, forward: Array) -> Array:
         leg = ankles - hips
@@ -160,7 +186,7 @@ class LegChain:
         reach = np.maximum(reach, abs(a - b) + 1e-6)
         along = (a * a - b * b + reach * reach) / (2.0 * reach)
         down = leg / long[..., None]
-        ahead = forward - np.einsum("kni,ni->kn", down, forward)[..., None] * down
+        ahead = forward - np.einsum("kni,kni->kn", down, forward)[..., None] * down
         bent = np.sqrt((a * a - along * along) / np.einsum("kni,kni->kn", ahead, ahead))
         return np.asarray(hips + along[..., None] * down + bent[..., None] * ahead)
 
@@ -178,10 +204,10 @@ class LegChain:
 
 
 def _headings(heading: Array) -> Array:
-    """Forward, left and up at each sample, shape (n, 3, 3)."""
-    frame = np.zeros((len(heading), 3, 3))
+    """Forward, left and up at each sample, shape (..., n, 3, 3)."""
+    frame = np.zeros((*heading.shape, 3, 3))
     c, s = np.cos(heading), np.sin(heading)
-    frame[:, 0, 0], frame[:, 0, 1], frame[:, 1, 0], frame[:, 1, 1], frame[:, 2, 2] = c, s, -s, c, 1.0
+    frame[..., 0, 0], frame[..., 0, 1], frame[..., 1, 0], frame[..., 1, 1], frame[..., 2, 2] = c, s, -s, c, 1.0
     return frame
 
 
@@ -194,7 +220,7 @@ def _pitched(frame: Array, vector: Array, pitch: Array) -> Array:
     c, s = np.cos(pitch), np.sin(pitch)
     x, y, z = vector
     rolled = np.stack((c * x + s * z, np.full_like(c, y), c * z - s * x), axis=-1)
-    return np.asarray(np.einsum("kni,nij->knj", rolled, frame))
+    return np.asarray(np.einsum("kni,knij->knj", rolled, frame))
 
 
 def _crossed(points: Array, rates: Array) -> Array:

@@ -26,9 +26,10 @@ from surefoot.planner.model.leg_chain import LegChain
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.swing.heel_off import bump
+from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
-from surefoot.planner.walk.phases import PhaseSamples
-from surefoot.planner.walk.queue import StepQueue
+from surefoot.planner.walk.phases import CLOCK_ROUNDING, Phase, PhaseSamples
+from surefoot.planner.walk.queue import StepQueue, unit_swing
 from surefoot.planner.walk.stepper import Deviation
 
 
@@ -44,7 +45,7 @@ class Feet:
     Attributes:
         soles: centres of the left and the right sole as if they were level, shape (2, n, 3) [m].
         pitch: of the soles about their toe edges, shape (2, n) [rad].
-        heading: mean of both, shape (n,) [rad].
+        heading: of both, shape (2, n) [rad].
         toe: toe edge from the sole's centre [m].
     """
 
@@ -89,8 +90,7 @@ def nominal_feet(
     left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
     pitch = rolled * np.stack((~left, left))
-    turned = 0.5 * (stance[:, 3] + swing[:, 3]) - np.arctan2(rotation[1, 0], rotation[0, 0])
-    return Feet(soles[..., :3], pitch, turned, toe)
+    return Feet(soles[..., :3], pitch, soles[..., 3] - np.arctan2(rotation[1, 0], rotation[0, 0]), toe)
 
 
 def _swings(samples: PhaseSamples, queue: StepQueue) -> tuple[Array, Array, Array]:
@@ -99,13 +99,30 @@ def _swings(samples: PhaseSamples, queue: StepQueue) -> tuple[Array, Array, Arra
     for number in np.unique(samples.which).tolist():
         phase, here = samples.phases[number], samples.which == number
         if phase.kind is PhaseKind.SINGLE:
-            way = queue.steps[phase.step].swing.positions(samples.elapsed[here] * samples.sample_time)
+            swing, late = _swing(phase, queue, float(samples.elapsed[here][0]))
+            way = swing.positions((samples.elapsed[here] - late) * samples.sample_time)
             progress[here], height[here] = way[:, 0], way[:, 2]
         if phase.roll is not None:
             start, end, angle = phase.roll
             share = (samples.flow.clock[here] - start) / (end - start)
             pitch[here] = [angle * bump(s)[0] for s in share.tolist()]
     return progress, height, pitch
+
+
+def _swing(phase: Phase, queue: StepQueue, elapsed: float) -> tuple[SwingTrajectory, float]:
+    """The swing of a single support, and how long after the phase it begins [samples].
+
+    A foot is lifted by a plan. Of a phase that begins between two of them it has the rest, and swings the faster.
+
+    Args:
+        phase: the single support.
+        queue: the steps in sight.
+        elapsed: how long it has lasted at one of the samples [samples].
+    """
+    step, late = queue.steps[phase.step], elapsed % 1.0
+    if min(late, 1.0 - late) <= CLOCK_ROUNDING:
+        return step.swing, 0.0
+    return unit_swing(phase.samples - late, step.climb, step.course, queue.ground.parameters), late
 
 
 def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: HeightPreview, softened: Array) -> Array:
@@ -127,7 +144,7 @@ def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: Heigh
     t = motion.sample_time
     com[0, :2] = _before(motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
     com[0, 2] = _before(height.height[:, 0], t)
-    soles, heading, pitch = feet.soles[:, : n + 1], feet.heading[: n + 1], feet.pitch[:, : n + 1]
+    soles, heading, pitch = feet.soles[:, : n + 1], feet.heading[:, : n + 1], feet.pitch[:, : n + 1]
     rate = chain.momentum_rate(com, soles, heading, t, pitch, feet.toe)
     pressing = GRAVITY + height.height[2]
     offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]

@@ -21,9 +21,6 @@ from surefoot.wbc.model import BodyFrames
 
 Array = NDArray[np.float64]
 
-_ON_THE_LINE = 1e-9
-"""A link's CoM that is nearer to the line between its joints, in lengths of the link, lies on it [-]."""
-
 SOLE_SINKAGE = 5e-5
 """How far the reference robot's soles sink into the simulated ground under its weight [m]."""
 
@@ -147,7 +144,7 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
 
     The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
     the thigh, what is below the next joint to the foot; hip and ankle are where the axes there come nearest to
-    each other. Lateral offsets within a leg are left out.
+    each other. The joints count as in one plane, CoMs may lie beside it.
 
     Args:
         model: the robot.
@@ -175,6 +172,7 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
         foot_mass=left.foot.mass / total,
         foot_centre=_mirrored((left.foot.lever - left.ankle) @ R),
         ankle=_mirrored((left.ankle - left.sole) @ R),
+        foot_outward=_measured((left.foot.lever - left.ankle) @ R[:, 1]),
     )
     return LegInertia(float(np.mean([_point_mass(model, name, q, joints) for name in frames.soles])), chain)
 
@@ -221,14 +219,21 @@ def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:
 
 
 def _link(part: pin.Inertia, upper: Array, lower: Array, R: Array, total: float) -> Link:
-    """A link between two joints, seen from the side of a body whose axes are the columns of R."""
+    """A link between two joints, for a body whose axes are the columns of R."""
     along, pitch = lower - upper, R[:, 1]
     along = along - (along @ pitch) * pitch
     length = float(np.linalg.norm(along))
     lever = part.lever - upper
-    centre, ahead = float(lever @ along) / length**2, float(lever @ np.cross(along, pitch)) / length**2
+    centre = float(lever @ along) / length**2
+    ahead = _measured(lever @ np.cross(along, pitch) / length**2)
+    outward = _measured((lever - centre * (lower - upper)) @ pitch)
     inertia = float(pitch @ part.inertia @ pitch) / total
-    return Link(length, part.mass / total, centre, inertia, ahead if abs(ahead) > _ON_THE_LINE else 0.0)
+    return Link(length, part.mass / total, centre, inertia, ahead, outward)
+
+
+def _measured(distance: float) -> float:
+    """A distance without the rounding of where it was measured [m]."""
+    return round(float(distance), 9)
 
 
 def _mirrored(vector: Array) -> Vector:

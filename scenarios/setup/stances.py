@@ -1,7 +1,7 @@
 """Whether the joints reach the stances that a walk goes through, before it begins.
 
-Between touchdown and lift-off both feet stand, far apart: there hips, knees and ankles come to the ends of their ranges.
-Where the CoM then is follows from the pendulum on its periodic walk: with the ZMP going evenly from one foot to the
+Between touchdown and lift-off both feet stand, far apart: there joints come to the ends of their ranges. Where the CoM
+then is follows from the pendulum on its periodic walk: with the ZMP going evenly from one foot to the
 other in double support (duration T_d), and standing still in single support (T_s),
 
     at the ends of a double support it is (1/2 + k) of the way between the feet from their middle,

@@ -23,18 +23,19 @@ def walking(n=41):
 
 def bodies(chain, com, soles, heading):
     """Point masses (points, masses) that are equimomental to the chain's rods, feet and trunk."""
-    frame = _headings(heading)
-    ankles = soles - com + np.array(chain.ankle) @ frame
-    hips, knees = chain._posture(ankles, frame)
+    frame, legs = _headings(heading.mean(axis=0)), _headings(heading)
+    ankles = soles - com + np.array(chain.ankle) @ legs
+    hips, knees = chain._posture(ankles, frame, legs[..., 0, :])
+    outward = legs[..., 1, :] * np.array([1.0, -1.0])[:, None, None]
     points, masses = [], []
     for upper, lower, link in ((hips, knees, chain.thigh), (knees, ankles, chain.shank)):
         # A rod's mass sits at its CoM but for two equal masses at a distance d either side, 2 m d² = I.
         half = 0.25 * link.mass
         d = np.sqrt(link.inertia / (2.0 * half)) / link.length
         for share, mass in ((link.centre, link.mass - 2 * half), (link.centre - d, half), (link.centre + d, half)):
-            points.append(upper + share * (lower - upper))
+            points.append(upper + share * (lower - upper) + link.outward * outward)
             masses.append(np.full(2, mass))
-    points.append(ankles + np.array(chain.foot_centre) @ frame)
+    points.append(ankles + np.array(chain.foot_centre) @ legs + chain.foot_outward * outward)
     masses.append(np.full(2, chain.foot_mass))
     trunk = 0.5 * (hips[0] + hips[1]) + np.array(chain.trunk) @ frame
     points.append(np.stack([trunk, trunk]))
@@ -57,9 +58,9 @@ def test_a_rods_mass_matrix_gives_its_kinetic_energy():
 
 def test_links_keep_their_lengths_and_knees_bend_forward():
     com, soles = walking()
-    frame = _headings(np.zeros(len(com)))
+    legs = _headings(np.zeros((2, len(com))))
     ankles = soles - com + np.array(CHAIN.ankle)
-    hips, knees = CHAIN._posture(ankles, frame)
+    hips, knees = CHAIN._posture(ankles, legs[0], legs[..., 0, :])
     np.testing.assert_allclose(np.linalg.norm(knees - hips, axis=-1), THIGH.length, rtol=1e-12)
     np.testing.assert_allclose(np.linalg.norm(knees - ankles, axis=-1), SHANK.length, rtol=0.02)
     assert np.all(knees[..., 0] > np.minimum(hips[..., 0], ankles[..., 0]))
@@ -67,36 +68,53 @@ def test_links_keep_their_lengths_and_knees_bend_forward():
 
 def test_posture_has_the_com_it_was_asked_for():
     com, soles = walking()
-    points, masses = bodies(CHAIN, com, soles, np.zeros(len(com)))
+    points, masses = bodies(CHAIN, com, soles, np.zeros((2, len(com))))
     assert masses.sum() == pytest.approx(1.0)
     found = np.einsum("k,kni->ni", masses, points)
     assert np.abs(found).max() < 2e-3
     assert np.ptp(found, axis=0).max() < 1e-3
 
 
-@pytest.mark.parametrize("turned", [0.0, 0.7])
-def test_momentum_rate_is_that_of_the_point_masses(turned):
+OUTWARD = replace(CHAIN, thigh=replace(THIGH, outward=0.05), shank=replace(SHANK, outward=0.03), foot_outward=0.02)
+
+
+@pytest.mark.parametrize("chain", [CHAIN, OUTWARD])
+@pytest.mark.parametrize(("turned", "splay"), [(0.0, 0.0), (0.7, 0.0), (0.7, 0.3)])
+def test_momentum_rate_is_that_of_the_point_masses(chain, turned, splay):
     com, soles = walking()
     c, s = np.cos(turned), np.sin(turned)
     R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     com, soles = com @ R.T, soles @ R.T
-    heading = np.full(len(com), turned)
-    points, masses = bodies(CHAIN, com, soles, heading)
+    heading = np.array([[turned + splay], [turned - splay]]).repeat(len(com), axis=1)
+    points, masses = bodies(chain, com, soles, heading)
     bend = (points[:, 2:] - 2.0 * points[:, 1:-1] + points[:, :-2]) / T**2
     expected = np.einsum("k,kni->ni", masses, np.cross(points[:, 1:-1], bend))
-    rate = CHAIN.momentum_rate(com, soles, heading, T)
+    rate = chain.momentum_rate(com, soles, heading, T)
     np.testing.assert_allclose(rate, expected, atol=1e-9)
     assert np.abs(rate).max() > 0.5
+
+
+def test_a_knee_goes_where_its_foot_turns():
+    """Feet that turn where they stand carry the knees over sideways, one and the other way."""
+    com, soles = walking(1)
+    com, soles = np.repeat(com, 41, axis=0), np.repeat(soles, 41, axis=1)
+    turning = 0.3 * np.sin(9.0 * T * np.arange(41))
+    one, other, both = (
+        CHAIN.momentum_rate(com, soles, np.stack(k), T)
+        for k in ((turning, 0.0 * turning), (0.0 * turning, turning), (turning, turning))
+    )
+    assert np.abs(one[:, 0]).max() > 0.05
+    np.testing.assert_allclose(one + other, both, atol=0.2 * np.abs(both).max())
 
 
 def test_rest_has_no_momentum_rate():
     com, soles = walking(1)
     still = np.repeat(com, 5, axis=0), np.repeat(soles, 5, axis=1)
-    np.testing.assert_allclose(CHAIN.momentum_rate(*still, np.zeros(5), T), 0.0, atol=1e-9)
+    np.testing.assert_allclose(CHAIN.momentum_rate(*still, np.zeros((2, 5)), T), 0.0, atol=1e-9)
 
 
 def test_a_leg_that_comes_to_be_straight_does_not_jump():
     com, soles = walking()
     for length in np.linspace(0.3, 0.45, 7):
         chain = replace(CHAIN, thigh=replace(THIGH, length=length))
-        assert np.abs(chain.momentum_rate(com, soles, np.zeros(len(com)), T)).max() < 20.0
+        assert np.abs(chain.momentum_rate(com, soles, np.zeros((2, len(com))), T)).max() < 20.0

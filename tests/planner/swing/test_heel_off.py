@@ -102,8 +102,8 @@ def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():
         0.1, (0.0, 0.0, 0.3), Link(0.43, 0.1, 0.33, 1.7e-3), Link(0.43, 0.04, 0.4, 6e-4), 0.02, (0.0, 0.0, -0.04),
         (-0.022, 0.0, 0.08),
     )  # fmt: skip
-    frame = np.eye(3)[None]
-    level, _ = chain._rolled(frame, None, 0.11)
+    frame = np.tile(np.eye(3), (2, 1, 1, 1))
+    level = chain._rolled(frame, None, 0.11)[0][0]
     ankle, _ = chain._rolled(frame, np.array([[0.5], [0.0]]), 0.11)
     edge = np.array([0.11, 0.0, 0.0])
     assert np.linalg.norm(ankle[0, 0] - edge) == pytest.approx(np.linalg.norm(level[0] - edge))

@@ -56,7 +56,7 @@ def test_momentum_rate_of_a_fast_step_is_that_of_the_robot(body, time):
     )
     chain = leg_inertia(body.model, body.frames, q, body.leg_joints).chain
     com, soles = zip(*(stride(t) for t in time + STEP * np.arange(-1, 2)), strict=True)
-    rate = chain.momentum_rate(np.array(com), np.array(soles).transpose(1, 0, 2), np.zeros(3), STEP)[0]
+    rate = chain.momentum_rate(np.array(com), np.array(soles).transpose(1, 0, 2), np.zeros((2, 3)), STEP)[0]
     truth = (momentum(body, time + STEP) - momentum(body, time - STEP)) / (2.0 * STEP)
     assert np.abs(truth).max() > 0.1
     np.testing.assert_allclose(rate, truth, atol=0.1)

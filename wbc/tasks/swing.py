@@ -56,7 +56,8 @@ class AnkleStops:
 class SwingFoot:
     """Acceleration of the swing foot's sole, linear then angular, in the sole's frame; absent when both feet stand.
 
-    A foot that leaves the ground rolling is seen from its toe edge (see ``RobotTerms.shift_foot``).
+    A foot that leaves the ground rolling is seen from its toe edge (see ``RobotTerms.shift_foot``). One that cannot be
+    as level as it should (see `AnkleStops`) is lifted by what its toe or heel hangs lower.
     """
 
     name, size = "swing foot", 6
@@ -84,8 +85,12 @@ class SwingFoot:
             rows[:] = 0.0
             return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         np.multiply(terms.sole_jacobian[k], scale, out=rows[:, :-12])
+        yielding = self._stops.yielding(terms, k, reference.swing_rotation) if self._stops else []
         damping, R, velocity = self._gains[1], terms.contact_rotation[k], terms.sole_velocity[k]
-        x, y, z = (self._linear(terms, reference, k) @ R).tolist()
+        wanted = self._linear(terms, reference, k)
+        if yielding:
+            wanted[2] += self._gains[0] * self._toe * abs(R[2, 0] - reference.swing_rotation[2, 0])
+        x, y, z = (wanted @ R).tolist()
         turning = reference.swing_angular_acceleration + damping * reference.swing_angular_velocity
         ahead = tuple((turning @ R).tolist())
         ax, ay, az = angular_acceleration(self._gains, R, velocity[3:], reference.swing_rotation, ahead)
@@ -94,7 +99,7 @@ class SwingFoot:
         bx, by, bz, px, py, pz = terms.sole_bias[k].tolist()
         linear = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
         turn = (ax - px, ay + pitching - py, az - pz)
-        for axis, share in self._stops.yielding(terms, k, reference.swing_rotation) if self._stops else ():
+        for axis, share in yielding:
             kept = np.eye(3) - share * np.outer(axis, axis)
             rows[3:] = kept @ rows[3:]
             turn = tuple((kept @ turn).tolist())

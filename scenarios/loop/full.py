@@ -21,6 +21,7 @@ from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
+from surefoot.scenarios.setup.rehearsal import check_legs
 from surefoot.scenarios.setup.stance import (
     Body,
     body_of,
@@ -94,11 +95,13 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     posture = start_posture(walk, body)
     check_stances(walk, body, posture)
     q = pressed(disturbed(posture, walk, body), walk.size.length)
+    leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)
+    check_legs(walk, feet_at(body, posture), leg)
     world = World(walk.true_robot, walk.true_terrain, walk.rates.physics, walk.pushes, walk.size)
     torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length)
     world.reset(q, torque=torque)
     controller = _controller(walk, body, posture, parts)
-    planner = walk.planner(feet_at(body, q), leg_inertia(body.model, body.frames, posture, body.leg_joints))
+    planner = walk.planner(feet_at(body, q), leg)
     layout = controller.layout
     sizes = Sizes(
         nj=layout.joints, nq=len(q), nv=layout.nv, horizon=planner.parameters.horizon, tasks=controller.task_layout

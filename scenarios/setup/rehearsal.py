@@ -1,0 +1,228 @@
+"""The first steps of a walk, gone through by the planner's chain of links: what the legs cannot do is told before."""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from surefoot.errors import ParameterError
+from surefoot.planner.plan import PlanSampler
+from surefoot.planner.plants import IdealFeet
+from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
+from surefoot.scenarios.setup.walk import Walk
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from surefoot.models.types import RobotDescription
+    from surefoot.planner.parameters import LegInertia
+
+STEPS = 3
+"""Steps that are gone through: the first, and one of each foot in the rhythm of the walk [-]."""
+
+FAST = 0.35
+"""Share of a joint's no-load speed that a leg's mean turn of the hip needs at least to be looked at [-]."""
+
+_GRID = 0.002
+"""Distance of the points at which the ground is looked at, for the reference robot [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rehearsed:
+    """A walk as it is planned, at the n ticks of the planner.
+
+    Attributes:
+        sample_time: between them [s].
+        com: shape (n, 3) [m].
+        soles: left and right as if they were level, shape (2, n, 3) [m].
+        heading: of the feet, shape (2, n) [rad].
+        pitch: of the feet about their toe edges, heel up, shape (2, n) [rad].
+        standing: whether a foot stands, shape (2, n).
+    """
+
+    sample_time: float
+    com: Array
+    soles: Array
+    heading: Array
+    pitch: Array
+    standing: Array
+
+
+def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
+    """Refuse a walk whose first steps the legs cannot make.
+
+    Args:
+        walk: what is to run.
+        feet: where the feet stand at the start.
+        leg: the legs.
+
+    Raises:
+        ParameterError: a joint would have to be faster than it can, or a shank would meet an edge.
+    """
+    chain = leg.chain
+    fast = _fast(walk)
+    if chain is None or walk.profile.planner is not None or not (fast or walk.terrain.has_edges):
+        return
+    way = rehearsed(walk, feet, leg)
+    toe = 0.5 * walk.robot.sole_length
+    joints = chain.joints(way.com, way.soles, way.heading, way.pitch, toe)
+    if fast:
+        _check_speeds(walk.robot, joint_angles(joints, way), way.sample_time)
+    if walk.terrain.has_edges:
+        _check_shanks(walk, way, joints)
+
+
+def _fast(walk: Walk) -> bool:
+    """Whether the legs of a walk are anywhere near as fast as their joints can."""
+    gait, robot = walk.gait, walk.robot
+    longest = max((abs(stride.length) for bout in gait.bouts for stride in bout.strides), default=abs(gait.step_length))
+    least = min(robot.velocity_limit[k] for k in robot.joint_indices(robot.roles.legs))
+    return bool(2.0 * longest / gait.single_support > FAST * least * robot.leg_length)
+
+
+def rehearsed(walk: Walk, feet: FeetState, leg: "LegInertia") -> Rehearsed:
+    """The first steps of a walk, with a CoM and feet that do what is planned."""
+    planner, ideal = walk.planner(feet, leg), IdealFeet(feet)
+    com, velocity = np.array([walk.start.x, walk.start.y, walk.start_com_height]), np.zeros(3)
+    t, rows, tick = planner.parameters.sample_time, [], 0
+    while True:
+        plan = planner.update(CentroidalState(tick * t, com, velocity), ideal.state)
+        pitch = np.zeros(2)
+        if plan.roll is not None and plan.roll.rolling(plan.time):
+            pitch[plan.roll.foot] = plan.roll.evaluate(plan.time)[0]
+        rows.append((com, ideal.state.position, ideal.state.yaw, pitch, np.array(plan.contacts[0])))
+        stands = plan.phase.kind is PhaseKind.STAND and math.isinf(plan.phase.duration)
+        if plan.phase.step > STEPS or (stands and tick > 0) or tick * t > walk.duration:
+            break
+        com, velocity, tick = plan.com[1], plan.com_velocity[1], tick + 1
+        ideal.follow(PlanSampler(plan), tick * t)
+    coms, soles, yaws, pitches, standing = (np.array(column) for column in zip(*rows, strict=True))
+    return Rehearsed(t, coms, soles.transpose(1, 0, 2), yaws.T, pitches.T, standing.T)
+
+
+def joint_angles(joints: tuple[Array, Array, Array], way: Rehearsed) -> Array:
+    """Pitch angles of hip, knee and ankle, left and right, shape (3, 2, n) [rad]."""
+    hips, knees, ankles = joints
+    ahead = np.stack((np.cos(way.heading), np.sin(way.heading)), axis=-1)
+    lean = [
+        np.arctan2(np.einsum("kni,kni->kn", (upper - lower)[..., :2], ahead), (upper - lower)[..., 2])
+        for upper, lower in ((hips, knees), (knees, ankles))
+    ]
+    return np.stack((lean[0], lean[1] - lean[0], lean[1] - way.pitch))
+
+
+def _check_speeds(robot: "RobotDescription", angles: Array, sample_time: float) -> None:
+    speed = np.abs(np.gradient(angles, sample_time, axis=2)).max(axis=2)
+    names = [pitch_joints(robot, foot) for foot in Foot]
+    limits = np.array([[robot.velocity_limit[robot.joint_names.index(names[k][j])] for k in (0, 1)] for j in range(3)])
+    joint, foot = np.unravel_index(np.argmax(speed / limits), speed.shape)
+    if speed[joint, foot] > limits[joint, foot]:
+        name, limit = names[foot][joint], limits[joint, foot]
+        raise ParameterError(
+            ("gait", "single_support"),
+            f"joint '{name}' of robot '{robot.name}' would need {speed[joint, foot]:.1f} rad/s, its no-load speed is "
+            f"{limit:g} rad/s",
+            "take shorter or slower steps",
+        )
+
+
+def pitch_joints(robot: "RobotDescription", foot: int) -> tuple[str, str, str]:
+    """The joints of a leg that pitch thigh, shank and foot: beside the knee those whose axes are nearest to its."""
+    model, data = _upright(robot.mjcf, tuple(robot.straight_joint_positions.tolist()))
+    leg, knee = (robot.roles.left_leg, robot.roles.right_leg)[foot], robot.roles.knees[foot]
+    axis = data.xaxis[model.joint(knee).id]
+
+    def nearest(names: tuple[str, ...]) -> str:
+        return max(names, key=lambda name: abs(float(data.xaxis[model.joint(name).id] @ axis)))
+
+    at = leg.index(knee)
+    return nearest(leg[:at]), knee, nearest(leg[at + 1 :])
+
+
+@lru_cache(maxsize=4)
+def _upright(mjcf: str, angles: tuple[float, ...]) -> tuple["mujoco.MjModel", "mujoco.MjData"]:
+    """A robot with its joints at angles."""
+    import mujoco
+
+    model = mujoco.MjModel.from_xml_string(mjcf)
+    data = mujoco.MjData(model)
+    data.qpos[7:] = angles
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    return model, data
+
+
+def shank_outline(robot: "RobotDescription", foot: int) -> Array:
+    """Corners of the shank as seen from the side, shape (m, 2): ahead of the ankle and up along the shank [m]."""
+    model, data = _upright(robot.mjcf, tuple(robot.straight_joint_positions.tolist()))
+    _, knee, ankle = pitch_joints(robot, foot)
+    knee, ankle = (model.joint(name).id for name in (knee, ankle))
+    up = data.xanchor[knee] - data.xanchor[ankle]
+    up[1] = 0.0
+    up /= np.linalg.norm(up)
+    ahead = np.array([up[2], 0.0, -up[0]])
+    points = []
+    for geom in np.flatnonzero((model.geom_bodyid == model.jnt_bodyid[knee]) & (model.geom_contype > 0)):
+        local = _corners(model, int(geom))
+        world = data.geom_xpos[geom] + local @ data.geom_xmat[geom].reshape(3, 3).T - data.xanchor[ankle]
+        points.append(np.column_stack((world @ ahead, world @ up)))
+    return np.concatenate(points) if points else np.zeros((0, 2))
+
+
+def _corners(model: "mujoco.MjModel", geom: int) -> Array:
+    """Points whose hull is a geom or holds it, in its own frame, shape (m, 3) [m]."""
+    mesh = model.geom_dataid[geom]
+    if mesh >= 0:
+        first = model.mesh_vertadr[mesh]
+        return np.asarray(model.mesh_vert[first : first + model.mesh_vertnum[mesh]], dtype=np.float64)
+    centre, half = model.geom_aabb[geom][:3], model.geom_aabb[geom][3:]
+    return np.asarray(centre + half * np.array(np.meshgrid(*[(-1.0, 1.0)] * 3)).reshape(3, -1).T)
+
+
+def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]) -> None:
+    _, knees, ankles = joints
+    for foot in Foot:
+        outline = shank_outline(walk.robot, foot)
+        if len(outline) < 3:
+            continue
+        depth, at = _overlap(walk, way, foot, outline[ConvexHull(outline).vertices], knees[foot], ankles[foot])
+        if depth > 0.0:
+            raise ParameterError(
+                ("terrain", "riser"),
+                f"the {foot.name.lower()} shank of '{walk.robot.name}' would come {depth:.3f} m into the edge ahead "
+                f"{at * way.sample_time:.2f} s after the start",
+                "use lower risers or deeper treads",
+            )
+
+
+def _overlap(walk: Walk, way: Rehearsed, foot: int, outline: Array, knees: Array, ankles: Array) -> tuple[float, int]:
+    """How deep the shank of a standing foot is in the ground ahead at worst, and at which tick [m, -]."""
+    hull, worst, when, known = ConvexHull(outline), 0.0, 0, (math.nan, math.nan)
+    edges = np.zeros((0, 2))
+    for k in np.flatnonzero(way.standing[foot]):
+        sole, heading = way.soles[foot, k], np.array([math.cos(way.heading[foot, k]), math.sin(way.heading[foot, k])])
+        if (sole[0], sole[1]) != known:
+            known, edges = (sole[0], sole[1]), _edges(walk, sole, heading)
+        if not len(edges):
+            continue
+        up = np.array([(knees[k] - ankles[k])[:2] @ heading, (knees[k] - ankles[k])[2]])
+        up /= np.linalg.norm(up)
+        ankle = np.array([(ankles[k] - sole)[:2] @ heading, ankles[k, 2] - sole[2]])
+        R = np.array([[up[1], up[0]], [-up[0], up[1]]])  # columns: ahead, along the shank
+        local = (edges - ankle) @ R
+        inside = -(hull.equations[:, :2] @ local.T + hull.equations[:, 2:]).max(axis=0)
+        if inside.max() > worst:
+            worst, when = float(inside.max()), int(k)
+    return worst, when
+
+
+def _edges(walk: Walk, sole: Array, heading: Array) -> Array:
+    """Upper edges ahead of a sole that are higher than it, shape (m, 2): ahead and up from its centre [m]."""
+    grid = _GRID * walk.size.length
+    ahead = np.arange(0.0, 0.6 * walk.robot.leg_length, grid)
+    heights = walk.terrain.heights(sole[:2] + ahead[:, None] * heading) - sole[2]
+    rises = np.flatnonzero(np.diff(heights) > grid)
+    return np.column_stack((ahead[rises + 1], heights[rises + 1]))

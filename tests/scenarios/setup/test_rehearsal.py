@@ -1,0 +1,85 @@
+"""What the legs of a robot cannot do is told before the run, by what their joints and shanks would have to do."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import surefoot
+from surefoot.errors import ParameterError
+from surefoot.planner.types import Foot
+from surefoot.scenarios.setup.rehearsal import check_legs, joint_angles, pitch_joints, rehearsed, shank_outline
+from surefoot.scenarios.setup.stance import body_of, feet_at, leg_inertia, start_posture
+from surefoot.scenarios.setup.walk import Walk, resolve
+
+pytestmark = pytest.mark.unit
+
+QUICK = {"gait.initial_stand": 0.1, "gait.steps": 3}
+STAIRS = {"terrain.kind": "stairs", "terrain.riser": 0.185, "terrain.tread": 0.28, "robot_options.foot_length": 0.22}
+
+
+def legs_of(walk: Walk):
+    body = body_of(walk.robot)
+    posture = start_posture(walk, body)
+    return walk, feet_at(body, posture), leg_inertia(body.model, body.frames, posture, body.leg_joints)
+
+
+def slowed(walk: Walk, share: float) -> Walk:
+    """The walk of a robot whose joints are slower."""
+    return replace(walk, robot=replace(walk.robot, velocity_limit=share * walk.robot.velocity_limit))
+
+
+@pytest.fixture(scope="module")
+def brisk():
+    return legs_of(resolve(surefoot.load("walk", QUICK)))
+
+
+def test_a_joint_that_would_be_too_fast_is_named_with_the_speeds(brisk):
+    walk, feet, leg = brisk
+    check_legs(walk, feet, leg)
+    with pytest.raises(ParameterError, match=r"joint '\w+' of robot 'humanoid100' would need \d+\.\d rad/s"):
+        check_legs(slowed(walk, 0.15), feet, leg)
+
+
+def test_joint_speeds_are_those_of_the_walk(brisk):
+    """Within a fifth of the largest joint speed that `surefoot check` holds for this walk in full physics."""
+    walk, feet, leg = brisk
+    way = rehearsed(walk, feet, leg)
+    joints = leg.chain.joints(way.com, way.soles, way.heading, way.pitch, 0.11)
+    speed = np.abs(np.gradient(joint_angles(joints, way), way.sample_time, axis=2)).max(axis=2)
+    limit = np.array(
+        [
+            [
+                walk.robot.velocity_limit[walk.robot.joint_names.index(pitch_joints(walk.robot, foot)[j])]
+                for foot in Foot
+            ]
+            for j in range(3)
+        ]
+    )
+    assert (speed / limit).max() == pytest.approx(0.298, rel=0.2)
+
+
+def test_slow_walks_on_level_ground_are_not_gone_through(brisk, monkeypatch: pytest.MonkeyPatch):
+    walk, feet, leg = brisk
+    monkeypatch.setattr(Walk, "planner", lambda *_: pytest.fail("planned"))
+    check_legs(walk, feet, leg)
+
+
+def test_pitch_joints_are_found_by_their_axes():
+    robot = resolve(surefoot.load("walk")).robot
+    for foot, leg in zip(Foot, (robot.roles.left_leg, robot.roles.right_leg), strict=True):
+        names = pitch_joints(robot, foot)
+        assert names[1] == robot.roles.knees[foot]
+        assert [leg.index(name) for name in names] == sorted(leg.index(name) for name in names)
+        assert all("pitch" in name for name in (names[0], names[2]))
+
+
+def test_a_shank_that_would_meet_the_riser_ahead_is_refused(monkeypatch: pytest.MonkeyPatch):
+    walk, feet, leg = legs_of(resolve(surefoot.load("walk", {**QUICK, **STAIRS, "gait.single_support": 0.6})))
+    check_legs(walk, feet, leg)
+    outline = shank_outline(walk.robot, Foot.LEFT)
+    assert np.ptp(outline[:, 0]) < 0.2 < np.ptp(outline[:, 1])
+    thick = outline * np.array([2.5, 1.0])
+    monkeypatch.setattr("surefoot.scenarios.setup.rehearsal.shank_outline", lambda *_: thick)
+    with pytest.raises(ParameterError, match=r"shank of 'humanoid100' would come 0\.\d+ m into the edge ahead"):
+        check_legs(walk, feet, leg)

@@ -125,6 +125,9 @@ class Catch(NamedTuple):
 _AUTHORITY = 0.8
 """Share of the ZMP box that a step which is adapted leaves to the CoP [-]."""
 
+_LANDED = 0.5
+"""Share of what the CoP has of its box that the DCM error may take which a step leaves it where it lands [-]."""
+
 _MARGIN = 0.02
 """DCM error at landing that the CoP cannot hold from which on a step is adapted [m]."""
 
@@ -242,7 +245,7 @@ class Recovery:
         # What the CoP holds until the step after it, or in a stand on both feet for ever.
         held_next = growth * _HELD * now.reference.half_size[-1] if now.last else (growth - 1.0) * half
         options = []
-        for reach in self.legs.boxes(now.side):
+        for way, reach in enumerate(self.legs.boxes(now.side)):
             box = _shared(reach, now.nominal + now.room)
             if box is None:
                 continue
@@ -253,12 +256,17 @@ class Recovery:
             total = cost + shift * ((place - now.nominal) ** 2).sum(axis=1) + second_shift * (second**2).sum(axis=1)
             best = int(np.argmin(total))
             best = best if total[best] < total[-1] - _WORTH else len(total) - 1
-            options.append((total[best], best, place[best], box, bool(second[best].any())))
+            options.append((total[best], best, place[best], box, bool(second[best].any()), way))
         if not options:
             return None
-        _, best, place, box, more = min(options, key=lambda option: option[0])
+        _, best, place, box, more, crosses = min(options, key=lambda option: option[0])
         lower, upper = self.legs.around(place, com[best] + hip, box)
-        lower, upper = np.maximum(lower, np.minimum(low[best], place)), np.minimum(upper, np.maximum(high[best], place))
+        least, most = low[best], high[best]
+        if not crosses:
+            # Beside its stance foot it lands with the DCM well inside the next box, or as near to that as it comes.
+            spare = _LANDED * half / gain
+            least, most = np.maximum(least, wanted[best] - spare), np.minimum(most, wanted[best] + spare)
+        lower, upper = np.maximum(lower, np.minimum(least, place)), np.minimum(upper, np.maximum(most, place))
         return Catch(float(doubles[best] if now.double else singles[best]), lower, upper, more)
 
     def _times(self, now: Situation, fine: bool) -> tuple[Array, Array]:

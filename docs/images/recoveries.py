@@ -75,7 +75,7 @@ RECOVERIES = {
         "stand", (*NATURAL, "duration=4.5"), _push(0.5, 90, "time: 0.5"), Window(0.3, 3.6), FRONT
     ),
     "recovery-stairs.gif": Recovery(
-        "stairs-up", (), _push(0.2, 90, "step: 3, phase: single, fraction: 0.5"), Window(4.0, 7.4), BEHIND
+        "stairs-up", (), _push(0.2, 90, "step: 3, phase: single, fraction: 0.5"), Window(4.5, 6.7), BEHIND
     ),
     "recovery-lasting.gif": Recovery(
         "walk",

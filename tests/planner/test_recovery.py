@@ -78,7 +78,10 @@ def test_without_need_nothing_is_adapted(error):
 
 @pytest.mark.parametrize("error", [(0.08, 0.0), (-0.06, 0.0), (0.0, 0.06), (0.05, 0.05)])
 def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error):
-    """The pendulum with its CoP at the edge until the foot lands; the box is what legs reach level with that place."""
+    """The pendulum with its CoP at the edge until the foot lands.
+
+    The box is what legs reach level with that place and leaves the next CoP at most half of what it has of its box.
+    """
     free = replace(LEGS, radius=2.0, near=-2.0, acceleration=(1e4, 1e4))
     now = situation(error, half=0.2 * HALF)
     caught = catch(now, timing=False, legs=free)
@@ -92,7 +95,15 @@ def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error):
     place = NOMINAL + (landed - nominal) / gain
     hip = pendulum_com(now.com, now.dcm, cop, np.exp([OMEGA * now.single]))[0] + (0.0, 0.1)
     low, high = free.around(place, hip, free.boxes(1.0)[0])
+    low, high = np.maximum(low, place - 0.5 * most / gain), np.minimum(high, place + 0.5 * most / gain)
     np.testing.assert_allclose((caught.low, caught.high), (low, high), atol=3e-3)
+
+
+@pytest.mark.parametrize("error", [0.1, 0.2])
+def test_a_foot_that_does_not_get_far_enough_lands_as_far_as_it_gets(error):
+    """Anywhere nearer to its nominal place the DCM would be beyond what the next foot holds."""
+    caught = catch(situation((error, 0.0), single=0.25, half=0.2 * HALF), timing=False)
+    assert caught.low[0] == caught.high[0] > NOMINAL[0] + 0.05
 
 
 def test_a_foot_is_swung_no_harder_than_the_hip_allows():
@@ -247,7 +258,8 @@ def test_who_ends_its_walk_goes_on_when_it_is_pushed(stand):
         last = trace.plans[-1]
         assert last.phase.kind is PhaseKind.STAND
         assert last.phase.step > 3
-        np.testing.assert_allclose((last.footholds[0].position - last.footholds[1].position)[:2], (0.0, 0.2), atol=2e-3)
+        way = (last.footholds[0].position - last.footholds[1].position)[:2]
+        np.testing.assert_allclose(way, (0.0, 0.2), atol=0.012)
 
 
 @pytest.mark.parametrize("level", LEVELS)

@@ -25,6 +25,7 @@ from surefoot.wbc.solvers import QpSolution, equalities_only, make_solver
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
 from surefoot.wbc.tasks.stack import TaskStack
+from surefoot.wbc.tasks.swing import AnkleStops
 from surefoot.wbc.tasks.task import Task, TaskLayout
 from surefoot.wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
 
@@ -136,7 +137,8 @@ class WholeBodyController:
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
         arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and parameters.arm_swing else None
         weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
-        default = default_tasks(weights, gains, parameters.balance, self._region, toe, size.length)
+        stops = AnkleStops(model, frames, limits)
+        default = default_tasks(weights, gains, parameters.balance, self._region, toe, size.length, stops)
         diagonal = (
             Regularisation(weights, size.length),
             Posture(weights, gains, posture, leg_joints, arms),

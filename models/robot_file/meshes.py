@@ -90,6 +90,8 @@ def merged(part: Triangles, cell: float) -> Triangles:
         cell: side of the cells [m].
     """
     vertices, faces = part
+    if not len(faces):
+        return part
     low, extent = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
     cell = max(cell, extent / (2**_PACKED - 2))
     x, y, z = np.rint((vertices - low) / cell).astype(np.int64).T

@@ -9,6 +9,7 @@ import pinocchio as pin
 
 from surefoot.models.joints import is_revolute
 from surefoot.models.robot_file.files import srdf_of
+from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.robot_file.source import Source
@@ -80,10 +81,10 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     """
     full, notes = source.model, source.notes
     names = tuple(full.names)[2:]
-    _set_limits(full, file, names)
+    set_limits(full, file, names)
     srdf = srdf_of(file, path)
-    rotors, states = _read_srdf(srdf, names)
-    _set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
+    rotors, states = read_srdf(srdf, names)
+    set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
     feet = file.soles()
     legs = set(_chain(full, feet.left, "feet.left")) | set(_chain(full, feet.right, "feet.right"))
     locked = _locked(full, file, source, legs)
@@ -97,61 +98,13 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
             q[model_joint.idx_q] = angle
     model = pin.buildReducedModel(full, list(locked), q)
     model.name = file.name
-    _require_limits(model)
+    require_limits(model)
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
     turned = _turn(model, frames, file, notes)
     bodies = tuple(_body(full, full.getJointId(name), names) for name in tuple(model.names)[1:])
     _require_inertias(model, bodies, file, notes)
     visual, collision = (_by_joint(model, shapes) for shapes in (source.visual, source.collision))
     return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes)
-
-
-def _set_limits(model: pin.Model, file: RobotFile, names: tuple[str, ...]) -> None:
-    for key, field in (("torque_limit", "EffortLimit"), ("velocity_limit", "VelocityLimit")):
-        values = np.array(getattr(model, f"upper{field}"))
-        for name, value in matched(getattr(file, key), names, key, file.name).items():
-            values[model.joints[model.getJointId(name)].idx_v] = value
-        setattr(model, f"upper{field}", values)
-        setattr(model, f"lower{field}", -values)
-
-
-def _read_srdf(path: Path | None, names: tuple[str, ...]) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """Rotor inertias at the joints [kg m^2], and postures by name [rad]."""
-    if path is None:
-        return {}, {}
-    from xml.etree import ElementTree
-
-    try:
-        root = ElementTree.parse(path).getroot()
-    except ElementTree.ParseError as error:
-        raise RobotError(("srdf",), f"{path}: no XML, {error}", "mend it") from None
-    rotors = {
-        joint.attrib["name"]: float(joint.get("mass", "0")) * float(joint.get("gear_ratio", "1")) ** 2
-        for joint in root.iterfind("rotor_params/joint")
-    }
-    states = {
-        state.get("name", ""): {
-            joint.attrib["name"]: float(joint.get("value", "0").split()[0])
-            for joint in state.iterfind("joint")
-            if joint.get("name") in names
-        }
-        for state in root.iterfind("group_state")
-    }
-    return rotors, states
-
-
-def _set_armature(
-    model: pin.Model, given: dict[str, float], rotors: dict[str, float], srdf: Path | None, notes: list[str]
-) -> None:
-    armature = np.array(model.armature)
-    known = {**{name: value for name, value in rotors.items() if model.existJointName(name)}, **given}
-    for name, value in known.items():
-        armature[model.joints[model.getJointId(name)].idx_v] = value
-    model.armature = armature
-    if rotors and srdf is not None:
-        notes.append(f"armature: from the rotors in {srdf.name}")
-    if not armature.any():
-        notes.append("armature: none known, so joints have no rotors; give armature: {PATTERN: kg m^2} if it has gears")
 
 
 def _chain(model: pin.Model, link: str, key: str) -> list[int]:
@@ -222,27 +175,6 @@ def _fingers(model: pin.Model, legs: set[int]) -> set[int]:
 
 _LIGHT = 0.03
 """Share of the whole mass that all fingers of a hand stay below [-]."""
-
-
-def _require_limits(model: pin.Model) -> None:
-    """Refuse joints whose motors nobody knows.
-
-    Raises:
-        RobotError: a torque or a speed limit is missing.
-    """
-    for key, what, unit in (("upperEffortLimit", "torque", "N m"), ("upperVelocityLimit", "velocity", "rad/s")):
-        values = getattr(model, key)[6:]
-        unknown = [name for name, value in zip(tuple(model.names)[2:], values, strict=True) if not 0.0 < value < np.inf]
-        if unknown:
-            others, have = (f" and {len(unknown) - 1} more", "have") if len(unknown) > 1 else ("", "has")
-            said = f"joint '{unknown[0]}'{others} of {model.name} {have} no {what} limit"
-            raise RobotError((f"{what}_limit",), said, f"give {what}_limit: {{PATTERN: {unit}}}; '*' means every joint")
-    pairs = zip(tuple(model.names)[2:], model.lowerPositionLimit[7:], model.upperPositionLimit[7:], strict=True)
-    for name, lower, upper in pairs:
-        if not -np.inf < lower < upper < np.inf:
-            raise RobotError(
-                ("model",), f"joint '{name}' of {model.name} turns from {lower} to {upper} rad", "give limits"
-            )
 
 
 def _require_inertias(model: pin.Model, bodies: tuple[str, ...], file: RobotFile, notes: list[str]) -> None:

@@ -106,13 +106,14 @@ class _Tree:
         ElementTree.SubElement(body, "joint", attributes, name=model.names[joint], armature=armature)
 
     def _add_sole(self, body: ElementTree.Element, side: str, leg: Leg) -> None:
-        """The box that touches the ground, and the site at the centre of its bottom face."""
+        """The box that touches the ground, drawn only on a foot without looks, and the site at its bottom's centre."""
         half = SOLE_THICKNESS * self._parts.leg_length / 2
         length, width = self._parts.sole
         frame = leg.sole.placement
         middle = frame * pin.SE3(np.eye(3), np.array([0.0, 0.0, half]))
         size = numbers((length / 2, width / 2, half))
-        box = {"class": Role.SOLE.value, "type": "box", "size": size, "material": "rubber", **_pose(middle)}
+        role = Role.COLLISION if self._parts.looks[leg.joints[-1]] else Role.SOLE
+        box = {"class": role.value, "type": "box", "size": size, "material": "rubber", **_pose(middle)}
         ElementTree.SubElement(body, "geom", box, name=f"{side}_sole_box")
         ElementTree.SubElement(body, "site", _pose(frame), name=f"{side}_sole", size="0.005", group="4")
 

@@ -29,6 +29,7 @@ class Link:
         mass: over the body's mass [-].
         centre: where its CoM is, as a share of the length from the upper joint [-].
         inertia: pitch inertia about its CoM over the body's mass [m^2].
+        ahead: how far its CoM lies ahead of the line between the joints, as a share of the length [-].
         outward: of its CoM from the line of its joints, away from the other leg [m].
     """
 
@@ -36,11 +37,15 @@ class Link:
     mass: float
     centre: float
     inertia: float
+    ahead: float = 0.0
     outward: float = 0.0
 
     def mass_matrix(self) -> Array:
-        """M with Σ M_ij x_i · x_j' the momentum of the rod with ends x_1, x_2, shape (2, 2) [-]."""
-        s, spin = self.centre, self.inertia / self.length**2
+        """M with Σ M_ij x_i · x_j' the momentum of the rod with ends x_1, x_2, shape (2, 2) [-].
+
+        But for what the CoM beside the rod has to do with the one on it: see `LegChain._beside`.
+        """
+        s, spin = self.centre, self.inertia / self.length**2 + self.mass * self.ahead**2
         mixed = self.mass * s * (1.0 - s) - spin
         return np.array([[self.mass * (1.0 - s) ** 2 + spin, mixed], [mixed, self.mass * s**2 + spin]])
 
@@ -102,7 +107,7 @@ class LegChain:
         rate = _crossed(points[:, 1:-1], np.tensordot(self._masses(), bend, 1))
         if self.thigh.outward or self.shank.outward or self.foot_outward:
             rate += self._outward_rate(bend, legs[:, 1:-1, 1])
-        return rate
+        return rate + self._beside(hips, knees, ankles, legs[..., 1, :], sample_time)
 
     def _outward_rate(self, bend: Array, left: Array) -> Array:
         """What the masses that lie beside the lines of the joints add, for accelerations of the points."""
@@ -122,6 +127,22 @@ class LegChain:
         ankles = soles - com + self._rolled(legs, pitch, toe)[0]
         hips, knees = self._posture(ankles, frame, legs[..., 0, :])
         return hips + com, knees + com, ankles + com
+
+    def _beside(self, hips: Array, knees: Array, ankles: Array, left: Array, sample_time: float) -> Array:
+        """What links whose CoM lies ahead of their rod add to the rate of angular momentum, shape (n - 2, 3) [m^2/s^2].
+
+        With a the point of the rod behind the CoM, and b the way from there to it, Σ m (a x b'' + b x a''); b x b'' is
+        in the rods' inertia.
+        """
+        rate = np.zeros((left.shape[1] - 2, 3))
+        for link, upper, lower in ((self.thigh, hips, knees), (self.shank, knees, ankles)):
+            if link.ahead == 0.0:
+                continue
+            along = lower - upper
+            a, b = upper + link.centre * along, link.ahead * np.cross(along, left)
+            a_bend, b_bend = (np.diff(way, 2, axis=1) / sample_time**2 for way in (a, b))
+            rate += link.mass * (_crossed(a[:, 1:-1], b_bend) + _crossed(b[:, 1:-1], a_bend))
+        return rate
 
     def _rolled(self, frame: Array, pitch: Array | None, toe: float) -> tuple[Array, Array]:
         """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, n, 3) each."""
@@ -148,6 +169,10 @@ class LegChain:
             hips = np.stack((middle + apart, middle - apart))
             knees = self._knees(hips, ankles, ahead)
             middle = middle - fixed - (trunk_mass + 2.0 * at_hip) * middle - at_knee * (knees[0] + knees[1])
+            if thigh.ahead or shank.ahead:
+                ways = ((thigh, knees - hips), (shank, ankles - knees))
+                beside = sum(link.mass * link.ahead * (way[0] + way[1]) for link, way in ways)
+                middle = middle - np.cross(beside, frame[:, 1])
         hips = np.stack((middle + apart, middle - apart))
         return hips, self._knees(hips, ankles, ahead)
 

@@ -169,12 +169,14 @@ def _refusals(keys: Any) -> Iterator[tuple[Key, PluginError]]:
 
 
 def _named(keys: Any) -> Iterator[tuple[Key, str, Callable[[], Registry[Any]]]]:
-    """Every name that is written, with its place."""
+    """Every name that is written, with its place; a robot file is no name."""
+    from surefoot.models.registry import is_file
+
     for key, registry in _REGISTRIES.items():
         value = keys
         for part in key:
             value = value.get(part) if isinstance(value, dict) else None
-        if isinstance(value, str):
+        if isinstance(value, str) and not (key == ("robot",) and is_file(value)):
             yield key, value, registry
         for index, name in enumerate(value if isinstance(value, list) else ()):
             if isinstance(name, str):

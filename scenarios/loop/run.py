@@ -251,8 +251,9 @@ def run_constants(walk: Walk) -> RunConstants:
 
 def _knee_straight(robot: "RobotDescription") -> tuple[float, ...]:
     """Angles of the knees with straight legs, in the order of the joints; empty where they are zero [rad]."""
-    angles = [float(robot.straight_joint_positions[place]) for place in sorted(robot.joint_indices(robot.roles.knees))]
-    return tuple(angles) if any(angles) else ()
+    joints = zip(robot.joint_names, robot.straight_joint_positions, strict=True)
+    angles = tuple(float(angle) for name, angle in joints if name in robot.roles.knees)
+    return angles if any(angles) else ()
 
 
 def _roles(robot: "RobotDescription") -> dict[str, tuple[str, ...]]:

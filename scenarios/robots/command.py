@@ -30,10 +30,10 @@ def check(
     from surefoot.scenarios.sweep.sweep import cores
 
     console = plain_console()
-    description, derived, notes = known(robot)
-    found = examine(description)
+    explained = known(robot)
+    found = examine(explained.description)
     if not as_json:
-        report.print_examination(console, description, derived, notes, found)
+        report.print_examination(console, explained, found)
     width = max(map(len, catalogue.OWN))
     try:
         table = rows(
@@ -47,8 +47,27 @@ def check(
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
     if as_json:
-        typer.echo(json.dumps(report.to_json(description, derived, notes, found, table), allow_nan=False))
+        typer.echo(json.dumps(report.to_json(explained, found, table), allow_nan=False))
     else:
         typer.echo(report.summary(table))
     sound = not found.faults and any(row.outcome in ("walks", "accepted") for row in table)
     raise typer.Exit(0 if sound and not any(row.outcome == "fails" for row in table) else MISSED)
+
+
+@app.command()
+def new(
+    model: Annotated[str, typer.Argument(help="URDF or MJCF: a path, or package://NAME/...")],
+) -> None:
+    """Print a first robot file for a model, to be saved where the model's path is right."""
+    from surefoot.models.robot_file.draft import draft
+    from surefoot.models.types import RobotError
+    from surefoot.scenarios.errors import ScenarioError
+
+    try:
+        made = draft(model, Path())
+    except RobotError as error:
+        raise ScenarioError([str(error)]) from None
+    typer.echo(made.text, nl=False)
+    if made.refusal:
+        typer.echo(f"not yet usable: {made.refusal}", err=True)
+        raise typer.Exit(MISSED)

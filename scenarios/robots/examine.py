@@ -10,8 +10,9 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.models.consistency import EnginePair
-from surefoot.models.registry import UnknownRobotError, describe
-from surefoot.models.types import RobotDescription, RobotError, RobotOptions
+from surefoot.models.registry import UnknownRobotError, explain
+from surefoot.models.robot_file.build import Explanation
+from surefoot.models.types import RobotDescription, RobotError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.setup.gait import leg_span
@@ -102,14 +103,14 @@ class Examination:
             yield f"bodies '{one}' and '{other}' touch in the stance; give a posture that keeps them apart"
 
 
-def known(name: str) -> tuple[RobotDescription, tuple[str, ...], tuple[str, ...]]:
-    """A robot by its name or file: its description, what of it was derived, and what else is to be known.
+def known(name: str) -> Explanation:
+    """A robot by its name or file, with what of it was derived and what else is to be known.
 
     Raises:
         ScenarioError: there is none, or its file cannot be used.
     """
     try:
-        return describe(name, RobotOptions()), (), ()
+        return explain(name)
     except (UnknownRobotError, PluginError, RobotError) as error:
         raise ScenarioError([str(error)]) from None
 

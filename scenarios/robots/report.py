@@ -7,6 +7,7 @@ from typing import Any
 
 from rich.console import Console
 
+from surefoot.models.robot_file.build import Explanation
 from surefoot.models.types import RobotDescription
 from surefoot.scenarios.robots.examine import PARITY, Examination, TorqueMargin
 from surefoot.scenarios.robots.walks import Row
@@ -15,15 +16,18 @@ from surefoot.scenarios.show.console import plain_table
 _STYLES = {"walks": "bold green", "fails": "bold red", "refused": "yellow", "accepted": None}
 
 
-def print_examination(
-    console: Console, robot: RobotDescription, derived: Sequence[str], notes: Sequence[str], found: Examination
-) -> None:
+def print_examination(console: Console, explained: Explanation, found: Examination) -> None:
     """Print what the robot is, what was derived and what was measured."""
+    robot = explained.description
     table = plain_table("robot", robot.name)
     for name, value in _facts(robot):
         table.add_row(name, value)
     console.print(table)
-    for title, lines in (("derived", derived), ("note", (*notes, *found.differences)), ("fault", found.faults)):
+    for title, lines in (
+        ("derived", explained.derived),
+        ("note", (*explained.notes, *found.differences)),
+        ("fault", found.faults),
+    ):
         for line in lines:
             console.print(f"{title}: {line}", style="bold red" if title == "fault" else None)
     table = plain_table("measured", "value")
@@ -85,19 +89,13 @@ def summary(rows: Sequence[Row]) -> str:
     return f"{len(rows)} scenarios: {told}"
 
 
-def to_json(
-    robot: RobotDescription,
-    derived: Sequence[str],
-    notes: Sequence[str],
-    found: Examination,
-    rows: Sequence[Row],
-) -> dict[str, Any]:
+def to_json(explained: Explanation, found: Examination, rows: Sequence[Row]) -> dict[str, Any]:
     """Everything as one object; what could not be measured is null."""
     return {
-        "robot": robot.name,
-        "facts": dict(_facts(robot)),
-        "derived": list(derived),
-        "notes": [*notes, *found.differences],
+        "robot": explained.description.name,
+        "facts": dict(_facts(explained.description)),
+        "derived": list(explained.derived),
+        "notes": [*explained.notes, *found.differences],
         "faults": list(found.faults),
         "measured": _finite(asdict(found)),
         "scenarios": [

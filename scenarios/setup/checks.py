@@ -42,7 +42,7 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
     commands = command_problems(draft)
     if commands:
         keys = draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)})
-        draft = Draft(keys, draft.size, draft.wider)
+        draft = Draft(keys, draft.size, draft.wider, draft.sole)
     clock = [*_rates(draft), *_pushes(draft)]
     return [
         *commands,

@@ -59,10 +59,13 @@ class Draft:
         keys: the scenario as the user wrote it; nobody below this room sees it.
         size: of its robot.
         wider: by what that has to stand wider than the reference robot, scaled [m].
+        sole: length of its soles where they are known without the scenario, which those of the reference are not [m].
     """
 
-    def __init__(self, keys: Scenario, size: Similarity = REFERENCE_SIZE, wider: float = 0.0) -> None:
-        self.keys, self.size, self.wider = keys, size, wider
+    def __init__(
+        self, keys: Scenario, size: Similarity = REFERENCE_SIZE, wider: float = 0.0, sole: float | None = None
+    ) -> None:
+        self.keys, self.size, self.wider, self.sole = keys, size, wider, keys.robot_options.foot_length or sole
 
     @cached_property
     def commanded(self) -> bool:

@@ -31,9 +31,8 @@ from surefoot.scenarios.record.provenance import (
 )
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria_checks import criteria_problems
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
-from surefoot.scenarios.setup.sized import robot_size, say_for, with_defaults
+from surefoot.scenarios.setup.sized import draft_of, say_for
 from surefoot.scenarios.setup.terrain import KINDS
 
 LOG_ENDING = ".mcap"
@@ -170,9 +169,8 @@ def read_scenario(
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
-    size, wider = robot_size(scenario.robot, robots)
-    scenario = with_defaults(KINDS[scenario.terrain.kind].completed(scenario), size, robots)
-    draft = Draft(scenario, size, wider)
+    draft = draft_of(KINDS[scenario.terrain.kind].completed(scenario), robots)
+    scenario = draft.keys
     semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *check(draft, robots)]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:

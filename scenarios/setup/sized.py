@@ -24,6 +24,7 @@ from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
@@ -35,10 +36,13 @@ _SOLES = ("foot_length", "foot_width")
 G = TypeVar("G", bound=BaseModel)
 
 
-def robot_size(name: str, robots: Robots) -> tuple[Similarity, float]:
-    """Size of a robot, and by what it stands wider [m]; the reference's where none has that name, which others tell."""
-    facts = None if name == REFERENCE else _facts(name, RobotSettings(), robots)
-    return (REFERENCE_SIZE, 0.0) if facts is None else (facts.size, stance_widening(facts, facts.size))
+def draft_of(scenario: Scenario, robots: Robots) -> Draft:
+    """The draft of a scenario with the defaults of its robot; of one that nobody has, which others tell, as it is."""
+    facts = None if scenario.robot == REFERENCE else _facts(scenario.robot, RobotSettings(), robots)
+    if facts is None or facts.size == REFERENCE_SIZE:
+        return Draft(scenario)
+    size = facts.size
+    return Draft(with_defaults(scenario, size, robots), size, stance_widening(facts, size), facts.foot_length)
 
 
 def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:

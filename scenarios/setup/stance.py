@@ -8,7 +8,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.models.joints import meeting_point
+from surefoot.models.joints import meeting_point, world_axis
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.planner.model.leg_chain import LegChain, Link, Vector
@@ -20,6 +20,9 @@ from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames
 
 Array = NDArray[np.float64]
+
+_ON_THE_LINE = 1e-9
+"""A link's CoM that is nearer to the line between its joints, in lengths of the link, lies on it [-]."""
 
 SOLE_SINKAGE = 5e-5
 """How far the reference robot's soles sink into the simulated ground under its weight [m]."""
@@ -167,8 +170,8 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
     chain = LegChain(
         hip_half_width=0.5 * float(np.linalg.norm(left.hip - right.hip)),
         trunk=_mirrored((trunk - middle) @ R),
-        thigh=_link(left.thigh, left.hip, left.knee, R[:, 1], total),
-        shank=_link(left.shank, left.knee, left.ankle, R[:, 1], total),
+        thigh=_link(left.thigh, left.hip, left.knee, R, total),
+        shank=_link(left.shank, left.knee, left.ankle, R, total),
         foot_mass=left.foot.mass / total,
         foot_centre=_mirrored((left.foot.lever - left.ankle) @ R),
         ankle=_mirrored((left.ankle - left.sole) @ R),
@@ -198,8 +201,17 @@ def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.boo
     knee = 1 + int(np.argmax(apart[1:] * apart[:-1]))
     groups = chain[:knee], chain[knee : knee + 1], chain[knee + 1 :]
     parts = [_lumped(model, data, joints) for joints in groups]
-    hip, ankle = (meeting_point(model, data, group) for group in (groups[0], groups[2]))
+    hip, ankle = (_pivot(model, data, group) for group in (groups[0], groups[2]))
     return _Leg(hip, at[knee], ankle, data.oMf[frame].translation.copy(), *parts)
+
+
+def _pivot(model: pin.Model, data: pin.Data, joints: list[int]) -> Array:
+    """The point of a hip or an ankle on its pitch axis, nearest to all its axes: what a link swings about."""
+    meeting = meeting_point(model, data, joints)
+    lateral = data.oMi[1].rotation[:, 1]
+    pitch = max(joints, key=lambda joint: abs(float(world_axis(model, data, joint) @ lateral)))
+    axis, origin = world_axis(model, data, pitch), data.oMi[pitch].translation
+    return np.asarray(origin + axis * float(axis @ (meeting - origin)))
 
 
 def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:
@@ -209,11 +221,16 @@ def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:
     return total
 
 
-def _link(part: pin.Inertia, upper: Array, lower: Array, pitch: Array, total: float) -> Link:
-    along, length = lower - upper, float(np.linalg.norm(lower - upper))
-    centre = float((part.lever - upper) @ along) / length**2
-    outward = _measured((part.lever - upper - centre * along) @ pitch)
-    return Link(length, part.mass / total, centre, float(pitch @ part.inertia @ pitch) / total, outward)
+def _link(part: pin.Inertia, upper: Array, lower: Array, R: Array, total: float) -> Link:
+    """A link between two joints, seen from the side of a body whose axes are the columns of R."""
+    line, pitch = lower - upper, R[:, 1]
+    along = line - (line @ pitch) * pitch
+    length = float(np.linalg.norm(along))
+    lever = part.lever - upper
+    centre, ahead = float(lever @ along) / length**2, float(lever @ np.cross(along, pitch)) / length**2
+    inertia = float(pitch @ part.inertia @ pitch) / total
+    outward = _measured((lever - centre * line) @ pitch)
+    return Link(length, part.mass / total, centre, inertia, ahead if abs(ahead) > _ON_THE_LINE else 0.0, outward)
 
 
 def _measured(distance: float) -> float:

@@ -25,7 +25,7 @@ from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import PushPoint, leg_span, step_region
 from surefoot.scenarios.setup.robot import describe, facts_of, size_of, stance_widening, true_robot
 from surefoot.sim.pushes import Push
-from surefoot.similarity import Similarity
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
 if TYPE_CHECKING:
@@ -184,7 +184,8 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
     keys = scenario
     robot = robot or describe(keys.robot, keys.robot_options)
     size = size_of(robot, keys.robot_options)
-    draft = Draft(keys, size, stance_widening(robot, size))
+    own = None if size == REFERENCE_SIZE else float(robot.sole_length)
+    draft = Draft(keys, size, stance_widening(robot, size), own)
     if profile is not None:
         draft.profile = profile
     near, far = draft.parameters.reach_width

@@ -69,6 +69,7 @@ STORIES = {
     "push": {"step_length": 0.2, "push": 4.0},
     "stand": {"steps": 0, "push": 6.0},
     "place": {"steps": 0, "step_length": 0.2, "place": (0.5, 0.1, 0.4)},
+    "near place": {"steps": 0, "step_length": 0.2, "place": (0.02, 0.0, 0.0)},
     "stairs": {"step_length": 0.3, "stairs": True},
     **{
         profile: {"step_length": 0.1, "double_support": 0.4, "profile": profile}

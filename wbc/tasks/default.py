@@ -3,13 +3,19 @@
 from surefoot.wbc.balance import BalanceGains, SupportRegion
 from surefoot.wbc.tasks.momentum import AngularMomentum, CentreOfMass
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
-from surefoot.wbc.tasks.swing import SwingFoot
+from surefoot.wbc.tasks.swing import AnkleStops, SwingFoot
 from surefoot.wbc.tasks.task import Task, TaskLayout, layout_of
 from surefoot.wbc.tasks.trunk import Pelvis, Torso
 
 
 def default_tasks(
-    weights: TaskWeights, gains: TaskGains, balance: BalanceGains, region: SupportRegion, toe: float, length: float
+    weights: TaskWeights,
+    gains: TaskGains,
+    balance: BalanceGains,
+    region: SupportRegion,
+    toe: float,
+    length: float,
+    stops: AnkleStops | None = None,
 ) -> tuple[Task, ...]:
     """The tasks in the order of their rows.
 
@@ -20,13 +26,14 @@ def default_tasks(
         region: where the ZMP may lie; its owner keeps it up to date.
         toe: toe edge from the sole's centre [m].
         length: size of the robot (see `surefoot.similarity`) [-].
+        stops: where its ankles end; None for nowhere.
     """
     return (
         CentreOfMass(weights, balance, region),
         AngularMomentum(weights, gains),
         Pelvis(weights, gains),
         Torso(weights, gains),
-        SwingFoot(weights, gains, toe, length),
+        SwingFoot(weights, gains, toe, length, stops),
     )
 
 

@@ -1,11 +1,56 @@
 """The swing foot follows its curve."""
 
 import numpy as np
+import pinocchio as pin
 
-from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.limits import JointLimits
+from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.task import angular_acceleration
 from surefoot.wbc.types import Array, WbcReference
+
+YIELDING = 0.1
+"""Way to the end of its range within which an ankle ceases to turn its swinging foot towards that end [rad]."""
+
+
+class AnkleStops:
+    """Ankles of small range: a swinging foot turns with its shank rather than against the end of an ankle's range.
+
+    A level sole may ask for more than the ankle can give, as on a slope or with a leg far to the side. The other joints
+    would turn the whole body to give the rest, and the CoM with it.
+
+    Args:
+        model: the robot.
+        frames: its soles.
+        limits: of its joints.
+    """
+
+    def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
+        supports = (model.supports[model.frames[model.getFrameId(name)].parentJoint] for name in frames.soles)
+        self._columns = tuple(tuple(model.joints[joint].idx_v for joint in list(chain)[-2:]) for chain in supports)
+        self._lower, self._upper, self._ahead = limits.lower, limits.upper, limits.position_horizon
+
+    def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[Array, float]]:
+        """Axes in the frame of sole k about which it is not to turn any further, and the share of it [-].
+
+        Args:
+            terms: of the state.
+            k: the foot.
+            desired: its orientation, shape (3, 3).
+        """
+        found = []
+        for column in self._columns[k]:
+            position, velocity = float(terms.q[column + 1]), float(terms.v[column])
+            coming = position + self._ahead * velocity
+            up, down = self._upper[column - 6] - max(position, coming), min(position, coming) - self._lower[column - 6]
+            if min(up, down) >= YIELDING:
+                continue
+            axis = terms.sole_jacobian[k, 3:, column]
+            wanted = float(axis @ pin.log3(terms.contact_rotation[k].T @ desired))
+            share = 1.0 - max(0.0, float(up if wanted > 0.0 else down)) / YIELDING
+            if share > 0.0:
+                found.append((axis, share))
+        return found
 
 
 class SwingFoot:
@@ -16,8 +61,19 @@ class SwingFoot:
 
     name, size = "swing foot", 6
 
-    def __init__(self, weights: TaskWeights, gains: TaskGains, toe: float, length: float) -> None:
-        """``toe``: toe edge from the sole's centre [m]; ``length``: size of the robot, by which rotations count [-]."""
+    def __init__(
+        self, weights: TaskWeights, gains: TaskGains, toe: float, length: float, stops: AnkleStops | None = None
+    ) -> None:
+        """Set up the task.
+
+        Args:
+            weights: of the tasks.
+            gains: of the tasks.
+            toe: toe edge from the sole's centre [m].
+            length: size of the robot, by which rotations count [-].
+            stops: where the ankles end; None for nowhere.
+        """
+        self._stops = stops
         self.weight = weights.swing * np.repeat([1.0, length**2], 3)
         self._gains, self._toe = gains.swing, toe
 
@@ -37,7 +93,12 @@ class SwingFoot:
         vx, vy, vz = velocity[:3].tolist()
         bx, by, bz, px, py, pz = terms.sole_bias[k].tolist()
         linear = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
-        return (*linear, ax - px, ay + pitching - py, az - pz)
+        turn = (ax - px, ay + pitching - py, az - pz)
+        for axis, share in self._stops.yielding(terms, k, reference.swing_rotation) if self._stops else ():
+            kept = np.eye(3) - share * np.outer(axis, axis)
+            rows[3:] = kept @ rows[3:]
+            turn = tuple((kept @ turn).tolist())
+        return (*linear, *turn)
 
     def _linear(self, terms: RobotTerms, reference: WbcReference, k: int) -> Array:
         """Linear acceleration in the world, but for the damping of the sole's own velocity, shape (3,) [m/s^2]."""

@@ -71,7 +71,7 @@ def _behind(draft: "Draft") -> float:
 
     Going down the heel also keeps its distance from the riser behind it, or the swing would have to go over that.
     """
-    foot, keys, length = draft.keys.robot_options.foot_length, draft.keys.terrain, draft.size.length
+    foot, keys, length = draft.sole, draft.keys.terrain, draft.size.length
     if foot is None:
         return 0.0
     room = 0.5 * (keys.tread - foot)

@@ -34,7 +34,8 @@ class Biped:
 
     def urdf(self) -> str:
         """The whole text."""
-        parts = [_link("base", 8.0, (0.15, 0.2, 0.1))]
+        ahead = -0.02 if self.turned else 0.02
+        parts = [_link("base", 8.0, (0.15, 0.2, 0.1), (ahead, 0, 0.03))]
         for side, sign in (("left", 1), ("right", -1)):
             parts += self._leg(side, sign)
             parts += self._arm(side, sign) if self.arms else []

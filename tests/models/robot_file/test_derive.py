@@ -99,6 +99,10 @@ def test_a_base_that_looks_backward_is_turned(tmp_path) -> None:
             frame(*placed(robot, robot.nominal_joint_positions), name).homogeneous,
             atol=1e-9,
         )
+    assert turned.description.com_height == pytest.approx(robot.com_height, abs=1e-9)
+    masses = [placed(one, robot.nominal_joint_positions)[0].inertias[1] for one in (robot, turned.description)]
+    np.testing.assert_allclose(masses[0].lever, masses[1].lever, atol=1e-12)
+    np.testing.assert_allclose(masses[0].inertia, masses[1].inertia, atol=1e-12)
 
 
 def test_without_arms_the_heaviest_body_is_the_torso(tmp_path) -> None:

@@ -53,6 +53,8 @@ def test_nothing_is_left_alone() -> None:
     flat = (np.zeros((3, 3)), np.array([[0, 1, 2]]))
     assert decimated([]) == ()
     assert decimated([flat]) == (flat,)
+    empty = (np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
+    assert len(decimated([empty, ball(1.0)])[0][1]) == 0
 
 
 def test_the_colour_of_a_mesh_file(tmp_path) -> None:

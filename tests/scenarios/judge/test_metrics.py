@@ -86,6 +86,12 @@ def test_standing_between_steps(metrics, motion):
     assert metrics(motion(pause=0.3))["standing_time_between"] == pytest.approx(0.3)
 
 
+def test_knees_are_bent_from_where_they_are_straight(metrics, motion, robot):
+    knees = [robot.joint_names.index(name) for name in robot.roles.knees]
+    robot.straight_joint_positions[knees] = (0.15, -0.05)
+    assert metrics(motion(speed=0.4))["knee_angle_mean"] == pytest.approx(0.4 - (0.15 + 0.05) / 2)
+
+
 def test_effort(metrics, motion):
     found = metrics(motion())
     assert found["torque_ratio_max"] == pytest.approx(0.4)

@@ -60,9 +60,7 @@ def test_what_is_no_robot_is_bad_input(surefoot) -> None:
     assert err.count("\n") == 1 and "humanoid100" in err
 
 
-def test_a_robot_with_a_fault_is_missed_and_what_is_refused_says_why(
-    surefoot, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_robot_with_a_fault_is_missed_and_what_is_refused_says_why(surefoot, monkeypatch: pytest.MonkeyPatch) -> None:
     """Knees too weak to stand, and legs too short for the stairs."""
 
     def build(options: RobotOptions) -> RobotDescription:
@@ -81,7 +79,11 @@ def test_a_robot_with_a_fault_is_missed_and_what_is_refused_says_why(
 
 
 def test_what_fails_is_told_with_its_reasons(surefoot, monkeypatch: pytest.MonkeyPatch) -> None:
-    told = (Row("stand", "walks"), Row("walk", "fails", ("fell is true",)), Row("stairs-tall", "refused", ("too tall",)))
+    told = (
+        Row("stand", "walks"),
+        Row("walk", "fails", ("fell is true",)),
+        Row("stairs-tall", "refused", ("too tall",)),
+    )
     monkeypatch.setattr(walks, "rows", lambda *given: [given[-1](row) for row in told] and told)
     code, out, _ = surefoot("robot", "check", "humanoid100", "--walk")
     assert code == 1

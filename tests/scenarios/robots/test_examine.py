@@ -9,7 +9,6 @@ from surefoot.models import RobotDescription, RobotOptions, describe
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.robots.examine import PARITY, examine, known
 
-
 pytestmark = pytest.mark.unit
 
 

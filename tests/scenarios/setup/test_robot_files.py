@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+import surefoot
 from surefoot.models import RobotOptions, describe
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
@@ -42,6 +43,11 @@ def test_a_path_starts_from_the_scenario_that_names_it(tmp_path, monkeypatch) ->
     monkeypatch.chdir("/")
     assert load(scenario).robot == str(tmp_path / "half.yaml")
     assert resolve(load(scenario)).robot.leg_length == pytest.approx(0.47)
+
+
+def test_a_log_needs_no_robot_file_to_be_judged(tmp_path) -> None:
+    verdict = surefoot.run(load(files(tmp_path)), out=str(tmp_path / "runs")).verdict
+    assert not [reason for reason in verdict.reasons if "known" in reason]
 
 
 def test_a_path_that_is_set_starts_from_where_one_is(tmp_path, monkeypatch) -> None:

@@ -1,0 +1,83 @@
+"""What the motors of a model give: limits of torque and speed, rotors; and what an SRDF knows of them."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.models.robot_file.schema import RobotFile, matched
+from surefoot.models.types import RobotError
+
+
+def set_limits(model: pin.Model, file: RobotFile, names: tuple[str, ...]) -> None:
+    """Put the limits that the file gives over those of the model.
+
+    Raises:
+        RobotError: a pattern means no joint.
+    """
+    for key, field in (("torque_limit", "EffortLimit"), ("velocity_limit", "VelocityLimit")):
+        values = np.array(getattr(model, f"upper{field}"))
+        for name, value in matched(getattr(file, key), names, key, file.name).items():
+            values[model.joints[model.getJointId(name)].idx_v] = value
+        setattr(model, f"upper{field}", values)
+        setattr(model, f"lower{field}", -values)
+
+
+def read_srdf(path: Path | None, names: tuple[str, ...]) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    """Rotor inertias at the joints [kg m^2], and postures by name [rad]."""
+    if path is None:
+        return {}, {}
+    try:
+        root = ElementTree.parse(path).getroot()
+    except ElementTree.ParseError as error:
+        raise RobotError(("srdf",), f"{path}: no XML, {error}", "mend it") from None
+    rotors = {
+        joint.attrib["name"]: float(joint.get("mass", "0")) * float(joint.get("gear_ratio", "1")) ** 2
+        for joint in root.iterfind("rotor_params/joint")
+    }
+    states = {
+        state.get("name", ""): {
+            joint.attrib["name"]: float(joint.get("value", "0").split()[0])
+            for joint in state.iterfind("joint")
+            if joint.get("name") in names
+        }
+        for state in root.iterfind("group_state")
+    }
+    return rotors, states
+
+
+def set_armature(
+    model: pin.Model, given: dict[str, float], rotors: dict[str, float], srdf: Path | None, notes: list[str]
+) -> None:
+    """Put the rotors of the SRDF over the armatures of the model, and those that the file gives over both."""
+    armature = np.array(model.armature)
+    known = {**{name: value for name, value in rotors.items() if model.existJointName(name)}, **given}
+    for name, value in known.items():
+        armature[model.joints[model.getJointId(name)].idx_v] = value
+    model.armature = armature
+    if rotors and srdf is not None:
+        notes.append(f"armature: from the rotors in {srdf.name}")
+    if not armature.any():
+        notes.append("armature: none known, so joints have no rotors; give armature: {PATTERN: kg m^2} if it has gears")
+
+
+def require_limits(model: pin.Model) -> None:
+    """Refuse joints whose motors nobody knows.
+
+    Raises:
+        RobotError: a torque or a speed limit is missing.
+    """
+    for key, what, unit in (("upperEffortLimit", "torque", "N m"), ("upperVelocityLimit", "velocity", "rad/s")):
+        values = getattr(model, key)[6:]
+        unknown = [name for name, value in zip(tuple(model.names)[2:], values, strict=True) if not 0.0 < value < np.inf]
+        if unknown:
+            others, have = (f" and {len(unknown) - 1} more", "have") if len(unknown) > 1 else ("", "has")
+            said = f"joint '{unknown[0]}'{others} of {model.name} {have} no {what} limit"
+            raise RobotError((f"{what}_limit",), said, f"give {what}_limit: {{PATTERN: {unit}}}; '*' means every joint")
+    pairs = zip(tuple(model.names)[2:], model.lowerPositionLimit[7:], model.upperPositionLimit[7:], strict=True)
+    for name, lower, upper in pairs:
+        if not -np.inf < lower < upper < np.inf:
+            raise RobotError(
+                ("model",), f"joint '{name}' of {model.name} turns from {lower} to {upper} rad", "give limits"
+            )

@@ -17,6 +17,9 @@ _BEND = 0.02
 """Share of its length by which a leg stays the more bent the nearer it comes to straight, or its sole out of reach: the
 knee of a straight leg would move infinitely fast [-]."""
 
+_OUTWARD = np.array([1.0, -1.0])[:, None, None]
+"""Which way is outward for the left and the right leg, along the left [-]."""
+
 Vector = tuple[float, float, float]
 
 
@@ -43,7 +46,7 @@ class Link:
     def mass_matrix(self) -> Array:
         """M with Σ M_ij x_i · x_j' the momentum of the rod with ends x_1, x_2, shape (2, 2) [-].
 
-        But for what the CoM beside the rod has to do with the one on it: see `LegChain._ahead_rate`.
+        But for what the CoM beside the rod has to do with the one on it: see `LegChain._beside`.
         """
         s, spin = self.centre, self.inertia / self.length**2 + self.mass * self.ahead**2
         mixed = self.mass * s * (1.0 - s) - spin
@@ -99,42 +102,13 @@ class LegChain:
         frame, legs = _headings(0.5 * (heading[0] + heading[1])), _headings(heading)
         offsets = self._rolled(legs, pitch, toe)
         ankles = soles - com + offsets[0]
-        foot = ankles + offsets[1]
+        foot = ankles + offsets[1] + _OUTWARD * self.foot_outward * legs[..., 1, :]
         hips, knees = self._posture(ankles, frame, legs[..., 0, :])
         trunk = 0.5 * (hips[0] + hips[1]) + _turned(frame, self.trunk)
         points = np.concatenate((hips, knees, ankles, foot, trunk[None]))
         bend = np.diff(points, 2, axis=1) / sample_time**2
         rate = _crossed(points[:, 1:-1], np.tensordot(self._masses(), bend, 1))
-        if self.thigh.outward or self.shank.outward or self.foot_outward:
-            rate += self._outward_rate(bend, legs[:, 1:-1, 1])
-        if self.thigh.ahead or self.shank.ahead:
-            rate += self._ahead_rate((hips, knees, ankles), legs[..., 1, :], sample_time)
-        return rate
-
-    def _ahead_rate(self, joints: tuple[Array, Array, Array], left: Array, sample_time: float) -> Array:
-        """What links whose CoM lies ahead of the line of their joints add, shape (n - 2, 3) [m^2/s^2].
-
-        With a the point of the line beside the CoM, and b the way from there to it, Σ m (a x b'' + b x a''); b x b'' is
-        in the rods' inertia.
-        """
-        hips, knees, ankles = joints
-        rate = np.zeros((hips.shape[1] - 2, 3))
-        for link, upper, lower in ((self.thigh, hips, knees), (self.shank, knees, ankles)):
-            along = lower - upper
-            a, b = upper + link.centre * along, link.ahead * np.cross(along, left)
-            a_bend, b_bend = (np.diff(way, 2, axis=1) / sample_time**2 for way in (a, b))
-            rate += link.mass * (_crossed(a[:, 1:-1], b_bend) + _crossed(b[:, 1:-1], a_bend))
-        return rate
-
-    def _outward_rate(self, bend: Array, left: Array) -> Array:
-        """What the masses that lie beside the lines of the joints add, for accelerations of the points."""
-        hips, knees, ankles, feet = bend[0:2], bend[2:4], bend[4:6], bend[6:8]
-        thigh, shank = self.thigh, self.shank
-        pull = self.foot_mass * self.foot_outward * feet
-        for link, upper, lower in ((thigh, hips, knees), (shank, knees, ankles)):
-            pull = pull + link.mass * link.outward * ((1.0 - link.centre) * upper + link.centre * lower)
-        sides = np.cross(left, pull)
-        return np.asarray(sides[0] - sides[1])
+        return rate + self._beside(hips, knees, ankles, legs[..., 1, :], sample_time)
 
     def joints(
         self, com: Array, soles: Array, heading: Array, pitch: Array | None = None, toe: float = 0.0
@@ -144,6 +118,22 @@ class LegChain:
         ankles = soles - com + self._rolled(legs, pitch, toe)[0]
         hips, knees = self._posture(ankles, frame, legs[..., 0, :])
         return hips + com, knees + com, ankles + com
+
+    def _beside(self, hips: Array, knees: Array, ankles: Array, left: Array, sample_time: float) -> Array:
+        """What links whose CoM lies beside their rod add to the rate of angular momentum, shape (n - 2, 3) [m^2/s^2].
+
+        With a the point of the rod beside the CoM, and b the way from there to it, Σ m (a x b'' + b x a''); b x b'' is
+        in the rods' inertia.
+        """
+        rate = np.zeros((left.shape[1] - 2, 3))
+        for link, upper, lower in ((self.thigh, hips, knees), (self.shank, knees, ankles)):
+            if link.ahead == link.outward == 0.0:
+                continue
+            along = lower - upper
+            a, b = upper + link.centre * along, link.ahead * np.cross(along, left) + _OUTWARD * link.outward * left
+            a_bend, b_bend = (np.diff(way, 2, axis=1) / sample_time**2 for way in (a, b))
+            rate += link.mass * (_crossed(a[:, 1:-1], b_bend) + _crossed(b[:, 1:-1], a_bend))
+        return rate
 
     def _rolled(self, frame: Array, pitch: Array | None, toe: float) -> tuple[Array, Array]:
         """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, n, 3) each."""

@@ -21,6 +21,9 @@ from surefoot.wbc.model import BodyFrames
 
 Array = NDArray[np.float64]
 
+_ON_THE_LINE = 1e-9
+"""A link's CoM that is nearer to the line between its joints, in lengths of the link, lies on it [-]."""
+
 SOLE_SINKAGE = 5e-5
 """How far the reference robot's soles sink into the simulated ground under its weight [m]."""
 
@@ -219,16 +222,15 @@ def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:
 
 
 def _link(part: pin.Inertia, upper: Array, lower: Array, R: Array, total: float) -> Link:
-    """A link between two joints, for a body whose axes are the columns of R."""
-    along, pitch = lower - upper, R[:, 1]
-    along = along - (along @ pitch) * pitch
+    """A link between two joints, seen from the side of a body whose axes are the columns of R."""
+    line, pitch = lower - upper, R[:, 1]
+    along = line - (line @ pitch) * pitch
     length = float(np.linalg.norm(along))
     lever = part.lever - upper
-    centre = float(lever @ along) / length**2
-    ahead = _measured(lever @ np.cross(along, pitch) / length**2)
-    outward = _measured((lever - centre * (lower - upper)) @ pitch)
+    centre, ahead = float(lever @ along) / length**2, float(lever @ np.cross(along, pitch)) / length**2
     inertia = float(pitch @ part.inertia @ pitch) / total
-    return Link(length, part.mass / total, centre, inertia, ahead, outward)
+    outward = _measured((lever - centre * line) @ pitch)
+    return Link(length, part.mass / total, centre, inertia, ahead if abs(ahead) > _ON_THE_LINE else 0.0, outward)
 
 
 def _measured(distance: float) -> float:

@@ -261,9 +261,11 @@ class Recovery:
         lower, upper = self.legs.around(place, com[best] + hip, box)
         least, most = low[best], high[best]
         if not crosses:
-            # Beside its stance foot it lands with the DCM well inside the next box, or as near to that as it comes.
+            # Beside its stance foot it lands with the DCM well inside the next box, where it can.
             held = np.maximum(half / _AUTHORITY - _SPARE, 0.0) / gain
-            least, most = np.maximum(least, wanted[best] - held), np.minimum(most, wanted[best] + held)
+            can = np.abs(wanted[best] - place) <= held
+            least = np.where(can, np.maximum(least, wanted[best] - held), least)
+            most = np.where(can, np.minimum(most, wanted[best] + held), most)
         lower, upper = np.maximum(lower, np.minimum(least, place)), np.minimum(upper, np.maximum(most, place))
         return Catch(float(doubles[best] if now.double else singles[best]), lower, upper, more)
 

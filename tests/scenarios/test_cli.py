@@ -12,6 +12,7 @@ import pytest
 import yaml
 
 from surefoot.errors import ParameterError
+from surefoot.models.registry import SHIPPED
 from surefoot.scenarios import catalogue, cli
 from surefoot.scenarios.cli import app
 from surefoot.scenarios.errors import SetupError
@@ -66,7 +67,9 @@ def test_list(surefoot):
 
 def test_list_json_has_the_same_and_the_metrics(surefoot):
     found = json.loads(surefoot("list", "--json")[1])
-    assert found["robot"] == [{"name": "humanoid100", "package": "surefoot", "doc": ""}]
+    robots = {entry.pop("name"): entry for entry in found["robot"]}
+    assert robots["humanoid100"] == {"package": "surefoot", "doc": ""}
+    assert set(robots) == {"humanoid100", *SHIPPED} and "33 kg" in robots["g1"]["doc"]
     assert "speed_mean" in [entry["name"] for entry in found["metric"]]
     assert all(entry["doc"] for kind in ("scenario", "profile", "terrain", "metric") for entry in found[kind])
 
@@ -74,7 +77,7 @@ def test_list_json_has_the_same_and_the_metrics(surefoot):
 def test_every_command_takes_h_for_help_and_is_told_in_full(surefoot):
     code, out, _ = surefoot("-h")
     commands = re.findall(r"(?m)^  ([a-z]+)  +(.*)$", out.partition("Commands:")[2])
-    assert (code, len(commands)) == (0, len(app.registered_commands))
+    assert (code, len(commands)) == (0, len(app.registered_commands) + len(app.registered_groups))
     for name, help_ in commands:
         assert help_.endswith("."), f"{name}: {help_}"
         assert not help_.endswith("..."), f"{name}: {help_}"

@@ -118,7 +118,8 @@ class _Translation:
         self._group(Scenario, values, ())
         if isinstance(terrain, dict) and len(given) == 2 and given[0] == given[1] is not None:
             # Steps from tread to tread stay such.
-            gait["step_length"] = terrain["tread"]
+            scaled, gait["step_length"] = gait["step_length"], terrain["tread"]
+            gait["com_height"] = for_longer_steps(gait["com_height"], scaled, terrain["tread"], self.after)
         self._controller(WbcParameters(), values.get("wbc"), ("wbc",))
         for name, bound in values["criteria"].items() if isinstance(values.get("criteria"), dict) else ():
             self._criterion(values["criteria"], name, bound)
@@ -192,6 +193,25 @@ def com_height(value: float, before: RobotFacts, after: RobotFacts) -> float:
         after: of the other one.
     """
     return after.size.length / before.size.length * (value - before.com_above_hip) + after.com_above_hip
+
+
+def for_longer_steps(height: float, step: float, longer: float, robot: RobotFacts) -> float:
+    """CoM height for steps longer than those for which one was given [m].
+
+    What a leg lacks of being straight, with the hips midway over the step, grows as the step: the nearer to straight,
+    and the longer the step, the faster knees turn.
+
+    Args:
+        height: that was given [m].
+        step: that it was given for [m].
+        longer: that is taken [m].
+        robot: facts of it.
+    """
+    bent = robot.leg_length - math.hypot(height - robot.com_above_hip, 0.5 * step)
+    span = robot.leg_length - bent * longer / step
+    if not (longer > step > 0.0 < bent and span > 0.5 * longer):
+        return height
+    return robot.com_above_hip + math.sqrt(span**2 - 0.25 * longer**2)
 
 
 def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:

@@ -28,7 +28,7 @@ class AnkleStops:
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
         supports = (model.supports[model.frames[model.getFrameId(name)].parentJoint] for name in frames.soles)
         self._columns = tuple(tuple(model.joints[joint].idx_v for joint in list(chain)[-2:]) for chain in supports)
-        self._lower, self._upper, self._ahead = limits.lower, limits.upper, limits.position_horizon
+        self._lower, self._upper, self._ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
 
     def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[Array, float]]:
         """Axes in the frame of sole k about which it is not to turn any further, and the share of it [-].

@@ -125,8 +125,9 @@ class Catch(NamedTuple):
 _AUTHORITY = 0.8
 """Share of the ZMP box that a step which is adapted leaves to the CoP [-]."""
 
-_SPARE = 0.02
-"""What a step that is adapted leaves of the ZMP box over the DCM error that it lands with [m]."""
+_LANDED, _SPARE = 0.5, 0.03
+"""DCM error that a step which is adapted may land with: this share of what the CoP has of its box [-], or all of the
+box but this, if that is more [m]."""
 
 _MARGIN = 0.02
 """DCM error at landing that the CoP cannot hold from which on a step is adapted [m]."""
@@ -263,11 +264,9 @@ class Recovery:
         lower, upper = self.legs.around(place, com[best] + hip, box)
         least, most = low[best], high[best]
         if not crosses:
-            # Beside its stance foot it lands with the DCM well inside the next box, where it can.
-            held = np.maximum(half / _AUTHORITY - _SPARE, 0.0) / gain
-            can = np.abs(wanted[best] - place) <= held
-            least = np.where(can, np.maximum(least, wanted[best] - held), least)
-            most = np.where(can, np.minimum(most, wanted[best] + held), most)
+            # Beside its stance foot it lands with the DCM well inside the next box, or as near to that as it comes.
+            held = np.maximum(_LANDED * half, half / _AUTHORITY - _SPARE) / gain
+            least, most = np.maximum(least, wanted[best] - held), np.minimum(most, wanted[best] + held)
         lower, upper = np.maximum(lower, np.minimum(least, place)), np.minimum(upper, np.maximum(most, place))
         return Catch(float(doubles[best] if now.double else singles[best]), lower, upper, more)
 

@@ -76,14 +76,15 @@ def test_without_need_nothing_is_adapted(error):
     assert catch(situation(1.001 * held)) is not None
 
 
+@pytest.mark.parametrize("share", [0.3, 0.5])
 @pytest.mark.parametrize("error", [(0.08, 0.0), (-0.06, 0.0), (0.0, 0.06), (0.05, 0.05)])
-def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error):
+def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error, share):
     """The pendulum with its CoP at the edge until the foot lands.
 
-    The box is what legs reach level with that place, and leaves 2 cm of the next CoP's box.
+    The box is what legs reach level with that place, and leaves half of what the next CoP has of its box.
     """
     free = replace(LEGS, radius=2.0, near=-2.0, across=None, acceleration=(1e4, 1e4))
-    half = 0.3 * HALF
+    half = share * HALF
     now = situation(error, half=half)
     caught = catch(now, timing=False, legs=free)
     assert caught.left == now.single
@@ -96,9 +97,16 @@ def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error):
     place = NOMINAL + (landed - nominal) / gain
     hip = pendulum_com(now.com, now.dcm, cop, np.exp([OMEGA * now.single]))[0] + (0.0, 0.1)
     low, high = free.around(place, hip, free.boxes(1.0)[0])
-    held = np.maximum(half - 0.02, 0.0) / gain
+    held = np.maximum(0.5 * most, half - 0.03) / gain
     low, high = np.maximum(low, place - held), np.minimum(high, place + held)
     np.testing.assert_allclose((caught.low, caught.high), (low, high), atol=3e-3)
+
+
+@pytest.mark.parametrize("error", [0.1, 0.2])
+def test_a_foot_that_does_not_get_far_enough_lands_as_far_as_it_gets(error):
+    """Anywhere nearer to its nominal place the DCM would be beyond what the next foot holds."""
+    caught = catch(situation((error, 0.0), single=0.25, half=0.2 * HALF), timing=False)
+    assert caught.low[0] == caught.high[0] > NOMINAL[0] + 0.05
 
 
 def test_a_foot_is_swung_no_harder_than_the_hip_allows():

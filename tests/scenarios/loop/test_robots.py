@@ -1,0 +1,43 @@
+"""Robots of others walk in full physics, with the gains of every robot and the criteria of the catalogue for their size."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+import surefoot
+from surefoot.scenarios.loop.run import run_scenario
+
+pytestmark = pytest.mark.physics
+
+
+@pytest.mark.parametrize(
+    ("robot", "scenario"),
+    [("talos", "walk-turn"), ("talos", "slope"), ("g1", "walk"), ("g1", "walk-backward")],
+)
+def test_a_scenario_of_the_catalogue_passes(tmp_path: Path, robot: str, scenario: str) -> None:
+    verdict = run_scenario(surefoot.load(scenario, {"robot": robot}), tmp_path).verdict
+    assert verdict.passed, verdict.reasons
+    assert verdict["wbc_fallbacks"] == 0
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.5 * math.pi])
+def test_talos_stands_a_push_in_mid_single_support(tmp_path: Path, direction: float) -> None:
+    push = {"step": 3, "phase": "single", "fraction": 0.5, "impulse": 0.2, "direction": direction}
+    keys = {"robot": "talos", "gait.steps": 6, "pushes": [push], "criteria": {"fell": False}}
+    verdict = run_scenario(surefoot.load("walk", keys), tmp_path).verdict
+    assert verdict.passed, verdict.reasons
+    assert verdict["step_shift"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("robot", "scenario", "reason"),
+    [
+        ("talos", "stairs-tall", "shank"),
+        ("talos", "walk-fast", "no-load speed"),
+        ("g1", "stairs-down", "right_ankle_pitch_joint"),
+    ],
+)
+def test_what_a_robot_cannot_do_is_refused_before_it_runs(robot: str, scenario: str, reason: str) -> None:
+    with pytest.raises(surefoot.SetupError, match=reason):
+        surefoot.Simulation(surefoot.load(scenario, {"robot": robot}))

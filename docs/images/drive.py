@@ -19,7 +19,7 @@ from PIL import Image
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "scenarios"))
 
-from animate import palette  # noqa: E402  of all pictures
+from animate import palette, save  # noqa: E402  of all pictures
 from browser import Browser  # noqa: E402  the tests' own
 
 PICTURE = Path(__file__).with_name("drive.gif")
@@ -85,12 +85,8 @@ def main() -> None:
             process.wait()
     width, height = pictures[0].size
     small = [picture.resize((WIDTH, WIDTH * height // width), Image.Resampling.LANCZOS) for picture in pictures]
-    colors = palette(small)
-    frames = [picture.quantize(palette=colors, dither=Image.Dither.NONE) for picture in small]
-    frames[0].save(
-        PICTURE, save_all=True, append_images=frames[1:], duration=round(1000 * EVERY), loop=0, optimize=True
-    )
-    print(f"{len(frames)} pictures, {PICTURE.stat().st_size / 1e6:.2f} MB")
+    save(PICTURE, small, round(1000 * EVERY), palette(small))
+    print(f"{len(small)} pictures, {PICTURE.stat().st_size / 1e6:.2f} MB")
 
 
 if __name__ == "__main__":

@@ -62,13 +62,12 @@ def walk(log: Path) -> None:
 
 def animation(log: Path) -> None:
     """A stretch of the walk with its marks."""
-    from animate import frames
+    from animate import WALK, palette, pictures, save
 
     from surefoot.scenarios.log import read
 
-    (first, *rest), period = frames(read(log))
-    name, options = "walk.gif", {"duration": period, "loop": 0, "optimize": True}
-    first.save(FOLDER / name, save_all=True, append_images=rest, comment=digest(name).encode(), **options)
+    images, period = pictures(read(log), WALK)
+    save(FOLDER / "walk.gif", images, period, palette(images), comment=digest("walk.gif").encode())
 
 
 def figures(log: Path) -> None:
@@ -108,9 +107,10 @@ OF_CAMPAIGNS = (
     "courses.png",
     "drive.gif",
     *(f"recovery-{name}.gif" for name in ("forward", "crossing", "standing", "sideways", "stairs", "lasting")),
+    *(f"robot-{name}.gif" for name in ("talos", "g1", "alexander", "jvrc1", "gr3")),
 )
 """Pictures that others draw: `campaigns.py` those of campaigns that take hours, one as it drew it before, `courses.py`,
-`drive.py` and `recoveries.py`."""
+`drive.py`, `recoveries.py` and `gallery.py`."""
 
 
 def main() -> None:

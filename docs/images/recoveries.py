@@ -9,23 +9,18 @@ import argparse
 import math
 import tempfile
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 
-from animate import palette
-from PIL import Image
+from animate import Shot, palette, pictures, save
 
-from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.show.replay.extract import Window, extract
-from surefoot.scenarios.show.replay.video import QUALITY, marks_of
-from surefoot.sim.render import Camera, render_frames
+from surefoot.scenarios.show.replay.extract import Window
+from surefoot.sim.render import Camera
 
 FOLDER = Path(__file__).parent
-WIDTH, HEIGHT = 300, 240
-EVERY = 3
-"""Frames of the replay per picture."""
+SIZE = (300, 240)
 
 NATURAL = (
     "robot_options.foot_length=0.22",
@@ -87,22 +82,6 @@ RECOVERIES = {
 }
 
 
-def pictures(log: Log, recovery: Recovery) -> tuple[list[Image.Image], int]:
-    """The pictures of a recovery in few colours, and how long each is shown [ms]."""
-    replay = extract(log, recovery.window)
-    marks = (list(marks_of(replay, frame)) for frame in range(len(replay)))
-    size = 2 * WIDTH, 2 * HEIGHT
-    drawn = render_frames(replay.mjcf, replay.configuration, *size, recovery.camera, QUALITY, marks)
-    images = [
-        Image.fromarray(picture).resize((WIDTH, HEIGHT), Image.Resampling.LANCZOS)
-        for picture in islice(drawn, 0, None, EVERY)
-    ]
-    colors = palette(images)
-    return [image.quantize(palette=colors, dither=Image.Dither.NONE) for image in images], round(
-        1000 * EVERY / replay.frame_rate
-    )
-
-
 def main() -> None:
     """Draw those that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -114,8 +93,8 @@ def main() -> None:
             result = run_scenario(scenario, Path(folder))
             if result.verdict.metrics["fell"]:
                 raise SystemExit(f"{name}: the robot fell")
-            (first, *rest), period = pictures(read(result.log), recovery)
-        first.save(FOLDER / name, save_all=True, append_images=rest, duration=period, loop=0, optimize=True)
+            images, period = pictures(read(result.log), Shot(recovery.window, SIZE, recovery.camera))
+        save(FOLDER / name, images, period, palette(images))
         print(f"written: {FOLDER / name}")
 
 

@@ -8,6 +8,10 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
+
+from surefoot.models import RobotOptions, describe
+from surefoot.similarity import Similarity
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "robots.md").read_text(encoding="utf-8")
@@ -46,3 +50,58 @@ def test_every_command_of_the_tutorial_does_what_it_says(tmp_path):
     assert len(verdicts) == 3 and all(verdict["verdict"] == "pass" for verdict in verdicts)
     assert "</html>" in (place / "walk.html").read_text(encoding="utf-8")[-200:]
     assert (place / "runs" / "push-map" / "report.html").exists()
+
+
+def rows(heading):
+    """Cells of the table under a heading, by the first of each row."""
+    part = TEXT.split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    lines = re.findall(r"(?m)^\| (.*) \|$", part)
+    return {cells[0]: cells[1:] for cells in (line.split(" | ") for line in lines)}
+
+
+SHIPPED = sorted((ROOT / "models" / "robots").glob("*.yaml"))
+CORE = (ROOT / "pyproject.toml").read_text(encoding="utf-8").split("[project.optional-dependencies]")[0]
+GALLERY, SIZES = rows("Gallery"), rows("How a scenario fits every robot")
+LINK = re.compile(r"\]\(([^)]*)\)")
+
+
+@pytest.mark.unit
+def test_the_gallery_shows_every_robot_that_comes_along():
+    files = {path.stem: yaml.safe_load(path.read_text(encoding="utf-8")) for path in SHIPPED}
+    for name, file in files.items():
+        *_, licence, source, package = GALLERY[f"`{name}`"]
+        assert f"(images/robot-{name}.gif)<br>`{name}`" in TEXT
+        assert licence == file["licence"]
+        assert LINK.search(source)[1] == re.search(r"https?://\S+", file["source"])[0]
+        needed = re.search(r"package://([^/]+)/", file["model"])[1].replace("_", "-")
+        assert package == ("comes along" if f'"{needed}>=' in CORE else "`surefoot[robots]`")
+    assert {cell for cell in GALLERY if cell.startswith("`")} == {f"`{name}`" for name in files}
+
+
+@pytest.mark.unit
+def test_the_pictures_of_robots_are_small_and_about_three_seconds():
+    image = pytest.importorskip("PIL.Image")
+    for path in SHIPPED:
+        picture = ROOT / "docs" / "images" / f"robot-{path.stem}.gif"
+        with image.open(picture) as shown:
+            assert 1800 <= shown.n_frames * shown.info["duration"] <= 4000
+        assert picture.stat().st_size <= 350 * 1024
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("name", [path.stem for path in SHIPPED])
+def test_numbers_of_a_robot_are_those_that_walk(name):
+    robot = describe(name, RobotOptions())
+    mass, leg, joints, *_ = GALLERY[f"`{name}`"]
+    assert (
+        mass == f"{robot.mass:.0f} kg" and leg == f"{robot.leg_length:.2f} m" and joints == str(len(robot.joint_names))
+    )
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize(("name", "column"), [("talos", 2), ("g1", 3)])
+def test_what_becomes_of_a_quantity_is_that_of_the_robots(name, column):
+    robot = describe(name, RobotOptions())
+    size = Similarity.of(robot.leg_length, robot.mass)
+    shown = {cells[0]: cells[column] for cells in SIZES.values() if cells[0].startswith("`")}
+    assert shown == {f"`{unit}`": f"{size.factor(unit):.2f}" for unit in ("m", "s", "m/s", "N", "N·m", "N·s/kg")}

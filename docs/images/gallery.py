@@ -1,0 +1,64 @@
+"""Draw the robots that come along in docs/images, each from six steps of the scenario `walk`.
+
+    python docs/images/gallery.py [NAME]...
+
+Names are those of the robots, by default all; they need off-screen OpenGL and take about a minute each.
+"""
+
+import argparse
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from animate import Shot, pictures, save
+from PIL import Image
+
+from surefoot.models import RobotOptions, describe
+from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.show.replay.extract import Window
+from surefoot.sim.render import Camera
+
+FOLDER = Path(__file__).parent
+ROBOTS = ("talos", "g1", "alexander", "jvrc1", "gr3")
+SIZE = (320, 320)
+COLORS = 48
+
+DISTANCE, LOWER = 3.1, 0.15
+"""Of the camera from the robot, and of the middle of the picture under its base, in lengths of its leg [-]."""
+
+STRIDES = (0, 4)
+"""Footsteps between whose landings the robot is shown: two strides, after which it stands as before."""
+
+
+def shot(log: Log, leg: float) -> Shot:
+    """Two strides of a robot with a leg of this length [m], from half ahead."""
+    begin, end = log["/footstep"].time[list(STRIDES)].tolist()
+    camera = Camera(DISTANCE * leg, azimuth=130.0, elevation=-8.0)
+    return Shot(Window(begin, end), SIZE, camera, lower=LOWER * leg, marked=False)
+
+
+def draw(name: str, log: Log) -> Path:
+    """Draw a robot in colours of its own."""
+    images, period = pictures(log, shot(log, describe(name, RobotOptions()).leg_length))
+    sample = Image.fromarray(np.concatenate([np.asarray(image) for image in images[::5]]))
+    path = FOLDER / f"robot-{name}.gif"
+    save(path, images, period, sample.quantize(COLORS))
+    return path
+
+
+def main() -> None:
+    """Draw those that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(ROBOTS))
+    for name in parser.parse_args().names or ROBOTS:
+        with tempfile.TemporaryDirectory() as folder:
+            result = run_scenario(load("walk", (f"robot={name}", "gait.steps=6")), Path(folder))
+            if result.verdict.metrics["fell"]:
+                raise SystemExit(f"{name}: the robot fell")
+            print(f"written: {draw(name, read(result.log))}")
+
+
+if __name__ == "__main__":
+    main()

@@ -72,7 +72,8 @@ class DrivePage:
 
     def __init__(self, viewer: "viser.ViserServer", port: int | None, inputs: "SimpleQueue[Input]") -> None:
         self._viewer, self._inputs = viewer, inputs
-        self._impulse, self._follow, self._size = IMPULSE, True, REFERENCE_SIZE
+        self._follow, self._size = True, REFERENCE_SIZE
+        self._impulse: float | None = None
         self._pull: Array | None = None
         self._pushed: dict[str, Any] | None = None
         self._pictures: Pictures
@@ -89,7 +90,8 @@ class DrivePage:
         self._robot, self._pushed = robot, None
         if self._scene is None:
             self._pictures, self._size = Pictures(robot.walk), robot.walk.size
-            self._impulse = self._size.times(IMPULSE, "N·s")
+            if self._impulse is None:  # a page may have told its own before the first run begins
+                self._impulse = self._size.times(IMPULSE, "N·s")
             self._server.page = _page(_viewer_page(self._viewer.get_port()), self._viewer.get_port(), robot.walk)
         self._pictures.begin()
 
@@ -145,7 +147,7 @@ class DrivePage:
         """Push along the view, but not into the ground."""
         x, y, _ = event.ray_direction
         length = math.hypot(x, y)
-        if length > 1e-6:
+        if length > 1e-6 and self._impulse is not None:
             self._inputs.put(Push((self._impulse * x / length, self._impulse * y / length, 0.0), body))
 
     def _dragged(self, body: str, event: Any) -> None:

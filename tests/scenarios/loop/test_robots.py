@@ -1,4 +1,4 @@
-"""Robots of others walk in full physics, with the gains of every robot and the criteria of the catalogue for their size."""
+"""Robots of others walk in full physics, with the gains of all robots and the catalogue's criteria for their size."""
 
 import math
 from pathlib import Path

@@ -265,7 +265,7 @@ class Recovery:
         least, most = low[best], high[best]
         if not crosses:
             # Beside its stance foot it lands with the DCM well inside the next box, or as near to that as it comes.
-            held = np.maximum(_LANDED * half, half / _AUTHORITY - _SPARE) / gain
+            held = np.maximum(_LANDED * half, half / _AUTHORITY - _SPARE * self._size.length) / gain
             least, most = np.maximum(least, wanted[best] - held), np.minimum(most, wanted[best] + held)
         lower, upper = np.maximum(lower, np.minimum(least, place)), np.minimum(upper, np.maximum(most, place))
         return Catch(float(doubles[best] if now.double else singles[best]), lower, upper, more)

@@ -28,7 +28,7 @@ LENGTHS = ("step_length", "step_width", "lateral_step", "swing_height", "com_hei
 TIMES = ("single_support", "double_support", "initial_stand")
 
 
-def walked(size, profile="default", push=0.0, place=None, stairs=False, **keys):
+def walked(size, profile="default", push=0.0, ahead=0.0, place=None, stairs=False, **keys):
     """The trace of a short walk of a robot of this size; all numbers are those of full size."""
     length, time = size.length, size.time
     given = {
@@ -58,7 +58,7 @@ def walked(size, profile="default", push=0.0, place=None, stairs=False, **keys):
     )
     if place is not None:
         planner.command(Command(places=(Pose(*(length * np.array(place[:2])).tolist(), place[2]),)))
-    pushes = (PointPush(0.5 * time, 0.1 * time, np.array([0.0, push * 100.0 * size.mass])),)
+    pushes = (PointPush(0.5 * time, 0.1 * time, 100.0 * size.mass * np.array([ahead, push])),)
     com = np.array([0.0, 0.0, gait.com_height])
     return walk_pendulum(planner, feet, 1.3 * time, com=com, pushes=pushes, mass=100.0 * size.mass, substeps=1)
 
@@ -67,6 +67,7 @@ STORIES = {
     "walk": {"step_length": 0.3},
     "heel-off": {"step_length": 0.5, "heel_off": 0.5},
     "push": {"step_length": 0.2, "push": 4.0},
+    "push ahead": {"step_length": 0.2, "ahead": 6.0},
     "stand": {"steps": 0, "push": 6.0},
     "place": {"steps": 0, "step_length": 0.2, "place": (0.5, 0.1, 0.4)},
     "near place": {"steps": 0, "step_length": 0.2, "place": (0.02, 0.0, 0.0)},

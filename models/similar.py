@@ -8,10 +8,8 @@ import math
 from dataclasses import replace
 from xml.etree import ElementTree
 
-import numpy as np
-
 from surefoot.models.mjcf import numbers
-from surefoot.models.types import Array, RobotDescription, RobotError
+from surefoot.models.types import RobotDescription, RobotError, fixed
 
 POWERS: dict[str, dict[str, int]] = {
     "body": {"pos": 1},
@@ -47,8 +45,8 @@ def scaled(description: RobotDescription, factor: float) -> RobotDescription:
         d,
         mjcf=ElementTree.tostring(root, encoding="unicode") + "\n",
         mass=factor**3 * d.mass,
-        torque_limit=_fixed(factor**4 * d.torque_limit),
-        velocity_limit=_fixed(d.velocity_limit / math.sqrt(factor)),
+        torque_limit=fixed(factor**4 * d.torque_limit),
+        velocity_limit=fixed(d.velocity_limit / math.sqrt(factor)),
         sole_length=factor * d.sole_length,
         sole_width=factor * d.sole_width,
         hip_width=factor * d.hip_width,
@@ -56,10 +54,3 @@ def scaled(description: RobotDescription, factor: float) -> RobotDescription:
         shank_spacing=factor * d.shank_spacing,
         com_height=factor * d.com_height,
     )
-
-
-def _fixed(values: Array) -> Array:
-    """The array, read-only."""
-    array = np.asarray(values)
-    array.setflags(write=False)
-    return array

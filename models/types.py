@@ -5,11 +5,18 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from surefoot.errors import ParameterError
 
 Array = NDArray[np.float64]
+
+
+def fixed(values: ArrayLike) -> Array:
+    """A read-only copy."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array
 
 
 class RobotError(ParameterError):

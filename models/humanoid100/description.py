@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from surefoot.models import inertia
 from surefoot.models.humanoid100.limbs import (
     FOOT_LENGTH,
@@ -22,7 +20,7 @@ from surefoot.models.humanoid100.limbs import (
 )
 from surefoot.models.mjcf import Body, Geom, Joint, Role, robot_mjcf
 from surefoot.models.options import foot_size, with_payload
-from surefoot.models.types import Array, JointRoles, Robot, RobotDescription, RobotOptions
+from surefoot.models.types import Array, JointRoles, Robot, RobotDescription, RobotOptions, fixed
 
 NAME = "humanoid100"
 
@@ -77,10 +75,10 @@ def describe(options: RobotOptions) -> RobotDescription:
         mass=float(sum(body.inertial.mass for body in bodies)),
         joint_names=tuple(joint.name for joint in joints),
         roles=_ROLES,
-        torque_limit=_constant([joint.actuator.torque_limit for joint in joints]),
-        velocity_limit=_constant([joint.actuator.velocity_limit for joint in joints]),
-        position_lower=_constant([joint.lower for joint in joints]),
-        position_upper=_constant([joint.upper for joint in joints]),
+        torque_limit=fixed([joint.actuator.torque_limit for joint in joints]),
+        velocity_limit=fixed([joint.actuator.velocity_limit for joint in joints]),
+        position_lower=fixed([joint.lower for joint in joints]),
+        position_upper=fixed([joint.upper for joint in joints]),
         sole_sites=("left_sole", "right_sole"),
         sole_length=length,
         sole_width=width,
@@ -91,7 +89,7 @@ def describe(options: RobotOptions) -> RobotDescription:
         leg_length=LEG,
         shank_spacing=0.11,  # the contact shapes of the shanks are a decimetre thick
         nominal_joint_positions=_mild_crouch(tuple(joint.name for joint in joints)),
-        straight_joint_positions=_constant([0.0] * len(joints)),
+        straight_joint_positions=fixed([0.0] * len(joints)),
         com_height=1.0,
         bodies=tuple(body.name for body in bodies),
         kept_apart=_KEPT_APART,
@@ -99,13 +97,6 @@ def describe(options: RobotOptions) -> RobotDescription:
 
 
 HUMANOID100 = Robot(NAME, describe)
-
-
-def _constant(values: list[float]) -> Array:
-    """A read-only array."""
-    array: Array = np.array(values)
-    array.setflags(write=False)
-    return array
 
 
 def _mild_crouch(joint_names: tuple[str, ...]) -> Array:
@@ -120,7 +111,7 @@ def _mild_crouch(joint_names: tuple[str, ...]) -> Array:
         "right_shoulder_roll": -0.12,
         "elbow": -0.4,
     }
-    return _constant([angles.get(name, angles.get(name.split("_", 1)[-1], 0.0)) for name in joint_names])
+    return fixed([angles.get(name, angles.get(name.split("_", 1)[-1], 0.0)) for name in joint_names])
 
 
 def _pelvis(foot_length: float, foot_width: float) -> Body:

@@ -15,7 +15,8 @@ from surefoot.models.robot_file.source import read_source
 from surefoot.models.robot_file.text import Parts, robot_text
 from surefoot.models.robot_file.touch import Hull, find_hulls, kept_apart, limbs, overlapping, shank_spacing
 from surefoot.models.robot_file.upper import find_upper, hanging, swings
-from surefoot.models.types import Array, JointRoles, RobotDescription, RobotError, nearest
+from surefoot.models.types import Array, JointRoles, RobotDescription, RobotError, fixed, nearest
+from surefoot.similarity import LEG_LENGTH
 
 BEND = 0.65
 """Bend of the knees in walking, as that of humanoid100, whose CoM is then 1.00 m above its soles [rad]."""
@@ -24,13 +25,10 @@ HANGING, _WIDER, _WIDEST = 0.12, 0.05, 0.8
 """Angle of the arms from the vertical in front view, by what it grows until they are free, and its end [rad]."""
 
 _CLEAR = 0.01
-"""Distance that upright shanks keep, over the leg's length of humanoid100 [m]."""
+"""Distance that upright shanks keep, of humanoid100; that of others goes with their leg [m]."""
 
 _NEAR = 0.005
 """Distance in the posture, over the leg's length, below which links may overlap for good [-]."""
-
-_REFERENCE = 0.94
-"""Length of the leg of humanoid100, in which the lengths above are given [m]."""
 
 
 class Derived(NamedTuple):
@@ -221,7 +219,7 @@ class _Deriver:
     ) -> RobotDescription:
         model = self.model
         left, right = self.legs
-        room = _CLEAR * self.leg_length / _REFERENCE
+        room = _CLEAR * self.leg_length / LEG_LENGTH
         return RobotDescription(
             name=self.file.name,
             mjcf=mjcf,
@@ -274,10 +272,3 @@ class _Deriver:
         if excluded:
             told = ", ".join(f"{one} and {other}" for one, other in excluded)
             lines.append(f"may overlap, since they do in the posture: {told}")
-
-
-def fixed(values: Array) -> Array:
-    """A read-only copy."""
-    array = np.array(values, dtype=np.float64)
-    array.setflags(write=False)
-    return array

@@ -1,9 +1,7 @@
 """``surefoot check``: runs scenarios side by side and holds each against its baseline."""
 
 import shutil
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -19,7 +17,7 @@ from surefoot.scenarios.judge.verdict import Verdict
 from surefoot.scenarios.log import read
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.sweep.engine import processes
+from surefoot.scenarios.sweep.engine import side_by_side
 
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
@@ -177,31 +175,17 @@ def check(
         what became of each, in their order.
     """
     done: dict[str, Checked] = {}
-    for case, checked in _side_by_side(chosen, out, jobs):
+    for checked in side_by_side(run_case, [(case, out) for case in chosen], jobs, _lost):
         if checked.status == "same" and checked.log is not None:
             shutil.rmtree(checked.log.parent)
             checked = replace(checked, log=None)
-        done[case.scenario.name] = checked
+        done[checked.case.scenario.name] = checked
         on_done(checked)
     return tuple(done[case.scenario.name] for case in chosen)
 
 
-def _side_by_side(chosen: Sequence[Case], out: Path, jobs: int) -> Iterator[tuple[Case, Checked]]:
-    with processes(min(jobs, len(chosen))) as pool:
-        futures: dict[Future[Checked], Case] = {pool.submit(run_case, case, out): case for case in chosen}
-        try:
-            for future in as_completed(futures):
-                yield futures[future], _outcome(futures[future], future)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-
-
-def _outcome(case: Case, future: "Future[Checked]") -> Checked:
-    try:
-        return future.result()
-    except BrokenProcessPool:
-        return Checked(case, "could not run", ("its process ended unexpectedly, as when memory runs out",))
+def _lost(case: Case, out: Path, why: str) -> Checked:
+    return Checked(case, "could not run", (why,))
 
 
 def update(checked: Sequence[Checked]) -> tuple[Path, ...]:

@@ -24,7 +24,7 @@ from surefoot.wbc.statics import standing_torque
 Array = NDArray[np.float64]
 
 PARITY = 1e-9
-"""Engines that differ by more do not compute the same robot; of the largest entry, or absolute below 1 [-]."""
+"""Engines that differ by more do not compute the same robot; over the mass in kilograms, or absolute below 1 kg."""
 
 _ALIKE = 1e-3
 """Relative difference of left and right from which on it is told [-]."""
@@ -53,8 +53,8 @@ class Examination:
     """What was measured of a description.
 
     Attributes:
-        parity: largest difference between MuJoCo and Pinocchio over random states, of the largest entry of what is
-            compared, or absolute below 1 [-].
+        parity: largest difference between MuJoCo and Pinocchio over random states, over the mass in kilograms, or
+            absolute below 1 kg.
         differences: what is not alike on the left and on the right, one sentence each.
         sole_height: how much higher the right sole is than the left one in the nominal posture [m].
         sole_tilt: larger angle of a sole's normal from the vertical there, pelvis upright [rad].

@@ -1,8 +1,6 @@
 """Which scenarios of the catalogue a robot takes, and which it walks."""
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -13,7 +11,7 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.simulation import Simulation
-from surefoot.scenarios.sweep.engine import processes
+from surefoot.scenarios.sweep.engine import side_by_side
 
 Outcome = Literal["accepted", "walks", "fails", "refused"]
 
@@ -65,30 +63,14 @@ def rows(
         if not walk or name not in accepted:
             on_done(found[name])
     if walk and accepted:
-        for row in _walked(accepted, jobs, out):
+        for row in side_by_side(_walk, [(name, one, out) for name, one in accepted.items()], jobs, _lost):
             found[row.scenario] = row
             on_done(row)
     return tuple(found[name] for name in catalogue.OWN)
 
 
-def _walked(accepted: dict[str, Scenario], jobs: int, out: Path) -> Iterator[Row]:
-    with processes(min(jobs, len(accepted))) as pool:
-        futures: dict[Future[Row], str] = {
-            pool.submit(_walk, name, scenario, out): name for name, scenario in accepted.items()
-        }
-        try:
-            for future in as_completed(futures):
-                yield _outcome(futures[future], future)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-
-
-def _outcome(name: str, future: "Future[Row]") -> Row:
-    try:
-        return future.result()
-    except BrokenProcessPool:
-        return Row(name, "fails", ("its process ended unexpectedly, as when memory runs out",))
+def _lost(name: str, scenario: Scenario, out: Path, why: str) -> Row:
+    return Row(name, "fails", (why,))
 
 
 def _walk(name: str, scenario: Scenario, out: Path) -> Row:

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surefoot.errors import ParameterError
+from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.types import GRAVITY, Array, Footstep
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
@@ -108,20 +109,9 @@ def _stances(walk: Walk) -> Iterator[Stance]:
     for row in range(2, min(footsteps.steps, _LOOKED_AT) + 2):
         stands, lands, lifted = (footsteps.footstep(one) for one in (row - 1, row, row - 2))
         way, lead = lands.position - stands.position, 0.5 * (lands.position - lifted.position)
-        kind = (*(lands.position - stands.position), *lead, lands.yaw - stands.yaw, float(lands.foot))
-        c, s = math.cos(stands.yaw), math.sin(stands.yaw)
-        key = tuple(
-            round(value, 3)
-            for value in (
-                c * kind[0] + s * kind[1],
-                c * kind[1] - s * kind[0],
-                kind[2],
-                c * kind[3] + s * kind[4],
-                c * kind[4] - s * kind[3],
-                kind[6],
-                kind[7],
-            )
-        )
+        R = frame_rotation(stands.yaw)
+        kind = (*way[:2] @ R, way[2], *lead[:2] @ R, lands.yaw - stands.yaw, lands.foot)
+        key = tuple(round(float(value), 3) for value in kind)
         if key in seen:
             continue
         seen.add(key)

@@ -6,14 +6,14 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from multiprocessing import get_context, parent_process
 from os import _exit
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol, TypeVar
 
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.loop.run import made_folder, run_scenario
@@ -21,6 +21,8 @@ from surefoot.scenarios.record.provenance import LOG_NAME
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.sweep.journal import LOGS, SCRATCH, Journal, made_by
 from surefoot.scenarios.sweep.points import Point, Record, Search, Threshold
+
+T = TypeVar("T")
 
 TRIES = 2
 """How often a run is begun whose process dies."""
@@ -159,6 +161,30 @@ def local_workers(folder: Path, jobs: int, keep_all: bool) -> list[Worker]:
 def processes(count: int = 1) -> Executor:
     """An executor of processes that leave Ctrl-C to their parent and do not outlive it."""
     return ProcessPoolExecutor(count, get_context("spawn"), initializer=_set_up)
+
+
+def side_by_side(
+    work: Callable[..., T], arguments: Sequence[tuple[Any, ...]], jobs: int, lost: Callable[..., T]
+) -> Iterator[T]:
+    """Results of a function, as they come, from processes of their own.
+
+    Args:
+        work: what is to be done.
+        arguments: of each time.
+        jobs: processes.
+        lost: makes the result of one whose process ended unexpectedly, from the same arguments and the reason.
+    """
+    with processes(min(jobs, len(arguments))) as pool:
+        futures: dict[Future[T], tuple[Any, ...]] = {pool.submit(work, *given): given for given in arguments}
+        try:
+            for future in as_completed(futures):
+                try:
+                    yield future.result()
+                except BrokenProcessPool:
+                    yield lost(*futures[future], "its process ended unexpectedly, as when memory runs out")
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
 
 
 def _set_up() -> None:

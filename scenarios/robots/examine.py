@@ -18,8 +18,7 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.setup.gait import leg_span
 from surefoot.scenarios.setup.robot import facts_of
 from surefoot.scenarios.setup.stance import Body, body_of
-from surefoot.wbc.ik import PostureTarget
-from surefoot.wbc.statics import standing_torque
+from surefoot.scenarios.setup.standing import TorqueMargin, on_one_foot, standing
 
 Array = NDArray[np.float64]
 
@@ -31,21 +30,6 @@ _ALIKE = 1e-3
 
 _STATES = 50
 _LEVEL, _TILT = 1e-4, 1e-3
-
-
-@dataclass(frozen=True, slots=True)
-class TorqueMargin:
-    """How much of their torque the joints need to hold a posture.
-
-    Attributes:
-        joint: the one that needs most of its own; empty where the posture cannot be taken.
-        share: of its limit [-].
-        needed: its torque [N m].
-    """
-
-    joint: str
-    share: float
-    needed: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,15 +103,14 @@ def examine(robot: RobotDescription) -> Examination:
     """Measure a robot."""
     body = body_of(robot)
     height, tilt = _soles(body)
-    both, q = _standing(body, 0.0)
-    sides = [_standing(body, side)[0] for side in (1.0, -1.0)]
+    both, q = standing(body, 0.0)
     return Examination(
         parity=_parity(robot),
         differences=tuple(_differences(body)),
         sole_height=height,
         sole_tilt=tilt,
         both_feet=both,
-        one_foot=max(sides, key=lambda margin: margin.share),
+        one_foot=on_one_foot(body),
         longest_step=leg_span(robot.com_height, facts_of(robot)),
         touching=_touching(robot, q),
     )
@@ -173,25 +156,6 @@ def _soles(body: Body) -> tuple[float, float]:
     left, right = (data.oMf[body.model.getFrameId(name)] for name in body.frames.soles)
     tilt = max(math.acos(min(1.0, float(sole.rotation[2, 2]))) for sole in (left, right))
     return float(right.translation[2] - left.translation[2]), tilt
-
-
-def _standing(body: Body, side: float) -> tuple[TorqueMargin, Array]:
-    """Torque that standing takes, and the configuration: on both feet (0), on the left (1) or right one (-1)."""
-    robot = body.robot
-    half = 0.5 * max(robot.hip_width, robot.shank_spacing)
-    soles = np.array([[0.0, half, 0.0], [0.0, -half, 0.0]])
-    target = PostureTarget(soles, np.zeros(2), np.array([0.0, side * half, robot.com_height]), 0.0)
-    q = pin.neutral(body.model)
-    q[2] = robot.leg_length
-    q[7:] = robot.nominal_joint_positions
-    found = body.ik(robot.nominal_joint_positions).solve(target, q)
-    if not found.reached:
-        return TorqueMargin("", math.inf, math.inf), found.q
-    foot = None if side == 0.0 else int(side < 0.0)
-    torque = standing_torque(body.model, body.frames, found.q, foot=foot)
-    shares = np.abs(torque) / robot.torque_limit
-    worst = int(np.argmax(shares))
-    return TorqueMargin(robot.joint_names[worst], float(shares[worst]), float(abs(torque[worst]))), found.q
 
 
 def _touching(robot: RobotDescription, q: Array) -> tuple[tuple[str, str], ...]:

@@ -9,8 +9,9 @@ from rich.console import Console
 
 from surefoot.models.robot_file.build import Explanation
 from surefoot.models.types import RobotDescription
-from surefoot.scenarios.robots.examine import PARITY, Examination, TorqueMargin
+from surefoot.scenarios.robots.examine import PARITY, Examination
 from surefoot.scenarios.robots.walks import Row
+from surefoot.scenarios.setup.standing import TorqueMargin
 from surefoot.scenarios.show.console import plain_table
 
 _STYLES = {"walks": "bold green", "fails": "bold red", "refused": "yellow", "accepted": None}

@@ -56,6 +56,16 @@ class Robots(Protocol):
         """
         ...
 
+    def one_foot_share(self, name: str, options: RobotSettings) -> float:
+        """Share of some joint's torque that standing on one foot takes, of the joint that it takes most of [-].
+
+        Infinite where the robot cannot stand so at its nominal CoM height.
+
+        Raises:
+            ValueError: the robot cannot have these options.
+        """
+        ...
+
 
 class RegisteredRobots:
     """The robots of ``models``."""
@@ -70,6 +80,13 @@ class RegisteredRobots:
         """Facts of a robot with its options; which body carries the payload does not matter to them."""
         described = describe(name, options.model_copy(update={"payload_body": None}))
         return replace(facts_of(described), size=size_of(described, options))
+
+    def one_foot_share(self, name: str, options: RobotSettings) -> float:
+        """See `Robots`."""
+        from surefoot.scenarios.setup.stance import body_of
+        from surefoot.scenarios.setup.standing import on_one_foot
+
+        return on_one_foot(body_of(describe(name, options))).share
 
 
 def is_known(name: object, robots: Robots) -> bool:

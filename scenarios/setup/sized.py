@@ -23,6 +23,7 @@ from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
+from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
@@ -30,6 +31,12 @@ from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
 _KEY = "sized_for"
+_TORQUE = "torque_ratio_max"
+"""The metric whose bounds go by how strong a robot is: a walk takes so many times what standing on one foot does."""
+
+_RESERVE = 0.05
+"""Of its motors' torque, that such a bound leaves a weaker robot at least [-]."""
+
 _SOLES = ("foot_length", "foot_width")
 """Keys of `robot_options` that another robot has its own of."""
 
@@ -73,9 +80,25 @@ def say_for(source: Source, overrides: Overrides, robots: Robots) -> None:
     source.value.pop(_KEY, None)
     if origin == robot:
         return
-    before, after = _facts(origin, _soles(source.value), robots), _facts(robot, RobotSettings(), robots)
+    soles = _soles(source.value)
+    before, after = _facts(origin, soles, robots), _facts(robot, RobotSettings(), robots)
     if before is not None and after is not None:
-        _Translation(source, str(origin), before, after).run()
+        effort = _effort(source.value, (str(origin), soles), (str(robot), RobotSettings()), robots)
+        _Translation(source, str(origin), before, after, effort).run()
+
+
+def _effort(
+    values: dict[str, Any], before: tuple[str, RobotSettings], after: tuple[str, RobotSettings], robots: Robots
+) -> float:
+    """How many times the share of its motors' torque standing on one foot takes of a robot that it takes of another.
+
+    1 where no criterion asks for it, and where one of them cannot stand so.
+    """
+    criteria = values.get("criteria")
+    if not isinstance(criteria, dict) or _TORQUE not in criteria:
+        return 1.0
+    ratio = robots.one_foot_share(*after) / robots.one_foot_share(*before)
+    return ratio if math.isfinite(ratio) and ratio > 0.0 else 1.0
 
 
 def _soles(values: Any) -> RobotSettings:
@@ -96,12 +119,14 @@ class _Translation:
         origin: name of the robot that it is written for.
         before: facts of that one, with the soles that the file gives it.
         after: of the one that it is run with.
+        effort: how many times the share of its motors' torque that one takes to stand on one foot.
     """
 
     source: Source
     origin: str
     before: RobotFacts
     after: RobotFacts
+    effort: float
 
     def run(self) -> None:
         """Translate every number that has a unit; what is of a wrong type stays for the schema to tell."""
@@ -161,12 +186,18 @@ class _Translation:
         metric, key = known(str(name).partition(".")[0]), ("criteria", name)
         if metric is None:
             return
-        factor = _against(self.after.size, self.before.size, metric.unit)
         if isinstance(bound, dict):
             for side, limit in bound.items():
-                self._put(bound, side, (*key, side), _times(limit, factor))
+                self._put(bound, side, (*key, side), self._limit(metric, limit))
         else:
-            self._put(criteria, name, key, _times(bound, factor))
+            self._put(criteria, name, key, self._limit(metric, bound))
+
+    def _limit(self, metric: Metric[Any], limit: Any) -> Any:
+        """Side of a bound on a metric for the other robot."""
+        if metric.name != _TORQUE:
+            return _times(limit, _against(self.after.size, self.before.size, metric.unit))
+        scaled = _times(limit, self.effort)
+        return max(limit, min(scaled, 1.0 - _RESERVE)) if _is_number(limit) and self.effort > 1.0 else scaled
 
     def _number(self, value: Any, unit: str, key: Key) -> Any:
         """The value for the other robot."""

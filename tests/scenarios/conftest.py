@@ -39,6 +39,9 @@ class FakeRobots:
             swing_acceleration=(60.0, 50.0),
         )  # fmt: skip
 
+    def one_foot_share(self, name: str, options: RobotSettings) -> float:
+        return 0.4
+
 
 @dataclass
 class Motion:

@@ -1,6 +1,7 @@
 """A scenario means the same walk for robots of all sizes; what a user sets is meant as it is."""
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass, replace
 
 import pytest
 
@@ -185,3 +186,36 @@ def test_rates_divide_at_every_size(length):
     rates = clock(Rates(), Similarity(length).time)
     assert rates.physics % rates.control == 0 and rates.control % rates.planner == 0
     assert rates.planner * Similarity(length).time == pytest.approx(50.0)
+
+
+@dataclass(frozen=True)
+class Motors(RegisteredRobots):
+    """The robots, of which all but the reference stand on one foot with another share of their motors' torque."""
+
+    share: float
+
+    def one_foot_share(self, name, options):
+        return 0.3 if name == "humanoid100" else self.share
+
+
+@pytest.mark.parametrize(
+    ("share", "bound"),
+    [(0.3, 0.6), (0.2, 0.4), (0.4, 0.8), (0.6, 0.95), (math.inf, 0.6)],
+    ids=["as strong", "stronger", "weaker", "hardly able", "unable"],
+)
+def test_a_walk_may_take_so_many_times_what_standing_on_one_foot_takes(share, bound):
+    text = "sized_for: humanoid100\nrobot: small\ncriteria: {torque_ratio_max: {max: 0.6}, fell: false}"
+    criteria = read_scenario(text, "f.yaml", "f", (), Motors(share)).criteria
+    assert criteria["torque_ratio_max"].max == pytest.approx(bound)
+
+
+def test_no_bound_on_torque_gets_stricter_for_a_weaker_robot():
+    text = "sized_for: humanoid100\nrobot: small\ncriteria: {torque_ratio_max: {max: 0.98}}"
+    assert read_scenario(text, "f.yaml", "f", (), Motors(0.6)).criteria["torque_ratio_max"].max == 0.98
+
+
+def test_a_similar_robot_stands_with_the_same_share_of_its_torque():
+    robots, options = RegisteredRobots(), RobotSettings()
+    share = robots.one_foot_share("humanoid100", options)
+    assert robots.one_foot_share("small", options) == pytest.approx(share, rel=1e-3)
+    assert 0.3 < share < 0.45

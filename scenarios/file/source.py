@@ -245,13 +245,28 @@ def setting(override: str) -> tuple[str, Any]:
 
 def _set(source: Source, name: str, value: Any) -> None:
     place = f"--set {name if len(name) <= 100 else name[:97] + '...'}"
-    key: Key = tuple(int(part) if part.isdecimal() and len(part) < 6 else part for part in name.split("."))
+    key = _path(name)
     if not name.isprintable():
         raise ScenarioError([f"{place}: no key is spelt so; use plain text"])
     if len(key) > MAX_DEPTH:
         raise ScenarioError([f"{place}: a key of {len(key)} parts; give at most {MAX_DEPTH}"])
     _assign(source.value, key, value, place)
     source.overridden[key] = place
+
+
+def value_at(values: Any, name: str) -> Any:
+    """The value at a dotted key.
+
+    Raises:
+        LookupError: there is none.
+    """
+    for part in _path(name):
+        values = values[part]
+    return values
+
+
+def _path(name: str) -> Key:
+    return tuple(int(part) if part.isdecimal() and len(part) < 6 else part for part in name.split("."))
 
 
 def _plain(value: Any, place: str, depth: int = 0) -> Any:

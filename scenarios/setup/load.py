@@ -3,6 +3,7 @@
 import json
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,7 +16,7 @@ from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, Set
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import unusable
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, decoded, parse
+from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, decoded, parse, value_at
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
@@ -188,6 +189,31 @@ def key_problems(written: Written, overrides: Overrides) -> list[Problem]:
         ScenarioError: it is no scenario, or an override leads nowhere.
     """
     return _validated(_source(written, overrides, RegisteredRobots()).value)[1]
+
+
+def for_robot(written: Written, values: Mapping[str, Any], origin: str, robot: str | None) -> dict[str, Any]:
+    """What values that are set over a scenario are for another robot, without those that it has of its own.
+
+    Args:
+        written: the scenario.
+        values: by dotted key.
+        origin: the robot that they are written for.
+        robot: the one that walks; None for the scenario's own.
+
+    Raises:
+        ScenarioError: the scenario cannot be read, or a key leads nowhere.
+    """
+    source = parse(written.text, written.place)
+    if not isinstance(source.value, dict):
+        return dict(values)
+    source.value["sized_for"] = origin
+    apply_overrides(source, values)
+    say_for(source, {} if robot is None else {"robot": robot}, RegisteredRobots())
+    sized = {}
+    for name in values:
+        with suppress(LookupError):
+            sized[name] = value_at(source.value, name)
+    return sized
 
 
 def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:

@@ -14,7 +14,8 @@ from surefoot.scenarios.errors import Key, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.group import WHOLE, Finite, Group
 from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar, setting
 from surefoot.scenarios.file.translate import problems_of
-from surefoot.scenarios.setup.load import Written, key_problems, written
+from surefoot.scenarios.setup.load import Written, for_robot, key_problems, written
+from surefoot.scenarios.setup.robot import RegisteredRobots, is_known
 
 ENDING = ".yaml"
 MOST_RUNS = 1_000_000
@@ -93,6 +94,10 @@ class Spec(Group):
     name: str = Field(default="sweep", min_length=1, max_length=100, pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")
     about: str = Field(default="", description="what it is for, in a sentence or two")
     scenario: str = Field(default="", description="catalogue name or file, sought beside the specification first")
+    sized_for: str | None = Field(
+        default=None,
+        description="robot for which values of set and of named settings are written",
+    )
     set: dict[str, Any] = Field(default={}, description="values of keys in every run")
     grid: dict[str, Axis] = Field(
         default={},
@@ -150,12 +155,14 @@ class Campaign:
         spec: as written, with what was set from outside.
         place: what to call its file in messages.
         axes: of the grid, by name.
+        literal: keys of ``set`` that were set from outside, and mean what they say for every robot.
         bases: the scenarios that it names, by name.
     """
 
     spec: Spec
     place: str
     axes: Mapping[str, tuple[Setting, ...]]
+    literal: frozenset[str]
     bases: Mapping[str, Base]
 
     @property
@@ -181,7 +188,29 @@ class Campaign:
             keys = dict(self.spec.set)
             for one in chosen:
                 keys |= one.keys
-            yield labels, keys
+            yield labels, self._sized(keys)
+
+    def base(self, keys: Mapping[str, Any]) -> str:
+        """Name of the scenario that settings are of."""
+        return str(keys.get(SCENARIO, self.spec.scenario))
+
+    def _sized(self, keys: dict[str, Any]) -> dict[str, Any]:
+        """Settings with those that are written for another robot than they name as they are for that one.
+
+        Values of lists, and those that are drawn or searched, stand in tables and mean what they say.
+        """
+        origin, base = self.spec.sized_for, self.bases.get(self.base(keys))
+        if origin is None or base is None:
+            return keys
+        said = {
+            "robot",
+            SCENARIO,
+            *self.literal,
+            *(name for name, axis in self.spec.grid.items() if type(axis) is list),
+        }
+        own = {key: value for key, value in keys.items() if key not in said and not key.startswith(SEARCH)}
+        sized = for_robot(base.written, own, origin, keys.get("robot"))
+        return {key: sized.get(key, value) for key, value in keys.items() if key not in own or key in sized}
 
 
 def shipped() -> dict[str, Path]:
@@ -205,10 +234,11 @@ def read_campaign(reference: str, overrides: Sequence[str] = (), seeds: int | No
     text, place = _text(reference)
     source = parse(text, place)
     spec = _validated(source, Path(place).name.removesuffix(ENDING))
+    fixed = frozenset(setting(override)[0] for override in overrides)
     spec = _overridden(spec, overrides)
     if seeds is not None:
         spec = spec.model_copy(update={"seeds": seeds})
-    campaign = Campaign(spec, place, {name: _settings(name, axis) for name, axis in spec.grid.items()}, {})
+    campaign = Campaign(spec, place, {name: _settings(name, axis) for name, axis in spec.grid.items()}, fixed, {})
     campaign = replace(campaign, bases=_bases(campaign, source))
     problems = list(_twice(campaign)) or list(_faults(campaign))
     if problems:
@@ -287,7 +317,7 @@ def _bases(campaign: Campaign, source: Source) -> dict[str, Base]:
     """The scenarios that are named."""
     found: dict[str, Base] = {}
     for _, keys in campaign.combinations():
-        name = str(keys.get(SCENARIO, campaign.spec.scenario))
+        name = campaign.base(keys)
         if not name:
             problem = Problem((), "names no scenario", "give 'scenario: walk', or vary it in the grid")
             raise ScenarioError([source.describe(problem)])
@@ -313,6 +343,10 @@ def _twice(campaign: Campaign) -> Iterator[Problem]:
 
 def _faults(campaign: Campaign) -> Iterator[Problem]:
     """List what is wrong with keys or values alone; what several together cannot be is told by the run itself."""
+    robots, origin = RegisteredRobots(), campaign.spec.sized_for
+    if origin is not None and not is_known(origin, robots):
+        yield Problem(("sized_for",), f"unknown robot '{origin}' in sized_for", nearest(origin, robots.names()))
+        return
     base = next(campaign.combinations())[1]
     plain = base | _ends(campaign.spec, 0)
     yield from _of_point(campaign, plain, {key: ("set", key) for key in campaign.spec.set} | _searched(campaign.spec))
@@ -360,7 +394,8 @@ def _of_point(campaign: Campaign, keys: Mapping[str, Any], places: Mapping[str, 
             what = problem.what.removeprefix("the file: ")
             yield from (replace(problem, key=at, what=what) for key, at in places.items() if key.startswith(SEARCH))
     keys = {key: value for key, value in keys.items() if not key.startswith(SEARCH)}
-    base = campaign.bases[str(keys.pop(SCENARIO, campaign.spec.scenario))]
+    base = campaign.bases[campaign.base(keys)]
+    keys.pop(SCENARIO, None)
     try:
         problems = key_problems(base.written, keys)
     except ScenarioError as error:

@@ -105,7 +105,7 @@ def runs_table(outcomes: Iterable[Outcome]) -> Table:
 
 
 def thresholds_table(outcomes: Sequence[Outcome]) -> Table:
-    """A row for each search that is complete: what varies, its threshold, and which run was the first to fail."""
+    """A row for each search that is complete: what varies, its threshold, and the first run that did not pass."""
     found = [(outcome, outcome.cell) for outcome in outcomes if outcome.threshold is not None]
     cells = [cell for _, cell in found if isinstance(cell, Cell)]
     if not cells:
@@ -116,13 +116,18 @@ def thresholds_table(outcomes: Sequence[Outcome]) -> Table:
     columns = [_of_key(name, [row.get(name) for row in labels]) for name in _names(labels)]
     thresholds = [outcome.threshold for outcome, _ in found if outcome.threshold is not None]
     values = _of_key(bisect.key, [None if one.value is None else float(one.value) for one in thresholds])
-    failed = [next((run for run in outcome.runs if run[1].status == "fail"), None) for outcome, _ in found]
+    failed = [next((run for run in outcome.runs if run[1].status != "pass"), None) for outcome, _ in found]
     columns += [
         Column("threshold", values.unit, f"of {bisect.key}", values.values),
         _column("side", [one.side for one in thresholds], "", "of the range on which it lies"),
         _column("runs", [len(outcome.runs) for outcome, _ in found], "", "that the search took"),
-        _column("first_failure", [run and run[0].command for run in failed], "", "makes the first failing run again"),
-        _column("reasons", [run and "; ".join(run[1].reasons) for run in failed], "", "why that failed"),
+        _column(
+            "first_failure",
+            [run and run[0].command for run in failed],
+            "",
+            "makes the first run without a pass again",
+        ),
+        _column("reasons", [run and "; ".join(run[1].reasons) for run in failed], "", "why it did not"),
         _column("log", [run and (run[1].log or None) for run in failed], "", "of that run"),
     ]
     return Table(tuple(columns))

@@ -5,7 +5,9 @@ from itertools import islice
 import pytest
 
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.file.schema import RobotSettings
 from surefoot.scenarios.setup.load import read_scenario
+from surefoot.scenarios.setup.robot import RegisteredRobots
 from surefoot.scenarios.sweep.points import Record, cells
 from surefoot.scenarios.sweep.spec import read_campaign, shipped
 
@@ -170,3 +172,49 @@ def test_the_first_runs_of_campaigns_that_come_along_are_accepted(name):
     points = [accepted(cell) for cell in islice(cells(campaign), 24)]
     for key, draw in campaign.spec.sample.items():
         assert {point.settings[key] for point in points} >= set(draw.choice or ())
+
+
+@pytest.mark.parametrize("name", ["push-map", "push-map-pendulum", "soak"])
+@pytest.mark.parametrize("robot", ["talos", "g1"])
+def test_runs_of_campaigns_that_come_along_are_accepted_for_other_robots(name, robot):
+    campaign = read_campaign(name, (f"robot={robot}",))
+    assert all(accepted(cell) for cell in islice(cells(campaign), None, None, 32))
+
+
+SIZED = """
+scenario: walk
+sized_for: humanoid100
+set: {gait.step_width: 0.25, robot_options.foot_length: 0.2, pushes: [{time: 3, impulse: 0.1, direction: 0}]}
+grid:
+  gait.initial_stand: [0.4]
+  pace: {slow: {gait.step_length: 0.2, bisect.low: 0.14}}
+bisect: {key: pushes.0.impulse, low: 0.1, high: 2.0, ratio: 1.1}
+"""
+
+
+def _settings(campaign):
+    return next(campaign.combinations())[1]
+
+
+def test_a_campaign_is_the_same_for_robots_of_all_sizes(campaign):
+    full, small = _settings(campaign(SIZED)), _settings(campaign(SIZED, "robot=g1"))
+    size = RegisteredRobots().facts("g1", RobotSettings()).size
+    assert full["gait.step_length"] == 0.2
+    assert small["gait.step_length"] == pytest.approx(size.length * 0.2)
+    assert small["pushes"][0]["impulse"] == pytest.approx(size.factor("m/s") * 0.1)
+    # Soles are the robot's own, and what stands in tables means what it says.
+    assert "robot_options.foot_length" in full
+    assert "robot_options.foot_length" not in small
+    assert (small["gait.initial_stand"], small["bisect.low"]) == (0.4, 0.14)
+
+
+def test_what_is_set_from_outside_is_no_size_of_another_robot(campaign):
+    assert _settings(campaign(SIZED, "robot=g1", "gait.step_width=0.25"))["gait.step_width"] == 0.25
+    plain = _settings(campaign(SIZED.replace("sized_for: humanoid100", ""), "robot=g1", "robot_options={}"))
+    assert plain["gait.step_length"] == 0.2
+
+
+def test_a_campaign_sized_for_nobody_is_refused(refused):
+    assert refused(SIZED.replace("humanoid100", "humanoid10"))[0].startswith(
+        "c.yaml:3:12: unknown robot 'humanoid10' in sized_for; did you mean 'humanoid100'"
+    )

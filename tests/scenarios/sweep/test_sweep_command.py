@@ -142,6 +142,18 @@ def test_thresholds(surefoot, tmp_path):
 
 
 @pytest.mark.unit
+def test_a_threshold_that_refusals_have_made_says_so(surefoot, tmp_path):
+    (tmp_path / "limit.yaml").write_text(
+        "scenario: walk\nset: {fidelity: pendulum}\nbisect: {key: gait.step_length, low: 1.8, high: 2.0, tolerance: 1}"
+    )
+    surefoot("limit.yaml")
+    (row,) = rows(tmp_path / "runs" / "limit", "thresholds.csv")
+    assert (row["threshold [m]"], row["side"]) == ("", "below")
+    assert "gait.step_length" in row["reasons"]
+    assert "out of reach" in row["reasons"]
+
+
+@pytest.mark.unit
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [

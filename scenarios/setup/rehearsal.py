@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,11 +11,10 @@ from surefoot.errors import ParameterError
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
+from surefoot.scenarios.setup.straight import pitch_joints, shank_outline
 from surefoot.scenarios.setup.walk import Walk
 
 if TYPE_CHECKING:
-    import mujoco
-
     from surefoot.models.types import RobotDescription
     from surefoot.planner.parameters import LegInertia
 
@@ -127,59 +125,6 @@ def _check_speeds(robot: "RobotDescription", angles: Array, sample_time: float) 
             f"{limit:g} rad/s",
             "take shorter or slower steps",
         )
-
-
-def pitch_joints(robot: "RobotDescription", foot: int) -> tuple[str, str, str]:
-    """The joints of a leg that pitch thigh, shank and foot: beside the knee those whose axes are nearest to its."""
-    model, data = _upright(robot.mjcf, tuple(robot.straight_joint_positions.tolist()))
-    leg, knee = (robot.roles.left_leg, robot.roles.right_leg)[foot], robot.roles.knees[foot]
-    axis = data.xaxis[model.joint(knee).id]
-
-    def nearest(names: tuple[str, ...]) -> str:
-        return max(names, key=lambda name: abs(float(data.xaxis[model.joint(name).id] @ axis)))
-
-    at = leg.index(knee)
-    return nearest(leg[:at]), knee, nearest(leg[at + 1 :])
-
-
-@lru_cache(maxsize=4)
-def _upright(mjcf: str, angles: tuple[float, ...]) -> tuple["mujoco.MjModel", "mujoco.MjData"]:
-    """A robot with its joints at angles."""
-    import mujoco
-
-    model = mujoco.MjModel.from_xml_string(mjcf)
-    data = mujoco.MjData(model)
-    data.qpos[7:] = angles
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    return model, data
-
-
-def shank_outline(robot: "RobotDescription", foot: int) -> Array:
-    """Corners of the shank as seen from the side, shape (m, 2): ahead of the ankle and up along the shank [m]."""
-    model, data = _upright(robot.mjcf, tuple(robot.straight_joint_positions.tolist()))
-    _, knee, ankle = pitch_joints(robot, foot)
-    knee, ankle = (model.joint(name).id for name in (knee, ankle))
-    up = data.xanchor[knee] - data.xanchor[ankle]
-    up[1] = 0.0
-    up /= np.linalg.norm(up)
-    ahead = np.array([up[2], 0.0, -up[0]])
-    points = []
-    for geom in np.flatnonzero((model.geom_bodyid == model.jnt_bodyid[knee]) & (model.geom_contype > 0)):
-        local = _corners(model, int(geom))
-        world = data.geom_xpos[geom] + local @ data.geom_xmat[geom].reshape(3, 3).T - data.xanchor[ankle]
-        points.append(np.column_stack((world @ ahead, world @ up)))
-    return np.concatenate(points) if points else np.zeros((0, 2))
-
-
-def _corners(model: "mujoco.MjModel", geom: int) -> Array:
-    """Points whose hull is a geom or holds it, in its own frame, shape (m, 3) [m]."""
-    mesh = model.geom_dataid[geom]
-    if mesh >= 0:
-        first = model.mesh_vertadr[mesh]
-        return np.asarray(model.mesh_vert[first : first + model.mesh_vertnum[mesh]], dtype=np.float64)
-    centre, half = model.geom_aabb[geom][:3], model.geom_aabb[geom][3:]
-    return np.asarray(centre + half * np.array(np.meshgrid(*[(-1.0, 1.0)] * 3)).reshape(3, -1).T)
 
 
 def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]) -> None:

@@ -1,7 +1,6 @@
 """The robot of a scenario: its description with the chosen options, what bounds its walk, and what it is in truth."""
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -114,16 +113,17 @@ def stance_widening(robot: "RobotDescription | RobotFacts", size: Similarity) ->
 
 def facts_of(description: "RobotDescription") -> RobotFacts:
     """What of a robot bounds a scenario, but for its size, which goes without its payload."""
+    from surefoot.scenarios.setup.straight import com_height, swing_acceleration
+
     return RobotFacts(
         bodies=description.bodies,
         leg_length=description.leg_length,
         hip_width=description.hip_width,
-        com_above_hip=_straight_com_height(description.mjcf, description.sole_sites[0], _straight(description))
-        - description.leg_length,
+        com_above_hip=com_height(description) - description.leg_length,
         foot_length=description.sole_length,
         foot_width=description.sole_width,
         shank_spacing=description.shank_spacing,
-        swing_acceleration=_swing_acceleration(description),
+        swing_acceleration=swing_acceleration(description),
     )
 
 
@@ -165,58 +165,3 @@ def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "R
     if errors.payload is not None and errors.payload.mass > 0.0:
         robot = with_load(robot, errors.payload.mass, errors.payload.body)
     return robot
-
-
-HIP_SHARE = 0.67
-"""Share of a hip's torque that swings a leg; the rest is for gravity and for a knee that is bent [-]."""
-
-
-def _swing_acceleration(description: "RobotDescription") -> tuple[float, float]:
-    """See `RobotFacts`: of the left leg, by the joint whose axis is nearest to the one that it needs."""
-    joints = description.roles.left_leg
-    limits = [float(description.torque_limit[description.joint_names.index(name)]) for name in joints]
-    axes, inertias = _leg_joints(description.mjcf, joints, _straight(description))
-    reached = [
-        HIP_SHARE * description.leg_length * limit / inertia for limit, inertia in zip(limits, inertias, strict=True)
-    ]
-    hips = range(joints.index(description.roles.knees[0]))
-    pitch, roll = (max(hips, key=lambda k: abs(axes[k][axis])) for axis in (1, 0))
-    return reached[pitch], reached[roll]
-
-
-def _straight(description: "RobotDescription") -> tuple[float, ...]:
-    """Joint angles with straight legs [rad]."""
-    return tuple(description.straight_joint_positions.tolist())
-
-
-@lru_cache(maxsize=16)
-def _leg_joints(mjcf: str, joints: tuple[str, ...], angles: tuple[float, ...]) -> tuple[list[list[float]], list[float]]:
-    """Axes in the world of joints with all of them at angles, and the inertias about them [-, kg·m²]."""
-    import mujoco
-
-    model = mujoco.MjModel.from_xml_string(mjcf)
-    data = mujoco.MjData(model)
-    data.qpos[7:] = angles
-    mujoco.mj_forward(model, data)
-    axes, inertias = [], []
-    for name in joints:
-        joint = model.joint(name)
-        unit, inertia = np.zeros((2, model.nv))
-        unit[joint.dofadr[0]] = 1.0
-        mujoco.mj_mulM(model, data, inertia, unit)
-        axes.append(data.xaxis[joint.id].tolist())
-        inertias.append(float(inertia[joint.dofadr[0]]))
-    return axes, inertias
-
-
-@lru_cache(maxsize=16)
-def _straight_com_height(mjcf: str, sole: str, angles: tuple[float, ...]) -> float:
-    """CoM height above a sole's site with the joints at angles of straight legs [m]."""
-    import mujoco
-
-    model = mujoco.MjModel.from_xml_string(mjcf)
-    data = mujoco.MjData(model)
-    data.qpos[7:] = angles
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    return float(data.subtree_com[0, 2] - data.site(sole).xpos[2])

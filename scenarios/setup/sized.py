@@ -8,7 +8,7 @@ Defaults are those of the reference robot and follow the robot's size in every s
 
 import copy
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar, get_args
@@ -26,6 +26,7 @@ from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.draft import Draft
+from surefoot.scenarios.setup.posture import POSTURE, RULES, for_longer_steps
 from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
@@ -135,7 +136,7 @@ class _Translation:
         for name in _SOLES if isinstance(options, dict) else ():
             options.pop(name, None)
         gait, terrain = values.setdefault("gait", {}), values.get("terrain")
-        for name in _POSTURE if isinstance(gait, dict) else ():
+        for name in POSTURE if isinstance(gait, dict) else ():
             gait.setdefault(name, Gait.model_fields[name].default)
         given = [
             group.get(name) for group, name in ((gait, "step_length"), (terrain, "tread")) if isinstance(group, dict)
@@ -203,7 +204,7 @@ class _Translation:
         """The value for the other robot."""
         with suppress(PydanticCustomError):
             value = Unit(unit).number(value)
-        rule = _RULES.get(key) if _is_number(value) else None
+        rule = RULES.get(key) if _is_number(value) else None
         if rule is not None:
             return rule(value, self.before, self.after)
         return _times(value, _against(self.after.size, self.before.size, unit))
@@ -213,68 +214,6 @@ class _Translation:
         if value != values.get(name):
             self.source.written[key] = f"{values[name]} in the file, for {self.origin}"
             values[name] = value
-
-
-def com_height(value: float, before: RobotFacts, after: RobotFacts) -> float:
-    """CoM height at which the legs are bent as much: the hips at the same share of the leg's length [m].
-
-    Args:
-        value: that of the robot before [m].
-        before: facts of it.
-        after: of the other one.
-    """
-    return after.size.length / before.size.length * (value - before.com_above_hip) + after.com_above_hip
-
-
-def for_longer_steps(height: float, step: float, longer: float, robot: RobotFacts) -> float:
-    """CoM height for steps longer than those for which one was given [m].
-
-    What a leg lacks of being straight, with the hips midway over the step, grows as the step: the nearer to straight,
-    and the longer the step, the faster knees turn.
-
-    Args:
-        height: that was given [m].
-        step: that it was given for [m].
-        longer: that is taken [m].
-        robot: facts of it.
-    """
-    bent = robot.leg_length - math.hypot(height - robot.com_above_hip, 0.5 * step)
-    span = robot.leg_length - bent * longer / step
-    if not (longer > step > 0.0 < bent and span > 0.5 * longer):
-        return height
-    return robot.com_above_hip + math.sqrt(span**2 - 0.25 * longer**2)
-
-
-def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:
-    """Step width for another robot: scaled, and wider by what its hips, shanks or soles are wider than scaled ones [m].
-
-    So no foot lands nearer to the other one than in the scenario as it was written; arguments as of `com_height`.
-    """
-    length = after.size.length / before.size.length
-    wider = (
-        getattr(after, name) - length * getattr(before, name) for name in ("hip_width", "shank_spacing", "foot_width")
-    )
-    return float(length * value + max(0.0, *wider))
-
-
-def tread(value: float, before: RobotFacts, after: RobotFacts) -> float:
-    """Depth of a tread for another robot: scaled, and deeper by what its soles are longer than scaled ones [m].
-
-    So no sole lands nearer to an edge; arguments as of `com_height`.
-    """
-    length = after.size.length / before.size.length
-    return length * value + max(0.0, after.foot_length - length * before.foot_length)
-
-
-_RULES: dict[Key, Callable[[float, RobotFacts, RobotFacts], float]] = {
-    ("gait", "com_height"): com_height,
-    ("gait", "step_width"): step_width,
-    ("terrain", "tread"): tread,
-}
-"""Keys that follow from more of a robot than its size."""
-
-_POSTURE = ("com_height", "step_width")
-"""Those of them that every walk has."""
 
 
 def clock(rates: Rates, time: float) -> Rates:
@@ -292,9 +231,9 @@ def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scena
     before, after = (_facts(name, RobotSettings(), robots) for name in (REFERENCE, scenario.robot))
     gait, changed = scenario.gait, {}
     if before is not None and after is not None:
-        for name in _POSTURE:
+        for name in POSTURE:
             if name not in gait.model_fields_set:
-                changed[name] = _RULES["gait", name](getattr(gait, name), before, after)
+                changed[name] = RULES["gait", name](getattr(gait, name), before, after)
     rates, sample_time = _clock(scenario, size)
     update: dict[str, Any] = {
         "gait": followed.gait.model_copy(update=changed),

@@ -15,8 +15,9 @@ from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load, read_scenario
-from surefoot.scenarios.setup.robot import RegisteredRobots
-from surefoot.scenarios.setup.sized import clock, com_height, step_width, tread
+from surefoot.scenarios.setup.posture import com_height, step_width, tread
+from surefoot.scenarios.setup.robot import HIPS, SHANKS, RegisteredRobots
+from surefoot.scenarios.setup.sized import clock
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.similarity import Similarity
 
@@ -173,6 +174,11 @@ def test_treads_are_as_deep_as_soles_ask_for():
     assert tread(0.3, full, replace(other, foot_length=0.06)) == pytest.approx(0.085)
     stairs = load("stair-climbing", {"robot": "small"})
     assert stairs.gait.step_length == stairs.terrain.tread == pytest.approx(0.05 + 0.25 * (0.22 - 0.075))
+
+
+def test_the_stance_of_the_reference_robot_is_as_written():
+    facts = RegisteredRobots().facts("humanoid100", RobotSettings())
+    assert (facts.hip_width, facts.shank_spacing) == (HIPS, SHANKS)
 
 
 def test_a_payload_is_no_size():

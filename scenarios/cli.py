@@ -364,7 +364,7 @@ def paper(
 
 def _campaigns(incomplete: str) -> list[str]:
     """Campaigns that begin so."""
-    from surefoot.scenarios.sweep.spec import shipped
+    from surefoot.scenarios.sweep.campaign import shipped
 
     return [name for name in shipped() if name.startswith(incomplete)]
 
@@ -390,8 +390,8 @@ def sweep(
 
     Begun again, it goes on where it stopped.
     """
+    from surefoot.scenarios.sweep.campaign import read_campaign
     from surefoot.scenarios.sweep.engine import InterruptedRunsError
-    from surefoot.scenarios.sweep.spec import read_campaign
     from surefoot.scenarios.sweep.sweep import cores
     from surefoot.scenarios.sweep.sweep import sweep as run_sweep
 

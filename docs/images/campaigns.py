@@ -21,11 +21,11 @@ from PIL import Image
 
 from surefoot.scenarios.show.figures.style import save
 from surefoot.scenarios.sweep.bars import Limit, bars
+from surefoot.scenarios.sweep.campaign import read_campaign
 from surefoot.scenarios.sweep.capturability import Limits
 from surefoot.scenarios.sweep.figures import WIDTH as PAGE_WIDTH
 from surefoot.scenarios.sweep.figures import Axis, Found, Spread, distributions, text, with_unit
 from surefoot.scenarios.sweep.points import Threshold
-from surefoot.scenarios.sweep.spec import read_campaign
 from surefoot.scenarios.sweep.table import wilson
 
 FOLDER = Path(__file__).parent

@@ -83,7 +83,7 @@ def gait_map(_: Path) -> None:
     """Where the robot walks, by a campaign of some minutes."""
     from gait_map import main as draw_map
 
-    from surefoot.scenarios.sweep.spec import read_campaign
+    from surefoot.scenarios.sweep.campaign import read_campaign
     from surefoot.scenarios.sweep.sweep import cores, sweep
 
     with tempfile.TemporaryDirectory() as folder:

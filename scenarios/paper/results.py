@@ -13,10 +13,10 @@ from surefoot.scenarios.log import read
 from surefoot.scenarios.paper.studies import PROFILES, WORLD_SETTINGS, Experiment, Study, World
 from surefoot.scenarios.record.provenance import END_RECORD
 from surefoot.scenarios.setup.load import written
+from surefoot.scenarios.sweep.campaign import Base
 from surefoot.scenarios.sweep.engine import Single, Worker, run_cells
 from surefoot.scenarios.sweep.journal import Journal
 from surefoot.scenarios.sweep.points import Point, Record
-from surefoot.scenarios.sweep.spec import Base
 from surefoot.scenarios.sweep.sweep import CampaignBar
 
 ENDED = ("completed", "fall")

@@ -17,7 +17,7 @@ from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.judge.metrics import OWN as OWN_METRICS
 from surefoot.scenarios.loop.sensing import ESTIMATORS
 from surefoot.scenarios.setup.terrain import KINDS
-from surefoot.scenarios.sweep.spec import shipped
+from surefoot.scenarios.sweep.campaign import shipped
 from surefoot.wbc.tasks import TASKS
 
 _REGISTRIES: Mapping[str, tuple[Registry[Any], Callable[[str], str]]] = {

@@ -11,7 +11,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from surefoot.scenarios.sweep.spec import SCENARIO, SEARCH, Base, Bisect, Campaign, Draw
+from surefoot.scenarios.sweep.campaign import SCENARIO, SEARCH, Base, Campaign
+from surefoot.scenarios.sweep.spec import Bisect, Draw
 
 Status = Literal["pass", "fail", "refused", "broken"]
 """Criteria met; missed; a scenario that cannot be run; a run without a result, which is tried again."""

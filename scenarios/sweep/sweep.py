@@ -12,10 +12,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from surefoot.scenarios.errors import install_command
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.show.console import TerminalLine
+from surefoot.scenarios.sweep.campaign import Campaign
 from surefoot.scenarios.sweep.engine import InterruptedRunsError, Outcome, Worker, local_workers, outcome_of, run_cells
 from surefoot.scenarios.sweep.journal import Journal
 from surefoot.scenarios.sweep.points import Record, Status, cells
-from surefoot.scenarios.sweep.spec import Campaign
 from surefoot.scenarios.sweep.table import has_parquet, runs_table, thresholds_table, wilson, write_table
 
 SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", "table", "thresholds"

@@ -11,7 +11,7 @@ import yaml
 
 from surefoot.scenarios.cli import app
 from surefoot.scenarios.show.listing import keys
-from surefoot.scenarios.sweep.spec import read_campaign, shipped
+from surefoot.scenarios.sweep.campaign import read_campaign, shipped
 
 pytestmark = pytest.mark.unit
 

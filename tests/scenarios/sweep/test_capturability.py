@@ -17,6 +17,7 @@ from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.scenarios.show.logview import LogView
 from surefoot.scenarios.sweep import capturability
+from surefoot.scenarios.sweep.campaign import read_campaign
 from surefoot.scenarios.sweep.capturability import (
     SHORTEST,
     Limits,
@@ -28,7 +29,6 @@ from surefoot.scenarios.sweep.capturability import (
     swing_box,
 )
 from surefoot.scenarios.sweep.points import cells
-from surefoot.scenarios.sweep.spec import read_campaign
 
 pytestmark = pytest.mark.unit
 

@@ -11,6 +11,7 @@ import pytest
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.setup.load import written
 from surefoot.scenarios.sweep import engine
+from surefoot.scenarios.sweep.campaign import Base
 from surefoot.scenarios.sweep.engine import (
     InterruptedRunsError,
     LocalWorker,
@@ -22,7 +23,6 @@ from surefoot.scenarios.sweep.engine import (
 )
 from surefoot.scenarios.sweep.journal import JOURNAL, LOGS, SCRATCH, Journal, made_by
 from surefoot.scenarios.sweep.points import Point, Record
-from surefoot.scenarios.sweep.spec import Base
 
 pytestmark = pytest.mark.unit
 

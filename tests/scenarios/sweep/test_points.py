@@ -7,8 +7,9 @@ import pytest
 
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load, read_scenario
+from surefoot.scenarios.sweep.campaign import read_campaign
 from surefoot.scenarios.sweep.points import Record, Threshold, cells, draw_value
-from surefoot.scenarios.sweep.spec import Draw, read_campaign
+from surefoot.scenarios.sweep.spec import Draw
 
 pytestmark = pytest.mark.unit
 

@@ -13,10 +13,10 @@ from urllib.parse import unquote
 import pytest
 
 from surefoot.scenarios.sweep import report
+from surefoot.scenarios.sweep.campaign import read_campaign
 from surefoot.scenarios.sweep.engine import LocalWorker, outcome_of, run_cells
 from surefoot.scenarios.sweep.journal import Journal
 from surefoot.scenarios.sweep.points import Record, cells
-from surefoot.scenarios.sweep.spec import read_campaign
 from surefoot.scenarios.sweep.sweep import PAGE, Swept, write
 from surefoot.scenarios.sweep.table import wilson
 

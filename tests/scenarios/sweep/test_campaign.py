@@ -8,8 +8,8 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.sweep.campaign import read_campaign, shipped
 from surefoot.scenarios.sweep.points import Record, cells
-from surefoot.scenarios.sweep.spec import read_campaign, shipped
 
 pytestmark = pytest.mark.unit
 

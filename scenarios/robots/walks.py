@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import starmap
 from pathlib import Path
 from typing import Literal
 
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
-from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.simulation import Simulation
@@ -49,35 +49,31 @@ def rows(
     Returns:
         a row for each scenario, in the order of the catalogue.
     """
+    tasks = [(name, robot, out) for name in catalogue.OWN]
     found: dict[str, Row] = {}
-    accepted: dict[str, Scenario] = {}
-    for name in catalogue.OWN:
-        try:
-            scenario = load(name, {"robot": robot})
-            Simulation(scenario).close()
-        except (ScenarioError, SetupError) as refusal:
-            found[name] = Row(name, "refused", tuple(str(refusal).splitlines()))
-        else:
-            accepted[name] = scenario
-            found[name] = Row(name, "accepted")
-        if not walk or name not in accepted:
-            on_done(found[name])
-    if walk and accepted:
-        for row in side_by_side(_walk, [(name, one, out) for name, one in accepted.items()], jobs, _lost):
-            found[row.scenario] = row
-            on_done(row)
+    for row in side_by_side(_walk, tasks, jobs, _lost) if walk else starmap(_look, tasks):
+        found[row.scenario] = row
+        on_done(row)
     return tuple(found[name] for name in catalogue.OWN)
 
 
-def _lost(name: str, scenario: Scenario, out: Path, why: str) -> Row:
-    return Row(name, "fails", (why,))
-
-
-def _walk(name: str, scenario: Scenario, out: Path) -> Row:
+def _look(name: str, robot: str, out: Path) -> Row:
     try:
-        result = run_scenario(scenario, out)
+        Simulation(load(name, {"robot": robot})).close()
     except (ScenarioError, SetupError) as refusal:
-        return Row(name, "refused", (" ".join(str(refusal).split()),))
+        return Row(name, "refused", tuple(str(refusal).splitlines()))
+    return Row(name, "accepted")
+
+
+def _walk(name: str, robot: str, out: Path) -> Row:
+    try:
+        result = run_scenario(load(name, {"robot": robot}), out)
+    except (ScenarioError, SetupError) as refusal:
+        return Row(name, "refused", tuple(str(refusal).splitlines()))
     except LogError as error:
         return Row(name, "fails", (str(error),))
     return Row(name, "walks" if result.verdict.passed else "fails", tuple(result.verdict.reasons), result.log)
+
+
+def _lost(name: str, robot: str, out: Path, why: str) -> Row:
+    return Row(name, "fails", (why,))

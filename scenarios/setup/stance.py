@@ -57,9 +57,21 @@ def body_of(robot: RobotDescription) -> Body:
         robot=robot,
         model=pinocchio_model(robot),
         frames=frames_of(robot),
-        limits=JointLimits(robot.torque_limit, robot.velocity_limit, robot.position_lower, robot.position_upper),
+        limits=_limits(robot),
         leg_joints=np.isin(robot.joint_names, robot.roles.legs),
     )
+
+
+def _limits(robot: RobotDescription) -> JointLimits:
+    """Limits of the joints; of knees that can bend both ways only the one that walks.
+
+    Past straight, what should shorten a leg bends its knee the further the wrong way, into its stop.
+    """
+    lower, upper = robot.position_lower.copy(), robot.position_upper.copy()
+    for knee, bend in zip(robot.joint_indices(robot.roles.knees), robot.roles.knee_bend, strict=True):
+        straight = robot.straight_joint_positions[knee]
+        (lower if bend > 0.0 else upper)[knee] = straight
+    return JointLimits(robot.torque_limit, robot.velocity_limit, lower, upper)
 
 
 def frames_of(robot: RobotDescription) -> BodyFrames:

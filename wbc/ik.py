@@ -1,6 +1,6 @@
 """Inverse kinematics: the walking posture for given feet, CoM and heading."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
@@ -21,6 +21,7 @@ class PostureTarget:
         com: CoM, shape (3,) [m]; None leaves it free.
         heading: yaw of the upright pelvis and torso [rad]; None leaves both free.
         sole_tilt: pitch, then roll of the soles, in that order after their yaw, shape (2, 2) [rad]; None: level.
+        rolling: whether the pelvis may roll under the torso.
     """
 
     sole_position: Array
@@ -28,6 +29,7 @@ class PostureTarget:
     com: Array | None = None
     heading: float | None = None
     sole_tilt: Array | None = None
+    rolling: bool = False
 
     def sole_rotation(self, k: int) -> Array:
         """Orientation of sole k, shape (3, 3)."""
@@ -93,7 +95,7 @@ class PostureIk:
     def solve(
         self, target: PostureTarget, q: Array, tolerance: float = 1e-7, max_iterations: int = 60, nearness: float = 1e-9
     ) -> PostureResult:
-        """Find a posture.
+        """Find a posture; if there is none with the pelvis upright, one in which it rolls, as walking lets it.
 
         Args:
             target: what to fulfil.
@@ -105,6 +107,15 @@ class PostureIk:
         Returns:
             The posture found; with ``reached`` False the nearest one, e.g. for a stance beyond the legs' length.
         """
+        found = self._search(target, q, tolerance, max_iterations, nearness)
+        if found.reached or target.heading is None or target.rolling:
+            return found
+        rolled = self._search(replace(target, rolling=True), found.q, tolerance, max_iterations, nearness)
+        return rolled if rolled.reached else found
+
+    def _search(
+        self, target: PostureTarget, q: Array, tolerance: float, max_iterations: int, nearness: float
+    ) -> PostureResult:
         error = np.inf
         for iteration in range(max_iterations):
             step = self.build_step(target, q, nearness)
@@ -153,16 +164,17 @@ class PostureIk:
             errors.append(pin.log6(data.oMf[frame].actInv(desired)).vector)
             jacobians.append(pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL))
         if target.heading is not None:
-            self._append_trunk(jacobians, errors, target.heading)
+            self._append_trunk(jacobians, errors, target.heading, 1 if target.rolling else 0)
         if target.com is not None:
             jacobians.append(pin.jacobianCenterOfMass(model, data, q))
             errors.append(target.com - data.com[0])
         return np.vstack(jacobians), np.concatenate(errors)
 
-    def _append_trunk(self, jacobians: list[Array], errors: list[Array], heading: float) -> None:
+    def _append_trunk(self, jacobians: list[Array], errors: list[Array], heading: float, first: int) -> None:
+        """The pelvis, upright about its axes from the first of roll, pitch and yaw on, and the torso about all."""
         model, data = self._model, self._data
         upright = pin.utils.rotate("z", float(heading))
-        errors.append(pin.log3(data.oMi[1].rotation.T @ upright))
-        jacobians.append(np.hstack([np.zeros((3, 3)), np.eye(3), np.zeros((3, model.nv - 6))]))
+        errors.append(pin.log3(data.oMi[1].rotation.T @ upright)[first:])
+        jacobians.append(np.hstack([np.zeros((3, 3)), np.eye(3), np.zeros((3, model.nv - 6))])[first:])
         errors.append(pin.log3(data.oMf[self._torso].rotation.T @ upright))
         jacobians.append(pin.getFrameJacobian(model, data, self._torso, pin.ReferenceFrame.LOCAL)[3:])

@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 _ON_THE_LINE = 1e-9
 """A link's CoM that is nearer to the line between its joints, in lengths of the link, lies on it [-]."""
 
+STOPS_OFF = 1e-3
+"""How far from the ends of their ranges joints stay: they pass what they are held at by what a touchdown shakes [rad]."""
+
 SOLE_SINKAGE = 5e-5
 """How far the reference robot's soles sink into the simulated ground under its weight [m]."""
 
@@ -63,14 +66,14 @@ def body_of(robot: RobotDescription) -> Body:
 
 
 def _limits(robot: RobotDescription) -> JointLimits:
-    """Limits of the joints; of knees that can bend both ways only the one that walks.
+    """Limits of the joints, a little inside their ranges; of knees that can bend both ways only the one that walks.
 
     Past straight, what should shorten a leg bends its knee the further the wrong way, into its stop.
     """
-    lower, upper = robot.position_lower.copy(), robot.position_upper.copy()
+    off = np.minimum(STOPS_OFF, 0.25 * (robot.position_upper - robot.position_lower))
+    lower, upper = robot.position_lower + off, robot.position_upper - off
     for knee, bend in zip(robot.joint_indices(robot.roles.knees), robot.roles.knee_bend, strict=True):
-        straight = robot.straight_joint_positions[knee]
-        (lower if bend > 0.0 else upper)[knee] = straight
+        (lower if bend > 0.0 else upper)[knee] = robot.straight_joint_positions[knee] + bend * off[knee]
     return JointLimits(robot.torque_limit, robot.velocity_limit, lower, upper)
 
 

@@ -1,6 +1,6 @@
 """Inverse kinematics: the walking posture for given feet, CoM and heading."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
@@ -95,7 +95,7 @@ class PostureIk:
     def solve(
         self, target: PostureTarget, q: Array, tolerance: float = 1e-7, max_iterations: int = 60, nearness: float = 1e-9
     ) -> PostureResult:
-        """Find a posture; if there is none with the pelvis upright, one in which it rolls, as walking lets it.
+        """Find a posture.
 
         Args:
             target: what to fulfil.
@@ -107,15 +107,6 @@ class PostureIk:
         Returns:
             The posture found; with ``reached`` False the nearest one, e.g. for a stance beyond the legs' length.
         """
-        found = self._search(target, q, tolerance, max_iterations, nearness)
-        if found.reached or target.heading is None or target.rolling:
-            return found
-        rolled = self._search(replace(target, rolling=True), found.q, tolerance, max_iterations, nearness)
-        return rolled if rolled.reached else found
-
-    def _search(
-        self, target: PostureTarget, q: Array, tolerance: float, max_iterations: int, nearness: float
-    ) -> PostureResult:
         error = np.inf
         for iteration in range(max_iterations):
             step = self.build_step(target, q, nearness)

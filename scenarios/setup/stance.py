@@ -25,7 +25,7 @@ _ON_THE_LINE = 1e-9
 """A link's CoM that is nearer to the line between its joints, in lengths of the link, lies on it [-]."""
 
 STOPS_OFF = 1e-3
-"""How far from the ends of their ranges joints stay: they pass what they are held at by what a touchdown shakes [rad]."""
+"""How far from the ends of their ranges joints are held, since a touchdown shakes them past where that is [rad]."""
 
 SOLE_SINKAGE = 5e-5
 """How far the reference robot's soles sink into the simulated ground under its weight [m]."""

@@ -7,8 +7,8 @@ other in double support (duration T_d), and standing still in single support (T_
     at the ends of a double support it is (1/2 + k) of the way between the feet from their middle,
     along the walk  k = -S_d / (ω T_d (C_d + S_d C_s / S_s)),  sideways  k = -S_d / (ω T_d (C_d + S_d S_s / C_s)),
 
-with C, S = cosh, sinh of ω T / 2, by matching place and velocity where the supports meet. There one foot bears all, with
-a force that goes from its sole through the CoM (`surefoot.wbc.statics.bearing_torque`).
+with C, S = cosh, sinh of ω T / 2, by matching place and velocity where the supports meet. There one foot bears all,
+with a force that goes from its sole through the CoM (`surefoot.wbc.statics.bearing_torque`).
 """
 
 import math

@@ -5,9 +5,9 @@ import pytest
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.wbc.model import BodyFrames
 from surefoot.wbc.ik import PostureIk, PostureTarget
 from surefoot.wbc.limits import JointLimits
+from surefoot.wbc.model import BodyFrames
 from surefoot.wbc.statics import bearing_torque, standing_torque
 
 pytestmark = pytest.mark.unit

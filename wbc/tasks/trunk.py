@@ -11,7 +11,6 @@ from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.task import Vector, angular_acceleration
 from surefoot.wbc.types import Array, WbcReference
 
-
 SPARED, SOFTENED = 0.04, 0.02
 """Way to the end of its range that a hip keeps, and within which around it the pelvis begins to roll [rad]."""
 

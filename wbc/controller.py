@@ -27,6 +27,7 @@ from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisati
 from surefoot.wbc.tasks.stack import TaskStack
 from surefoot.wbc.tasks.swing import AnkleStops
 from surefoot.wbc.tasks.task import Task, TaskLayout
+from surefoot.wbc.tasks.trunk import HipStops
 from surefoot.wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
 
 ACCEPTED_VIOLATION = 1e-3
@@ -137,8 +138,8 @@ class WholeBodyController:
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
         arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and parameters.arm_swing else None
         weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
-        stops = AnkleStops(model, frames, limits)
-        default = default_tasks(weights, gains, parameters.balance, self._region, toe, size.length, stops)
+        stops = AnkleStops(model, frames, limits), HipStops(model, frames, limits)
+        default = default_tasks(weights, gains, parameters.balance, self._region, toe, size.length, *stops)
         diagonal = (
             Regularisation(weights, size.length),
             Posture(weights, gains, posture, leg_joints, arms),

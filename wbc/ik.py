@@ -17,15 +17,28 @@ class PostureTarget:
 
     Attributes:
         sole_position: sole centres, shape (2, 3) [m].
-        sole_yaw: headings of the flat soles, shape (2,) [rad].
+        sole_yaw: headings of the soles, shape (2,) [rad].
         com: CoM, shape (3,) [m]; None leaves it free.
         heading: yaw of the upright pelvis and torso [rad]; None leaves both free.
+        sole_tilt: pitch, then roll of the soles, in that order after their yaw, shape (2, 2) [rad]; None: level.
+        rolling: whether the pelvis may roll under the torso.
     """
 
     sole_position: Array
     sole_yaw: Array
     com: Array | None = None
     heading: float | None = None
+    sole_tilt: Array | None = None
+    rolling: bool = False
+
+    def sole_rotation(self, k: int) -> Array:
+        """Orientation of sole k, shape (3, 3)."""
+        turned: Array = pin.utils.rotate("z", float(self.sole_yaw[k]))
+        if self.sole_tilt is None:
+            return turned
+        pitch, roll = self.sole_tilt[k].tolist()
+        tilted: Array = turned @ pin.utils.rotate("y", pitch) @ pin.utils.rotate("x", roll)
+        return tilted
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,20 +151,21 @@ class PostureIk:
         jacobians: list[Array] = []
         errors: list[Array] = []
         for k, frame in enumerate(self._soles):
-            desired = pin.SE3(pin.utils.rotate("z", float(target.sole_yaw[k])), target.sole_position[k])
+            desired = pin.SE3(target.sole_rotation(k), target.sole_position[k])
             errors.append(pin.log6(data.oMf[frame].actInv(desired)).vector)
             jacobians.append(pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL))
         if target.heading is not None:
-            self._append_trunk(jacobians, errors, target.heading)
+            self._append_trunk(jacobians, errors, target.heading, 1 if target.rolling else 0)
         if target.com is not None:
             jacobians.append(pin.jacobianCenterOfMass(model, data, q))
             errors.append(target.com - data.com[0])
         return np.vstack(jacobians), np.concatenate(errors)
 
-    def _append_trunk(self, jacobians: list[Array], errors: list[Array], heading: float) -> None:
+    def _append_trunk(self, jacobians: list[Array], errors: list[Array], heading: float, first: int) -> None:
+        """The pelvis, upright about its axes from the first of roll, pitch and yaw on, and the torso about all."""
         model, data = self._model, self._data
         upright = pin.utils.rotate("z", float(heading))
-        errors.append(pin.log3(data.oMi[1].rotation.T @ upright))
-        jacobians.append(np.hstack([np.zeros((3, 3)), np.eye(3), np.zeros((3, model.nv - 6))]))
+        errors.append(pin.log3(data.oMi[1].rotation.T @ upright)[first:])
+        jacobians.append(np.hstack([np.zeros((3, 3)), np.eye(3), np.zeros((3, model.nv - 6))])[first:])
         errors.append(pin.log3(data.oMf[self._torso].rotation.T @ upright))
         jacobians.append(pin.getFrameJacobian(model, data, self._torso, pin.ReferenceFrame.LOCAL)[3:])

@@ -1,4 +1,4 @@
-"""Torques that hold a standing posture."""
+"""Torques that hold a posture, on both feet or on one."""
 
 import numpy as np
 import pinocchio as pin
@@ -37,4 +37,30 @@ def standing_torque(
     scale = np.tile([1.0, 1.0, 1.0, lever, lever, lever], len(jacobians))
     wrenches = scale * np.linalg.lstsq(transposed[:6] * scale, gravity[:6], rcond=None)[0]
     torque: Array = gravity[6:] - transposed[6:] @ wrenches
+    return torque
+
+
+def bearing_torque(model: pin.Model, frames: BodyFrames, q: Array, foot: int) -> Array:
+    """Joint torques, shape (nj,) [N·m], at a configuration q, shape (nq,), whose weight one foot bears alone.
+
+    The CoM need not be over that foot: as on a linear inverted pendulum, all of the robot is accelerated alike,
+    horizontally, so that the force f from the sole's centre goes through the CoM; τ = M a + g(q) - Jᵀ f.
+
+    Args:
+        model: the robot.
+        frames: its soles.
+        q: configuration.
+        foot: that bears all, 0 the left one.
+    """
+    data, frame = model.createData(), model.getFrameId(frames.soles[foot])
+    pin.computeJointJacobians(model, data, q)
+    pin.updateFramePlacements(model, data)
+    com, gravity = pin.centerOfMass(model, data, q), -float(model.gravity.linear[2])
+    lever = com - data.oMf[frame].translation
+    acceleration = np.zeros(model.nv)
+    along = gravity / lever[2] * lever  # with gravity's own acceleration
+    acceleration[:3] = data.oMi[1].rotation.T @ (along - (0.0, 0.0, gravity))
+    J = pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)[:3]
+    force = pin.computeTotalMass(model) * along
+    torque: Array = (pin.rnea(model, data, q, np.zeros(model.nv), acceleration) - J.T @ force)[6:]
     return torque

@@ -13,7 +13,7 @@ from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.source import read_source
 from surefoot.models.robot_file.text import Parts, robot_text
-from surefoot.models.robot_file.touch import Hull, find_hulls, kept_apart, limbs, overlapping, shank_spacing
+from surefoot.models.robot_file.touch import Hull, find_hulls, joined, kept_apart, limbs, overlapping, shank_spacing
 from surefoot.models.robot_file.upper import find_upper, hanging, swings
 from surefoot.models.types import Array, JointRoles, RobotDescription, RobotError, fixed, nearest
 from surefoot.similarity import LEG_LENGTH
@@ -181,8 +181,9 @@ class _Deriver:
 
     def _excluded(self, postures: list[Array]) -> list[tuple[str, str]]:
         bodies = {joint: self.reduced.bodies[joint - 1] for joint in self.hulls}
-        text = robot_text(self._parts((), looks=False))
-        return overlapping(text, postures, bodies, list(self.model.parents), _NEAR * self.leg_length)
+        text, parents = robot_text(self._parts((), looks=False)), list(self.model.parents)
+        found = overlapping(text, postures, bodies, parents, _NEAR * self.leg_length)
+        return list(dict.fromkeys((*found, *joined(bodies, parents))))
 
     def _com_height(self, posture: Array) -> float:
         """Of the CoM over the soles in the posture [m]."""
@@ -271,4 +272,4 @@ class _Deriver:
         lines.append(f"shank_spacing: {robot.shank_spacing:.3f} m, from the contact shapes of the shanks")
         if excluded:
             told = ", ".join(f"{one} and {other}" for one, other in excluded)
-            lines.append(f"may overlap, since they do in the posture: {told}")
+            lines.append(f"may overlap, joined or since they do in the posture: {told}")

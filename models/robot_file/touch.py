@@ -82,6 +82,23 @@ def overlapping(
     return list(found)
 
 
+def joined(bodies: dict[int, str], parents: list[int]) -> list[tuple[str, str]]:
+    """Pairs of bodies with joints alone between them: pelvis and thigh across a hip, whose ranges say how they meet.
+
+    Args:
+        bodies: name by joint, of those that have hulls.
+        parents: parent of each joint.
+    """
+    found = []
+    for joint, name in bodies.items():
+        above = parents[joint]
+        while above and above not in bodies:
+            above = parents[above]
+        if above and above != parents[joint]:
+            found.append((bodies[above], name))
+    return found
+
+
 def shape_name(body: str) -> str:
     """Name of a body's hull."""
     return f"{body}_shape"

@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 _ON_THE_LINE = 1e-9
 """A link's CoM that is nearer to the line between its joints, in lengths of the link, lies on it [-]."""
 
+STOPS_OFF = 1e-3
+"""How far from the ends of their ranges joints are held, since a touchdown shakes them past where that is [rad]."""
+
 SOLE_SINKAGE = 5e-5
 """How far the reference robot's soles sink into the simulated ground under its weight [m]."""
 
@@ -57,9 +60,21 @@ def body_of(robot: RobotDescription) -> Body:
         robot=robot,
         model=pinocchio_model(robot),
         frames=frames_of(robot),
-        limits=JointLimits(robot.torque_limit, robot.velocity_limit, robot.position_lower, robot.position_upper),
+        limits=_limits(robot),
         leg_joints=np.isin(robot.joint_names, robot.roles.legs),
     )
+
+
+def _limits(robot: RobotDescription) -> JointLimits:
+    """Limits of the joints, a little inside their ranges; of knees that can bend both ways only the one that walks.
+
+    Past straight, what should shorten a leg bends its knee the further the wrong way, into its stop.
+    """
+    off = np.minimum(STOPS_OFF, 0.25 * (robot.position_upper - robot.position_lower))
+    lower, upper = robot.position_lower + off, robot.position_upper - off
+    for knee, bend in zip(robot.joint_indices(robot.roles.knees), robot.roles.knee_bend, strict=True):
+        (lower if bend > 0.0 else upper)[knee] = robot.straight_joint_positions[knee] + bend * off[knee]
+    return JointLimits(robot.torque_limit, robot.velocity_limit, lower, upper)
 
 
 def frames_of(robot: RobotDescription) -> BodyFrames:

@@ -1,4 +1,4 @@
-"""Whether the joints reach the stances that a walk goes through, before it begins.
+"""Whether the joints reach the stances that a walk goes through, and hold them, before it begins.
 
 Between touchdown and lift-off both feet stand, far apart: there joints come to the ends of their ranges. Where the CoM
 then is follows from the pendulum on its periodic walk: with the ZMP going evenly from one foot to the
@@ -7,7 +7,8 @@ other in double support (duration T_d), and standing still in single support (T_
     at the ends of a double support it is (1/2 + k) of the way between the feet from their middle,
     along the walk  k = -S_d / (ω T_d (C_d + S_d C_s / S_s)),  sideways  k = -S_d / (ω T_d (C_d + S_d S_s / C_s)),
 
-with C, S = cosh, sinh of ω T / 2, by matching place and velocity where the supports meet.
+with C, S = cosh, sinh of ω T / 2, by matching place and velocity where the supports meet. There one foot bears all,
+with a force that goes from its sole through the CoM (`surefoot.wbc.statics.bearing_torque`).
 """
 
 import math
@@ -17,13 +18,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, sole_angles, sole_pose
 from surefoot.planner.types import GRAVITY, Array, Footstep
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.scenarios.setup.stance import Body
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.wbc.ik import PostureTarget
+from surefoot.wbc.statics import bearing_torque
 
 MISSING = 0.01
 """What a stance may lack before a walk is refused: the controller lets trunk and CoM give way by as much [m, rad]."""
@@ -45,10 +47,11 @@ class Stance:
 
     Attributes:
         number: of the footstep that begins it.
-        soles: left and right sole, x y z and heading, shape (2, 4) [m, rad].
+        soles: left and right sole, x y z, heading, pitch and roll, shape (2, 6) [m, rad].
         com: where the CoM is, shape (3,) [m].
         heading: of the trunk [rad].
         landing: whether the foot has just landed, or the other one is about to leave.
+        bearing: the foot that bears all, 0 the left one.
     """
 
     number: int
@@ -56,10 +59,16 @@ class Stance:
     com: Array
     heading: float
     landing: bool
+    bearing: int
+
+    @property
+    def moment(self) -> str:
+        """What its footstep does there."""
+        return "lands" if self.landing else "bears the other one's lift-off"
 
 
 def check_stances(walk: Walk, body: Body, q: Array) -> None:
-    """Refuse a walk some stance of which the joints do not reach.
+    """Refuse a walk some stance of which the joints do not reach or hold.
 
     Args:
         walk: the walk.
@@ -67,7 +76,8 @@ def check_stances(walk: Walk, body: Body, q: Array) -> None:
         q: where it stands at the start, shape (nq,).
 
     Raises:
-        ParameterError: says at which footstep, and which joint is at the end of its range.
+        ParameterError: says at which footstep, and which joint is at the end of its range or would need more than its
+            largest torque.
     """
     spare = np.where(body.leg_joints, SPARE, 0.0)
     limits = replace(body.limits, lower=body.limits.lower + spare, upper=body.limits.upper - spare)
@@ -77,28 +87,47 @@ def check_stances(walk: Walk, body: Body, q: Array) -> None:
         begin[:2] = stance.com[:2]
         begin[2] += stance.com[2] - walk.start_com_height
         begin[3:7] = 0.0, 0.0, math.sin(0.5 * stance.heading), math.cos(0.5 * stance.heading)
-        target = PostureTarget(stance.soles[:, :3], stance.soles[:, 3], stance.com, stance.heading)
+        soles = stance.soles
+        target = PostureTarget(soles[:, :3], soles[:, 3], stance.com, stance.heading, soles[:, 4:])
         found = ik.solve(target, begin, tolerance=MISSING)
         if not found.reached:
-            raise _refusal(walk, body, stance, found.q, found.error)
+            raise _unreached(walk, body, stance, found.q, found.error)
+        _check_torque(walk, body, stance, found.q)
 
 
-def _refusal(walk: Walk, body: Body, stance: Stance, q: Array, error: float) -> ParameterError:
+def _check_torque(walk: Walk, body: Body, stance: Stance, q: Array) -> None:
+    robot = body.robot
+    needed = np.where(body.leg_joints, np.abs(bearing_torque(body.model, body.frames, q, stance.bearing)), 0.0)
+    worst = int(np.argmax(needed / robot.torque_limit))
+    if needed[worst] > robot.torque_limit[worst]:
+        raise _refusal(
+            walk,
+            stance,
+            f"joint '{robot.joint_names[worst]}' of robot '{robot.name}' would need {needed[worst]:.0f} N m when "
+            f"footstep {stance.number} {stance.moment}, its limit is {robot.torque_limit[worst]:.0f} N m",
+            "take shorter steps, or a higher gait.com_height",
+        )
+
+
+def _unreached(walk: Walk, body: Body, stance: Stance, q: Array, error: float) -> ParameterError:
     robot = body.robot
     left = np.minimum(q[7:] - robot.position_lower, robot.position_upper - q[7:])
     ends = [robot.joint_names[j] for j in np.flatnonzero((left < SPARE + _AT_END) & body.leg_joints)]
-    when = "lands" if stance.landing else "bears the other one's lift-off"
     what = (
-        f"robot '{robot.name}' cannot stand as it would when footstep {stance.number} {when}: "
+        f"robot '{robot.name}' cannot stand as it would when footstep {stance.number} {stance.moment}: "
         f"{error:.3f} m or rad are missing"
     )
     if ends:
         what += f" with {' and '.join(repr(name) for name in ends)} at the end of their range"
-    stepped = walk.terrain.has_edges and abs(float(np.ptp(stance.soles[:, 2]))) > 1e-3
-    key, right = ("gait", "step_length"), "take shorter or narrower steps, or another gait.com_height"
-    if stepped:
-        key, right = ("terrain", "riser"), "give lower stairs, or another gait.com_height"
-    return ParameterError(key, what, right)
+    return _refusal(walk, stance, what, "take shorter or narrower steps, or another gait.com_height")
+
+
+def _refusal(walk: Walk, stance: Stance, what: str, right: str) -> ParameterError:
+    if np.any(stance.soles[:, 4:]):
+        return ParameterError(("terrain", "angle"), what, "give less steep ground, or another gait.com_height")
+    if walk.terrain.has_edges and abs(float(np.ptp(stance.soles[:, 2]))) > 1e-3:
+        return ParameterError(("terrain", "riser"), what, "give lower stairs, or another gait.com_height")
+    return ParameterError(("gait", "step_length"), what, right)
 
 
 def _stances(walk: Walk) -> Iterator[Stance]:
@@ -110,7 +139,8 @@ def _stances(walk: Walk) -> Iterator[Stance]:
         stands, lands, lifted = (footsteps.footstep(one) for one in (row - 1, row, row - 2))
         way, lead = lands.position - stands.position, 0.5 * (lands.position - lifted.position)
         R = frame_rotation(stands.yaw)
-        kind = (*way[:2] @ R, way[2], *lead[:2] @ R, lands.yaw - stands.yaw, lands.foot)
+        tilts = (tilt for step in (stands, lands) for tilt in sole_angles(step.normal, step.yaw))
+        kind = (*way[:2] @ R, way[2], *lead[:2] @ R, lands.yaw - stands.yaw, lands.foot, *tilts)
         key = tuple(round(float(value), 3) for value in kind)
         if key in seen:
             continue
@@ -130,8 +160,8 @@ def _stance(
     middle = 0.5 * (stands.position + lands.position)[:2]
     com = np.append(middle + (-off if landing else off), low + gait.com_height)
     feet = sorted((stands, lands), key=lambda step: int(step.foot))
-    soles = np.array([(*step.position, step.yaw) for step in feet])
-    return Stance(number, soles, com, float(np.mean(soles[:, 3])), landing)
+    soles = np.array([sole_pose(step.position, step.yaw, step.normal) for step in feet])
+    return Stance(number, soles, com, float(np.mean(soles[:, 3])), landing, int((stands if landing else lands).foot))
 
 
 def _shares(gait: GaitParameters) -> tuple[float, float]:

@@ -1,7 +1,7 @@
 """What standing takes of the joints' torque, on both feet and on one."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
@@ -43,7 +43,10 @@ def standing(body: Body, side: float) -> tuple[TorqueMargin, Array]:
     q = pin.neutral(body.model)
     q[2] = robot.leg_length
     q[7:] = robot.nominal_joint_positions
-    found = body.ik(robot.nominal_joint_positions).solve(target, q)
+    ik = body.ik(robot.nominal_joint_positions)
+    found = ik.solve(target, q)
+    if not found.reached:  # the pelvis rolls where a hip ends, see `surefoot.wbc.tasks.trunk.HipStops`
+        found = ik.solve(replace(target, rolling=True), found.q)
     if not found.reached:
         return TorqueMargin("", math.inf, math.inf), found.q
     foot = None if side == 0.0 else int(side < 0.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.wbc.ik import PostureTarget
+from surefoot.wbc.ik import PostureIk, PostureTarget
 
 pytestmark = pytest.mark.unit
 
@@ -81,3 +81,28 @@ def test_its_jacobian_is_the_derivative_of_its_error(robot):
         ahead = ik.linearise(STANCE, pin.integrate(robot.model, robot.standing, step))[1]
         behind = ik.linearise(STANCE, pin.integrate(robot.model, robot.standing, -step))[1]
         np.testing.assert_allclose((behind - ahead) / (2 * h), J[:, i], atol=1e-6)
+
+
+def test_soles_lie_on_ground_that_is_tilted(robot):
+    tilt = np.array([[-0.2, 0.0], [-0.15, 0.1]])
+    result = robot.ik().solve(replace(STANCE, com=np.array([0.0, 0.0, 0.95]), sole_tilt=tilt), robot.standing)
+    assert result.reached
+    data = robot.model.createData()
+    pin.framesForwardKinematics(robot.model, data, result.q)
+    for name, (pitch, roll) in zip(robot.frames.soles, tilt, strict=True):
+        normal = data.oMf[robot.model.getFrameId(name)].rotation[:, 2]
+        np.testing.assert_allclose(
+            normal, (pin.utils.rotate("y", pitch) @ pin.utils.rotate("x", roll))[:, 2], atol=1e-6
+        )
+
+
+def test_hips_of_small_range_stand_on_one_foot_with_a_pelvis_that_rolls(robot):
+    lower = robot.limits.lower.copy()
+    for side in ("left", "right"):
+        lower[robot.model.getJointId(f"{side}_hip_roll") - 2] = -0.05
+    ik = PostureIk(robot.model, robot.frames, replace(robot.limits, lower=lower), robot.nominal)
+    target = replace(STANCE, com=np.array([0.0, 0.1, 0.97]))
+    assert not ik.solve(target, robot.standing).reached
+    rolled = ik.solve(replace(target, rolling=True), robot.standing)
+    assert rolled.reached
+    assert 2.0 * abs(rolled.q[3]) > 0.01  # the pelvis; the torso is upright

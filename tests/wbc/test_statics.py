@@ -5,8 +5,10 @@ import pytest
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
+from surefoot.wbc.ik import PostureIk, PostureTarget
+from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames
-from surefoot.wbc.statics import standing_torque
+from surefoot.wbc.statics import bearing_torque, standing_torque
 
 pytestmark = pytest.mark.unit
 
@@ -27,3 +29,30 @@ def test_torque_and_some_sole_wrenches_balance_gravity():
     np.testing.assert_allclose(J.T @ wrenches, rest, atol=1e-8)
     np.testing.assert_allclose(wrenches[[2, 8]], 0.5 * robot.mass * 9.81, rtol=0.01)
     assert np.abs(torque).max() > 10.0
+
+
+def bearing(com_aside):
+    """Torques on the left foot alone and those of the robot standing still on it, with the CoM beside its centre."""
+    robot = describe("humanoid100", RobotOptions())
+    model, frames = pinocchio_model(robot), BodyFrames(robot.sole_sites, robot.torso_body)
+    limits = JointLimits(robot.torque_limit, robot.velocity_limit, robot.position_lower, robot.position_upper)
+    q = pin.neutral(model)
+    q[2], q[7:] = robot.leg_length, robot.nominal_joint_positions
+    feet = np.array([[0.0, 0.1, 0.0], [-0.2, -0.1, 0.0]])
+    target = PostureTarget(feet, np.zeros(2), np.array([*com_aside, 0.98]) + feet[0], 0.0)
+    found = PostureIk(model, frames, limits, robot.nominal_joint_positions).solve(target, q)
+    assert found.reached
+    return robot, bearing_torque(model, frames, found.q, 0), standing_torque(model, frames, found.q, foot=0)
+
+
+def test_a_foot_below_the_com_bears_what_it_bears_at_rest():
+    _, moving, resting = bearing((0.0, 0.0))
+    np.testing.assert_allclose(moving, resting, atol=1e-4)
+
+
+def test_a_foot_beside_the_com_bears_without_a_moment_at_its_sole():
+    """The ankle of a foot whose force goes through the CoM turns about its own lever alone: far less than at rest."""
+    robot, moving, resting = bearing((0.1, 0.0))
+    (ankle,) = robot.joint_indices(("left_ankle_pitch",))
+    assert abs(resting[ankle]) == pytest.approx(0.1 * robot.mass * 9.81, rel=0.3)
+    assert abs(moving[ankle]) < 0.15 * abs(resting[ankle])

@@ -5,7 +5,7 @@ from surefoot.wbc.tasks.momentum import AngularMomentum, CentreOfMass
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.swing import AnkleStops, SwingFoot
 from surefoot.wbc.tasks.task import Task, TaskLayout, layout_of
-from surefoot.wbc.tasks.trunk import Pelvis, Torso
+from surefoot.wbc.tasks.trunk import HipStops, Pelvis, Torso
 
 
 def default_tasks(
@@ -15,7 +15,8 @@ def default_tasks(
     region: SupportRegion,
     toe: float,
     length: float,
-    stops: AnkleStops | None = None,
+    ankles: AnkleStops | None = None,
+    hips: HipStops | None = None,
 ) -> tuple[Task, ...]:
     """The tasks in the order of their rows.
 
@@ -26,14 +27,15 @@ def default_tasks(
         region: where the ZMP may lie; its owner keeps it up to date.
         toe: toe edge from the sole's centre [m].
         length: size of the robot (see `surefoot.similarity`) [-].
-        stops: where its ankles end; None for nowhere.
+        ankles: where they end; None for nowhere.
+        hips: where they end; None for nowhere.
     """
     return (
         CentreOfMass(weights, balance, region),
         AngularMomentum(weights, gains),
-        Pelvis(weights, gains),
+        Pelvis(weights, gains, hips),
         Torso(weights, gains),
-        SwingFoot(weights, gains, toe, length, stops),
+        SwingFoot(weights, gains, toe, length, ankles),
     )
 
 

@@ -3,11 +3,69 @@
 import math
 
 import numpy as np
+import pinocchio as pin
 
-from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.limits import JointLimits
+from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.task import Vector, angular_acceleration
 from surefoot.wbc.types import Array, WbcReference
+
+SPARED, SOFTENED = 0.04, 0.02
+"""Way to the end of its range that a hip keeps, and within which around it the pelvis begins to roll [rad]."""
+
+
+class HipStops:
+    """Hips of small range sideways: the pelvis rolls with the leg rather than against the end of a hip's range.
+
+    Over one foot, legs lean by about half the hips' distance over their length. With the angle q of a hip's roll joint
+    about an axis that points s ahead, and the roll ρ of the pelvis, q + s ρ is the angle that an upright pelvis would
+    take; so much of it as lies beyond the range, less what is spared, is the pelvis's.
+
+    Args:
+        model: the robot.
+        frames: its soles.
+        limits: of its joints.
+    """
+
+    def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
+        data = model.createData()
+        pin.computeJointJacobians(model, data, pin.neutral(model))
+        self._hips: list[tuple[int, float, float, float]] = []
+        for name in frames.soles:
+            above = list(model.supports[model.frames[model.getFrameId(name)].parentJoint])[2:-2]
+            ahead = {model.joints[joint].idx_v: float(data.J[3, model.joints[joint].idx_v]) for joint in above}
+            column = max(ahead, key=lambda column: abs(ahead[column]))
+            lower, upper = float(limits.lower[column - 6]), float(limits.upper[column - 6])
+            spared = min(SPARED, 0.25 * (upper - lower))
+            self._hips.append((column, math.copysign(1.0, ahead[column]), lower + spared, upper - spared))
+
+    def roll(self, terms: RobotTerms) -> tuple[float, float]:
+        """Roll of the pelvis, left side up, and its rate [rad, rad/s].
+
+        Args:
+            terms: of the state.
+        """
+        _, y, z = terms.base_rotation[2].tolist()
+        now, turning = math.atan2(y, z), float(terms.base_angular_velocity[0])
+        roll = rate = 0.0
+        for column, sign, lower, upper in self._hips:
+            angle = float(terms.q[column + 1]) + sign * now
+            beyond, slope = _beyond(angle - upper) if angle > 0.5 * (lower + upper) else _beyond(lower - angle)
+            if slope:
+                toward = sign if angle > 0.5 * (lower + upper) else -sign
+                roll += toward * beyond
+                rate += slope * (sign * float(terms.v[column]) + turning)
+        return roll, rate
+
+
+def _beyond(excess: float) -> tuple[float, float]:
+    """What of an excess the pelvis takes, setting in smoothly about zero, and how that changes with it [rad, -]."""
+    if excess <= -SOFTENED:
+        return 0.0, 0.0
+    if excess >= SOFTENED:
+        return excess, 1.0
+    return (excess + SOFTENED) ** 2 / (4.0 * SOFTENED), (excess + SOFTENED) / (2.0 * SOFTENED)
 
 
 class _Upright:
@@ -29,15 +87,25 @@ class _Upright:
 
 
 class Pelvis(_Upright):
-    """Angular acceleration of the floating base, which is the pelvis: rows of the identity."""
+    """Angular acceleration of the floating base, which is the pelvis: rows of the identity.
+
+    It rolls where the hips need it (see `HipStops`).
+    """
 
     name = "pelvis"
     _axes = np.eye(3)
 
+    def __init__(self, weights: TaskWeights, gains: TaskGains, stops: HipStops | None = None) -> None:
+        """Set up the task; without stops the hips end nowhere."""
+        super().__init__(weights, gains)
+        self._stops = stops
+
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:
         """See ``Task.write``."""
         np.multiply(self._axes, scale, out=rows[:, 3:6])
-        return self._wanted(reference, terms.base_rotation, terms.base_angular_velocity)
+        x, y, z = self._wanted(reference, terms.base_rotation, terms.base_angular_velocity)
+        roll, rate = self._stops.roll(terms) if self._stops else (0.0, 0.0)
+        return x + self._gains[0] * roll + self._gains[1] * rate, y, z
 
 
 class Torso(_Upright):

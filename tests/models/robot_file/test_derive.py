@@ -10,6 +10,7 @@ from surefoot.models import RobotOptions, explain
 from surefoot.models.joints import meeting_point
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.robot_file.build import describe_file
+from surefoot.models.robot_file.touch import joined
 
 pytestmark = pytest.mark.unit
 
@@ -209,3 +210,9 @@ def test_a_robot_without_a_shoulder_pitch_keeps_its_arms(shipped) -> None:
 
 def test_fingers_and_joints_that_follow_others_are_locked(shipped) -> None:
     assert not [name for name in shipped["talos"].joint_names if "gripper" in name]
+
+
+def test_bodies_with_joints_alone_between_them_are_neighbours() -> None:
+    """A chain 1-2-3-4 of which 2 has no shape, and a branch 5 on 1; neighbours proper MuJoCo knows by itself."""
+    parents = [0, 0, 1, 2, 3, 1]
+    assert joined({1: "pelvis", 3: "thigh", 4: "shank", 5: "torso"}, parents) == [("pelvis", "thigh")]

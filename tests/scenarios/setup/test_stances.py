@@ -11,7 +11,7 @@ from surefoot.errors import ParameterError
 from surefoot.models import RobotDescription
 from surefoot.planner.types import GRAVITY
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.scenarios.setup.stance import body_of, start_posture
+from surefoot.scenarios.setup.stance import STOPS_OFF, body_of, start_posture
 from surefoot.scenarios.setup.stances import _shares, _stances, check_stances
 from surefoot.scenarios.setup.walk import Walk, resolve
 
@@ -83,3 +83,50 @@ def test_legs_that_cannot_spread_are_refused_a_wide_step() -> None:
 def test_alike_stances_are_looked_at_once() -> None:
     few, many = (len(list(_stances(resolve(surefoot.load("walk", {"gait.steps": n}))))) for n in (20, 500))
     assert few == many
+
+
+def weakened(robot: RobotDescription, joint: str, torque: float) -> RobotDescription:
+    limit = np.array(robot.torque_limit)
+    for side in ("left", "right"):
+        limit[robot.joint_names.index(f"{side}_{joint}")] = torque
+    return replace(robot, torque_limit=limit)
+
+
+def test_a_knee_too_weak_for_stairs_is_named_with_its_torque_and_the_footstep() -> None:
+    walk = resolve(surefoot.load("stairs-up"))
+    weak = weakened(walk.robot, "knee", 200.0)
+    with pytest.raises(
+        ParameterError, match=r"_knee' .* need 2\d\d N m when footstep \d+ .* limit is 200 N m"
+    ) as refusal:
+        walked_by(walk, weak)
+    assert refusal.value.key == ("terrain", "riser")
+    walked_by(resolve(surefoot.load("walk")), weak)
+
+
+def test_the_foot_that_stands_bears_at_a_touchdown_and_the_other_at_the_lift_off() -> None:
+    for stance in _stances(resolve(surefoot.load("walk"))):
+        ahead = int(np.argmax(stance.soles[:, 0]))
+        if np.ptp(stance.soles[:, 0]) > 0.01:
+            assert stance.bearing == (1 - ahead if stance.landing else ahead)
+
+
+def test_soles_lie_on_the_slope_that_they_stand_on() -> None:
+    """Uphill an ankle bends by the slope more than on level ground; its heights alone do not say so."""
+    scenario = surefoot.load("slope")
+    walk = resolve(scenario)
+    tilted = [stance for stance in _stances(walk) if stance.soles[:, 4].any()]
+    assert tilted and min(stance.soles[:, 4].min() for stance in tilted) == pytest.approx(-scenario.terrain.angle)
+    with pytest.raises(ParameterError, match=r"ankle_pitch.*less steep ground") as refusal:
+        walked_by(walk, limited(walk.robot, "ankle_pitch", -0.6, 0.6))
+    assert refusal.value.key == ("terrain", "angle")
+
+
+def test_no_knee_passes_straight() -> None:
+    """A stop beyond straight is not used, on either side that knees may bend to; others are, but for a little."""
+    robot = limited(resolve(surefoot.load("walk")).robot, "knee", -0.2, 2.4)
+    knees = list(robot.joint_indices(robot.roles.knees))
+    body = body_of(robot)
+    assert body.limits.lower[knees] == pytest.approx([STOPS_OFF, STOPS_OFF])
+    assert body.limits.upper[knees] == pytest.approx([2.4 - STOPS_OFF, 2.4 - STOPS_OFF])
+    mirrored = replace(limited(robot, "knee", -2.4, 0.2), roles=replace(robot.roles, knee_bend=(-1.0, -1.0)))
+    assert body_of(mirrored).limits.upper[knees] == pytest.approx([-STOPS_OFF, -STOPS_OFF])

@@ -1,5 +1,6 @@
 """From a scenario's name, file or log to a checked scenario: every fault of a file is reported at once."""
 
+import copy
 import json
 import os
 from collections.abc import Mapping
@@ -11,6 +12,7 @@ from typing import Any, NamedTuple
 import yaml
 from pydantic import ValidationError
 
+from surefoot.errors import ParameterError
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError
 from surefoot.scenarios.file.criteria import Bound
@@ -208,7 +210,7 @@ def for_robot(written: Written, values: Mapping[str, Any], origin: str, robot: s
         return dict(values)
     source.value["sized_for"] = origin
     apply_overrides(source, values)
-    say_for(source, {} if robot is None else {"robot": robot}, RegisteredRobots())
+    _size(source, {} if robot is None else {"robot": robot}, RegisteredRobots())
     sized = {}
     for name in values:
         with suppress(LookupError):
@@ -229,12 +231,40 @@ def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
     if not isinstance(source.value, dict):
         raise ScenarioError([f"{name}:1:1: a scenario is a group of keys; write 'key: value' lines"])
     _place_robot(source, Path(written.place).parent)
-    say_for(source, overrides, robots)
+    _size(source, overrides, robots)
     apply_overrides(source, overrides)
     _place_robot(source, Path.cwd())
     source.value.pop("sized_for", None)
     source.value.setdefault("name", written.stem)
     return source
+
+
+def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
+    """Translate a file for the robot that it is run with, whose knees are to be bent as the other one's."""
+    before = copy.deepcopy(source.value)
+    names = say_for(source, overrides, robots)
+    if names is None:
+        return
+    drafts = (_sound({**one, "robot": name}, robots) for one, name in zip((before, source.value), names, strict=True))
+    of, walk = drafts
+    from surefoot.scenarios.setup.bend import bent_alike
+
+    if of is None or walk is None:
+        return
+    with suppress(ParameterError):
+        height = bent_alike(of, walk)
+        source.value["gait"]["com_height"] = height
+        source.written["gait", "com_height"] = f"{of.gait.com_height:g} in the file, for {names[0]}"
+
+
+def _sound(values: dict[str, Any], robots: Robots) -> Scenario | None:
+    """The scenario of values; None where anything is wrong with them, which others tell."""
+    given = {name: value for name, value in values.items() if name != "sized_for"}
+    scenario, problems = _validated(given)
+    if problems:
+        return None
+    draft = draft_of(KINDS[scenario.terrain.kind].completed(scenario), robots)
+    return None if check(draft, robots) else draft.keys
 
 
 def _told(source: Source, problems: list[Problem]) -> list[str]:

@@ -1,6 +1,5 @@
 """What of a walk follows from more than a robot's size: its CoM height, how wide it stands, how deep treads are."""
 
-import math
 from collections.abc import Callable
 
 from surefoot.scenarios.errors import Key
@@ -16,25 +15,6 @@ def com_height(value: float, before: RobotFacts, after: RobotFacts) -> float:
         after: of the other one.
     """
     return after.size.length / before.size.length * (value - before.com_above_hip) + after.com_above_hip
-
-
-def for_longer_steps(height: float, step: float, longer: float, robot: RobotFacts) -> float:
-    """CoM height for steps longer than those for which one was given [m].
-
-    What a leg lacks of being straight, with the hips midway over the step, grows as the step: the nearer to straight,
-    and the longer the step, the faster knees turn.
-
-    Args:
-        height: that was given [m].
-        step: that it was given for [m].
-        longer: that is taken [m].
-        robot: facts of it.
-    """
-    bent = robot.leg_length - math.hypot(height - robot.com_above_hip, 0.5 * step)
-    span = robot.leg_length - bent * longer / step
-    if not (longer > step > 0.0 < bent and span > 0.5 * longer):
-        return height
-    return robot.com_above_hip + math.sqrt(span**2 - 0.25 * longer**2)
 
 
 def step_width(value: float, before: RobotFacts, after: RobotFacts) -> float:

@@ -26,7 +26,7 @@ from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.posture import POSTURE, RULES, for_longer_steps
+from surefoot.scenarios.setup.posture import POSTURE, RULES
 from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
@@ -59,13 +59,16 @@ def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | No
     return None
 
 
-def say_for(source: Source, overrides: Overrides, robots: Robots) -> None:
+def say_for(source: Source, overrides: Overrides, robots: Robots) -> tuple[str, str] | None:
     """Translate a file that is sized for another robot than it is run with, in place, and take its `sized_for` out.
 
     Args:
         source: the file, before anything is set over it.
         overrides: what will be; the robot may be among it.
         robots: that may be named.
+
+    Returns:
+        The robot that it was for and the one that it is for, if it was translated.
 
     Raises:
         ScenarioError: an override leads nowhere.
@@ -74,18 +77,20 @@ def say_for(source: Source, overrides: Overrides, robots: Robots) -> None:
     apply_overrides(named, overrides)
     origin, robot = named.value.get(_KEY), named.value.get("robot", REFERENCE)
     if origin is None:
-        return
+        return None
     if not is_known(origin, robots):
         right = nearest(str(origin), robots.names())
         source.problems.append(Problem((_KEY,), f"unknown robot '{origin}' in {_KEY}", right))
     source.value.pop(_KEY, None)
     if origin == robot:
-        return
+        return None
     soles = _soles(source.value)
     before, after = _facts(origin, soles, robots), _facts(robot, RobotSettings(), robots)
-    if before is not None and after is not None:
-        effort = _effort(source.value, (str(origin), soles), (str(robot), RobotSettings()), robots)
-        _Translation(source, str(origin), before, after, effort).run()
+    if before is None or after is None:
+        return None
+    effort = _effort(source.value, (str(origin), soles), (str(robot), RobotSettings()), robots)
+    _Translation(source, str(origin), before, after, effort).run()
+    return str(origin), str(robot)
 
 
 def _effort(
@@ -143,9 +148,7 @@ class _Translation:
         ]
         self._group(Scenario, values, ())
         if isinstance(terrain, dict) and len(given) == 2 and given[0] == given[1] is not None:
-            # Steps from tread to tread stay such.
-            scaled, gait["step_length"] = gait["step_length"], terrain["tread"]
-            gait["com_height"] = for_longer_steps(gait["com_height"], scaled, terrain["tread"], self.after)
+            gait["step_length"] = terrain["tread"]  # steps from tread to tread stay such
         self._controller(WbcParameters(), values.get("wbc"), ("wbc",))
         for name, bound in values["criteria"].items() if isinstance(values.get("criteria"), dict) else ():
             self._criterion(values["criteria"], name, bound)

@@ -22,9 +22,9 @@ from surefoot.planner.geometry import frame_rotation, sole_angles, sole_pose
 from surefoot.planner.types import GRAVITY, Array, Footstep
 from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.scenarios.setup.stance import Body
+from surefoot.scenarios.setup.stance import Body, start_posture
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.wbc.ik import PostureTarget
+from surefoot.wbc.ik import PostureIk, PostureResult, PostureTarget
 from surefoot.wbc.statics import bearing_torque
 
 MISSING = 0.01
@@ -36,6 +36,9 @@ beside what its periodic likeness does [rad]."""
 
 _LOOKED_AT = 1000
 """Footsteps that are looked at; equal ones once."""
+
+_EXACTLY = 1e-4
+"""What a stance may lack whose knees are measured [m, rad]."""
 
 _AT_END = 0.01
 """A joint that is nearer to the end of its range is at it [rad]."""
@@ -83,16 +86,33 @@ def check_stances(walk: Walk, body: Body, q: Array) -> None:
     limits = replace(body.limits, lower=body.limits.lower + spare, upper=body.limits.upper - spare)
     ik = replace(body, limits=limits).ik(body.robot.nominal_joint_positions)
     for stance in _stances(walk):
-        begin = q.copy()
-        begin[:2] = stance.com[:2]
-        begin[2] += stance.com[2] - walk.start_com_height
-        begin[3:7] = 0.0, 0.0, math.sin(0.5 * stance.heading), math.cos(0.5 * stance.heading)
-        soles = stance.soles
-        target = PostureTarget(soles[:, :3], soles[:, 3], stance.com, stance.heading, soles[:, 4:])
-        found = ik.solve(target, begin, tolerance=MISSING)
+        found = _taken(ik, walk, stance, q)
         if not found.reached:
             raise _unreached(walk, body, stance, found.q, found.error)
         _check_torque(walk, body, stance, found.q)
+
+
+def least_bend(walk: Walk, body: Body) -> float | None:
+    """By how much the straighter knee is bent at least in a walk's stances [rad]; None where none is known beforehand.
+
+    Raises:
+        ParameterError: the legs do not reach where it begins.
+    """
+    q, ik = start_posture(walk, body), body.ik(body.robot.nominal_joint_positions)
+    knees = list(body.robot.joint_indices(body.robot.roles.knees))
+    straight = body.robot.straight_joint_positions[knees]
+    taken = [_taken(ik, walk, stance, q, _EXACTLY).q for stance in _stances(walk)]
+    return min((float(np.abs(one[7:][knees] - straight).min()) for one in taken), default=None)
+
+
+def _taken(ik: PostureIk, walk: Walk, stance: Stance, q: Array, tolerance: float = MISSING) -> PostureResult:
+    """A stance, from where the walk begins, to a tolerance [m, rad]."""
+    begin, soles = q.copy(), stance.soles
+    begin[:2] = stance.com[:2]
+    begin[2] += stance.com[2] - walk.start_com_height
+    begin[3:7] = 0.0, 0.0, math.sin(0.5 * stance.heading), math.cos(0.5 * stance.heading)
+    target = PostureTarget(soles[:, :3], soles[:, 3], stance.com, stance.heading, soles[:, 4:])
+    return ik.solve(target, begin, tolerance=tolerance)
 
 
 def _check_torque(walk: Walk, body: Body, stance: Stance, q: Array) -> None:

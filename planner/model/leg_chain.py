@@ -4,14 +4,15 @@ The trunk does not tilt, each knee bends to where its foot points, the feet stay
 CoM, the knees from hips and soles, and with them the mass of every link: a rod whose momentum is bilinear in its ends.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from surefoot.planner.types import Array
 
-_ITERATIONS = 3
-"""Corrections of the hips; each leaves a fifth of the CoM's error, and a constant rest does no harm."""
+_REST = 4e-3
+"""Share of the first guess's error that the hips may keep; a constant rest does no harm [-]."""
 
 _BEND = 0.02
 """Share of its length by which a leg stays the more bent the nearer it comes to straight, or its sole out of reach: the
@@ -147,7 +148,7 @@ class LegChain:
         """Hips and knees from the CoM, shape (2, n, 3) each, for ankles from the CoM and where the knees point."""
         thigh, shank = self.thigh, self.shank
         at_hip = thigh.mass * (1.0 - thigh.centre)
-        at_knee = thigh.mass * thigh.centre + shank.mass * (1.0 - shank.centre)
+        at_knee = self._at_knee
         at_ankle = shank.mass * shank.centre + self.foot_mass
         trunk_mass = 1.0 - 2.0 * (thigh.mass + shank.mass + self.foot_mass)
         apart = self.hip_half_width * frame[:, 1]
@@ -156,7 +157,7 @@ class LegChain:
         )
         middle = np.zeros_like(fixed)
         middle[:, 2] = -0.1
-        for _ in range(_ITERATIONS):
+        for _ in range(self._corrections):
             hips = np.stack((middle + apart, middle - apart))
             knees = self._knees(hips, ankles, ahead)
             middle = middle - fixed - (trunk_mass + 2.0 * at_hip) * middle - at_knee * (knees[0] + knees[1])
@@ -166,6 +167,21 @@ class LegChain:
                 middle = middle - np.cross(beside, frame[:, 1])
         hips = np.stack((middle + apart, middle - apart))
         return hips, self._knees(hips, ankles, ahead)
+
+    @property
+    def carried(self) -> float:
+        """Share of the mass that goes where the hips go, while the feet stay [-]."""
+        return 1.0 - 2.0 * (self.foot_mass + self.shank.mass * self.shank.centre) - self._at_knee
+
+    @property
+    def _at_knee(self) -> float:
+        """Mass of one leg that counts as in its knee, over the body's; the knee goes half as far as the hip [-]."""
+        return self.thigh.mass * self.thigh.centre + self.shank.mass * (1.0 - self.shank.centre)
+
+    @property
+    def _corrections(self) -> int:
+        """Corrections of the hips, each by the CoM's whole error: the lighter the legs, the more one takes away."""
+        return math.ceil(math.log(_REST) / math.log(max(1.0 - self.carried, _REST)))
 
     def _knees(self, hips: Array, ankles: Array, forward: Array) -> Array:
         leg = ankles - hips

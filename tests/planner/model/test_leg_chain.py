@@ -76,6 +76,17 @@ def test_posture_has_the_com_it_was_asked_for():
     assert np.ptp(found, axis=0).max() < 1e-3
 
 
+def test_heavy_legs_take_more_corrections():
+    """Legs that weigh three quarters of the body leave the CoM where it was asked for, as light ones do."""
+    thigh, shank = replace(THIGH, mass=0.2), replace(SHANK, mass=0.15)
+    chain = replace(CHAIN, thigh=thigh, shank=shank)
+    com, soles = walking()
+    points, masses = bodies(chain, com, soles, np.zeros((2, len(com))))
+    found = np.einsum("k,kni->ni", masses, points)
+    assert chain.carried < CHAIN.carried
+    assert np.abs(found).max() < 3e-3
+
+
 OUTWARD = replace(CHAIN, thigh=replace(THIGH, outward=0.05), shank=replace(SHANK, outward=0.03), foot_outward=0.02)
 AHEAD = replace(CHAIN, thigh=replace(THIGH, ahead=0.1), shank=replace(SHANK, ahead=0.2))
 

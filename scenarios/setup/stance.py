@@ -219,8 +219,8 @@ def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.boo
     groups = chain[:knee], chain[knee : knee + 1], chain[knee + 1 :]
     thigh, shank, foot = (_lumped(model, data, joints) for joints in groups)
     hip, ankle = (_pivot(model, data, group) for group in (groups[0], groups[2]))
-    sole, rolls_first = data.oMf[frame].translation.copy(), _pitching(model, data, groups[2]) != groups[2][0]
-    return _Leg(hip, at[knee], ankle, sole, thigh, shank, foot, rolls_first)
+    below, rolls_first = data.oMf[frame].translation.copy(), _pitching(model, data, groups[2]) != groups[2][0]
+    return _Leg(hip, at[knee], ankle, below, thigh, shank, foot, rolls_first)
 
 
 def _pitching(model: pin.Model, data: pin.Data, joints: list[int]) -> int:

@@ -1,6 +1,6 @@
 """A walking body as a trunk on two legs of thigh, shank and foot: its posture and angular momentum from CoM and soles.
 
-The trunk does not tilt, each knee bends to where its foot points, the feet stay level. Then the hips follow from the
+The trunk does not tilt, each knee bends to where its ankle lets it, the feet stay level. Then the hips follow from the
 CoM, the knees from hips and soles, and with them the mass of every link: a rod whose momentum is bilinear in its ends.
 """
 
@@ -66,6 +66,7 @@ class LegChain:
         foot_centre: CoM of the foot from the ankle: forward, left, up [m].
         ankle: from the sole's centre: forward, left, up [m].
         foot_outward: of the foot's CoM from its ankle, away from the other leg [m].
+        rolls_first: whether the ankle's roll joint is above its pitch joint.
     """
 
     hip_half_width: float
@@ -76,6 +77,7 @@ class LegChain:
     foot_centre: Vector
     ankle: Vector
     foot_outward: float = 0.0
+    rolls_first: bool = False
 
     def momentum_rate(
         self,
@@ -184,6 +186,21 @@ class LegChain:
         return math.ceil(math.log(_REST) / math.log(max(1.0 - self.carried, _REST)))
 
     def _knees(self, hips: Array, ankles: Array, forward: Array) -> Array:
+        """Knees that bend in the plane of hip, ankle and the axis of the ankle's roll joint.
+
+        Of an ankle that pitches first that axis points forward with the foot; of one that rolls first it is turned with
+        the shank, about the level axis of pitch.
+        """
+        knees = self._bent(hips, ankles, forward)
+        if self.rolls_first:
+            shank = ankles - knees
+            rising = np.einsum("kni,kni->kn", shank, forward)
+            forward = -shank[..., 2:] * forward
+            forward[..., 2] += rising
+            knees = self._bent(hips, ankles, forward / np.linalg.norm(forward, axis=-1, keepdims=True))
+        return knees
+
+    def _bent(self, hips: Array, ankles: Array, forward: Array) -> Array:
         leg = ankles - hips
         long = np.sqrt(np.einsum("kni,kni->kn", leg, leg))
         a, b = self.thigh.length, self.shank.length

@@ -191,13 +191,14 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
         foot_centre=_mirrored((left.foot.lever - left.ankle) @ R),
         ankle=_mirrored((left.ankle - left.sole) @ R),
         foot_outward=_measured((left.foot.lever - left.ankle) @ R[:, 1]),
+        rolls_first=left.rolls_first,
     )
     return LegInertia(float(np.mean([_point_mass(model, name, q, joints) for name in frames.soles])), chain)
 
 
 @dataclass(frozen=True, slots=True)
 class _Leg:
-    """Joints and link inertias of a leg in the world frame."""
+    """Joints and link inertias of a leg in the world frame, and whether its ankle rolls first."""
 
     hip: Array
     knee: Array
@@ -206,6 +207,7 @@ class _Leg:
     thigh: pin.Inertia
     shank: pin.Inertia
     foot: pin.Inertia
+    rolls_first: bool
 
 
 def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.bool_]) -> _Leg:
@@ -215,16 +217,22 @@ def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.boo
     apart = np.linalg.norm(np.diff(at, axis=0), axis=1)
     knee = 1 + int(np.argmax(apart[1:] * apart[:-1]))
     groups = chain[:knee], chain[knee : knee + 1], chain[knee + 1 :]
-    parts = [_lumped(model, data, joints) for joints in groups]
+    thigh, shank, foot = (_lumped(model, data, joints) for joints in groups)
     hip, ankle = (_pivot(model, data, group) for group in (groups[0], groups[2]))
-    return _Leg(hip, at[knee], ankle, data.oMf[frame].translation.copy(), *parts)
+    below, rolls_first = data.oMf[frame].translation.copy(), _pitching(model, data, groups[2]) != groups[2][0]
+    return _Leg(hip, at[knee], ankle, below, thigh, shank, foot, rolls_first)
+
+
+def _pitching(model: pin.Model, data: pin.Data, joints: list[int]) -> int:
+    """The joint of a hip or an ankle whose axis is nearest to the lateral one."""
+    lateral = data.oMi[1].rotation[:, 1]
+    return max(joints, key=lambda joint: abs(float(world_axis(model, data, joint) @ lateral)))
 
 
 def _pivot(model: pin.Model, data: pin.Data, joints: list[int]) -> Array:
     """The point of a hip or an ankle on its pitch axis, nearest to all its axes: what a link swings about."""
     meeting = meeting_point(model, data, joints)
-    lateral = data.oMi[1].rotation[:, 1]
-    pitch = max(joints, key=lambda joint: abs(float(world_axis(model, data, joint) @ lateral)))
+    pitch = _pitching(model, data, joints)
     axis, origin = world_axis(model, data, pitch), data.oMi[pitch].translation
     return np.asarray(origin + axis * float(axis @ (meeting - origin)))
 

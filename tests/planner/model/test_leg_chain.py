@@ -132,3 +132,23 @@ def test_a_leg_that_comes_to_be_straight_does_not_jump():
     for length in np.linspace(0.3, 0.45, 7):
         chain = replace(CHAIN, thigh=replace(THIGH, length=length))
         assert np.abs(chain.momentum_rate(com, soles, np.zeros((2, len(com))), T)).max() < 20.0
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.7])
+def test_an_ankle_that_rolls_first_turns_the_knee_with_the_shank(heading):
+    """The axis of roll, across shank and knee axis, is also across that of pitch, which is the lateral one of the foot.
+
+    Of an ankle that pitches first it is not: there the knee bends straight ahead.
+    """
+    R = np.array([[np.cos(heading), -np.sin(heading), 0.0], [np.sin(heading), np.cos(heading), 0.0], [0.0, 0.0, 1.0]])
+    com = R @ [0.0, 0.03, 0.9]
+    soles = np.array([R @ [0.05, 0.3, 0.05], R @ [0.0, -0.1, 0.0]])
+    aside = {}
+    for first in (True, False):
+        chain = replace(CHAIN, rolls_first=first)
+        hips, knees, ankles = chain.joints(com[None], soles[:, None], np.full((2, 1), heading))
+        shank, axis = (ankles - knees)[0, 0], np.cross((knees - hips)[0, 0], (ankles - knees)[0, 0])
+        roll = np.cross(axis, shank)
+        aside[first] = abs(float(roll @ R[:, 1])) / np.linalg.norm(roll)
+    assert aside[True] < 0.2 * aside[False]
+    assert aside[False] > 0.02

@@ -1,5 +1,6 @@
 """The robot of a scenario: its description with the chosen options, what bounds its walk, and what it is in truth."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
@@ -27,6 +28,7 @@ class RobotFacts:
         shank_spacing: lateral distance of the soles at which upright shanks keep apart [m].
         swing_acceleration: of the sole of a straight leg, forward and sideways, with two thirds of the torque
             of its hip [m/s^2].
+        ankle_torque: of the joints that pitch and roll the left foot [N m].
         size: against the reference robot, without what it carries.
     """
 
@@ -38,6 +40,7 @@ class RobotFacts:
     foot_width: float
     shank_spacing: float
     swing_acceleration: tuple[float, float]
+    ankle_torque: tuple[float, float] = (math.inf, math.inf)
     size: Similarity = REFERENCE_SIZE
 
 
@@ -107,6 +110,7 @@ def facts_of(description: "RobotDescription") -> RobotFacts:
         foot_width=description.sole_width,
         shank_spacing=description.shank_spacing,
         swing_acceleration=_swing_acceleration(description),
+        ankle_torque=_ankle_torque(description),
     )
 
 
@@ -165,6 +169,17 @@ def _swing_acceleration(description: "RobotDescription") -> tuple[float, float]:
     hips = range(joints.index(description.roles.knees[0]))
     pitch, roll = (max(hips, key=lambda k: abs(axes[k][axis])) for axis in (1, 0))
     return reached[pitch], reached[roll]
+
+
+def _ankle_torque(description: "RobotDescription") -> tuple[float, float]:
+    """See `RobotFacts`."""
+    joints, knee = description.roles.left_leg, description.roles.knees[0]
+    axes, _ = _leg_joints(description.mjcf, joints, _straight(description))
+    ankles = range(joints.index(knee) + 1, len(joints))
+    pitch, roll = (joints[max(ankles, key=lambda k: abs(axes[k][axis]))] for axis in (1, 0))
+    limits = (description.torque_limit[description.joint_names.index(name)] for name in (pitch, roll))
+    pitching, rolling = (float(limit) for limit in limits)
+    return pitching, rolling if roll != pitch else math.inf
 
 
 def _straight(description: "RobotDescription") -> tuple[float, ...]:

@@ -57,9 +57,24 @@ def body_of(robot: RobotDescription) -> Body:
         robot=robot,
         model=pinocchio_model(robot),
         frames=frames_of(robot),
-        limits=JointLimits(robot.torque_limit, robot.velocity_limit, robot.position_lower, robot.position_upper),
+        limits=JointLimits(robot.torque_limit, robot.velocity_limit, *_ranges(robot)),
         leg_joints=np.isin(robot.joint_names, robot.roles.legs),
     )
+
+
+def _ranges(robot: RobotDescription) -> tuple[Array, Array]:
+    """Lower and upper ends of the joints' ranges, those of the knees no farther than straight, shape (nj,) each [rad].
+
+    From a knee that is bent backward a leg comes no shorter again: it would lift the body.
+    """
+    lower, upper, straight = robot.position_lower.copy(), robot.position_upper.copy(), robot.straight_joint_positions
+    for name, bend in zip(robot.roles.knees, robot.roles.knee_bend, strict=True):
+        knee = robot.joint_names.index(name)
+        if bend > 0.0:
+            lower[knee] = max(lower[knee], straight[knee])
+        else:
+            upper[knee] = min(upper[knee], straight[knee])
+    return lower, upper
 
 
 def frames_of(robot: RobotDescription) -> BodyFrames:

@@ -107,7 +107,7 @@ class SwingFoot:
         pitching = damping * reference.roll[1] + reference.roll[2] if k == reference.rolling_foot else 0.0
         vx, vy, vz = velocity[:3].tolist()
         bx, by, bz, px, py, pz = terms.sole_bias[k].tolist()
-        linear = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
+        linear: tuple[float, ...] = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
         turn = (ax - px, ay + pitching - py, az - pz)
         self._turned = k if yielding else self._turned
         if self._turned == k and k != reference.rolling_foot and self._stops:

@@ -152,7 +152,7 @@ def _check_ankles(robot: "RobotDescription", angles: Array, way: Rehearsed) -> N
 
 
 def _ankle(robot: "RobotDescription", foot: int) -> tuple[int, float, float]:
-    """Index of the joint that pitches a foot, its position under an upright shank [rad], and the sign of its bending."""
+    """Index of the joint that pitches a foot, its position under an upright shank [rad], the sign of its bending."""
     model, data = _upright(robot.mjcf, tuple(robot.straight_joint_positions.tolist()))
     knee, ankle = (model.joint(name).id for name in pitch_joints(robot, foot)[1:])
     index = robot.joint_names.index(pitch_joints(robot, foot)[2])

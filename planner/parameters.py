@@ -117,6 +117,7 @@ class PlannerParameters:
         zmp_slack: quadratic and linear cost of leaving the ZMP box [-, m].
         terminal_slack: quadratic and linear cost of leaving the terminal DCM bound [-, m].
         foot_margin: share of the foot in which the ZMP must stay (the paper's 90 %) [-].
+        cop_room: how far from the sole's centre, forward and sideways, the ankles' torques let the CoP go [m].
         terminal_margin: share of the box's half size that bounds the terminal DCM [-].
         leg: inertia of the legs; the default is the paper's point mass without any.
         step_adaptation: what a disturbance may change about the footsteps.
@@ -149,6 +150,7 @@ class PlannerParameters:
     zmp_slack: tuple[float, float] = quantity((1e3, 30.0), "-, m")
     terminal_slack: tuple[float, float] = quantity((1e3, 10.0), "-, m")
     foot_margin: float = quantity(0.9, "-")
+    cop_room: tuple[float, float] = quantity((math.inf, math.inf), "m")
     terminal_margin: float = quantity(0.8, "-")
     leg: LegInertia = LegInertia()
     step_adaptation: StepAdaptation = StepAdaptation.CROSSING

@@ -210,16 +210,21 @@ class Recovery:
         land = min(max(round((now.double + now.single) / t), lift + 1), count - 2)
         # The DCM that keeps bounded what comes, and what a shift of the step does to it.
         point = now.reference.point
-        future = np.concatenate((point, now.reference.gain[:, :1]), axis=1)
+        box = now.reference.half_size[lift]
+        wider = now.reference.half_size - box
+        wider[lift:] = 0.0
+        future = np.concatenate((point, now.reference.gain[:, :1], wider), axis=1)
         bounded = nominal_dcm(now.stiffness, now.omega, future, t)
         nominal, landed, gain = bounded[:, :2], bounded[land, :2], max(float(bounded[land, 2]), _LEAST_GAIN)
+        # Between the feet on which it stood the CoP has more room than on one.
+        more = bounded[0, 3:]
         fade = float(decays(now.stiffness[: land + 1], now.omega[: land + 1], t)[-1])
-        box = now.reference.half_size[lift]
-        fine = bool((np.abs(now.dcm - nominal[0]) <= (1.0 - fade) * box + fade * _MARGIN * self._size.length).all())
+        held = (1.0 - fade) * box + more + fade * _MARGIN * self._size.length
+        fine = bool((np.abs(now.dcm - nominal[0]) <= held).all())
         if fine and not now.adapted:
             return None
         times, half = self._times(now, fine), _AUTHORITY * box
-        left, com = _landing(now, times, nominal[[0, lift]], landed, half)
+        left, com = _landing(now, times, nominal[[0, lift]], landed, (half, _AUTHORITY * more))
         return self._cheapest(now, times, now.nominal + left / gain, com, (gain, half))
 
     def _cheapest(
@@ -297,7 +302,7 @@ class Recovery:
 
 
 def _landing(
-    now: Situation, times: tuple[Array, Array], nominal: Array, landed: Array, half: Array
+    now: Situation, times: tuple[Array, Array], nominal: Array, landed: Array, means: tuple[Array, Array]
 ) -> tuple[Array, Array]:
     """What no CoP holds of the DCM when the step lands, and the CoM then, shape (n, 2) each [m].
 
@@ -306,9 +311,10 @@ def _landing(
         times: of double and single support, shape (n,) each [s].
         nominal: DCM now and when the foot leaves the ground that the steps as planned keep bounded, shape (2, 2) [m].
         landed: the same when it lands, shape (2,) [m].
-        half: half sizes of what the CoP has of its box, shape (2,) [m].
+        means: half sizes of what the CoP has of its box, and by how much the DCM now may be farther off since it has
+            more in double support, shape (2,) each [m].
     """
-    omega, (present, lift_off) = float(now.omega[0]), nominal
+    omega, (present, lift_off), (half, more) = float(now.omega[0]), nominal, means
     doubles, singles = times
     spread, grown = np.exp(omega * doubles), np.exp(omega * singles)
     # The constant CoP on the foot, and beside the moving one before it, that are nominal.
@@ -321,7 +327,7 @@ def _landing(
         lifted = spread[:, None] * now.dcm - moving_cop(start, centre, omega, doubles)
         lifted = lifted - (spread[:, None] - 1.0) * (beside / (growth - 1.0))
     astray = grown[:, None] * (lifted - centre) + centre - landed
-    most = (grown * spread - 1.0)[:, None] * half
+    most = (grown * spread - 1.0)[:, None] * half + (grown * spread)[:, None] * more
     held = np.clip(astray, -most, most)
     cop = centre + half * held / np.maximum(most, 1e-9)
     com = pendulum_com(now.com, now.dcm, 0.5 * (start + cop), spread)

@@ -135,6 +135,7 @@ class Outlook:
         self._gait, self._profile, self._half_size = gait, profile, half_size
         self._leg, self._margin, self._sample_time = parameters.leg, parameters.foot_margin, parameters.sample_time
         self._count, self._length = parameters.horizon + parameters.preview + 1, parameters.size.length
+        self._room = parameters.cop_room
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
 
@@ -145,7 +146,7 @@ class Outlook:
 
     def support(self, stepper: Stepper) -> Support:
         """What carries the robot now."""
-        self._support = present_support(self._support, stepper, self._half_size, self._margin)
+        self._support = present_support(self._support, stepper, self._half_size, self._margin, self._room)
         return self._support
 
     def zmp(self, samples: PhaseSamples, support: Support) -> ZmpReference:

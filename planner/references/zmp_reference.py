@@ -173,7 +173,9 @@ def load_left(samples: PhaseSamples, support: Support) -> Array:
     return np.asarray((1.0 - fraction) * share[index] + fraction * share[np.minimum(index + 1, len(share) - 1)])
 
 
-def present_support(last: Support | None, stepper: Stepper, half_size: Array, margin: float) -> Support:
+def present_support(
+    last: Support | None, stepper: Stepper, half_size: Array, margin: float, room: tuple[float, float]
+) -> Support:
     """The support of this tick, the last one while its key stays.
 
     Args:
@@ -181,6 +183,7 @@ def present_support(last: Support | None, stepper: Stepper, half_size: Array, ma
         stepper: clock and footholds.
         half_size: half of the sole's length and width, shape (2,) [m].
         margin: share of the sole in which the ZMP must stay [-].
+        room: what of the half size the ankles can bear, forward and sideways [m].
     """
     steps, row, phase = stepper.footsteps, stepper.row, stepper.phase
     key = SupportKey(stepper.revision, stepper.landed, phase.start, stepper.free)
@@ -196,7 +199,7 @@ def present_support(last: Support | None, stepper: Stepper, half_size: Array, ma
         key=key,
         rotation=frame_rotation(latest.yaw),
         origin=latest.position[:2],
-        table=support_table(steps, row, stepper.free, margin * half_size, not stepper.wide),
+        table=support_table(steps, row, stepper.free, np.minimum(margin * half_size, room), not stepper.wide),
         heights=steps.support_points()[:, 2],
         on_left=steps.between_rows(np.array([float(foot is Foot.LEFT) for foot in steps.feet])),
         outer=outer,

@@ -11,7 +11,8 @@ from surefoot.errors import ParameterError
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
-from surefoot.scenarios.setup.straight import pitch_joints, shank_outline
+from surefoot.scenarios.setup.stances import SPARE
+from surefoot.scenarios.setup.straight import ankle_pitch, pitch_joints, shank_outline
 from surefoot.scenarios.setup.walk import Walk
 
 if TYPE_CHECKING:
@@ -58,17 +59,19 @@ def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
         leg: the legs.
 
     Raises:
-        ParameterError: a joint would have to be faster than it can, or a shank would meet an edge.
+        ParameterError: a joint would have to be faster than it can, or go farther, or a shank would meet an edge.
     """
     chain = leg.chain
-    fast = _fast(walk)
-    if chain is None or walk.profile.planner is not None or not (fast or walk.terrain.has_edges):
+    fast, rolls = _fast(walk), walk.gait.heel_off > 0.0
+    if chain is None or walk.profile.planner is not None or not (fast or rolls or walk.terrain.has_edges):
         return
     way = rehearsed(walk, feet, leg)
     toe = 0.5 * walk.robot.sole_length
     joints = chain.joints(way.com, way.soles, way.heading, way.pitch, toe)
     if fast:
         _check_speeds(walk.robot, joint_angles(joints, way), way.sample_time)
+    if rolls:
+        _check_ankles(walk.robot, joint_angles(joints, way)[2], way)
     if walk.terrain.has_edges:
         _check_shanks(walk, way, joints)
 
@@ -125,6 +128,25 @@ def _check_speeds(robot: "RobotDescription", angles: Array, sample_time: float) 
             f"{limit:g} rad/s",
             "take shorter or slower steps",
         )
+
+
+def _check_ankles(robot: "RobotDescription", angles: Array, way: Rehearsed) -> None:
+    """Of feet that roll, at whose lift-off `check_stances` does not look; angles have shape (2, n) [rad]."""
+    for foot in Foot:
+        index, zero, sign = ankle_pitch(robot, foot)
+        position = np.where(way.standing[foot], zero + sign * angles[foot], robot.nominal_joint_positions[index])
+        ends = robot.position_lower[index], robot.position_upper[index]
+        left = np.minimum(position - ends[0], ends[1] - position)
+        at = int(np.argmin(left))
+        if left[at] < SPARE:
+            end = min(ends, key=lambda limit: abs(float(limit - position[at])))
+            raise ParameterError(
+                ("gait", "step_length"),
+                f"joint '{robot.joint_names[index]}' of robot '{robot.name}' would come to {position[at]:.2f} rad "
+                f"{at * way.sample_time:.2f} s after the start, its range ends at {end:.2f} rad and {SPARE:g} rad are "
+                "to be left",
+                "take shorter steps",
+            )
 
 
 def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]) -> None:

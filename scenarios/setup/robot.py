@@ -26,6 +26,7 @@ class RobotFacts:
         shank_spacing: lateral distance of the soles at which upright shanks keep apart [m].
         swing_acceleration: of the sole of a straight leg, forward and sideways, with two thirds of the torque
             of its hip [m/s^2].
+        ankle_torque: of the joints that pitch and roll the left foot [N m].
         size: against the reference robot, without what it carries.
     """
 
@@ -37,6 +38,7 @@ class RobotFacts:
     foot_width: float
     shank_spacing: float
     swing_acceleration: tuple[float, float]
+    ankle_torque: tuple[float, float] = (math.inf, math.inf)
     size: Similarity = REFERENCE_SIZE
 
 
@@ -113,7 +115,7 @@ def stance_widening(robot: "RobotDescription | RobotFacts", size: Similarity) ->
 
 def facts_of(description: "RobotDescription") -> RobotFacts:
     """What of a robot bounds a scenario, but for its size, which goes without its payload."""
-    from surefoot.scenarios.setup.straight import com_height, swing_acceleration
+    from surefoot.scenarios.setup.straight import ankle_torque, com_height, swing_acceleration
 
     return RobotFacts(
         bodies=description.bodies,
@@ -124,6 +126,7 @@ def facts_of(description: "RobotDescription") -> RobotFacts:
         foot_width=description.sole_width,
         shank_spacing=description.shank_spacing,
         swing_acceleration=swing_acceleration(description),
+        ankle_torque=ankle_torque(description),
     )
 
 

@@ -1,5 +1,6 @@
 """The robot upright with straight legs, in MuJoCo: what of its masses and shapes bounds a walk."""
 
+import math
 from functools import lru_cache
 
 import mujoco
@@ -37,6 +38,26 @@ def swing_acceleration(robot: RobotDescription) -> tuple[float, float]:
         limit = float(robot.torque_limit[robot.joint_names.index(name)])
         reached.append(HIP_SHARE * robot.leg_length * limit / float(inertia[dof]))
     return reached[0], reached[1]
+
+
+def ankle_torque(robot: RobotDescription) -> tuple[float, float]:
+    """Largest torque of the left ankle's joints that pitch and roll the foot; the roll's infinite without one [N m]."""
+    leg = robot.roles.left_leg
+    ankles = leg[leg.index(robot.roles.knees[0]) + 1 :]
+    pitch, roll = (_nearest(robot, ankles, np.eye(3)[axis]) for axis in (PITCH, ROLL))
+    pitching, rolling = (float(robot.torque_limit[robot.joint_names.index(name)]) for name in (pitch, roll))
+    return pitching, rolling if roll != pitch else math.inf
+
+
+def ankle_pitch(robot: RobotDescription, foot: int) -> tuple[int, float, float]:
+    """Index of the joint that pitches a foot, its position under an upright shank [rad], the sign of its bending."""
+    model, data = _upright(robot)
+    names = pitch_joints(robot, foot)
+    knee, ankle = (model.joint(name).id for name in names[1:])
+    index = robot.joint_names.index(names[2])
+    shank, sign = data.xanchor[knee] - data.xanchor[ankle], -math.copysign(1.0, float(data.xaxis[ankle, 1]))
+    lean = math.atan2(float(shank[0]), float(shank[2]))
+    return index, float(robot.straight_joint_positions[index]) - sign * lean, sign
 
 
 def pitch_joints(robot: RobotDescription, foot: int) -> tuple[str, str, str]:

@@ -14,7 +14,7 @@ from surefoot.planner.parameters import LegInertia, PlannerParameters
 from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
-from surefoot.planner.types import Array, FeetState
+from surefoot.planner.types import GRAVITY, Array, FeetState
 from surefoot.planner.walk.commands import TimedCommand
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import Legs, StepRegion
@@ -40,6 +40,12 @@ ACROSS = 0.12
 
 GAP = 0.02
 """Least gap between two soles one of which lands ahead of the other [m]."""
+
+ANKLE_SHARE = 0.85
+"""Share of an ankle's torque that bears the robot with the CoP at the edge of its room; the rest is for shocks [-]."""
+
+LEAST_ROOM = 0.15
+"""Room of the CoP that a planner needs in any case, of the sole to each side [-]."""
 
 LEAST_BELIEVED_FRICTION = 0.05
 """The controller counts on at least this friction, so that its wrench cones keep an inside."""
@@ -152,6 +158,17 @@ class Walk:
         clear = self.robot.sole_length + GAP * length
         return Legs(radius, facts.hip_width, apart, ACROSS * length, clear, facts.swing_acceleration)
 
+    def _cop_room(self, leg: LegInertia) -> tuple[float, float]:
+        """How far from a sole's centre the ankle's torques bear the robot, ahead and behind, and to both sides [m]."""
+        if leg.chain is None:
+            return math.inf, math.inf
+        levers = [ANKLE_SHARE * torque / (GRAVITY * self.robot.mass) for torque in facts_of(self.robot).ankle_torque]
+        ahead, side = (
+            max(lever - abs(off), LEAST_ROOM * sole)
+            for lever, off, sole in zip(levers, leg.chain.ankle, self.sole, strict=False)
+        )
+        return ahead, side
+
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
         """The planner of this walk: the profile's own, or the walking planner with the profile's law.
 
@@ -162,7 +179,7 @@ class Walk:
         Raises:
             ParameterError: it cannot plan this gait.
         """
-        parameters = replace(self.parameters, leg=leg)
+        parameters = replace(self.parameters, leg=leg, cop_room=self._cop_room(leg))
         given = (self.gait, feet, *self.sole, self.terrain, parameters, self.heights)
         if self.profile.planner is not None:
             return self.profile.planner(*given, self.profile)

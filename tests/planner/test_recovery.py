@@ -76,6 +76,19 @@ def test_without_need_nothing_is_adapted(error):
     assert catch(situation(1.001 * held)) is not None
 
 
+def test_who_stands_on_both_feet_has_the_room_between_them():
+    """Until the foot lifts off: the weights of that room in the DCM now count as all others do."""
+    fade, now = np.exp(-OMEGA * 0.5), situation()
+    lifts, wide = round(0.2 / T), np.tile(HALF, (len(now.stiffness), 1))
+    wide[:lifts] += (0.0, 0.1)
+    more = viability_weights(now.stiffness, now.omega, T) @ (wide - HALF)
+    held = (1.0 - fade) * HALF + 0.02 * fade
+    starting = {"double": 0.2, "half": wide}
+    assert catch(situation(1.001 * held, double=0.2)) is not None
+    assert catch(situation(0.999 * (held + more), **starting)) is None
+    assert catch(situation(1.01 * (held + more), **starting)) is not None
+
+
 @pytest.mark.parametrize("share", [0.3, 0.5])
 @pytest.mark.parametrize("error", [(0.08, 0.0), (-0.06, 0.0), (0.0, 0.06), (0.05, 0.05)])
 def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error, share):

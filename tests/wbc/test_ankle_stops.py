@@ -8,8 +8,11 @@ import pytest
 
 from surefoot.models import RobotOptions, describe
 from surefoot.scenarios.setup.stance import Body, body_of
+from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.tasks.swing import YIELDING, AnkleStops
+from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
+from surefoot.wbc.tasks.swing import YIELDING, AnkleStops, SwingFoot
+from surefoot.wbc.types import WbcReference
 
 pytestmark = pytest.mark.unit
 
@@ -50,6 +53,8 @@ def test_at_its_end_it_yields_about_its_own_axis_and_only_towards_the_end(body: 
     np.testing.assert_allclose(axis, [0.0, 1.0, 0.0], atol=1e-9)
     assert share == pytest.approx(1.0)
     assert stops.yielding(terms, 0, pitched(terms, -0.1)) == []
+    # One that keeps to its target does, lest its shank push the end of the range ahead of it.
+    assert [share for _, share in stops.yielding(terms, 0, pitched(terms, 0.0))] == [pytest.approx(1.0)]
     assert stops.yielding(terms, 1, terms.contact_rotation[1] @ pin.utils.rotate("y", 0.1)) == []
 
 
@@ -67,3 +72,32 @@ def test_a_wider_range_does_not_yield(body: Body) -> None:
     wide = replace(body.limits, lower=body.limits.lower - 1.0, upper=body.limits.upper + 1.0)
     terms = terms_at(body, 0.0)
     assert AnkleStops(body.model, body.frames, wide).yielding(terms, 0, pitched(terms, 0.1)) == []
+
+
+def rows_and_target(
+    body: Body, limits: JointLimits, terms: RobotTerms, reference: WbcReference
+) -> tuple[np.ndarray, np.ndarray]:
+    stops = AnkleStops(body.model, body.frames, limits)
+    task = SwingFoot(TaskWeights(), TaskGains(), 0.11, 1.0, stops)
+    rows = np.zeros((6, body.model.nv + 12))
+    target = task.write(terms, reference, np.ones((6, 1)), rows)
+    return rows[:, :-12], np.array(target)
+
+
+def test_a_foot_that_yields_is_seen_from_its_ankle(body: Body, references) -> None:
+    """Turning the ankle does not move it, and a foot that turns as it should is asked for the same motion."""
+    rng, terms = np.random.default_rng(5), terms_at(body, 0.0)
+    terms.update(terms.q.copy(), terms.v + 0.3 * rng.normal(size=body.model.nv))
+    R, bend = terms.contact_rotation[0].copy(), rng.normal(size=(2, 3))
+    reference = references[1](
+        swing_foot=0, swing_position=terms.sole_position[0] + 0.01 * bend[0], swing_rotation=R,
+        swing_angular_velocity=R @ terms.sole_velocity[0, 3:], swing_angular_acceleration=bend[1],
+    )  # fmt: skip
+    wide = replace(body.limits, lower=body.limits.lower - 1.0, upper=body.limits.upper + 1.0)
+    of_sole, wanted = rows_and_target(body, wide, terms, reference)
+    of_ankle, asked = rows_and_target(body, body.limits, terms, reference)
+    column = 6 + body.robot.joint_names.index(ANKLE)
+    assert np.abs(of_sole[:3, column]).max() > 0.03
+    np.testing.assert_allclose(of_ankle[:3, column], 0.0, atol=1e-9)
+    motion = np.linalg.lstsq(of_sole, wanted, rcond=None)[0]
+    np.testing.assert_allclose(of_ankle[:3] @ motion, asked[:3], atol=1e-8)

@@ -13,20 +13,29 @@ YIELDING = 0.1
 """Way to the end of its range within which an ankle ceases to turn its swinging foot towards that end [rad]."""
 
 
+_TURNED_BACK = 0.05
+"""How far beyond its target such a foot has to be turned that it turns back at full strength [rad]."""
+
+
 class AnkleStops:
     """Ankles of small range: a swinging foot turns with its shank rather than against the end of an ankle's range.
 
-    A level sole may ask for more than the ankle can give, as on a slope or with a leg far to the side. The other joints
-    would turn the whole body to give the rest, and the CoM with it.
+    A level sole may ask for more than the ankle can give, as on a slope, above high stairs or with a leg far to the
+    side. The other joints would turn the whole body to give the rest, and the CoM with it.
 
     Args:
         model: the robot.
         frames: its soles.
         limits: of its joints.
+
+    Attributes:
+        ankles: from the centres of the soles, in their frames: forward and up, shape (2, 3) [m].
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
-        supports = (model.supports[model.frames[model.getFrameId(name)].parentJoint] for name in frames.soles)
+        soles = [model.frames[model.getFrameId(name)] for name in frames.soles]
+        supports = (model.supports[sole.parentJoint] for sole in soles)
+        self.ankles = np.array([sole.placement.inverse().translation for sole in soles]) * (1.0, 0.0, 1.0)
         self._columns = tuple(tuple(model.joints[joint].idx_v for joint in list(chain)[-2:]) for chain in supports)
         self._lower, self._upper, self._ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
 
@@ -43,11 +52,13 @@ class AnkleStops:
             position, velocity = float(terms.q[column + 1]), float(terms.v[column])
             coming = position + self._ahead * velocity
             up, down = self._upper[column - 6] - max(position, coming), min(position, coming) - self._lower[column - 6]
-            if min(up, down) >= YIELDING:
+            near = float(min(up, down))
+            if near >= YIELDING:
                 continue
             axis = terms.sole_jacobian[k, 3:, column]
-            wanted = float(axis @ pin.log3(terms.contact_rotation[k].T @ desired))
-            share = 1.0 - max(0.0, float(up if wanted > 0.0 else down)) / YIELDING
+            onward = float(axis @ pin.log3(terms.contact_rotation[k].T @ desired)) * (1.0 if up < down else -1.0)
+            # A foot that keeps to its target may ask for more of the ankle all the same, since its shank turns.
+            share = (1.0 - max(0.0, near) / YIELDING) * min(max(1.0 + onward / _TURNED_BACK, 0.0), 1.0)
             if share > 0.0:
                 found.append((axis, share))
         return found
@@ -57,7 +68,8 @@ class SwingFoot:
     """Acceleration of the swing foot's sole, linear then angular, in the sole's frame; absent when both feet stand.
 
     A foot that leaves the ground rolling is seen from its toe edge (see ``RobotTerms.shift_foot``). One that cannot be
-    as level as it should (see `AnkleStops`) is lifted by what its toe or heel hangs lower.
+    as level as it should (see `AnkleStops`) is from then on seen from its ankle: a foot that turns about it leaves the
+    shank where it was planned to be, and with it the momentum of the leg that the planner counts on.
     """
 
     name, size = "swing foot", 6
@@ -74,36 +86,50 @@ class SwingFoot:
             length: size of the robot, by which rotations count [-].
             stops: where the ankles end; None for nowhere.
         """
-        self._stops = stops
+        self._stops, self._turned = stops, -1
         self.weight = weights.swing * np.repeat([1.0, length**2], 3)
         self._gains, self._toe = gains.swing, toe
 
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> tuple[float, ...]:
         """See ``Task.write``."""
         k = reference.swing_foot
+        self._turned = self._turned if self._turned == k else -1
         if k < 0:
             rows[:] = 0.0
             return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         np.multiply(terms.sole_jacobian[k], scale, out=rows[:, :-12])
         yielding = self._stops.yielding(terms, k, reference.swing_rotation) if self._stops else []
         damping, R, velocity = self._gains[1], terms.contact_rotation[k], terms.sole_velocity[k]
-        wanted = self._linear(terms, reference, k)
-        if yielding:
-            wanted[2] += self._gains[0] * self._toe * abs(R[2, 0] - reference.swing_rotation[2, 0])
-        x, y, z = (wanted @ R).tolist()
+        x, y, z = (self._linear(terms, reference, k) @ R).tolist()
         turning = reference.swing_angular_acceleration + damping * reference.swing_angular_velocity
         ahead = tuple((turning @ R).tolist())
         ax, ay, az = angular_acceleration(self._gains, R, velocity[3:], reference.swing_rotation, ahead)
         pitching = damping * reference.roll[1] + reference.roll[2] if k == reference.rolling_foot else 0.0
         vx, vy, vz = velocity[:3].tolist()
         bx, by, bz, px, py, pz = terms.sole_bias[k].tolist()
-        linear = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
+        linear: tuple[float, ...] = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
         turn = (ax - px, ay + pitching - py, az - pz)
+        self._turned = k if yielding else self._turned
+        if self._turned == k and k != reference.rolling_foot and self._stops:
+            linear = self._of_ankle(terms, reference, k, linear, self._stops.ankles[k])
+            rows[:3, :-12] -= scale[:3] * (pin.skew(self._stops.ankles[k]) @ terms.sole_jacobian[k, 3:])
         for axis, share in yielding:
             kept = np.eye(3) - share * np.outer(axis, axis)
             rows[3:] = kept @ rows[3:]
             turn = tuple((kept @ turn).tolist())
         return (*linear, *turn)
+
+    def _of_ankle(
+        self, terms: RobotTerms, reference: WbcReference, k: int, linear: tuple[float, ...], ankle: Array
+    ) -> tuple[float, ...]:
+        """The linear target of the sole's centre made that of the ankle, in the sole's frame [m/s^2]."""
+        stiffness, damping = self._gains
+        R, spin, bias = terms.contact_rotation[k], terms.sole_velocity[k, 3:], terms.sole_bias[k, 3:]
+        there, turning = reference.swing_rotation @ ankle, reference.swing_angular_velocity
+        wanted = stiffness * (there - R @ ankle) + damping * np.cross(turning, there)
+        wanted += np.cross(reference.swing_angular_acceleration, there) + np.cross(turning, np.cross(turning, there))
+        moved = np.cross(damping * spin + bias, ankle) + np.cross(spin, np.cross(spin, ankle))
+        return tuple((np.array(linear) + wanted @ R - moved).tolist())
 
     def _linear(self, terms: RobotTerms, reference: WbcReference, k: int) -> Array:
         """Linear acceleration in the world, but for the damping of the sole's own velocity, shape (3,) [m/s^2]."""

@@ -5,9 +5,12 @@ import pytest
 
 from surefoot.planner.geometry import convex_hull, frame_rotation, signed_distance, sole_corners
 from surefoot.planner.ground.terrain import flat
-from surefoot.planner.references.zmp_reference import support_table, zmp_reference
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.references.zmp_reference import present_support, support_table, zmp_reference
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import Flow
+from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.stepper import Stepper
 
 pytestmark = pytest.mark.unit
 
@@ -75,6 +78,14 @@ def test_the_box_of_a_stand_is_as_wide_as_both_feet(setup):
     steps, _, refer = setup(steps=0)
     reference = refer(support_table(steps, 1, (False, False), HALF), 0, 2)
     np.testing.assert_allclose(reference.half_size[0], HALF + np.array([0.0, 0.1]))
+
+
+@pytest.mark.parametrize("room", [(np.inf, np.inf), (0.03, np.inf), (0.03, 0.02)])
+def test_the_box_keeps_to_what_the_ankles_bear(stand, room):
+    parameters = PlannerParameters(cop_room=room)
+    stepper = Stepper(StepQueue(GaitParameters(), stand(), Ground(flat(), HALF, parameters)), 151)
+    support = present_support(None, stepper, HALF, 0.9, parameters.cop_room)
+    np.testing.assert_allclose(support.table.values[:, 4:6].min(axis=0), np.minimum(0.9 * HALF, room))
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.25])

@@ -1,17 +1,43 @@
 """The planner's legs against the robot's: posture and angular momentum of the same CoM and soles."""
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
 
+import surefoot
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.scenarios.setup.stance import body_of, leg_inertia
+from surefoot.scenarios.setup.stance import body_of, feet_at, leg_inertia, start_posture
+from surefoot.scenarios.setup.walk import ANKLE_SHARE, LEAST_ROOM, resolve
 from surefoot.wbc.ik import PostureTarget
 
 pytestmark = pytest.mark.unit
 
 STEP = 0.01
+
+
+def cop_room(body, share=1.0):
+    """Of a walk of a robot with this share of its torques, as its planner is told."""
+    walk = resolve(surefoot.load("walk"))
+    walk = replace(walk, robot=replace(walk.robot, torque_limit=share * walk.robot.torque_limit))
+    posture = start_posture(walk, body)
+    leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)
+    return walk, leg.chain.ankle, walk.planner(feet_at(body, posture), leg).parameters.cop_room
+
+
+@pytest.mark.parametrize("share", [1.0, 0.5])
+def test_at_the_edge_of_its_room_the_cop_takes_its_share_of_the_ankles_torques(body, share):
+    walk, ankle, room = cop_room(body, share)
+    for name, side, off in zip(("left_ankle_pitch", "left_ankle_roll"), room, ankle, strict=False):
+        limit = walk.robot.torque_limit[walk.robot.joint_names.index(name)]
+        assert walk.robot.mass * 9.81 * (side + abs(off)) == pytest.approx(ANKLE_SHARE * limit, rel=1e-3)
+
+
+def test_an_ankle_without_torque_leaves_a_little_room(body):
+    walk, _, room = cop_room(body, 0.01)
+    np.testing.assert_allclose(room, LEAST_ROOM * np.array(walk.sole))
 
 
 @pytest.fixture(scope="module")

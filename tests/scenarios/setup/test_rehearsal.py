@@ -10,6 +10,7 @@ from surefoot.errors import ParameterError
 from surefoot.planner.types import Foot
 from surefoot.scenarios.setup.rehearsal import check_legs, joint_angles, rehearsed
 from surefoot.scenarios.setup.stance import body_of, feet_at, leg_inertia, start_posture
+from surefoot.scenarios.setup.stances import SPARE
 from surefoot.scenarios.setup.straight import pitch_joints, shank_outline
 from surefoot.scenarios.setup.walk import Walk, resolve
 
@@ -84,3 +85,26 @@ def test_a_shank_that_would_meet_the_riser_ahead_is_refused(monkeypatch: pytest.
     monkeypatch.setattr("surefoot.scenarios.setup.rehearsal.shank_outline", lambda *_: thick)
     with pytest.raises(ParameterError, match=r"shank of 'humanoid100' would come 0\.\d+ m into the edge ahead"):
         check_legs(walk, feet, leg)
+
+
+def test_an_ankle_that_would_come_to_its_end_before_the_foot_rolls_is_named(brisk):
+    """A walk whose feet roll is refused where the ankles have just less range than its first steps take."""
+    walk, feet, leg = brisk
+    rolls = replace(walk, gait=replace(walk.gait, heel_off=0.3))
+    check_legs(rolls, feet, leg)
+    way = rehearsed(rolls, feet, leg)
+    joints = leg.chain.joints(way.com, way.soles, way.heading, way.pitch, 0.11)
+    bent = float(joint_angles(joints, way)[2][way.standing].max())
+    ankles = [walk.robot.joint_names.index(f"{side}_ankle_pitch") for side in ("left", "right")]
+    for more, named in ((0.005, False), (-0.005, True)):
+        lower = walk.robot.position_lower.copy()
+        lower[ankles] = -bent - SPARE - more
+        robot = replace(walk.robot, position_lower=lower)
+        if not named:
+            check_legs(replace(rolls, robot=robot), feet, leg)
+            continue
+        with pytest.raises(
+            ParameterError, match=r"joint '\w+_ankle_pitch' of robot 'humanoid100' would come to -0\.\d+ rad"
+        ):
+            check_legs(replace(rolls, robot=robot), feet, leg)
+        check_legs(replace(walk, robot=robot), feet, leg)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -58,3 +60,18 @@ def test_pressed_soles_are_just_below_the_ground(body):
 def test_a_stance_out_of_reach_is_refused(body):
     with pytest.raises(ValueError, match="cannot stand with gait"):
         start_posture(resolve(Scenario(gait=Gait(com_height=1.2))), body)
+
+
+@pytest.mark.parametrize("bend", [1.0, -1.0])
+def test_knees_bend_no_farther_back_than_straight(body, bend):
+    robot = body.robot
+    knees = [robot.joint_names.index(name) for name in robot.roles.knees]
+    backward = robot.position_lower.copy()
+    backward[knees] -= 0.1
+    lower, upper = (backward, robot.position_upper) if bend > 0.0 else (-robot.position_upper, -backward)
+    roles = replace(robot.roles, knee_bend=(bend, bend))
+    limits = body_of(replace(robot, roles=roles, position_lower=lower, position_upper=upper)).limits
+    straight = limits.lower if bend > 0.0 else limits.upper
+    np.testing.assert_array_equal(straight[knees], robot.straight_joint_positions[knees])
+    others = np.setdiff1d(np.arange(len(lower)), knees)
+    np.testing.assert_array_equal(limits.lower[others], lower[others])

@@ -190,10 +190,10 @@ class Legs:
         return np.array([back, low]), np.array([ahead, high])
 
     def within(self, places: Array, hips: Array) -> Array:
-        """The places nearest to these that legs reach from hips, shape (n, 2) each [m]."""
+        """The places nearest to these that legs reach from hips, shape (..., 2) [m]."""
         way = places - hips
-        share = np.minimum(1.0, self.radius / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9))
-        return np.asarray(hips + share[:, None] * way)
+        share = np.minimum(1.0, self.radius / np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9))
+        return np.asarray(hips + share[..., None] * way)
 
     def around(self, place: Array, hip: Array, box: tuple[Array, Array]) -> tuple[Array, Array]:
         """The part of a box with a place in it whose sides a leg reaches from a hip, level with the place."""

@@ -264,7 +264,7 @@ class Recovery:
         if total[way, best] == np.inf:
             return None
         place, more, crosses = places[way, best], bool(second[way, best].any()), way > 0
-        lower, upper = self.legs.around(place, com[best] + hip, (lower[way, 0], upper[way, 0]))
+        lower, upper = self.legs.around(place, com[best] + hip, (lower[way, 0], upper[way, 0]), self.legs.radius)
         least, most = low[best], high[best]
         if not crosses:
             # Beside its stance foot it lands with the DCM well inside the next box, or as near to that as it comes.
@@ -280,7 +280,8 @@ class Recovery:
         time = self._size.time
         singles = _around(now.single, max(SHORTEST["single"] * time, now.shortest), time)
         doubles = _around(now.double, SHORTEST["double"] * time, time) if now.double else np.zeros(1)
-        return np.repeat(doubles, len(singles)), np.tile(singles, len(doubles))
+        grid = np.zeros((len(doubles), len(singles)))
+        return (doubles[:, None] + grid).ravel(), (singles + grid).ravel()
 
     def swung(self, now: Situation, singles: Array) -> Array:
         """Where the foot can be swung to in times: front, left, minus back and minus right edge, shape (4, n) [m].

@@ -22,7 +22,7 @@ from surefoot.planner.references.zmp_reference import (
 from surefoot.planner.types import GRAVITY, Array, LastingForce
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import PhaseSamples
-from surefoot.planner.walk.stepper import Deviation, Stepper
+from surefoot.planner.walk.stepper import Stepper
 
 _TICKS = 5
 """Ticks for which an offset of the legs serves; making it costs more than the rest of a plan."""
@@ -174,7 +174,7 @@ class Outlook:
         reference: ZmpReference,
         height: HeightPreview,
         position: Array,
-        deviation: Deviation | None,
+        time: float,
         lasting: LastingForce | None = None,
     ) -> Window:
         """The window that begins now.
@@ -186,7 +186,7 @@ class Outlook:
             reference: ZMP.
             height: CoM height.
             position: CoM now in the plan frame, shape (2,) [m].
-            deviation: swing that does not go as its step was laid.
+            time: now [s].
             lasting: force that goes on acting on the body.
         """
         count = self._count
@@ -194,7 +194,7 @@ class Outlook:
         seen = reference.part(slice(count))
         leant = np.zeros((self.reach, 2)) if lasting is None else lean(lasting, support.rotation, height)
         point = reference.point - leant
-        offset = self._offset(stepper, samples, support, point, height, position, deviation) + leant[:count]
+        offset = self._offset(stepper, samples, support, point, height, position, time) + leant[:count]
         return Window(
             reference=seen,
             driving=replace(seen, point=seen.point - offset),
@@ -214,26 +214,26 @@ class Outlook:
         point: Array,
         height: HeightPreview,
         position: Array,
-        deviation: Deviation | None,
+        time: float,
     ) -> Array:
         """What the legs add to the ZMP, shape (n, 2) [m]; arguments as of `window`."""
         chain, count, clock = self._leg.chain, self._count, stepper.clock
         if chain is None:
             return np.zeros((count, 2))
-        last = samples.phases[-1]
+        last, table, ticks, key, aim = samples.phases[-1], self._offsets, clock.ticks, support.key, stepper.aim
         # In the final standing, where the walk's clock does not matter, none serves: its values go on with time.
         left = last.start - clock.now if math.isinf(last.samples) else math.inf
-        table, ticks, key = self._offsets, clock.ticks, support.key
-        aim = None if deviation is None else deviation.swing.target[:3]
-        if table is None or left <= 0.0 or not table.holds(ticks, key, clock.taken, aim, self._same_swing):
+        # A swing that a command hurries is laid anew at every tick, by what the clock shows then.
+        serves = left > 0.0 and (clock.steady or stepper.adapted)
+        if table is None or not serves or not table.holds(ticks, key, clock.taken, aim, self._same_swing):
             # No longer than until the robot stands will they serve.
             count += int(min(_TICKS - 1, max(left, 0.0) + 1))
             heights = HeightPreview(height.height[:, :count], height.stiffness[:count])
             frame = support.rotation, support.origin
-            feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]), deviation)
+            feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]), stepper.deviation(time))
             # While a step is adapted it is made from the last one.
             guess = None
-            if table is not None and not (deviation is None and clock.steady):
+            if table is not None and (aim is not None or not clock.steady):
                 guess = table.guess(ticks, key, count)
             values = self._made_offset(chain, feet, point[:count], heights, position, guess)
             table = self._offsets = OffsetTable(ticks, key, clock.taken, aim, values)

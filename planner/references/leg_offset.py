@@ -85,8 +85,11 @@ def nominal_feet(
         way = deviation.swing.positions(times)
         swing[now, :2] = (way[:, :2] - origin) @ rotation
         swing[now, 2] = np.maximum(way[:, 2], deviation.swing.target[2])
-        # Before now it goes on evenly: its own past may be on another trajectory.
+        # Before now it was where it accelerates as it does now: its own past may be on another trajectory.
         swing[0] = 2.0 * swing[1] - swing[2] if len(now) > 1 else swing[1]
+        if deviation.time < deviation.swing.touchdown_time:
+            bend = deviation.swing.evaluate(deviation.time)[2, :3] * samples.sample_time**2
+            swing[0, :3] += np.append(bend[:2] @ rotation, bend[2])
     left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
     pitch = rolled * np.stack((~left, left))

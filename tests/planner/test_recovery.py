@@ -96,7 +96,7 @@ def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error, share):
     gain = (1.0 - np.exp(-OMEGA * 0.12)) / (OMEGA * 0.12)
     place = NOMINAL + (landed - nominal) / gain
     hip = pendulum_com(now.com, now.dcm, cop, np.exp([OMEGA * now.single]))[0] + (0.0, 0.1)
-    low, high = free.around(place, hip, free.boxes(1.0)[0])
+    low, high = free.around(place, hip, free.boxes(1.0)[0], free.radius)
     held = np.maximum(0.5 * most, half - 0.03) / gain
     low, high = np.maximum(low, place - held), np.minimum(high, place + held)
     np.testing.assert_allclose((caught.low, caught.high), (low, high), atol=3e-3)

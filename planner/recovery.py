@@ -157,6 +157,9 @@ _PLACE, _TIME, _STRETCH, _SECOND = 0.02, 0.38, 1.0, 1.0
 """Cost of a squared shift, change of time, way of the hip beyond the reach of the stance leg, and shift of the step
 after it [1/m^2, 1/s^2, 1/m^2, 1/m^2]."""
 
+_UNREACHED = 10.0
+"""Cost of a squared way to the place that the foot cannot be swung in the time left [1/m^2]."""
+
 _OUTWARD = 3.0
 """Factor of that shift where the body goes on outward over the foot that has landed: the other one has to cross [-]."""
 
@@ -188,7 +191,7 @@ class Recovery:
         self.legs, self.timing = legs, timing
         self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
         self._size = parameters.size
-        self._weights = self._size.times((_PLACE, _STRETCH, _SECOND), "1/m^2")
+        self._weights = self._size.times((_PLACE, _STRETCH, _SECOND, _UNREACHED), "1/m^2")
         self._boxes = {side: np.array(legs.boxes(side)) for side in (1.0, -1.0)}
 
     def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
@@ -240,7 +243,7 @@ class Recovery:
         hip = 0.5 * now.side * self.legs.hip_width * np.array([0.0, 1.0])
         stretch = np.hypot(*(com - hip).T) - self.legs.radius
         cost = _TIME * ((doubles - now.double) ** 2 + (singles - now.single) ** 2) / now.cycle**2
-        shift, stretched, second_shift = self._weights
+        shift, stretched, second_shift, unreached = self._weights
         cost = cost + stretched * np.maximum(stretch, 0.0) ** 2
         swung = self.swung(now, singles)
         low, high = -swung[2:].T, swung[:2].T
@@ -256,6 +259,7 @@ class Recovery:
         second = np.maximum(gain * growth * np.abs(short) - held_next, 0.0)
         second[..., 1] *= np.where(now.side * short[..., 1] > 0.0, _OUTWARD, 1.0)
         total = cost + shift * ((places - now.nominal) ** 2).sum(axis=-1) + second_shift * (second**2).sum(axis=-1)
+        total = total + unreached * ((places - _between(places, low, high)) ** 2).sum(axis=-1)
         total[(lower > upper).any(axis=(1, 2))] = np.inf
         least_cost, rows = total.min(axis=1), np.arange(len(total))
         cheapest = np.where(least_cost < total[:, -1] - _WORTH, total.argmin(axis=1), -1)

@@ -19,7 +19,7 @@ from surefoot.planner.references.zmp_reference import (
     present_support,
     zmp_reference,
 )
-from surefoot.planner.types import GRAVITY, Array, LastingForce
+from surefoot.planner.types import Array, LastingForce
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import PhaseSamples
 from surefoot.planner.walk.stepper import Stepper
@@ -119,8 +119,7 @@ def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array
     """
     x, y = lasting.moment.tolist()
     turning = np.array([y, -x]) @ rotation
-    pressing = GRAVITY + height.height[2]
-    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
+    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / height.pressing[:, None])
 
 
 class Outlook:
@@ -199,7 +198,7 @@ class Outlook:
             reference=seen,
             driving=replace(seen, point=seen.point - offset),
             offset=offset,
-            height=HeightPreview(height.height[:, :count], height.stiffness[:count]),
+            height=height.part(count),
             stiffness=stiffness[:count],
             omega=natural_frequency(stiffness[:count], samples.sample_time),
             load_left=load_left(samples, support)[1 : count + 1],
@@ -228,14 +227,13 @@ class Outlook:
         if table is None or not serves or not table.holds(ticks, key, clock.taken, aim, self._same_swing):
             # No longer than until the robot stands will they serve.
             count += int(min(_TICKS - 1, max(left, 0.0) + 1))
-            heights = HeightPreview(height.height[:, :count], height.stiffness[:count])
             frame = support.rotation, support.origin
             feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]), stepper.deviation(time))
             # While a step is adapted it is made from the last one.
             guess = None
             if table is not None and (aim is not None or not clock.steady):
                 guess = table.guess(ticks, key, count)
-            values = self._made_offset(chain, feet, point[:count], heights, position, guess)
+            values = self._made_offset(chain, feet, point[:count], height.part(count), position, guess)
             table = self._offsets = OffsetTable(ticks, key, clock.taken, aim, values)
         return table.since(ticks, self._count)
 

@@ -282,4 +282,7 @@ def preview_height(
     height = profile.height(gait, samples, support_height)[:, 1:-1]
     limit = _IMPULSE_LIMIT if profile.impulsive else _FALL_LIMIT
     pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
+    if not profile.impulsive:
+        # In a phase that a push makes much shorter the law would let the body fall so far that nothing presses.
+        height = np.stack((*height[:2], np.maximum(height[2], -limit * GRAVITY)))
     return HeightPreview(height, pressing, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT * length))

@@ -121,6 +121,15 @@ def test_a_foot_is_swung_no_harder_than_the_hip_allows():
     assert bends[1] > 0.9 * LEGS.acceleration[0]
 
 
+@pytest.mark.parametrize("behind", [0.5, 0.75])
+def test_a_step_is_not_hurried_to_a_place_that_its_foot_cannot_be_swung_to(behind):
+    """With the DCM far ahead: nobody gets across the stance leg, 0.24 m ahead of it, in the 0.18 s that would do."""
+    now = situation((0.25, 0.0), 0.38, swing=((-behind, 0.2), (0.3, 0.0)))
+    caught = catch(now)
+    front = Recovery(LEGS, P, True).swung(now, np.array([caught.left, now.single]))[0, 0]
+    assert caught.low[0] <= front
+
+
 @pytest.mark.parametrize("direction", np.linspace(-np.pi, np.pi, 12, endpoint=False))
 @pytest.mark.parametrize("single", [0.1, 0.3, 0.8])
 def test_the_box_is_in_reach_of_the_legs(direction, single):

@@ -224,8 +224,7 @@ class WalkingPlanner:
         reference = outlook.zmp(samples, support)
         # Vertical motion planner of the CoM, with it the varying dynamics.
         height = outlook.com_height(samples, support, reference)
-        deviation = stepper.deviation(state.time)
-        return outlook.window(stepper, samples, support, reference, height, local[:, 0], deviation, state.lasting)
+        return outlook.window(stepper, samples, support, reference, height, local[:, 0], state.time, state.lasting)
 
     def _steps_out(self, local: Array, window: Window) -> bool:
         """Order a step of a robot that stands and would fall, or stands astride; says whether."""

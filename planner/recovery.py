@@ -157,6 +157,9 @@ _PLACE, _TIME, _STRETCH, _SECOND = 0.02, 0.38, 1.0, 1.0
 """Cost of a squared shift, change of time, way of the hip beyond the reach of the stance leg, and shift of the step
 after it [1/m^2, 1/s^2, 1/m^2, 1/m^2]."""
 
+_UNREACHED = 10.0
+"""Cost of a squared way to the place that the foot cannot be swung in the time left [1/m^2]."""
+
 _OUTWARD = 3.0
 """Factor of that shift where the body goes on outward over the foot that has landed: the other one has to cross [-]."""
 
@@ -188,6 +191,8 @@ class Recovery:
         self.legs, self.timing = legs, timing
         self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
         self._size = parameters.size
+        self._weights = self._size.times((_PLACE, _STRETCH, _SECOND, _UNREACHED), "1/m^2")
+        self._boxes = {side: np.array(legs.boxes(side)) for side in (1.0, -1.0)}
 
     def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
         """DCM error of a robot that stands, or will without another step, and whether no CoP can hold it.
@@ -243,30 +248,32 @@ class Recovery:
         hip = 0.5 * now.side * self.legs.hip_width * np.array([0.0, 1.0])
         stretch = np.hypot(*(com - hip).T) - self.legs.radius
         cost = _TIME * ((doubles - now.double) ** 2 + (singles - now.single) ** 2) / now.cycle**2
-        shift, stretched, second_shift = self._size.times((_PLACE, _STRETCH, _SECOND), "1/m^2")
+        shift, stretched, second_shift, unreached = self._weights
         cost = cost + stretched * np.maximum(stretch, 0.0) ** 2
         swung = self.swung(now, singles)
         low, high = -swung[2:].T, swung[:2].T
         growth = np.exp(float(now.omega[0]) * now.cycle)
         # What the CoP holds until the step after it, or in a stand on both feet for ever.
         held_next = growth * _HELD * now.reference.half_size[-1] if now.last else (growth - 1.0) * half
-        options = []
-        for way, reach in enumerate(self.legs.boxes(now.side)):
-            box = _shared(reach, now.nominal + now.room)
-            if box is None:
-                continue
-            place = np.clip(self.legs.within(np.clip(np.clip(wanted, low, high), *box), com + hip), *box)
-            short = wanted - place
-            second = np.maximum(gain * growth * np.abs(short) - held_next, 0.0)
-            second[:, 1] *= np.where(now.side * short[:, 1] > 0.0, _OUTWARD, 1.0)
-            total = cost + shift * ((place - now.nominal) ** 2).sum(axis=1) + second_shift * (second**2).sum(axis=1)
-            best = int(np.argmin(total))
-            best = best if total[best] < total[-1] - _WORTH else len(total) - 1
-            options.append((total[best], best, place[best], box, bool(second[best].any()), way))
-        if not options:
+        # Of each box that the foot may land in, shape (boxes, n).
+        room, boxes = now.nominal + now.room, self._boxes[now.side]
+        lower, upper = np.maximum(boxes[:, :1], room[0]), np.minimum(boxes[:, 1:], room[1])
+        places = self.legs.within(_between(_between(wanted, low, high), lower, upper), com + hip)
+        places = _between(places, lower, upper)
+        short = wanted - places
+        second = np.maximum(gain * growth * np.abs(short) - held_next, 0.0)
+        second[..., 1] *= np.where(now.side * short[..., 1] > 0.0, _OUTWARD, 1.0)
+        total = cost + shift * ((places - now.nominal) ** 2).sum(axis=-1) + second_shift * (second**2).sum(axis=-1)
+        total = total + unreached * ((places - _between(places, low, high)) ** 2).sum(axis=-1)
+        total[(lower > upper).any(axis=(1, 2))] = np.inf
+        least_cost, rows = total.min(axis=1), np.arange(len(total))
+        cheapest = np.where(least_cost < total[:, -1] - _WORTH, total.argmin(axis=1), -1)
+        way = int(total[rows, cheapest].argmin())
+        best = int(cheapest[way])
+        if total[way, best] == np.inf:
             return None
-        _, best, place, box, more, crosses = min(options, key=lambda option: option[0])
-        lower, upper = self.legs.around(place, com[best] + hip, box)
+        place, more, crosses = places[way, best], bool(second[way, best].any()), way > 0
+        lower, upper = self.legs.around(place, com[best] + hip, (lower[way, 0], upper[way, 0]), self.legs.radius)
         least, most = low[best], high[best]
         if not crosses:
             # Beside its stance foot it lands with the DCM well inside the next box, or as near to that as it comes.
@@ -282,8 +289,8 @@ class Recovery:
         time = self._size.time
         singles = _around(now.single, max(SHORTEST["single"] * time, now.shortest), time)
         doubles = _around(now.double, SHORTEST["double"] * time, time) if now.double else np.zeros(1)
-        grid = np.meshgrid(doubles, singles, indexing="ij")
-        return grid[0].ravel(), grid[1].ravel()
+        grid = np.zeros((len(doubles), len(singles)))
+        return (doubles[:, None] + grid).ravel(), (singles + grid).ravel()
 
     def swung(self, now: Situation, singles: Array) -> Array:
         """Where the foot can be swung to in times: front, left, minus back and minus right edge, shape (4, n) [m].
@@ -328,16 +335,15 @@ def _landing(
         lifted = lifted - (spread[:, None] - 1.0) * (beside / (growth - 1.0))
     astray = grown[:, None] * (lifted - centre) + centre - landed
     most = (grown * spread - 1.0)[:, None] * half + (grown * spread)[:, None] * more
-    held = np.clip(astray, -most, most)
+    held = _between(astray, -most, most)
     cop = centre + half * held / np.maximum(most, 1e-9)
-    com = pendulum_com(now.com, now.dcm, 0.5 * (start + cop), spread)
+    com = pendulum_com(now.com, now.dcm, 0.5 * (start + cop), spread) if now.double else now.com
     return astray - held, pendulum_com(com, lifted, cop, grown)
 
 
-def _shared(box: tuple[Array, Array], room: Array) -> tuple[Array, Array] | None:
-    """What a box has in common with a room; None where that is nothing."""
-    low, high = np.maximum(box[0], room[0]), np.minimum(box[1], room[1])
-    return (low, high) if (low <= high).all() else None
+def _between(places: Array, low: Array, high: Array) -> Array:
+    """The places of a box nearest to these, or its upper corner where it is empty: a faster `numpy.clip`."""
+    return np.asarray(np.minimum(np.maximum(places, low), high))
 
 
 def _around(time: float, least: float, scale: float) -> Array:

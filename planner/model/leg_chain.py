@@ -6,6 +6,7 @@ CoM, the knees from hips and soles, and with them the mass of every link: a rod 
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -110,7 +111,7 @@ class LegChain:
         trunk = 0.5 * (hips[0] + hips[1]) + _turned(frame, self.trunk)
         points = np.concatenate((hips, knees, ankles, foot, trunk[None]))
         bend = np.diff(points, 2, axis=1) / sample_time**2
-        rate = _crossed(points[:, 1:-1], np.tensordot(self._masses(), bend, 1))
+        rate = _crossed(points[:, 1:-1], np.tensordot(_masses(self), bend, 1))
         return rate + self._beside(hips, knees, ankles, legs[..., 1, :], sample_time)
 
     def joints(
@@ -213,17 +214,20 @@ class LegChain:
         bent = np.sqrt((a * a - along * along) / np.einsum("kni,kni->kn", ahead, ahead))
         return np.asarray(hips + along[..., None] * down + bent[..., None] * ahead)
 
-    def _masses(self) -> Array:
-        """Mass matrix of the points hips, knees, ankles, feet (left, right each) and trunk, shape (9, 9) [-]."""
-        M = np.zeros((9, 9))
-        thigh, shank = self.thigh.mass_matrix(), self.shank.mass_matrix()
-        for leg in (0, 1):
-            upper, lower = np.ix_((leg, 2 + leg), (leg, 2 + leg)), np.ix_((2 + leg, 4 + leg), (2 + leg, 4 + leg))
-            M[upper] += thigh
-            M[lower] += shank
-            M[6 + leg, 6 + leg] = self.foot_mass
-        M[8, 8] = 1.0 - 2.0 * (self.thigh.mass + self.shank.mass + self.foot_mass)
-        return M
+
+@lru_cache(maxsize=4)
+def _masses(chain: LegChain) -> Array:
+    """Mass matrix of the points hips, knees, ankles, feet (left, right each) and trunk, shape (9, 9) [-]."""
+    M = np.zeros((9, 9))
+    thigh, shank = chain.thigh.mass_matrix(), chain.shank.mass_matrix()
+    for leg in (0, 1):
+        upper, lower = np.ix_((leg, 2 + leg), (leg, 2 + leg)), np.ix_((2 + leg, 4 + leg), (2 + leg, 4 + leg))
+        M[upper] += thigh
+        M[lower] += shank
+        M[6 + leg, 6 + leg] = chain.foot_mass
+    M[8, 8] = 1.0 - 2.0 * (chain.thigh.mass + chain.shank.mass + chain.foot_mass)
+    M.flags.writeable = False
+    return M
 
 
 def _headings(heading: Array) -> Array:

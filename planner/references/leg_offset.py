@@ -27,7 +27,7 @@ from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.swing.heel_off import bump
 from surefoot.planner.swing.trajectory import SwingTrajectory
-from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
+from surefoot.planner.types import Array, Foot, PhaseKind
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Phase, PhaseSamples
 from surefoot.planner.walk.queue import StepQueue, unit_swing
 from surefoot.planner.walk.stepper import Deviation
@@ -85,8 +85,11 @@ def nominal_feet(
         way = deviation.swing.positions(times)
         swing[now, :2] = (way[:, :2] - origin) @ rotation
         swing[now, 2] = np.maximum(way[:, 2], deviation.swing.target[2])
-        # Before now it goes on evenly: its own past may be on another trajectory.
+        # Before now it was where it accelerates as it does now: its own past may be on another trajectory.
         swing[0] = 2.0 * swing[1] - swing[2] if len(now) > 1 else swing[1]
+        if deviation.time < deviation.swing.touchdown_time:
+            bend = deviation.swing.evaluate(deviation.time)[2, :3] * samples.sample_time**2
+            swing[0, :3] += np.append(bend[:2] @ rotation, bend[2])
     left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
     pitch = rolled * np.stack((~left, left))
@@ -146,9 +149,8 @@ def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: Heigh
     com[0, 2] = _before(height.height[:, 0], t)
     soles, heading, pitch = feet.soles[:, : n + 1], feet.heading[:, : n + 1], feet.pitch[:, : n + 1]
     rate = chain.momentum_rate(com, soles, heading, t, pitch, feet.toe)
-    pressing = GRAVITY + height.height[2]
     offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]
-    offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / pressing[:-1, None])
+    offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / height.pressing[:-1, None])
     offset[-1] = offset[-2]
     return np.asarray(offset)
 

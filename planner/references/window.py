@@ -19,13 +19,17 @@ from surefoot.planner.references.zmp_reference import (
     present_support,
     zmp_reference,
 )
-from surefoot.planner.types import GRAVITY, Array, LastingForce
+from surefoot.planner.types import Array, LastingForce
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import PhaseSamples
-from surefoot.planner.walk.stepper import Deviation, Stepper
+from surefoot.planner.walk.stepper import Stepper
 
 _TICKS = 5
 """Ticks for which an offset of the legs serves; making it costs more than the rest of a plan."""
+
+_SAME_SWING = 0.005
+"""By how far its footstep may have been moved for which one still serves, of the reference robot: it moves the DCM by
+less than a millimetre, and the ZMP for that time by one or, in the fastest of swings, six [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,39 +41,39 @@ class OffsetTable:
     them in this as well.
 
     Attributes:
-        start: first sample, on the clock [samples].
+        start: tick of the clock that it was made at.
         key: of the support then, whose plan frame is that of the values.
+        pace: how often the clock had been told to go otherwise.
+        deviation: of the swing then.
+        aim: where a swing goes that deviated from its step then, shape (3,) [m].
         values: shape (m, 2) [m].
     """
 
-    start: float
+    start: int
     key: SupportKey
+    pace: int
+    aim: Array | None
     values: Array
 
-    def holds(self, clock: float, key: SupportKey, last: float) -> bool:
-        """Whether it still serves: the same support and footholds, a later sample, and few of them later.
+    def holds(self, ticks: int, key: SupportKey, pace: int, aim: Array | None, apart: float) -> bool:
+        """Whether it still serves: the same support, footholds and pace, aims so far apart, and few ticks later."""
+        if self.key != key or self.pace != pace or not self.start < ticks < self.start + _TICKS:
+            return False
+        if aim is None or self.aim is None:
+            return aim is self.aim
+        return bool(np.abs(aim - self.aim).max() <= apart)
 
-        In the final standing, where the walk's clock does not matter, it does not: its values go on with time.
-
-        Args:
-            clock: now [samples].
-            key: of the support now.
-            last: begin of a standing of which no end is known, infinite if none is in sight [samples].
-        """
-        return self.key == key and self.start < clock < min(self.start + _TICKS, last)
-
-    def guess(self, clock: float, key: SupportKey, count: int) -> Array | None:
+    def guess(self, ticks: int, key: SupportKey, count: int) -> Array | None:
         """About what the next one will be, shape (count, 2) [m]; None where the last one tells nothing of it."""
-        passed = round(clock - self.start)
-        if self.key != key or not 0 <= passed < len(self.values):
+        passed = ticks - self.start
+        if self.key != key or passed >= len(self.values):
             return None
         values = self.values[passed : passed + count]
         return np.concatenate((values, np.repeat(values[-1:], count - len(values), axis=0)))
 
-    def since(self, clock: float, count: int) -> Array:
-        """So many offsets from a sample at which it holds, shape (count, 2) [m]."""
-        passed = round(clock - self.start)
-        return self.values[passed : passed + count]
+    def since(self, ticks: int, count: int) -> Array:
+        """So many offsets from a tick at which it holds, shape (count, 2) [m]."""
+        return self.values[ticks - self.start : ticks - self.start + count]
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,8 +119,7 @@ def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array
     """
     x, y = lasting.moment.tolist()
     turning = np.array([y, -x]) @ rotation
-    pressing = GRAVITY + height.height[2]
-    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
+    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / height.pressing[:, None])
 
 
 class Outlook:
@@ -136,6 +139,7 @@ class Outlook:
         self._leg, self._margin, self._sample_time = parameters.leg, parameters.foot_margin, parameters.sample_time
         self._count, self._length = parameters.horizon + parameters.preview + 1, parameters.size.length
         self._room = parameters.cop_room
+        self._same_swing = _SAME_SWING * self._length
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
 
@@ -170,7 +174,7 @@ class Outlook:
         reference: ZmpReference,
         height: HeightPreview,
         position: Array,
-        deviation: Deviation | None,
+        time: float,
         lasting: LastingForce | None = None,
     ) -> Window:
         """The window that begins now.
@@ -182,7 +186,7 @@ class Outlook:
             reference: ZMP.
             height: CoM height.
             position: CoM now in the plan frame, shape (2,) [m].
-            deviation: swing that does not go as its step was laid.
+            time: now [s].
             lasting: force that goes on acting on the body.
         """
         count = self._count
@@ -190,12 +194,12 @@ class Outlook:
         seen = reference.part(slice(count))
         leant = np.zeros((self.reach, 2)) if lasting is None else lean(lasting, support.rotation, height)
         point = reference.point - leant
-        offset = self._offset(stepper, samples, support, point, height, position, deviation) + leant[:count]
+        offset = self._offset(stepper, samples, support, point, height, position, time) + leant[:count]
         return Window(
             reference=seen,
             driving=replace(seen, point=seen.point - offset),
             offset=offset,
-            height=HeightPreview(height.height[:, :count], height.stiffness[:count]),
+            height=height.part(count),
             stiffness=stiffness[:count],
             omega=natural_frequency(stiffness[:count], samples.sample_time),
             load_left=load_left(samples, support)[1 : count + 1],
@@ -210,27 +214,29 @@ class Outlook:
         point: Array,
         height: HeightPreview,
         position: Array,
-        deviation: Deviation | None,
+        time: float,
     ) -> Array:
         """What the legs add to the ZMP, shape (n, 2) [m]; arguments as of `window`."""
         chain, count, clock = self._leg.chain, self._count, stepper.clock
         if chain is None:
             return np.zeros((count, 2))
-        last = samples.phases[-1]
-        standing = last.start if math.isinf(last.samples) else math.inf
-        kept = self._offsets is not None and self._offsets.holds(clock.now, support.key, standing)
-        if self._offsets is None or deviation is not None or not clock.steady or not kept:
+        last, table, ticks, key, aim = samples.phases[-1], self._offsets, clock.ticks, support.key, stepper.aim
+        # In the final standing, where the walk's clock does not matter, none serves: its values go on with time.
+        left = last.start - clock.now if math.isinf(last.samples) else math.inf
+        # A swing that a command hurries is laid anew at every tick, by what the clock shows then.
+        serves = left > 0.0 and (clock.steady or stepper.adapted)
+        if table is None or not serves or not table.holds(ticks, key, clock.taken, aim, self._same_swing):
             # No longer than until the robot stands will they serve.
-            count += int(min(_TICKS - 1, max(standing - clock.now, 0.0) + 1))
-            heights = HeightPreview(height.height[:, :count], height.stiffness[:count])
+            count += int(min(_TICKS - 1, max(left, 0.0) + 1))
             frame = support.rotation, support.origin
-            feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]), deviation)
-            # While a step is adapted it is made at every tick, from the last one.
-            last_made = None if deviation is None and clock.steady else self._offsets
-            guess = None if last_made is None else last_made.guess(clock.now, support.key, count)
-            values = self._made_offset(chain, feet, point[:count], heights, position, guess)
-            self._offsets = OffsetTable(clock.now, support.key, values)
-        return self._offsets.since(clock.now, self._count)
+            feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]), stepper.deviation(time))
+            # While a step is adapted it is made from the last one.
+            guess = None
+            if table is not None and (aim is not None or not clock.steady):
+                guess = table.guess(ticks, key, count)
+            values = self._made_offset(chain, feet, point[:count], height.part(count), position, guess)
+            table = self._offsets = OffsetTable(ticks, key, clock.taken, aim, values)
+        return table.since(ticks, self._count)
 
     def _made_offset(
         self,

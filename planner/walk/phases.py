@@ -110,10 +110,13 @@ class Clock:
 
     Attributes:
         now: what it shows [samples], -1 before the first tick.
+        ticks: how often it has gone on.
+        taken: how often it has been told to go at another pace.
     """
 
     def __init__(self, sample_time: float) -> None:
         self.now = -1.0
+        self.ticks = self.taken = 0
         self._sample_time = sample_time
         self._pace: Pace | None = None
         self._began = 0.0
@@ -155,10 +158,12 @@ class Clock:
         """Go a way in a length of time from now on, as far as `Pace.over` lets it [samples]."""
         _, rate, bend = self.after(0.0)
         self._pace, self._began, self._paced = Pace.over(way, length, rate, bend), self.now, 0.0
+        self.taken += 1
 
     def advance(self) -> None:
         """Go on by one tick."""
         self.now, _, _ = self.after(1.0)
+        self.ticks += 1
         self._paced += 1.0
         if self._pace is not None and self._paced >= self._pace.length - CLOCK_ROUNDING:
             self._pace = None

@@ -177,7 +177,7 @@ class Legs:
     def boxes(self, side: float) -> list[tuple[Array, Array]]:
         """Lower and upper corners of boxes, one of which holds the landing of a left (+1) or right (-1) foot."""
         most = 2.0 * self.radius
-        boxes = [self._box(side, -most, most, self.near)]
+        boxes = [self._beside(side)]
         if self.across is not None:
             boxes += [
                 self._box(side, self.clear, most, -self.across),
@@ -185,26 +185,29 @@ class Legs:
             ]
         return boxes
 
+    def _beside(self, side: float) -> tuple[Array, Array]:
+        return self._box(side, -2.0 * self.radius, 2.0 * self.radius, self.near)
+
     def _box(self, side: float, back: float, ahead: float, near: float) -> tuple[Array, Array]:
         low, high = sorted((side * near, side * (2.0 * self.radius + self.hip_width)))
         return np.array([back, low]), np.array([ahead, high])
 
     def within(self, places: Array, hips: Array) -> Array:
-        """The places nearest to these that legs reach from hips, shape (n, 2) each [m]."""
+        """The places nearest to these that legs reach from hips, shape (..., 2) [m]."""
         way = places - hips
-        share = np.minimum(1.0, self.radius / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9))
-        return np.asarray(hips + share[:, None] * way)
+        share = np.minimum(1.0, self.radius / np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9))
+        return np.asarray(hips + share[..., None] * way)
 
-    def around(self, place: Array, hip: Array, box: tuple[Array, Array]) -> tuple[Array, Array]:
-        """The part of a box with a place in it whose sides a leg reaches from a hip, level with the place."""
-        most = np.sqrt(np.maximum(self.radius**2 - (place - hip)[::-1] ** 2, 0.0))
+    def around(self, place: Array, hip: Array, box: tuple[Array, Array], reach: float) -> tuple[Array, Array]:
+        """The part of a box with a place in it whose sides are in reach from a hip, level with the place."""
+        most = np.sqrt(np.maximum(reach**2 - (place - hip)[::-1] ** 2, 0.0))
         low, high = np.maximum(box[0], hip - most), np.minimum(box[1], hip + most)
         return np.minimum(low, place), np.maximum(high, place)
 
     def beside(self, place: Array, side: float) -> tuple[Array, Array]:
         """The box of a footstep that is too far ahead to know where the hips will be: both legs span it."""
-        both = replace(self, radius=2.0 * self.radius)
-        return both.around(place, np.array([0.0, side * self.hip_width]), self.boxes(side)[0])
+        hip = np.array([0.0, side * self.hip_width])
+        return self.around(place, hip, self._beside(side), 2.0 * self.radius)
 
 
 def turned_room(room: Array, angle: float) -> Array:

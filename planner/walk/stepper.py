@@ -232,17 +232,22 @@ class Stepper:
             self.swing = self.swing.retimed(time, self.time_left - before, self.sample_time)
         return True
 
+    @property
+    def aim(self) -> Array | None:
+        """Where a swing goes that deviates from its step, shape (3,) [m]; None where none does."""
+        return None if self.swing is None or not self.adapted else self.swing.target[:3]
+
     def deviation(self, time: float) -> Deviation | None:
         """How the swing deviates from its step; None where it does not.
 
         Args:
             time: now [s].
         """
-        if self.swing is None or not self.adapted:
+        if self.swing is None or self.aim is None:
             return None
         aimed = self.footsteps
         if not self.fixed:
-            aimed = aimed.moved(self.row + 1, self.swing.target[:3], self._terrain)
+            aimed = aimed.moved(self.row + 1, self.aim, self._terrain)
         return Deviation(self.swing, time, aimed)
 
     def advance(self, feet: FeetState) -> None:

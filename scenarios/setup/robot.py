@@ -1,5 +1,6 @@
 """The robot of a scenario: its description with the chosen options, what bounds its walk, and what it is in truth."""
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 

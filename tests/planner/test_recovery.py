@@ -109,7 +109,7 @@ def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error, share):
     gain = (1.0 - np.exp(-OMEGA * 0.12)) / (OMEGA * 0.12)
     place = NOMINAL + (landed - nominal) / gain
     hip = pendulum_com(now.com, now.dcm, cop, np.exp([OMEGA * now.single]))[0] + (0.0, 0.1)
-    low, high = free.around(place, hip, free.boxes(1.0)[0])
+    low, high = free.around(place, hip, free.boxes(1.0)[0], free.radius)
     held = np.maximum(0.5 * most, half - 0.03) / gain
     low, high = np.maximum(low, place - held), np.minimum(high, place + held)
     np.testing.assert_allclose((caught.low, caught.high), (low, high), atol=3e-3)
@@ -132,6 +132,15 @@ def test_a_foot_is_swung_no_harder_than_the_hip_allows():
         bends.append(np.abs(at @ (np.arange(2, 6) * np.arange(1, 5) * quintic(start, end, time)[2:, 0])).max())
     assert max(bends) < 1.03 * LEGS.acceleration[0]
     assert bends[1] > 0.9 * LEGS.acceleration[0]
+
+
+@pytest.mark.parametrize("behind", [0.5, 0.75])
+def test_a_step_is_not_hurried_to_a_place_that_its_foot_cannot_be_swung_to(behind):
+    """With the DCM far ahead: nobody gets across the stance leg, 0.24 m ahead of it, in the 0.18 s that would do."""
+    now = situation((0.25, 0.0), 0.38, swing=((-behind, 0.2), (0.3, 0.0)))
+    caught = catch(now)
+    front = Recovery(LEGS, P, True).swung(now, np.array([caught.left, now.single]))[0, 0]
+    assert caught.low[0] <= front
 
 
 @pytest.mark.parametrize("direction", np.linspace(-np.pi, np.pi, 12, endpoint=False))

@@ -112,4 +112,4 @@ def test_zmp_of_the_plan_is_that_of_the_links_while_a_swing_goes_elsewhere(stand
             errors.append(np.abs(sample.zmp - zmp).max())
     assert len(errors) > 10
     assert np.median(errors) < 0.01
-    assert max(errors) < 0.11
+    assert max(errors) < 0.05

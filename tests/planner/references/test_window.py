@@ -8,10 +8,14 @@ import pytest
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.parameters import LegInertia, PlannerParameters
 from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import PointPush, walk_pendulum
+from surefoot.planner.references import window
+from surefoot.planner.references.leg_offset import nominal_feet
 from surefoot.planner.references.window import OffsetTable
 from surefoot.planner.references.zmp_reference import SupportKey
 from surefoot.planner.types import CentroidalState
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.reach import Legs
 
 pytestmark = pytest.mark.unit
 
@@ -20,15 +24,73 @@ LEG = LegInertia(0.06, LegChain(0.1, (0.0, 0.0, 0.25), LINK, LINK, 0.02, (0.03, 
 KEY = SupportKey(3, 2, 100.0, (True, False))
 
 
-def test_a_table_holds_for_few_later_samples_of_an_equal_key():
-    table = OffsetTable(110, KEY, np.zeros((200, 2)))
-    assert [sample for sample in range(105, 120) if table.holds(sample, SupportKey(*KEY), 500)] == [111, 112, 113, 114]
-    assert [sample for sample in range(105, 120) if table.holds(sample, KEY, 112)] == [111]
+AIM = np.array([1.0, 0.2, 0.0])
+
+
+def table(aim=None):
+    return OffsetTable(110, KEY, 2, aim, np.arange(400.0).reshape(200, 2))
+
+
+def test_a_table_holds_for_few_later_ticks_of_an_equal_key():
+    assert [tick for tick in range(105, 120) if table().holds(tick, SupportKey(*KEY), 2, None, 0.005)] == [
+        111, 112, 113, 114,
+    ]  # fmt: skip
+    np.testing.assert_array_equal(table().since(113, 150), table().values[3:153])
 
 
 @pytest.mark.parametrize("change", [{"revision": 4}, {"landed": 3}, {"phase_start": 101.0}, {"free": (True, True)}])
 def test_a_table_does_not_hold_for_another_support(change):
-    assert not OffsetTable(110, KEY, np.zeros((200, 2))).holds(111, KEY._replace(**change), 500)
+    assert not table().holds(111, KEY._replace(**change), 2, None, 0.005)
+
+
+def test_a_table_does_not_hold_at_another_pace():
+    assert not table().holds(111, KEY, 3, None, 0.005)
+
+
+def test_a_table_holds_for_a_swing_that_is_aimed_at_about_the_same_place():
+    aside = np.array([0.0, 0.001, 0.0])
+    assert table(AIM).holds(111, KEY, 2, AIM + 4.0 * aside, 0.005)
+    assert not table(AIM).holds(111, KEY, 2, AIM + 6.0 * aside, 0.005)
+    assert not table(AIM).holds(111, KEY, 2, None, 0.005)
+    assert not table().holds(111, KEY, 2, AIM, 0.005)
+
+
+class Recorded:
+    """A planner that keeps what it is given, and whether it adapted a swing then."""
+
+    def __init__(self, planner):
+        self.planner, self.parameters, self.given = planner, planner.parameters, []
+
+    def update(self, state, feet):
+        plan = self.planner.update(state, feet)
+        self.given.append((state, feet, self.planner._stepper.aim is not None))
+        return plan
+
+
+def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch):
+    """Within what a footstep moves meanwhile, while a step is adapted; and it does serve for most ticks."""
+    gait = GaitParameters(steps=3, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
+    legs, made = Legs(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0)), []
+
+    def planner():
+        return Recorded(WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=PlannerParameters(leg=LEG), legs=legs))
+
+    def counted(samples, queue, frame, toe, deviation):
+        made.append(deviation is not None)
+        return nominal_feet(samples, queue, frame, toe, deviation)
+
+    monkeypatch.setattr(window, "nominal_feet", counted)
+    usual, push = planner(), PointPush(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0]))
+    end, com = gait.lift_off(2) + 0.48, np.array([0.0, 0.0, 0.95])
+    plans = walk_pendulum(usual, stand(), end, com=com, pushes=(push,)).plans
+    assert 10 < sum(adapts for *_, adapts in usual.given) > 2 * sum(made)
+    monkeypatch.setattr(window, "_SAME_SWING", -1.0)
+    anew, apart = planner(), []
+    for plan, (state, feet, adapts) in zip(plans, usual.given, strict=True):
+        other = anew.update(state, feet)
+        apart += [np.abs(other.zmp_offset - plan.zmp_offset).max()] * adapts
+    assert max(np.abs(plan.zmp_offset).max() for plan in plans) > 0.1
+    assert 0.0 < max(apart) < 0.01
 
 
 @pytest.mark.parametrize("copied", [False, True])

@@ -245,17 +245,15 @@ class HeightPreview:
 
     Attributes:
         height: z, z', z'' in the world frame, shape (3, n) [m, m/s, m/s^2].
-        pressing: g + z'', but never less than what a fall may leave of it, shape (n,) [m/s^2].
         stiffness: λ = (g + z'') / (z - p_z), shape (n,) [1/s^2].
     """
 
     height: Array
-    pressing: Array
     stiffness: Array
 
     def part(self, count: int) -> "HeightPreview":
         """That of the first so many samples."""
-        return HeightPreview(self.height[:, :count], self.pressing[:count], self.stiffness[:count])
+        return HeightPreview(self.height[:, :count], self.stiffness[:count])
 
 
 def preview_height(
@@ -282,7 +280,4 @@ def preview_height(
     height = profile.height(gait, samples, support_height)[:, 1:-1]
     limit = _IMPULSE_LIMIT if profile.impulsive else _FALL_LIMIT
     pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
-    if not profile.impulsive:
-        # In a phase that a push makes much shorter the law would let the body fall so far that nothing presses.
-        height = np.stack((*height[:2], np.maximum(height[2], -limit * GRAVITY)))
-    return HeightPreview(height, pressing, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT * length))
+    return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT * length))

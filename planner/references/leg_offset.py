@@ -27,7 +27,7 @@ from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.swing.heel_off import bump
 from surefoot.planner.swing.trajectory import SwingTrajectory
-from surefoot.planner.types import Array, Foot, PhaseKind
+from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Phase, PhaseSamples
 from surefoot.planner.walk.queue import StepQueue, unit_swing
 from surefoot.planner.walk.stepper import Deviation
@@ -149,8 +149,9 @@ def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: Heigh
     com[0, 2] = _before(height.height[:, 0], t)
     soles, heading, pitch = feet.soles[:, : n + 1], feet.heading[:, : n + 1], feet.pitch[:, : n + 1]
     rate = chain.momentum_rate(com, soles, heading, t, pitch, feet.toe)
+    pressing = GRAVITY + height.height[2]
     offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]
-    offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / height.pressing[:-1, None])
+    offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / pressing[:-1, None])
     offset[-1] = offset[-2]
     return np.asarray(offset)
 

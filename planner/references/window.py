@@ -19,7 +19,7 @@ from surefoot.planner.references.zmp_reference import (
     present_support,
     zmp_reference,
 )
-from surefoot.planner.types import Array, LastingForce
+from surefoot.planner.types import GRAVITY, Array, LastingForce
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import PhaseSamples
 from surefoot.planner.walk.stepper import Stepper
@@ -119,7 +119,8 @@ def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array
     """
     x, y = lasting.moment.tolist()
     turning = np.array([y, -x]) @ rotation
-    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / height.pressing[:, None])
+    pressing = GRAVITY + height.height[2]
+    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
 
 
 class Outlook:

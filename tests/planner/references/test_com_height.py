@@ -125,19 +125,6 @@ def test_stiffness_counts_the_height_above_the_zmp(preview):
     np.testing.assert_allclose(shown.stiffness * (shown.height[0] - ground), GRAVITY + shown.height[2], rtol=1e-12)
 
 
-@pytest.mark.parametrize("hurry", [1.0, 4.0])
-def test_a_hurried_body_does_not_fall_faster_than_weight_lets_it(schedule, hurry):
-    """The bump of a swing in a quarter of its time would take 14 m/s^2; what is planned, pressed and counted agree."""
-    gait = GaitParameters(steps=2, single_support=0.5)
-    queue, count = schedule(gait).queue, 40
-    rates = np.full(count, hurry), np.zeros(count)
-    clock = gait.lift_off(1) / 0.02 + hurry * np.arange(-1.0, count - 1)
-    shown = preview_height(SmoothHeight(), gait, queue.samples(Flow(clock, rates)), np.zeros(4), np.zeros(count - 2))
-    assert shown.height[2].min() == pytest.approx(-0.8 * GRAVITY if hurry > 1.0 else -1.6, rel=0.02)
-    np.testing.assert_allclose(shown.pressing, GRAVITY + shown.height[2], atol=1e-12)
-    np.testing.assert_allclose(shown.pressing, shown.stiffness * shown.height[0], rtol=1e-12)
-
-
 @pytest.mark.parametrize(("rise", "name"), [(Rise.DOUBLE, "double_support"), (Rise.SINGLE, "single_support")])
 def test_a_step_too_high_for_its_support_is_refused(schedule, rise, name):
     gait = GaitParameters(steps=2, single_support=0.36, double_support=0.3)

@@ -7,7 +7,7 @@ import pytest
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.scenarios.file.schema import Gait, Scenario, Start
-from surefoot.scenarios.setup.stance import SOLE_SINKAGE, body_of, disturbed, feet_at, pressed, start_posture
+from surefoot.scenarios.setup.stance import SOLE_SINKAGE, STOPS_OFF, body_of, disturbed, feet_at, pressed, start_posture
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
@@ -72,6 +72,6 @@ def test_knees_bend_no_farther_back_than_straight(body, bend):
     roles = replace(robot.roles, knee_bend=(bend, bend))
     limits = body_of(replace(robot, roles=roles, position_lower=lower, position_upper=upper)).limits
     straight = limits.lower if bend > 0.0 else limits.upper
-    np.testing.assert_array_equal(straight[knees], robot.straight_joint_positions[knees])
+    np.testing.assert_allclose(straight[knees], robot.straight_joint_positions[knees] + bend * STOPS_OFF)
     others = np.setdiff1d(np.arange(len(lower)), knees)
-    np.testing.assert_array_equal(limits.lower[others], lower[others])
+    np.testing.assert_allclose(limits.lower[others], lower[others] + STOPS_OFF)

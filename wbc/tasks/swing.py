@@ -12,9 +12,11 @@ from surefoot.wbc.types import Array, WbcReference
 YIELDING = 0.1
 """Way to the end of its range within which an ankle ceases to turn its swinging foot towards that end [rad]."""
 
-
 _TURNED_BACK = 0.05
 """How far beyond its target such a foot has to be turned that it turns back at full strength [rad]."""
+
+_LIFTED = 0.004
+"""Most that such a foot is lifted, for what its toe or heel hangs lower, on the reference robot [m]."""
 
 
 class AnkleStops:
@@ -69,7 +71,8 @@ class SwingFoot:
 
     A foot that leaves the ground rolling is seen from its toe edge (see ``RobotTerms.shift_foot``). One that cannot be
     as level as it should (see `AnkleStops`) is from then on seen from its ankle: a foot that turns about it leaves the
-    shank where it was planned to be, and with it the momentum of the leg that the planner counts on.
+    shank where it was planned to be, and with it the momentum of the leg that the planner counts on. It is lifted by a
+    few millimetres of what its toe or heel hangs lower; all of that would take the shank off its way again.
     """
 
     name, size = "swing foot", 6
@@ -88,7 +91,7 @@ class SwingFoot:
         """
         self._stops, self._turned = stops, -1
         self.weight = weights.swing * np.repeat([1.0, length**2], 3)
-        self._gains, self._toe = gains.swing, toe
+        self._gains, self._toe, self._lifted = gains.swing, toe, _LIFTED * length
 
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> tuple[float, ...]:
         """See ``Task.write``."""
@@ -100,7 +103,11 @@ class SwingFoot:
         np.multiply(terms.sole_jacobian[k], scale, out=rows[:, :-12])
         yielding = self._stops.yielding(terms, k, reference.swing_rotation) if self._stops else []
         damping, R, velocity = self._gains[1], terms.contact_rotation[k], terms.sole_velocity[k]
-        x, y, z = (self._linear(terms, reference, k) @ R).tolist()
+        wanted = self._linear(terms, reference, k)
+        if yielding:
+            hangs = self._toe * abs(R[2, 0] - reference.swing_rotation[2, 0])
+            wanted[2] += self._gains[0] * max(share for _, share in yielding) * min(hangs, self._lifted)
+        x, y, z = (wanted @ R).tolist()
         turning = reference.swing_angular_acceleration + damping * reference.swing_angular_velocity
         ahead = tuple((turning @ R).tolist())
         ax, ay, az = angular_acceleration(self._gains, R, velocity[3:], reference.swing_rotation, ahead)

@@ -201,7 +201,7 @@ class _Translation:
         if metric.name != _TORQUE:
             return _times(limit, _against(self.after.size, self.before.size, metric.unit))
         scaled = _times(limit, self.effort)
-        return max(limit, min(scaled, 1.0 - _RESERVE)) if _is_number(limit) and self.effort > 1.0 else scaled
+        return max(limit, min(scaled, 1.0 - _RESERVE)) if _is_number(limit) else limit
 
     def _number(self, value: Any, unit: str, key: Key) -> Any:
         """The value for the other robot."""

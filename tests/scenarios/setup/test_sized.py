@@ -206,16 +206,16 @@ class Motors(RegisteredRobots):
 
 @pytest.mark.parametrize(
     ("share", "bound"),
-    [(0.3, 0.6), (0.2, 0.4), (0.4, 0.8), (0.6, 0.95), (math.inf, 0.6)],
+    [(0.3, 0.6), (0.2, 0.6), (0.4, 0.8), (0.6, 0.95), (math.inf, 0.6)],
     ids=["as strong", "stronger", "weaker", "hardly able", "unable"],
 )
-def test_a_walk_may_take_so_many_times_what_standing_on_one_foot_takes(share, bound):
+def test_a_weaker_robot_may_take_so_many_times_what_standing_on_one_foot_takes(share, bound):
     text = "sized_for: humanoid100\nrobot: small\ncriteria: {torque_ratio_max: {max: 0.6}, fell: false}"
     criteria = read_scenario(text, "f.yaml", "f", (), Motors(share)).criteria
     assert criteria["torque_ratio_max"].max == pytest.approx(bound)
 
 
-def test_no_bound_on_torque_gets_stricter_for_a_weaker_robot():
+def test_no_bound_on_torque_gets_stricter():
     text = "sized_for: humanoid100\nrobot: small\ncriteria: {torque_ratio_max: {max: 0.98}}"
     assert read_scenario(text, "f.yaml", "f", (), Motors(0.6)).criteria["torque_ratio_max"].max == 0.98
 

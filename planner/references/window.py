@@ -44,7 +44,6 @@ class OffsetTable:
         start: tick of the clock that it was made at.
         key: of the support then, whose plan frame is that of the values.
         pace: how often the clock had been told to go otherwise.
-        deviation: of the swing then.
         aim: where a swing goes that deviated from its step then, shape (3,) [m].
         values: shape (m, 2) [m].
     """

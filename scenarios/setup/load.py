@@ -245,15 +245,13 @@ def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     names = say_for(source, overrides, robots)
     if names is None:
         return
-    drafts = (_sound({**one, "robot": name}, robots) for one, name in zip((before, source.value), names, strict=True))
-    of, walk = drafts
-    from surefoot.scenarios.setup.bend import bent_alike
-
+    of, walk = (_sound({**one, "robot": name}, robots) for one, name in zip((before, source.value), names, strict=True))
     if of is None or walk is None:
         return
+    from surefoot.scenarios.setup.bend import bent_alike
+
     with suppress(ParameterError):
-        height = bent_alike(of, walk)
-        source.value["gait"]["com_height"] = height
+        source.value["gait"]["com_height"] = bent_alike(of, walk)
         source.written["gait", "com_height"] = f"{of.gait.com_height:g} in the file, for {names[0]}"
 
 

@@ -68,10 +68,11 @@ def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
     way = rehearsed(walk, feet, leg)
     toe = 0.5 * walk.robot.sole_length
     joints = chain.joints(way.com, way.soles, way.heading, way.pitch, toe)
+    angles = joint_angles(joints, way)
     if fast:
-        _check_speeds(walk.robot, joint_angles(joints, way), way.sample_time)
+        _check_speeds(walk.robot, angles, way.sample_time)
     if rolls:
-        _check_ankles(walk.robot, joint_angles(joints, way)[2], way)
+        _check_ankles(walk.robot, angles[2], way)
     if walk.terrain.has_edges:
         _check_shanks(walk, way, joints)
 

@@ -33,7 +33,7 @@ from surefoot.wbc.parameters import WbcParameters
 
 _KEY = "sized_for"
 _TORQUE = "torque_ratio_max"
-"""The metric whose bounds go by how strong a robot is: a walk takes so many times what standing on one foot does."""
+"""The metric whose bounds rise for weaker robots: a walk takes so many times what standing on one foot does."""
 
 _RESERVE = 0.05
 """Of its motors' torque, that such a bound leaves a weaker robot at least [-]."""

@@ -89,14 +89,10 @@ class Campaign:
         Values of lists, and those that are drawn or searched, stand in tables and mean what they say.
         """
         origin, base = self.spec.sized_for, self.bases.get(self.base(keys))
-        if origin is None or base is None:
+        if base is None or origin in (None, keys.get("robot")):
             return keys
-        said = {
-            "robot",
-            SCENARIO,
-            *self.literal,
-            *(name for name, axis in self.spec.grid.items() if type(axis) is list),
-        }
+        listed = (name for name, axis in self.spec.grid.items() if isinstance(axis, list))
+        said = {"robot", SCENARIO, *self.literal, *listed}
         own = {key: value for key, value in keys.items() if key not in said and not key.startswith(SEARCH)}
         sized = for_robot(base.written, own, origin, keys.get("robot"))
         return {key: sized.get(key, value) for key, value in keys.items() if key not in own or key in sized}

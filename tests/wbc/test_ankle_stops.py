@@ -101,3 +101,29 @@ def test_a_foot_that_yields_is_seen_from_its_ankle(body: Body, references) -> No
     np.testing.assert_allclose(of_ankle[:3, column], 0.0, atol=1e-9)
     motion = np.linalg.lstsq(of_sole, wanted, rcond=None)[0]
     np.testing.assert_allclose(of_ankle[:3] @ motion, asked[:3], atol=1e-8)
+
+
+@pytest.mark.parametrize(("hung", "length"), [(0.02, 1.0), (0.5, 1.0), (0.5, 0.5)])
+def test_a_foot_that_its_ankle_tilts_is_lifted_for_what_hangs_but_only_a_little(
+    body: Body, references, hung: float, length: float
+) -> None:
+    """By what its toe hangs lower than it should, four millimetres on a robot of this size at most."""
+    terms, toe = terms_at(body, 0.0), 0.11 * length
+    R = terms.contact_rotation[0].copy()
+    # Against what is wanted, which is the way that the ankle still has, the sole is pitched by this angle.
+    reference = references[1](
+        swing_foot=0, swing_position=terms.sole_position[0].copy(), swing_rotation=R @ pin.utils.rotate("y", hung),
+        swing_angular_velocity=np.zeros(3), swing_angular_acceleration=np.zeros(3),
+    )  # fmt: skip
+    wide = replace(body.limits, lower=body.limits.lower - 1.0, upper=body.limits.upper + 1.0)
+    gains, targets = TaskGains(), []
+    for limits in (wide, body.limits):
+        task = SwingFoot(TaskWeights(), gains, toe, length, AnkleStops(body.model, body.frames, limits))
+        linear = np.array(task.write(terms, reference, np.ones((6, 1)), np.zeros((6, body.model.nv + 12)))[:3])
+        targets.append(R @ linear)
+    ankle = AnkleStops(body.model, body.frames, body.limits).ankles[0]
+    of_ankle = gains.swing[0] * (reference.swing_rotation @ ankle - R @ ankle)
+    low = toe * abs(R[2, 0] - reference.swing_rotation[2, 0])
+    lifted = (targets[1] - targets[0] - of_ankle) / gains.swing[0]
+    assert 0.001 < low
+    np.testing.assert_allclose(lifted, [0.0, 0.0, min(low, 0.004 * length)], atol=1e-9)

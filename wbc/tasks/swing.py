@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.wbc.limits import JointLimits
-from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.model import BodyFrames, RobotTerms, cross
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.task import angular_acceleration
 from surefoot.wbc.types import Array, WbcReference
@@ -133,9 +133,9 @@ class SwingFoot:
         stiffness, damping = self._gains
         R, spin, bias = terms.contact_rotation[k], terms.sole_velocity[k, 3:], terms.sole_bias[k, 3:]
         there, turning = reference.swing_rotation @ ankle, reference.swing_angular_velocity
-        wanted = stiffness * (there - R @ ankle) + damping * np.cross(turning, there)
-        wanted += np.cross(reference.swing_angular_acceleration, there) + np.cross(turning, np.cross(turning, there))
-        moved = np.cross(damping * spin + bias, ankle) + np.cross(spin, np.cross(spin, ankle))
+        wanted = stiffness * (there - R @ ankle) + damping * cross(turning, there)
+        wanted += cross(reference.swing_angular_acceleration, there) + cross(turning, cross(turning, there))
+        moved = cross(damping * spin + bias, ankle) + cross(spin, cross(spin, ankle))
         return tuple((np.array(linear) + wanted @ R - moved).tolist())
 
     def _linear(self, terms: RobotTerms, reference: WbcReference, k: int) -> Array:

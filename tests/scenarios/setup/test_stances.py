@@ -11,7 +11,7 @@ from surefoot.errors import ParameterError
 from surefoot.models import RobotDescription
 from surefoot.planner.types import GRAVITY
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.scenarios.setup.stance import STOPS_OFF, body_of, start_posture
+from surefoot.scenarios.setup.stance import body_of, start_posture
 from surefoot.scenarios.setup.stances import _shares, _stances, check_stances
 from surefoot.scenarios.setup.walk import Walk, resolve
 
@@ -119,14 +119,3 @@ def test_soles_lie_on_the_slope_that_they_stand_on() -> None:
     with pytest.raises(ParameterError, match=r"ankle_pitch.*less steep ground") as refusal:
         walked_by(walk, limited(walk.robot, "ankle_pitch", -0.6, 0.6))
     assert refusal.value.key == ("terrain", "angle")
-
-
-def test_no_knee_passes_straight() -> None:
-    """A stop beyond straight is not used, on either side that knees may bend to; others are, but for a little."""
-    robot = limited(resolve(surefoot.load("walk")).robot, "knee", -0.2, 2.4)
-    knees = list(robot.joint_indices(robot.roles.knees))
-    body = body_of(robot)
-    assert body.limits.lower[knees] == pytest.approx([STOPS_OFF, STOPS_OFF])
-    assert body.limits.upper[knees] == pytest.approx([2.4 - STOPS_OFF, 2.4 - STOPS_OFF])
-    mirrored = replace(limited(robot, "knee", -2.4, 0.2), roles=replace(robot.roles, knee_bend=(-1.0, -1.0)))
-    assert body_of(mirrored).limits.upper[knees] == pytest.approx([-STOPS_OFF, -STOPS_OFF])

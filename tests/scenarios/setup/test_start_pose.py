@@ -75,3 +75,4 @@ def test_knees_bend_no_farther_back_than_straight(body, bend):
     np.testing.assert_allclose(straight[knees], robot.straight_joint_positions[knees] + bend * STOPS_OFF)
     others = np.setdiff1d(np.arange(len(lower)), knees)
     np.testing.assert_allclose(limits.lower[others], lower[others] + STOPS_OFF)
+    np.testing.assert_allclose(limits.upper[others], upper[others] - STOPS_OFF)

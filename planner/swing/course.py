@@ -24,7 +24,10 @@ _STARTS = (0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35)
 _ENDS = (1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.65)
 _GLIDES = tuple(product(_STARTS, _ENDS))
 _APEXES = (0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7)
-_WAY = np.linspace(0.0, 1.0, 81)
+_FINER = np.ldexp(1.0 / 80, [-4, -3, -2, -1])
+_WAY = np.sort(np.concatenate((np.linspace(0.0, 1.0, 81), _FINER, 1.0 - _FINER)))
+"""Where the ground is looked at; close to both ends closer, where a foot stands right before a riser [-]."""
+
 _INSTANTS = 200
 _LEVEL = 1e-3
 
@@ -73,7 +76,7 @@ def swing_course(
 
 
 def _ground(start: Array, end: Array, terrain: Terrain, half_size: Array, length: float) -> Array:
-    """Least height of the sole's centre around each point of its way, on which it turns too, shape (81,) [m]."""
+    """Least height of the sole's centre around each point of its way, on which it turns too, shape (89,) [m]."""
     sides = (-1.0, -0.5, 0.0, 0.5, 1.0)
     outline = (half_size + EDGE_DISTANCE * length) * np.array(
         [(u, v) for u, v in product(sides, sides) if max(abs(u), abs(v)) == 1.0]

@@ -38,14 +38,9 @@ def swings(plan, courses, samples):
         yield ends, times, start_swing(Foot.LEFT, *ends, times, course.height, PARAMETERS)
 
 
-@pytest.mark.parametrize("direction", Direction)
-@pytest.mark.parametrize(("riser", "tread", "foot"), [(0.1, 0.2, 0.075), (0.185, 0.24, 0.22), (0.235, 0.32, 0.22)])
-@pytest.mark.parametrize("samples", [45, 75])
-def test_the_whole_sole_clears_every_edge(direction, riser, tread, foot, samples):
-    half_size = 0.5 * np.array([foot, 0.1])
-    plan, terrain = walk_plan(direction, riser, tread)
-    courses = courses_of(plan, terrain, half_size, samples)
-    for _, times, swing in swings(plan, courses, samples):
+def clearances(plan, terrain, half_size, samples):
+    """The least height of the whole sole over what is neither its lift-off nor its landing place, of each step [m]."""
+    for _, times, swing in swings(plan, courses_of(plan, terrain, half_size, samples), samples):
         clearance = []
         for time in np.arange(0.0, times.touchdown, 0.002):
             pose = swing.evaluate(time)[0]
@@ -53,7 +48,28 @@ def test_the_whole_sole_clears_every_edge(direction, riser, tread, foot, samples
             heights = terrain.heights(grid)
             if np.ptp(heights) > 1e-3:
                 clearance.append(pose[2] - heights.max())
-        assert min(clearance, default=EDGE_CLEARANCE) > EDGE_CLEARANCE - 2e-3
+        yield min(clearance, default=EDGE_CLEARANCE)
+
+
+@pytest.mark.parametrize("direction", Direction)
+@pytest.mark.parametrize(("riser", "tread", "foot"), [(0.1, 0.2, 0.075), (0.185, 0.24, 0.22), (0.235, 0.32, 0.22)])
+@pytest.mark.parametrize("samples", [45, 75])
+def test_the_whole_sole_clears_every_edge(direction, riser, tread, foot, samples):
+    plan, terrain = walk_plan(direction, riser, tread)
+    assert min(clearances(plan, terrain, 0.5 * np.array([foot, 0.1]), samples)) > EDGE_CLEARANCE - 2e-3
+
+
+@pytest.mark.parametrize("room", [0.001, 0.002, 0.004, 0.006, 0.008])
+def test_a_heel_close_to_the_riser_behind_it_clears_that_too_or_is_refused(room):
+    """It comes down before its way over the ground is quite done."""
+    plan, terrain = walk_plan(Direction.DOWN, 0.185, 0.28)
+    try:
+        least = min(clearances(plan, terrain, np.array([0.14 - room, 0.05]), 45))
+    except ParameterError:
+        assert room < 0.003
+    else:
+        assert room > 0.003
+        assert least > EDGE_CLEARANCE - 3e-3
 
 
 def test_on_level_ground_nothing_changes(stand):

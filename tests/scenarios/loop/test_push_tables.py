@@ -131,7 +131,7 @@ def ground(name: str) -> dict[str, object]:
 
 
 def displaced(name: str, seed: int) -> list[dict[str, object]]:
-    """Footsteps of a walk, each up to 2.5 cm and 10 degrees off its place; the last two, which stand together, as they are."""
+    """Footsteps of a walk, each up to 2.5 cm and 10 degrees off its place, but for the last two, on which it stands."""
     from surefoot.planner.walk.footsteps import plan_footsteps
     from surefoot.scenarios.setup.walk import resolve
 

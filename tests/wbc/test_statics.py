@@ -42,17 +42,32 @@ def bearing(com_aside):
     target = PostureTarget(feet, np.zeros(2), np.array([*com_aside, 0.98]) + feet[0], 0.0)
     found = PostureIk(model, frames, limits, robot.nominal_joint_positions).solve(target, q)
     assert found.reached
-    return robot, bearing_torque(model, frames, found.q, 0), standing_torque(model, frames, found.q, foot=0)
+    return robot, found.q, bearing_torque(model, frames, found.q, 0), standing_torque(model, frames, found.q, foot=0)
 
 
 def test_a_foot_below_the_com_bears_what_it_bears_at_rest():
-    _, moving, resting = bearing((0.0, 0.0))
+    *_, moving, resting = bearing((0.0, 0.0))
     np.testing.assert_allclose(moving, resting, atol=1e-4)
 
 
 def test_a_foot_beside_the_com_bears_without_a_moment_at_its_sole():
     """The ankle of a foot whose force goes through the CoM turns about its own lever alone: far less than at rest."""
-    robot, moving, resting = bearing((0.1, 0.0))
+    robot, _, moving, resting = bearing((0.1, 0.0))
     (ankle,) = robot.joint_indices(("left_ankle_pitch",))
     assert abs(resting[ankle]) == pytest.approx(0.1 * robot.mass * 9.81, rel=0.3)
     assert abs(moving[ankle]) < 0.15 * abs(resting[ankle])
+
+
+def test_it_is_at_rest_in_the_gravity_of_who_is_accelerated_along():
+    """There the weight goes from the CoM through the sole's centre, and torques and that force hold it."""
+    robot, q, moving, _ = bearing((0.1, -0.05))
+    model, frame = pinocchio_model(robot), robot.sole_sites[0]
+    data = model.createData()
+    pin.computeJointJacobians(model, data, q)
+    pin.updateFramePlacements(model, data)
+    lever = data.oMf[model.getFrameId(frame)].translation - pin.centerOfMass(model, data, q)
+    model.gravity.linear = 9.81 / -lever[2] * lever
+    J = pin.getFrameJacobian(model, data, model.getFrameId(frame), pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)[:3]
+    left = pin.computeGeneralizedGravity(model, data, q) + J.T @ (robot.mass * np.array(model.gravity.linear))
+    np.testing.assert_allclose(left[:6], 0.0, atol=1e-9)
+    np.testing.assert_allclose(moving, left[6:], atol=1e-9)

@@ -21,6 +21,15 @@ def test_a_scenario_of_the_catalogue_passes(tmp_path: Path, robot: str, scenario
     assert verdict["wbc_fallbacks"] == 0
 
 
+@pytest.mark.parametrize("single", [0.48, 0.52])
+def test_talos_walks_fast(tmp_path: Path, single: float) -> None:
+    """A foot that rolls comes level while its shank swings forward: its ankle, of 5.8 rad/s, would else be too slow."""
+    gait = {"single_support": single, "double_support": 0.1, "step_length": 0.4, "com_height": 0.84, "heel_off": 0.4}
+    keys = {"robot": "talos", "criteria.speed_mean": {"min": 0.6}, **{f"gait.{key}": gait[key] for key in gait}}
+    verdict = run_scenario(surefoot.load("walk-fast", keys), tmp_path).verdict
+    assert verdict.passed, verdict.reasons
+
+
 @pytest.mark.parametrize("direction", [0.0, 0.5 * math.pi])
 def test_talos_stands_a_push_in_mid_single_support(tmp_path: Path, direction: float) -> None:
     push = {"step": 3, "phase": "single", "fraction": 0.5, "impulse": 0.2, "direction": direction}

@@ -7,10 +7,10 @@ import numpy as np
 from numpy import bool_
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import quintic
+from surefoot.planner.geometry import quintic, shifted
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.heel_off import FootRoll
-from surefoot.planner.swing.trajectory import SwingTrajectory
+from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import (
     Array,
     Balance,
@@ -19,6 +19,7 @@ from surefoot.planner.types import (
     Foot,
     Footstep,
     PhaseInfo,
+    PhaseKind,
     PlannedFootstep,
     PlanStatus,
 )
@@ -145,8 +146,10 @@ class PlanSampler:
     """Evaluates a plan between its samples.
 
     The horizontal CoM is the exact cubic of the sample's jerk, its height the quintic through both samples' z, z', z'';
-    ω, λ, ZMP reference, ZMP offset and load are linear. Each interval's polynomials are prepared when it is entered.
-    After the end of the horizon the last sample is held.
+    ω, λ, ZMP reference, ZMP offset and load are linear. Each interval's polynomials are prepared when it is entered,
+    and anew where the swing touches down within it: its descent would go on to accelerate a foot that is to rest. Where
+    a single support ends within an interval its foot is from then on planned to bear load. After the end of the horizon
+    the last sample is held.
 
     Attributes:
         plan: the plan.
@@ -156,6 +159,10 @@ class PlanSampler:
         self.plan = plan
         self._last = len(plan.jerk) - 1
         self._interval = -1
+        self._landed = False
+        self._touchdown = np.inf if plan.swing is None else plan.swing.touchdown_time - TOUCHING
+        single = plan.phase.kind is PhaseKind.SINGLE
+        self._lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
         self._start = plan.time
         self._table = np.zeros((6, _COLUMNS))
         self._load_rate = 0.0
@@ -170,8 +177,9 @@ class PlanSampler:
         """
         step = self.plan.sample_time
         interval = min(max(int((time - self.plan.time) / step + 1e-6), 0), self._last)
-        if interval != self._interval:
-            self._enter(interval)
+        landed = time >= self._touchdown
+        if interval != self._interval or landed != self._landed:
+            self._enter(interval, landed)
         t = min(max(time - self._start, 0.0), step)
         t2 = t * t
         t3 = t2 * t
@@ -190,7 +198,7 @@ class PlanSampler:
             com[:2] + velocity[:2] / omega,
             omega,
             stiffness,
-            self._contacts,
+            (True, True) if interval == 0 and time >= self._lands else self._contacts,
             load,
             self._load_rate,
             self._swing_foot,
@@ -199,10 +207,10 @@ class PlanSampler:
             values[28:],
         )
 
-    def _enter(self, i: int) -> None:
+    def _enter(self, i: int, landed: bool) -> None:
         """Prepare an interval: 7 linear functions, 9 polynomials and their two derivatives as columns."""
         plan, t = self.plan, self.plan.sample_time
-        self._interval, self._start = i, plan.time + i * t
+        self._interval, self._landed, self._start = i, landed, plan.time + i * t
         table = np.zeros((6, _COLUMNS))
         linear, motion, rates, bends = table[:, :7], table[:, 7:16], table[:, 16:25], table[:, 25:]
         for row, k in enumerate((i, i + 1)):
@@ -219,7 +227,8 @@ class PlanSampler:
         self._contacts, self._swing_foot = (left, right), None
         if plan.swing is not None and not plan.contacts[i, plan.swing.foot]:
             self._swing_foot = plan.swing.foot
-            motion[:, 3:] = plan.swing.coefficients(self._start)
+            since = max(self._start, plan.swing.touchdown_time) if landed else self._start
+            motion[:, 3:] = shifted(plan.swing.coefficients(since), self._start - since)
         rates[:5] = _DERIVATIVE * motion[1:]
         bends[:4] = _DERIVATIVE[:4] * rates[1:5]
         self._table, self._load_rate = table, float(linear[1, 6])

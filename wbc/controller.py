@@ -133,12 +133,13 @@ class WholeBodyController:
         gaps = self.layout.separation
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
-        self._hard = HardConstraints(self.qp, self.layout, _cones(sole, size), limits, parameters.contact)
+        stops = AnkleStops(model, frames, limits), HipStops(model, frames, limits)
+        cones = _cones(sole, size)
+        self._hard = HardConstraints(self.qp, self.layout, cones, limits, parameters.contact, stops[0].columns)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
         arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and parameters.arm_swing else None
         weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
-        stops = AnkleStops(model, frames, limits), HipStops(model, frames, limits)
         default = default_tasks(weights, gains, parameters.balance, self._region, toe, size.length, *stops)
         diagonal = (
             Regularisation(weights, size.length),

@@ -1,5 +1,6 @@
 """Hard rows of the whole-body QP: floating-base dynamics, rigid contacts, wrench cones, torque and joint limits."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,14 +37,32 @@ class HardConstraints:
     shape.
     Floating base: M_b q̈ + h_b = Σ J_bᵀ w (first six rows of the equations of motion).
     Torque: τ = M_a q̈ + h_a - Σ J_aᵀ w within the limits, with the torque itself eliminated.
+    Joints: within their limits, where a foot that is held counts as at rest. What it turns is a ripple of its contact,
+    micrometres high, which the ground ends; to stop it at an ankle near its end would take the whole body.
     """
 
     def __init__(
-        self, qp: QpData, layout: QpLayout, cones: tuple[Array, Array], limits: JointLimits, gains: ContactGains
+        self,
+        qp: QpData,
+        layout: QpLayout,
+        cones: tuple[Array, Array],
+        limits: JointLimits,
+        gains: ContactGains,
+        ankles: Sequence[Sequence[int]] = ((), ()),
     ) -> None:
-        """Write the rows that change with the contacts only; cones of the sole and of its toe edge, shape (rows, 6)."""
+        """Write the rows that change with the contacts only.
+
+        Args:
+            qp: to write into.
+            layout: of it.
+            cones: of the sole and of its toe edge, shape (rows, 6) each.
+            limits: of the joints.
+            gains: of the contacts.
+            ankles: columns of the generalised velocity that belong to the left and to the right ankle.
+        """
         self._gains = gains
-        self._joints = AccelerationBounds(limits)
+        self._joints, self._ankles = AccelerationBounds(limits), [list(columns) for columns in ankles]
+        self._rates = np.zeros(layout.nv)
         self._torque_span = np.concatenate([np.zeros(6), limits.torque])
         self._target, self._active = np.zeros((2, 6)), (False, False)
         n, first = layout.variables, layout.torque_rows.stop
@@ -86,7 +105,11 @@ class HardConstraints:
         """
         self._motion(terms)
         self._contacts(terms, contacts, ground_normal, roll)
-        self._joints.write(q[7:], v[6:], self._joint_lower, self._joint_upper)
+        np.copyto(self._rates, v)
+        for k, columns in enumerate(self._ankles):
+            if contacts.active[k] and k != contacts.rolling:
+                self._rates[columns] -= terms.sole_velocity[k, 3:] @ terms.sole_jacobian[k, 3:, columns].T
+        self._joints.write(q[7:], self._rates[6:], self._joint_lower, self._joint_upper)
 
     def _motion(self, terms: RobotTerms) -> None:
         self._mass[:] = terms.mass_matrix

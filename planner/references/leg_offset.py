@@ -26,7 +26,7 @@ from surefoot.planner.model.leg_chain import LegChain
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.swing.heel_off import bump
-from surefoot.planner.swing.trajectory import SwingTrajectory
+from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Phase, PhaseSamples
 from surefoot.planner.walk.queue import StepQueue, unit_swing
@@ -103,7 +103,9 @@ def _swings(samples: PhaseSamples, queue: StepQueue) -> tuple[Array, Array, Arra
         phase, here = samples.phases[number], samples.which == number
         if phase.kind is PhaseKind.SINGLE:
             swing, late = _swing(phase, queue, float(samples.elapsed[here][0]))
-            way = swing.positions((samples.elapsed[here] - late) * samples.sample_time)
+            # A foot that searches for the ground is expected to find it at once.
+            times = np.minimum((samples.elapsed[here] - late) * samples.sample_time, swing.touchdown_time - TOUCHING)
+            way = swing.positions(times)
             progress[here], height[here] = way[:, 0], way[:, 2]
         if phase.roll is not None:
             start, end, angle = phase.roll

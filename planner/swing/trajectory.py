@@ -8,7 +8,7 @@ from surefoot.planner.geometry import quintic, shifted
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
 from surefoot.planner.types import Array, Foot
 
-_NOW = 1e-9
+TOUCHING = 1e-9
 """Times of ticks carry rounding; a piece begins this much early [s]."""
 
 FEWEST_SWING_SAMPLES = 4
@@ -64,18 +64,18 @@ class SwingTrajectory:
     def coefficients(self, time: float) -> Array:
         """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 6)."""
         result = np.zeros((6, 6))
-        if time >= self.touchdown_time - _NOW:
+        if time >= self.touchdown_time - TOUCHING:
             result[0] = self.target
             way, speed, bend = self.search.motion(time - self.touchdown_time)
             result[:3, 2] = self.target[2] - way, -speed, -0.5 * bend
             return result
-        if time >= self.glide_end - _NOW:
+        if time >= self.glide_end - TOUCHING:
             result[0] = self.target
-        elif time >= self.start_time - _NOW:
+        elif time >= self.start_time - TOUCHING:
             result[:, _GLIDING] = shifted(self.level, time - self.start_time)
         else:
             result[0, _GLIDING] = self.level[0]
-        if time >= self.apex_time - _NOW:
+        if time >= self.apex_time - TOUCHING:
             result[:, 2] = shifted(self.fall, time - self.fall_start)[:, 0]
         else:
             result[:, 2] = shifted(self.rise, time - self.rise_start)[:, 0]
@@ -95,8 +95,10 @@ class SwingTrajectory:
         result = np.empty((len(times), 6))
         result[:, _GLIDING] = gliding[:, None] ** _EXPONENTS @ self.level
         rising, falling = ((times - start)[:, None] ** _EXPONENTS for start in (self.rise_start, self.fall_start))
-        result[:, 2] = np.where(times < self.apex_time - _NOW, (rising @ self.rise)[:, 0], (falling @ self.fall)[:, 0])
-        for k in np.flatnonzero(times >= self.touchdown_time - _NOW):
+        result[:, 2] = np.where(
+            times < self.apex_time - TOUCHING, (rising @ self.rise)[:, 0], (falling @ self.fall)[:, 0]
+        )
+        for k in np.flatnonzero(times >= self.touchdown_time - TOUCHING):
             result[k] = self.target
             result[k, 2] -= self.search.motion(float(times[k]) - self.touchdown_time)[0]
         return result
@@ -135,16 +137,16 @@ class SwingTrajectory:
         share, touchdown = 1.0 + delay / (self.touchdown_time - time), self.touchdown_time + delay
 
         def put_off(instant: float) -> float:
-            return instant if instant < time + _NOW else time + round(share * (instant - time) / grid) * grid
+            return instant if instant < time + TOUCHING else time + round(share * (instant - time) / grid) * grid
 
         state = self.evaluate(time)
         start, end = max(put_off(self.start_time), time), min(put_off(self.glide_end), touchdown)
         moved = replace(self, touchdown_time=touchdown, start_time=start, glide_end=end)
-        if time < self.glide_end - _NOW:
+        if time < self.glide_end - TOUCHING:
             end = max(end, min(start + grid, touchdown))
             level = _to_rest(state[:, _GLIDING], self.target[_GLIDING], end - start)
             moved = replace(moved, glide_end=end, level=level)
-        if time < self.apex_time - _NOW:
+        if time < self.apex_time - TOUCHING:
             moved = replace(moved, apex_time=min(max(put_off(self.apex_time), time + grid), touchdown - grid))
         top = float((self.apex_time - self.rise_start) ** _EXPONENTS @ self.rise[:, 0])
         return moved._with_height(time, state[:, 2:3], top)
@@ -155,7 +157,7 @@ class SwingTrajectory:
         4 h / t² at the apex keeps both monotone.
         """
         end = np.array([[self.target[2]], [-self.search.touchdown_speed], [0.0]])
-        if time >= self.apex_time - _NOW:
+        if time >= self.apex_time - TOUCHING:
             return replace(self, fall_start=time, fall=quintic(state, end, self.touchdown_time - time))
         up, down = self.apex_time - time, self.touchdown_time - self.apex_time
         bend = -4.0 * min((apex - state[0, 0]) / up**2, (apex - end[0, 0]) / down**2)

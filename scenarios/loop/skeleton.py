@@ -112,7 +112,13 @@ class Walker(Protocol):
         ...
 
     def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
-        """Decide what to do about the plan; returns the time to build and to solve the controller's QP [s]."""
+        """Decide what to do until the next tick; returns the time to build and to solve the controller's QP [s].
+
+        Args:
+            tick: number of the tick.
+            plan: that is followed.
+            sample: of it, for the middle of the tick.
+        """
         ...
 
     def record(self, now_ns: int, sample: PlanSample) -> None:
@@ -259,7 +265,8 @@ class ClosedLoop:
         if self._pushes:
             self._push(now, plan)
         sample = planning.sampler.sample(now)
-        build_time, solve_time = walker.act(tick, plan, sample)
+        # What is decided now acts until the next tick: it is to do what is planned for the middle of that.
+        build_time, solve_time = walker.act(tick, plan, planning.sampler.sample(now + 0.5 / rate))
         watch.lap()
         walker.record(now_ns, sample)
         self._recorder.reference(now_ns, plan, sample)

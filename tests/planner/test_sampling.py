@@ -3,6 +3,7 @@ import pytest
 
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.types import PhaseKind
+from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 
@@ -64,3 +65,29 @@ def test_load_rate_is_the_slope_of_the_load(diagonal):
     a, b = (PlanSampler(plan).sample(plan.time + t) for t in (0.0, 0.01))
     assert a.load_left_rate == pytest.approx((b.load_left - a.load_left) / 0.01)
     assert a.load_left_rate != 0.0
+
+
+def test_a_swing_is_its_own_also_where_it_touches_down_between_samples(diagonal):
+    """Going on with the descent would accelerate, by up to several m/s^2, a foot that is to press gently."""
+    touching = [
+        p for p in diagonal[1].plans if p.swing is not None and 0.0 < p.swing.touchdown_time - p.time < p.sample_time
+    ]
+    assert touching
+    for plan in touching:
+        sampler, touchdown = PlanSampler(plan), plan.swing.touchdown_time
+        for time in (touchdown - 1e-4, touchdown, 0.5 * (touchdown + plan.time + plan.sample_time), touchdown - 2e-4):
+            sample = sampler.sample(time)
+            flown = [sample.swing, sample.swing_velocity, sample.swing_acceleration]
+            np.testing.assert_allclose(flown, plan.swing.evaluate(time), atol=1e-9)
+
+
+def test_a_foot_is_planned_to_bear_load_from_the_end_of_its_single_support_on(walk):
+    """Phases end at any time; the ZMP that moves on must not wait for the next plan to find a foot that bears it."""
+    plans = walk(GaitParameters(steps=3, single_support=0.513, double_support=0.2))[1].plans
+    ending = [p for p in plans if p.phase.kind is PhaseKind.SINGLE and p.phase.left < 0.9 * p.sample_time]
+    assert ending
+    for plan in ending:
+        sampler, end = PlanSampler(plan), plan.time + plan.phase.left
+        assert sum(sampler.sample(end - 1e-4).contacts) == 1
+        assert sampler.sample(end).contacts == (True, True)
+        assert sampler.sample(end + 1e-4).swing_foot is plan.swing.foot

@@ -32,13 +32,14 @@ class AnkleStops:
 
     Attributes:
         ankles: from the centres of the soles, in their frames: forward and up, shape (2, 3) [m].
+        columns: of the generalised velocity, those of both joints of each ankle.
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
         soles = [model.frames[model.getFrameId(name)] for name in frames.soles]
         supports = (model.supports[sole.parentJoint] for sole in soles)
         self.ankles = np.array([sole.placement.inverse().translation for sole in soles]) * (1.0, 0.0, 1.0)
-        self._columns = tuple(tuple(model.joints[joint].idx_v for joint in list(chain)[-2:]) for chain in supports)
+        self.columns = tuple(tuple(model.joints[joint].idx_v for joint in list(chain)[-2:]) for chain in supports)
         self._lower, self._upper, self._ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
 
     def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[Array, float]]:
@@ -50,7 +51,7 @@ class AnkleStops:
             desired: its orientation, shape (3, 3).
         """
         found = []
-        for column in self._columns[k]:
+        for column in self.columns[k]:
             position, velocity = float(terms.q[column + 1]), float(terms.v[column])
             coming = position + self._ahead * velocity
             up, down = self._upper[column - 6] - max(position, coming), min(position, coming) - self._lower[column - 6]

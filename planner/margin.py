@@ -190,4 +190,6 @@ class Reserve:
         if fixed:
             return _edges(now.nominal, now.nominal)[:, None, None]
         room = _edges(*(now.nominal + now.room))[:, None, None]
-        return np.minimum(np.minimum(self._boxes[int(now.side)], room), self._recovery.swung(now, singles)[..., None])
+        boxes = self._boxes[int(now.side)]
+        boxes = boxes if now.crosses else boxes[..., :1]
+        return np.minimum(np.minimum(boxes, room), self._recovery.swung(now, singles)[..., None])

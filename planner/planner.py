@@ -95,9 +95,6 @@ class WalkingPlanner:
         self._outlook = Outlook(gait, heights, p, half_size)
         queue, adaptation = StepQueue(gait, feet, Ground(terrain, half_size, p)), p.step_adaptation
         legs = legs.adapting(adaptation) if legs is not None and profile.catches else None
-        if legs is not None and not terrain.free_footholds:
-            # From one tread to another there is no way around the stance leg.
-            legs = replace(legs, across=None)
         timing = adaptation is not StepAdaptation.LOCATION
         self._recovery = None if legs is None else Recovery(legs, p, timing)
         self._reserve = None if self._recovery is None else Reserve(self._recovery, p, half_size)

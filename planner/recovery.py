@@ -46,6 +46,7 @@ class Situation:
         room: by which the step may land elsewhere, least and greatest way, shape (2, 2) [m].
         adapted: whether the step is being adapted already.
         last: whether the robot stands after it.
+        crosses: whether it may land beyond its stance foot, as far as legs may at all.
     """
 
     com: Array
@@ -63,6 +64,7 @@ class Situation:
     room: Array
     adapted: bool
     last: bool
+    crosses: bool
 
     @classmethod
     def of(
@@ -103,6 +105,8 @@ class Situation:
             room=stepper.room(0),
             adapted=stepper.adapted,
             last=stepper.stops,
+            # A leg that lets the body down from its face has its knee in the way.
+            crosses=stepper.wide or step.climb >= 0.0,
         )
 
 
@@ -257,6 +261,7 @@ class Recovery:
         held_next = growth * _HELD * now.reference.half_size[-1] if now.last else (growth - 1.0) * half
         # Of each box that the foot may land in, shape (boxes, n).
         room, boxes = now.nominal + now.room, self._boxes[now.side]
+        boxes = boxes if now.crosses else boxes[:1]
         lower, upper = np.maximum(boxes[:, :1], room[0]), np.minimum(boxes[:, 1:], room[1])
         places = self.legs.within(_between(_between(wanted, low, high), lower, upper), com + hip)
         places = _between(places, lower, upper)

@@ -1,6 +1,7 @@
 """Swing foot trajectory: quintic over the ground, up to an apex and softly down, replanned at every planner tick."""
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -45,6 +46,8 @@ class SwingTrajectory:
         rise: coefficients of z until the apex, shape (6, 1).
         fall_start: local time zero of the fall [s].
         fall: coefficients of z from the apex on, shape (6, 1).
+        bend_time: where the way bends round a corner; infinite for one that does not [s].
+        onward: coefficients of all but z from there on, shape (6, 5).
     """
 
     foot: Foot
@@ -60,6 +63,13 @@ class SwingTrajectory:
     rise: Array
     fall_start: float
     fall: Array
+    bend_time: float = math.inf
+    onward: Array = field(default_factory=lambda: np.zeros((6, len(_GLIDING))))
+
+    @property
+    def bent(self) -> bool:
+        """Whether the way bends round a corner."""
+        return self.bend_time < math.inf
 
     def coefficients(self, time: float) -> Array:
         """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 6)."""
@@ -71,6 +81,8 @@ class SwingTrajectory:
             return result
         if time >= self.glide_end - TOUCHING:
             result[0] = self.target
+        elif time >= self.bend_time - TOUCHING:
+            result[:, _GLIDING] = shifted(self.onward, time - self.bend_time)
         elif time >= self.start_time - TOUCHING:
             result[:, _GLIDING] = shifted(self.level, time - self.start_time)
         else:
@@ -94,6 +106,10 @@ class SwingTrajectory:
         gliding = np.clip(times - self.start_time, 0.0, self.glide_end - self.start_time)
         result = np.empty((len(times), 6))
         result[:, _GLIDING] = gliding[:, None] ** _EXPONENTS @ self.level
+        if self.bent:
+            after = gliding + self.start_time - self.bend_time
+            bent = np.flatnonzero(after >= 0.0)[:, None]
+            result[bent, _GLIDING] = after[bent] ** _EXPONENTS @ self.onward
         rising, falling = ((times - start)[:, None] ** _EXPONENTS for start in (self.rise_start, self.fall_start))
         result[:, 2] = np.where(
             times < self.apex_time - TOUCHING, (rising @ self.rise)[:, 0], (falling @ self.fall)[:, 0]
@@ -119,10 +135,33 @@ class SwingTrajectory:
         keeps = time < self.glide_end - least and not gliding
         end = self.glide_end if keeps else self.touchdown_time
         level = _to_rest(state[:, _GLIDING], target[_GLIDING], end - start)
-        moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target))
+        moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target), bend_time=math.inf)
         if target[2] == self.target[2]:
             return moved
         return moved._with_height(time, state[:, 2:3], max(float(state[0, 2]), float(target[2])) + self.clearance)
+
+    def around(self, corner: Array, grid: float) -> "SwingTrajectory":
+        """The trajectory that passes a corner on its way to the same target at the same time, with the least jerk.
+
+        The way is bent by what has the least jerk among all that are at rest at both ends and reach the corner at some
+        time: two quintics that are joined smoothly up to the fourth derivative. It is the dearer the nearer that time
+        is to an end, by (u (1 - u))^-5 at a share u of the glide. The cheapest of the ticks is taken.
+
+        Args:
+            corner: to be passed, x and y in the world frame, shape (2,) [m].
+            grid: sample time of the plans [s].
+        """
+        start, duration = self.start_time, self.glide_end - self.start_time
+        times = grid * np.arange(1.0, math.ceil(duration / grid - TOUCHING))
+        if len(times) < 1:
+            return self
+        share = times / duration
+        ways = corner - times[:, None] ** _EXPONENTS @ self.level[:, :2]
+        best = int(np.argmin((ways**2).sum(axis=1) / (share * (1.0 - share)) ** 5))
+        time, way = float(times[best]), np.append(ways[best], np.zeros(len(_GLIDING) - 2))
+        before, after = _bump(time, duration)
+        onward = shifted(self.level, time) + after[:, None] * way
+        return replace(self, level=self.level + before[:, None] * way, bend_time=start + time, onward=onward)
 
     def retimed(self, time: float, delay: float, grid: float) -> "SwingTrajectory":
         """The trajectory that goes on from its own state at `time` to the same target and apex at other times.
@@ -145,7 +184,7 @@ class SwingTrajectory:
         if time < self.glide_end - TOUCHING:
             end = max(end, min(start + grid, touchdown))
             level = _to_rest(state[:, _GLIDING], self.target[_GLIDING], end - start)
-            moved = replace(moved, glide_end=end, level=level)
+            moved = replace(moved, glide_end=end, level=level, bend_time=math.inf)
         if time < self.apex_time - TOUCHING:
             moved = replace(moved, apex_time=min(max(put_off(self.apex_time), time + grid), touchdown - grid))
         top = float((self.apex_time - self.rise_start) ** _EXPONENTS @ self.rise[:, 0])
@@ -247,6 +286,16 @@ def start_swing(
         fall=np.zeros((6, 1)),
     )
     return trajectory._with_height(times.lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
+
+
+def _bump(time: float, duration: float) -> tuple[Array, Array]:
+    """Coefficients of 1, t, ..., t^5 of the least jerk from rest at zero to one at a time and back, shape (6,) each."""
+    a, b = time, duration - time
+    # Jerk and its rate do not jump where both quintics meet, with velocity v and acceleration w.
+    matrix = [[36.0 * (b**-2 - a**-2), 9.0 * (1.0 / a + 1.0 / b)], [-192.0 * (a**-3 + b**-3), 36.0 * (a**-2 - b**-2)]]
+    meeting = np.linalg.solve(np.array(matrix), [-60.0 * (a**-3 + b**-3), -360.0 * (a**-4 - b**-4)])
+    rest, top = np.zeros((3, 1)), np.append(1.0, meeting)[:, None]
+    return quintic(rest, top, a)[:, 0], quintic(top, rest, b)[:, 0]
 
 
 def _to_rest(state: Array, target: Array, duration: float) -> Array:

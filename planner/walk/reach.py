@@ -204,6 +204,25 @@ class Legs:
         low, high = np.maximum(box[0], hip - most), np.minimum(box[1], hip + most)
         return np.minimum(low, place), np.maximum(high, place)
 
+    def corner(self, way: Array, side: float) -> Array | None:
+        """Where a foot that comes from beyond its stance foot, or goes there, passes the corner that is in its way.
+
+        Until it is clear ahead of the stance foot or behind it, it stays beside: it does not cross before, and is back
+        before it passes.
+
+        Args:
+            way: of the foot, seen from its stance foot, shape (n, 2) [m].
+            side: +1 for a left foot, -1 for a right one.
+
+        Returns:
+            The corner, seen from the stance foot, shape (2,) [m]; None where none is in the way.
+        """
+        ahead, beside = way[:, 0], side * way[:, 1]
+        crossed = ahead[[0, -1]][beside[[0, -1]] < 0.0]
+        if not len(crossed) or not ((np.abs(ahead) < self.clear) & (beside < self.near)).any():
+            return None
+        return np.array([math.copysign(self.clear, crossed[0]), side * self.near])
+
     def beside(self, place: Array, side: float) -> tuple[Array, Array]:
         """The box of a footstep that is too far ahead to know where the hips will be: both legs span it."""
         hip = np.array([0.0, side * self.hip_width])

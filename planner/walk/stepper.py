@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from surefoot.planner.geometry import sole_pose, wrap_angle
+from surefoot.planner.geometry import frame_rotation, sole_pose, wrap_angle
 from surefoot.planner.parameters import StepAdaptation
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing, swing_times
@@ -235,7 +235,7 @@ class Stepper:
     @property
     def aim(self) -> Array | None:
         """Where a swing goes that deviates from its step, shape (3,) [m]; None where none does."""
-        return None if self.swing is None or not self.adapted else self.swing.target[:3]
+        return None if self.swing is None or not (self.adapted or self.swing.bent) else self.swing.target[:3]
 
     def deviation(self, time: float) -> Deviation | None:
         """How the swing deviates from its step; None where it does not.
@@ -354,6 +354,24 @@ class Stepper:
         elif not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
             # Over edges the foot keeps to the times in which its course clears them.
             self.swing = self.swing.retargeted(time, target, self.adapted and self.wide, LEAST_GLIDE * self._size.time)
+        self._go_around(self.swing, time)
+
+    def _go_around(self, swing: SwingTrajectory, time: float) -> None:
+        """Let a swing from beyond the stance foot, or to there, pass around the stance leg."""
+        if self._legs is None or swing.bent or time >= swing.glide_end:
+            return
+        stance, t = self.footsteps.footstep(self.row), self.sample_time
+        rotation, origin = frame_rotation(stance.yaw), stance.position[:2]
+        times = np.arange(max(time, swing.start_time), swing.glide_end + 0.5 * t, t)
+        way = (swing.positions(times)[:, :2] - origin) @ rotation
+        corner = self._legs.corner(way, 1.0 if swing.foot is Foot.LEFT else -1.0)
+        if corner is None:
+            return
+        bent = swing.around(origin + rotation @ corner, t)
+        hardest = np.abs([bent.evaluate(instant)[2, :2] @ rotation for instant in times.tolist()]).max(axis=0)
+        # A way round that the hips cannot swing the foot in time would only make it late.
+        if (hardest <= self._legs.acceleration).all():
+            self.swing = bent
 
     def roll(self, time: float) -> FootRoll | None:
         """Pitch of the foot that leaves the ground next or has just left it; None for one that stays level."""

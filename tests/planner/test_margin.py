@@ -43,7 +43,7 @@ def situation(dcm=(0.1, 0.03), **keys):
         "com": np.array([0.02, 0.06]), "dcm": np.array(dcm), "stiffness": seen.stiffness, "omega": seen.omega,
         "reference": seen.driving, "nominal": np.array([0.36, 0.2]), "side": 1.0,
         "swing": np.array([[0.05, 0.2], [1.0, 0.0]]), "double": 0.0, "single": 0.3, "cycle": 0.62, "shortest": 0.0,
-        "room": np.array([[-np.inf] * 2, [np.inf] * 2]), "adapted": False, "last": False,
+        "room": np.array([[-np.inf] * 2, [np.inf] * 2]), "adapted": False, "last": False, "crosses": True,
     }  # fmt: skip
     return Situation(**{**given, **keys})
 

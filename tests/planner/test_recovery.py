@@ -41,7 +41,7 @@ def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 
         "com": bounded - (0.1, 0.0), "dcm": bounded + error, "stiffness": stiffness, "omega": omega,
         "reference": reference, "nominal": NOMINAL, "side": 1.0, "swing": np.array(swing), "double": 0.0,
         "single": landed, "cycle": 0.62, "shortest": 0.0, "room": EVERYWHERE,
-        "adapted": False, "last": False,
+        "adapted": False, "last": False, "crosses": True,
     }  # fmt: skip
     return Situation(**{**given, **keys})
 
@@ -300,3 +300,10 @@ def test_an_undisturbed_walk_is_not_adapted(stand, level):
     for step, plan in swung.items():
         np.testing.assert_allclose(plan.swing.target[0], 0.3 * min(step, 4), atol=1e-3)
         assert abs(plan.time - gait.lift_off(step) - gait.single_support) < 1.5 * T
+
+
+def test_no_foot_crosses_where_the_stance_leg_lets_the_body_down():
+    pushed = {"error": (0.0, -0.12), "swing": ((-0.2, 0.2), (1.0, 0.0))}
+    crossing, down = catch(situation(**pushed)), catch(situation(**pushed, crosses=False))
+    assert crossing.low[1] < 0.0
+    assert down.low[1] >= LEGS.near - 1e-9

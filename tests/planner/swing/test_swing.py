@@ -102,3 +102,23 @@ def test_a_swing_that_glides_on_to_its_touchdown_bends_less():
         np.testing.assert_allclose(moved.evaluate(2.7999999)[0], target, atol=1e-6)
         bends.append(max(np.abs(moved.evaluate(t)[2, :2]).max() for t in times))
     assert bends[1] < 0.6 * bends[0]
+
+
+def test_a_swing_bends_round_a_corner_smoothly_and_lands_as_before():
+    straight = swing(0.1)
+    corner = np.array([1.25, 0.3])
+    bent, times = straight.around(corner, 0.02), np.arange(2.0, 2.7999, 1e-3)
+    motion = np.array([bent.evaluate(t) for t in times])
+    assert np.abs(bent.evaluate(bent.bend_time)[0, :2] - corner).max() < 1e-9
+    assert np.abs(np.diff(motion[:, 2, GLIDING], axis=0)).max() < 0.2
+    np.testing.assert_allclose(np.gradient(motion[:, 0], 1e-3, axis=0)[1:-1], motion[1:-1, 1], atol=1e-3)
+    np.testing.assert_allclose(bent.positions(times), motion[:, 0], atol=1e-9)
+    others = [straight.evaluate(t)[:, 2:] for t in times]
+    np.testing.assert_allclose(motion[:, :, 2:], others, atol=1e-12)
+    for instant in (2.0, 2.8 - 1e-9):
+        np.testing.assert_allclose(bent.evaluate(instant)[:, :2], straight.evaluate(instant)[:, :2], atol=1e-5)
+    # No other way through the corner has less jerk: seen from the way it is on, it goes on as it is.
+    later = bent.evaluate(2.1)
+    again = bent.retargeted(2.1, bent.target).around(corner, 0.02)
+    assert again.bend_time == pytest.approx(bent.bend_time, abs=0.021)
+    np.testing.assert_allclose(again.evaluate(2.1), later, atol=1e-9)

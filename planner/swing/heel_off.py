@@ -17,9 +17,10 @@ from surefoot.planner.walk.phases import Hurry, Phase, RollSpan
 _BEGIN = 0.25
 """Share of the weight shift after which the heel leaves the ground [-]."""
 
-_END = 0.75
-"""Share of single support after which the foot is level again, before it comes down: it turns back while the shank swings
-forward, and the ankle has the less to do [-]."""
+_END = 0.7
+"""Share of single support after which the foot is level again, before it comes down [-].
+
+It turns back while its shank swings forward, so that the ankle has the less to do."""
 
 LEVEL_AGAIN = 0.9
 """The same at most, of a swing that is shortened when its foot has begun to roll [-]."""

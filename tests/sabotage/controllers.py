@@ -13,11 +13,11 @@ LATE_TICKS = 2
 
 
 class SoftSwing(WholeBodyController):
-    """Half the gain of the swing foot's task."""
+    """A quarter of the gain of the swing foot's task."""
 
     def __init__(self, *, parameters, **rest):
         stiffness, damping = parameters.gains.swing
-        gains = replace(parameters.gains, swing=(0.5 * stiffness, 0.5 * damping))
+        gains = replace(parameters.gains, swing=(0.25 * stiffness, 0.25 * damping))
         super().__init__(parameters=replace(parameters, gains=gains), **rest)
 
 
@@ -67,7 +67,7 @@ class WideCone(WholeBodyController):
 
 
 SABOTAGES = {
-    "task gain halved": SoftSwing,
+    "task gain quartered": SoftSwing,
     "gravity compensation of a leg dropped": HeavyLeg,
     "foot target off by 1 cm": LongStep,
     "torque 4 ms late": LateTorque,

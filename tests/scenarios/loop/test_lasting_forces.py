@@ -44,8 +44,9 @@ def test_a_lasting_force_is_found_within_a_tenth_and_walked_with(tmp_path):
 
 
 @pytest.mark.physics
-def test_without_the_estimate_that_force_fells_it(tmp_path):
-    assert walk(tmp_path, "walk", *NATURAL, pulled(40, "left"), OFF, "duration=5").verdict.metrics["fell"]
+def test_a_force_that_is_walked_with_fells_it_without_the_estimate(tmp_path):
+    assert walk(tmp_path, "walk", *NATURAL, pulled(45, "left")).verdict.reasons == ()
+    assert walk(tmp_path, "walk", *NATURAL, pulled(45, "left"), OFF, "duration=5").verdict.metrics["fell"]
 
 
 @pytest.mark.physics

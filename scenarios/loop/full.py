@@ -216,7 +216,7 @@ class SimulatedRobot:
             self._truth,
             self._terms,
             self.state,
-            self._reference,
+            sample,
             self.report,
             self._torque,
         )

@@ -3,13 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.planner.plan import PlanSample
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import Rows
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.sim.measurement import Measurement
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.types import RobotState, SolveStatus, WbcReference, WbcReport
+from surefoot.wbc.types import RobotState, SolveStatus, WbcReport
 from surefoot.wbc.zmp import UNLOADED
 
 Array = NDArray[np.float64]
@@ -86,7 +87,7 @@ class Recorder:
 
     def tick(
         self, time_ns: int, measurement: Measurement, truth: RobotTerms, terms: RobotTerms, state: RobotState,
-        reference: WbcReference, report: WbcReport, torque: Array,
+        planned: PlanSample, report: WbcReport, torque: Array,
     ) -> None:  # fmt: skip
         """A control tick: sensors and true state, contacts, what the controller was given and what it answered.
 
@@ -96,15 +97,15 @@ class Recorder:
             truth: terms of the true robot in its true state.
             terms: terms of the controller's robot model in the state that it was given.
             state: that state.
-            reference: what it shall do.
+            planned: for this instant.
             report: what it did.
             torque: the torque commanded, shape (nj,) [N·m].
         """
         m, r = measurement, report
         numbers = (
             m.nonfoot_contact, m.self_contact, r.load.mass_scale * terms.model_mass,
-            *reference.planned_contact, *r.active, *r.felt, r.status, r.iterations, r.primal_residual, r.dual_residual,
-            reference.omega, truth.torso_rotation[2, 2],
+            *planned.contacts, *r.active, *r.felt, r.status, r.iterations, r.primal_residual, r.dual_residual,
+            planned.omega, truth.torso_rotation[2, 2],
         )  # fmt: skip
         self._row.append(
             time_ns, numbers,

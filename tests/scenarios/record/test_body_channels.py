@@ -42,8 +42,8 @@ def tick(rng, status):
     )  # fmt: skip
     terms = SimpleNamespace(com=rng.normal(size=3), com_velocity=rng.normal(size=3), model_mass=100.0)
     state = SimpleNamespace(q=rng.normal(size=NJ + 7), v=rng.normal(size=NJ + 6))
-    reference = SimpleNamespace(planned_contact=(True, True), omega=rng.uniform(2, 4))
-    return measurement, truth, terms, state, reference, report, rng.normal(size=NJ) * 30
+    planned = SimpleNamespace(contacts=(True, True), omega=rng.uniform(2, 4))
+    return measurement, truth, terms, state, planned, report, rng.normal(size=NJ) * 30
 
 
 def test_derived_fields_follow_their_definitions(tmp_path):
@@ -64,13 +64,13 @@ def test_derived_fields_follow_their_definitions(tmp_path):
         assert estimate.field("mass")[n] == pytest.approx(100.0 * report.load.mass_scale)
         np.testing.assert_array_equal(estimate.field("external_force")[n], report.load.force)
         np.testing.assert_array_equal(estimate.field("external_moment")[n], report.load.moment)
-    for n, (measurement, truth, terms, _, reference, _, torque) in enumerate(ticks):
+    for n, (measurement, truth, terms, _, planned, _, torque) in enumerate(ticks):
         zmp = measured_zmp(measurement.wrench, truth.sole_position, truth.sole_rotation)
         row = {name: log[topic].field(name)[n] for topic, name in (
             ("/estimate", "dcm"), ("/truth", "torso_tilt"), ("/torque", "limit_ratio_max"), ("/contact", "zmp"),
             ("/contact", "normal_force"), ("/contact", "cop_left"), ("/contact", "cop_right"),
         )}  # fmt: skip
-        assert row["dcm"] == pytest.approx(terms.com[:2] + terms.com_velocity[:2] / reference.omega)
+        assert row["dcm"] == pytest.approx(terms.com[:2] + terms.com_velocity[:2] / planned.omega)
         assert np.cos(row["torso_tilt"]) == pytest.approx(truth.torso_rotation[2, 2])
         assert row["limit_ratio_max"] == pytest.approx(np.max(np.abs(torque) / LIMIT))
         assert row["zmp"] == pytest.approx(zmp)

@@ -193,7 +193,9 @@ def key_problems(written: Written, overrides: Overrides) -> list[Problem]:
     return _validated(_source(written, overrides, RegisteredRobots()).value)[1]
 
 
-def for_robot(written: Written, values: Mapping[str, Any], origin: str, robot: str | None) -> dict[str, Any]:
+def for_robot(
+    written: Written, values: Mapping[str, Any], origin: str, robot: str | None, robots: Robots
+) -> dict[str, Any]:
     """What values that are set over a scenario are for another robot, without those that it has of its own.
 
     Args:
@@ -201,6 +203,7 @@ def for_robot(written: Written, values: Mapping[str, Any], origin: str, robot: s
         values: by dotted key.
         origin: the robot that they are written for.
         robot: the one that walks; None for the scenario's own.
+        robots: that may be named.
 
     Raises:
         ScenarioError: the scenario cannot be read, or a key leads nowhere.
@@ -210,7 +213,7 @@ def for_robot(written: Written, values: Mapping[str, Any], origin: str, robot: s
         return dict(values)
     source.value["sized_for"] = origin
     apply_overrides(source, values)
-    _size(source, {} if robot is None else {"robot": robot}, RegisteredRobots())
+    _size(source, {} if robot is None else {"robot": robot}, robots)
     sized = {}
     for name in values:
         with suppress(LookupError):

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -70,7 +71,10 @@ class Robots(Protocol):
 
 
 class RegisteredRobots:
-    """The robots of ``models``."""
+    """The robots of ``models``, each looked at once: a robot file that changes meanwhile takes another object."""
+
+    def __init__(self) -> None:
+        self._facts = lru_cache(maxsize=None)(_registered)
 
     def names(self) -> tuple[str, ...]:
         """Names of all robots."""
@@ -80,8 +84,7 @@ class RegisteredRobots:
 
     def facts(self, name: str, options: RobotSettings) -> RobotFacts:
         """Facts of a robot with its options; which body carries the payload does not matter to them."""
-        described = describe(name, options.model_copy(update={"payload_body": None}))
-        return replace(facts_of(described), size=size_of(described, options))
+        return self._facts(name, options.model_copy(update={"payload_body": None}))
 
     def one_foot_share(self, name: str, options: RobotSettings) -> float:
         """See `Robots`."""
@@ -89,6 +92,11 @@ class RegisteredRobots:
         from surefoot.scenarios.setup.standing import on_one_foot
 
         return on_one_foot(body_of(describe(name, options))).share
+
+
+def _registered(name: str, options: RobotSettings) -> RobotFacts:
+    described = describe(name, options)
+    return replace(facts_of(described), size=size_of(described, options))
 
 
 def is_known(name: object, robots: Robots) -> bool:

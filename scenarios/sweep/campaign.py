@@ -14,7 +14,7 @@ from surefoot.scenarios.errors import Key, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar, setting
 from surefoot.scenarios.file.translate import problems_of
 from surefoot.scenarios.setup.load import Written, for_robot, key_problems, written
-from surefoot.scenarios.setup.robot import RegisteredRobots, is_known
+from surefoot.scenarios.setup.robot import RegisteredRobots, Robots, is_known
 from surefoot.scenarios.sweep.spec import MOST_RUNS, Bisect, Spec
 
 ENDING = ".yaml"
@@ -72,18 +72,19 @@ class Campaign:
 
     def combinations(self) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
         """Labels and settings of every combination of the grid, the last axis fastest."""
+        robots = RegisteredRobots()
         for chosen in itertools.product(*self.axes.values()):
             labels = {name: one.label for name, one in zip(self.axes, chosen, strict=True)}
             keys = dict(self.spec.set)
             for one in chosen:
                 keys |= one.keys
-            yield labels, self._sized(keys)
+            yield labels, self._sized(keys, robots)
 
     def base(self, keys: Mapping[str, Any]) -> str:
         """Name of the scenario that settings are of."""
         return str(keys.get(SCENARIO, self.spec.scenario))
 
-    def _sized(self, keys: dict[str, Any]) -> dict[str, Any]:
+    def _sized(self, keys: dict[str, Any], robots: Robots) -> dict[str, Any]:
         """Settings with those that are written for another robot than they name as they are for that one.
 
         Values of lists, and those that are drawn or searched, stand in tables and mean what they say.
@@ -94,7 +95,7 @@ class Campaign:
         listed = (name for name, axis in self.spec.grid.items() if isinstance(axis, list))
         said = {"robot", SCENARIO, *self.literal, *listed}
         own = {key: value for key, value in keys.items() if key not in said and not key.startswith(SEARCH)}
-        sized = for_robot(base.written, own, origin, keys.get("robot"))
+        sized = for_robot(base.written, own, origin, keys.get("robot"), robots)
         return {key: sized.get(key, value) for key, value in keys.items() if key not in own or key in sized}
 
 

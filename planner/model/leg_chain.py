@@ -15,7 +15,7 @@ from surefoot.planner.types import Array
 _REST = 4e-3
 """Share of the first guess's error that the hips may keep; a constant rest does no harm [-]."""
 
-_BEND = 0.02
+_BEND = 0.008
 """Share of its length by which a leg stays the more bent the nearer it comes to straight, or its sole out of reach: the
 knee of a straight leg would move infinitely fast [-]."""
 
@@ -60,7 +60,7 @@ class LegChain:
     """Lengths and masses of the body; both legs are alike.
 
     Attributes:
-        hip_half_width: hip centre from the middle between the hips [m].
+        hip_half_width: hip centre from the middle between the hips [m]; of hips with `hip_lever`, their axis of roll.
         trunk: CoM of everything but the legs, from that middle: forward, left, up [m].
         thigh, shank: the links.
         foot_mass: over the body's mass [-].
@@ -68,6 +68,8 @@ class LegChain:
         ankle: from the sole's centre: forward, left, up [m].
         foot_outward: of the foot's CoM from its ankle, away from the other leg [m].
         rolls_first: whether the ankle's roll joint is above its pitch joint.
+        hip_lever: of a leg that rolls before it pitches, its hip from the axis of roll: outward and up in the frame of
+            the leg [m].
     """
 
     hip_half_width: float
@@ -79,6 +81,7 @@ class LegChain:
     ankle: Vector
     foot_outward: float = 0.0
     rolls_first: bool = False
+    hip_lever: tuple[float, float] = (0.0, 0.0)
 
     def momentum_rate(
         self,
@@ -89,7 +92,7 @@ class LegChain:
         pitch: Array | None = None,
         toe: float = 0.0,
     ) -> Array:
-        """Rate of angular momentum about the CoM over the body's mass, by second differences.
+        """Rate of angular momentum about the CoM over the body's mass, by differences of fourth order.
 
         Args:
             com: CoM, shape (n, 3) [m].
@@ -107,10 +110,10 @@ class LegChain:
         offsets = self._rolled(legs, pitch, toe)
         ankles = soles - com + offsets[0]
         foot = ankles + offsets[1] + _OUTWARD * self.foot_outward * legs[..., 1, :]
-        hips, knees = self._posture(ankles, frame, legs[..., 0, :])
-        trunk = 0.5 * (hips[0] + hips[1]) + _turned(frame, self.trunk)
+        hips, knees, middle = self._posture(ankles, frame, legs[..., 0, :])
+        trunk = middle + _turned(frame, self.trunk)
         points = np.concatenate((hips, knees, ankles, foot, trunk[None]))
-        bend = np.diff(points, 2, axis=1) / sample_time**2
+        bend = _bend(points, sample_time)
         rate = _crossed(points[:, 1:-1], np.tensordot(_masses(self), bend, 1))
         return rate + self._beside(hips, knees, ankles, legs[..., 1, :], sample_time)
 
@@ -120,7 +123,7 @@ class LegChain:
         """Hips, knees and ankles in the world, shape (2, n, 3) each [m]; arguments as of `momentum_rate`."""
         frame, legs = _headings(0.5 * (heading[0] + heading[1])), _headings(heading)
         ankles = soles - com + self._rolled(legs, pitch, toe)[0]
-        hips, knees = self._posture(ankles, frame, legs[..., 0, :])
+        hips, knees, _ = self._posture(ankles, frame, legs[..., 0, :])
         return hips + com, knees + com, ankles + com
 
     def _beside(self, hips: Array, knees: Array, ankles: Array, left: Array, sample_time: float) -> Array:
@@ -135,7 +138,7 @@ class LegChain:
                 continue
             along = lower - upper
             a, b = upper + link.centre * along, link.ahead * np.cross(along, left) + _OUTWARD * link.outward * left
-            a_bend, b_bend = (np.diff(way, 2, axis=1) / sample_time**2 for way in (a, b))
+            a_bend, b_bend = _bend(a, sample_time), _bend(b, sample_time)
             rate += link.mass * (_crossed(a[:, 1:-1], b_bend) + _crossed(b[:, 1:-1], a_bend))
         return rate
 
@@ -147,29 +150,55 @@ class LegChain:
         lever = _pitched(frame, np.array(self.ankle) - edge, pitch)
         return _turned(frame, edge) + lever, _pitched(frame, np.array(self.foot_centre), pitch)
 
-    def _posture(self, ankles: Array, frame: Array, ahead: Array) -> tuple[Array, Array]:
-        """Hips and knees from the CoM, shape (2, n, 3) each, for ankles from the CoM and where the knees point."""
+    def _posture(self, ankles: Array, frame: Array, ahead: Array) -> tuple[Array, Array, Array]:
+        """Hips and knees, shape (2, n, 3) each, and the middle of the pelvis, shape (n, 3), all from the CoM.
+
+        Args:
+            ankles: from the CoM, shape (2, n, 3) [m].
+            frame: of the trunk, shape (n, 3, 3).
+            ahead: where the knees point, shape (2, n, 3).
+        """
         thigh, shank = self.thigh, self.shank
         at_hip = thigh.mass * (1.0 - thigh.centre)
         at_knee = self._at_knee
         at_ankle = shank.mass * shank.centre + self.foot_mass
         trunk_mass = 1.0 - 2.0 * (thigh.mass + shank.mass + self.foot_mass)
-        apart = self.hip_half_width * frame[:, 1]
         fixed = at_ankle * (ankles[0] + ankles[1]) + _turned(
             frame, trunk_mass * np.array(self.trunk) + 2.0 * self.foot_mass * np.array(self.foot_centre)
         )
         middle = np.zeros_like(fixed)
         middle[:, 2] = -0.1
         for _ in range(self._corrections):
-            hips = np.stack((middle + apart, middle - apart))
+            hips = self._hips(middle, ankles, frame)
             knees = self._knees(hips, ankles, ahead)
-            middle = middle - fixed - (trunk_mass + 2.0 * at_hip) * middle - at_knee * (knees[0] + knees[1])
+            error = fixed + trunk_mass * middle + at_hip * (hips[0] + hips[1]) + at_knee * (knees[0] + knees[1])
             if thigh.ahead or shank.ahead:
                 ways = ((thigh, knees - hips), (shank, ankles - knees))
                 beside = sum(link.mass * link.ahead * (way[0] + way[1]) for link, way in ways)
-                middle = middle - np.cross(beside, frame[:, 1])
-        hips = np.stack((middle + apart, middle - apart))
-        return hips, self._knees(hips, ankles, ahead)
+                error += np.cross(beside, frame[:, 1])
+            middle = middle - error / self.carried
+        hips = self._hips(middle, ankles, frame)
+        return hips, self._knees(hips, ankles, ahead), middle
+
+    def _hips(self, middle: Array, ankles: Array, frame: Array) -> Array:
+        """The hips beside the middle of the pelvis, shape (2, n, 3).
+
+        A leg with a lever rolls about its axis until its plane, so far beside the axis, goes through the ankle.
+        """
+        left = frame[:, 1]
+        hips = np.stack((middle + self.hip_half_width * left, middle - self.hip_half_width * left))
+        beside, above = self.hip_lever
+        if beside == above == 0.0:
+            return hips
+        outward = _OUTWARD * left
+        way = ankles - hips
+        y, z = np.einsum("kni,kni->kn", way, outward), way[..., 2]
+        square = y * y + z * z
+        down = np.sqrt(np.maximum(square - beside * beside, 0.0))
+        c, s = (y * beside - z * down) / square, (z * beside + y * down) / square
+        hips += (c * beside - s * above)[..., None] * outward
+        hips[..., 2] += s * beside + c * above
+        return hips
 
     @property
     def carried(self) -> float:
@@ -183,7 +212,7 @@ class LegChain:
 
     @property
     def _corrections(self) -> int:
-        """Corrections of the hips, each by the CoM's whole error: the lighter the legs, the more one takes away."""
+        """Corrections of the hips by the CoM's error: the lighter the legs, the less is left by one."""
         return math.ceil(math.log(_REST) / math.log(max(1.0 - self.carried, _REST)))
 
     def _knees(self, hips: Array, ankles: Array, forward: Array) -> Array:
@@ -228,6 +257,22 @@ def _masses(chain: LegChain) -> Array:
     M[8, 8] = 1.0 - 2.0 * (chain.thigh.mass + chain.shank.mass + chain.foot_mass)
     M.flags.writeable = False
     return M
+
+
+def _bend(ways: Array, sample_time: float) -> Array:
+    """Accelerations of points at all samples but the first and the last, shape (points, n - 2, 3) [m/s^2].
+
+    Second differences alone are a mean over two samples, which takes a tenth off what a leg swings in a double support.
+    What is left to fourth order is taken off them; at either end as beside it.
+    """
+    bend: Array = np.diff(ways, 2, axis=1)
+    if bend.shape[1] > 2:
+        rest = np.diff(bend, 2, axis=1) / 12.0
+        bend[:, 1:-1] -= rest
+        bend[:, 0] -= rest[:, 0]
+        bend[:, -1] -= rest[:, -1]
+    bend /= sample_time**2
+    return bend
 
 
 def _headings(heading: Array) -> Array:

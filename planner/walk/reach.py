@@ -140,7 +140,7 @@ class StepRegion:
         least = (self.nearest(stride.turn) + abs(left)) / middle
         most = (self.width[1] - abs(left)) / middle
         if ahead > 0.0:
-            most = min(most, (self.length - abs(forward)) / ahead)
+            most = min(most, (self.length + 0.5 * _ROUNDING - abs(forward)) / ahead)
         return replace(stride, width=max(min(stride.width, most), least))
 
     def admits(self, stride: Stride) -> bool:

@@ -21,6 +21,7 @@ from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
+from surefoot.scenarios.setup.legs import leg_inertia
 from surefoot.scenarios.setup.rehearsal import check_legs
 from surefoot.scenarios.setup.stance import (
     Body,
@@ -28,7 +29,6 @@ from surefoot.scenarios.setup.stance import (
     disturbed,
     feet_at,
     frames_of,
-    leg_inertia,
     pressed,
     start_posture,
 )

@@ -1,8 +1,9 @@
 """The robot of a scenario: its description with the chosen options, what bounds its walk, and what it is in truth."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -73,8 +74,9 @@ class Robots(Protocol):
 class RegisteredRobots:
     """The robots of ``models``, each looked at once: a robot file that changes meanwhile takes another object."""
 
-    def __init__(self) -> None:
-        self._facts = lru_cache(maxsize=None)(_registered)
+    @cached_property
+    def _facts(self) -> Callable[[str, RobotSettings], RobotFacts]:
+        return lru_cache(maxsize=None)(_registered)
 
     def names(self) -> tuple[str, ...]:
         """Names of all robots."""

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.planner.model.leg_chain import LegChain, Link, _headings
+from surefoot.planner.model.leg_chain import LegChain, Link, _bend, _headings
 
 pytestmark = pytest.mark.unit
 
@@ -25,7 +25,7 @@ def bodies(chain, com, soles, heading):
     """Point masses (points, masses) that are equimomental to the chain's rods, feet and trunk."""
     frame, legs = _headings(heading.mean(axis=0)), _headings(heading)
     ankles = soles - com + np.array(chain.ankle) @ legs
-    hips, knees = chain._posture(ankles, frame, legs[..., 0, :])
+    hips, knees, middle = chain._posture(ankles, frame, legs[..., 0, :])
     outward = legs[..., 1, :] * np.array([1.0, -1.0])[:, None, None]
     points, masses = [], []
     for upper, lower, link in ((hips, knees, chain.thigh), (knees, ankles, chain.shank)):
@@ -38,7 +38,7 @@ def bodies(chain, com, soles, heading):
             masses.append(np.full(2, mass))
     points.append(ankles + np.array(chain.foot_centre) @ legs + chain.foot_outward * outward)
     masses.append(np.full(2, chain.foot_mass))
-    trunk = 0.5 * (hips[0] + hips[1]) + np.array(chain.trunk) @ frame
+    trunk = middle + np.array(chain.trunk) @ frame
     points.append(np.stack([trunk, trunk]))
     masses.append(np.full(2, 0.5 - chain.thigh.mass - chain.shank.mass - chain.foot_mass))
     return np.concatenate(points), np.concatenate(masses)
@@ -61,7 +61,7 @@ def test_links_keep_their_lengths_and_knees_bend_forward():
     com, soles = walking()
     legs = _headings(np.zeros((2, len(com))))
     ankles = soles - com + np.array(CHAIN.ankle)
-    hips, knees = CHAIN._posture(ankles, legs[0], legs[..., 0, :])
+    hips, knees, _ = CHAIN._posture(ankles, legs[0], legs[..., 0, :])
     np.testing.assert_allclose(np.linalg.norm(knees - hips, axis=-1), THIGH.length, rtol=1e-12)
     np.testing.assert_allclose(np.linalg.norm(knees - ankles, axis=-1), SHANK.length, rtol=0.02)
     assert np.all(knees[..., 0] > np.minimum(hips[..., 0], ankles[..., 0]))
@@ -100,8 +100,7 @@ def test_momentum_rate_is_that_of_the_point_masses(chain, turned, splay):
     com, soles = com @ R.T, soles @ R.T
     heading = np.array([[turned + splay], [turned - splay]]).repeat(len(com), axis=1)
     points, masses = bodies(chain, com, soles, heading)
-    bend = (points[:, 2:] - 2.0 * points[:, 1:-1] + points[:, :-2]) / T**2
-    expected = np.einsum("k,kni->ni", masses, np.cross(points[:, 1:-1], bend))
+    expected = np.einsum("k,kni->ni", masses, np.cross(points[:, 1:-1], _bend(points, T)))
     rate = chain.momentum_rate(com, soles, heading, T)
     # What a CoM ahead of its rod does to the rod's inertia is meant about the pitch axis alone.
     np.testing.assert_allclose(rate, expected, atol=0.02 * np.abs(expected).max() if chain is AHEAD else 1e-9)
@@ -111,7 +110,7 @@ def test_momentum_rate_is_that_of_the_point_masses(chain, turned, splay):
 def test_a_knee_goes_where_its_foot_turns():
     """Feet that turn where they stand carry the knees over sideways, one and the other way."""
     com, soles = walking(1)
-    com, soles = np.repeat(com, 41, axis=0), np.repeat(soles, 41, axis=1)
+    com, soles = np.repeat(com - [0.0, 0.0, 0.05], 41, axis=0), np.repeat(soles, 41, axis=1)
     turning = 0.3 * np.sin(9.0 * T * np.arange(41))
     one, other, both = (
         CHAIN.momentum_rate(com, soles, np.stack(k), T)
@@ -119,6 +118,46 @@ def test_a_knee_goes_where_its_foot_turns():
     )
     assert np.abs(one[:, 0]).max() > 0.05
     np.testing.assert_allclose(one + other, both, atol=0.2 * np.abs(both).max())
+
+
+@pytest.mark.parametrize("sample", [slice(0, 1), slice(10, 11), slice(-1, None)], ids=["first", "within", "last"])
+def test_accelerations_are_exact_to_more_than_second_order(sample):
+    """Of a swing, at either end too: half the sample time leaves an eighth of the error at most."""
+
+    def error(step, derivative):
+        t = 0.3 + step * (np.arange(21) - (0 if sample.start == 0 else 20 if sample.stop is None else 11))
+        ways = np.stack((np.sin(9.0 * t), np.exp(2.0 * t), t), axis=1)[None]
+        exact = np.stack((-81.0 * np.sin(9.0 * t), 4.0 * np.exp(2.0 * t), 0.0 * t), axis=1)[1:-1]
+        return np.abs(derivative(ways, step)[0] - exact)[sample].max()
+
+    def second(ways, step):
+        return np.diff(ways, 2, axis=1) / step**2
+
+    assert error(0.02, _bend) < 0.7 * error(0.02, second)
+    assert error(0.01, _bend) < error(0.02, _bend) / 6.0
+
+
+@pytest.mark.parametrize("lever", [(0.06, -0.13), (0.03, 0.0), (0.0, 0.1)])
+def test_a_leg_rolls_about_an_axis_beside_it(lever):
+    """Hip, knee and ankle are in a plane so far beside the axis, where a rotation about it takes them."""
+    chain = replace(CHAIN, hip_half_width=0.06, hip_lever=lever)
+    com, soles = walking()
+    soles = soles + np.array([[[0.0, 0.08, 0.0]], [[0.0, -0.02, 0.1]]])
+    heading = np.zeros((2, len(com)))
+    ankles = soles - com + np.array(chain.ankle)
+    hips, knees, middle = chain._posture(ankles, _headings(heading[0]), _headings(heading)[..., 0, :])
+    for k, side in ((0, 1.0), (1, -1.0)):
+        axis = middle + np.array([0.0, side * chain.hip_half_width, 0.0])
+        arm = hips[k] - axis
+        np.testing.assert_allclose(np.linalg.norm(arm, axis=1), np.hypot(*lever), rtol=1e-9)
+        np.testing.assert_allclose(arm[:, 0], 0.0, atol=1e-12)
+        # The roll that takes the lever to where the hip is leaves ankle and knee as far outward of the axis as the hip.
+        roll = np.arctan2(arm[:, 2], side * arm[:, 1]) - np.arctan2(lever[1], lever[0])
+        outward = np.stack((np.zeros(len(com)), side * np.cos(roll), np.sin(roll)), axis=1)
+        for joint in (hips[k], knees[k], ankles[k]):
+            np.testing.assert_allclose(np.einsum("ni,ni->n", joint - axis, outward), lever[0], atol=1e-6)
+    points, masses = bodies(chain, com, soles, heading)
+    assert np.abs(np.einsum("k,kni->ni", masses, points)).max() < 2e-3
 
 
 def test_rest_has_no_momentum_rate():

@@ -9,8 +9,9 @@ import pytest
 
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
+from surefoot.scenarios.setup.legs import leg_inertia
 from surefoot.scenarios.setup.robot import facts_of
-from surefoot.scenarios.setup.stance import body_of, leg_inertia
+from surefoot.scenarios.setup.stance import body_of
 from surefoot.wbc.ik import PostureTarget
 
 pytestmark = pytest.mark.unit
@@ -103,6 +104,36 @@ def test_reduced_body_has_the_robots_com(body, standing, reduced):
         found += r.shank.mass * (knee + r.shank.centre * (ankle - knee))
         found += r.foot_mass * (ankle + np.array(r.foot_centre))
     np.testing.assert_allclose(found, com, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["humanoid100", "talos", "jvrc1", "alexander"])
+def test_joints_of_the_reduced_body_are_where_those_of_the_robot_are(name):
+    """In postures of a walk; alexander's legs roll about axes far from their pitch axes, which do not meet."""
+    body = body_of(describe(name, RobotOptions()))
+    robot, model, data = body.robot, body.model, body.model.createData()
+    ik, q = body.ik(robot.nominal_joint_positions), pin.neutral(body.model)
+    q[2], q[7:] = robot.leg_length, robot.nominal_joint_positions
+    scale, height = robot.leg_length / 0.94, robot.com_height
+    width = 0.5 * max(robot.hip_width, robot.shank_spacing)
+    soles = np.array([[0.0, width, 0.0], [0.0, -width, 0.0]])
+    standing = ik.solve(PostureTarget(soles, np.zeros(2), np.array([0.0, 0.0, height]), 0.0), q).q
+    chain = leg_inertia(model, body.frames, standing, body.leg_joints).chain
+    for forward, aside, lift in ((0.15, 0.0, 0.0), (-0.1, 0.06, 0.08), (0.2, -0.04, 0.05)):
+        moved = soles + scale * np.array([[forward, 0.0, 0.0], [-forward, 0.0, lift]])
+        com = np.array([0.0, scale * aside, height - 0.04 * scale])
+        found = ik.solve(PostureTarget(moved, np.zeros(2), com, 0.0), standing)
+        assert found.reached
+        pin.forwardKinematics(model, data, found.q)
+        pin.updateFramePlacements(model, data)
+        true = pin.centerOfMass(model, data, found.q)
+        placed = np.array([data.oMf[model.getFrameId(sole)].translation for sole in body.frames.soles])
+        _, knees, _ = chain.joints(true[None], placed[:, None], np.zeros((2, 1)))
+        for k, sole in enumerate(body.frames.soles):
+            legs = [j for j in model.supports[model.frames[model.getFrameId(sole)].parentJoint] if j > 1]
+            knee = data.oMi[legs[3]]
+            # Where on its axis a knee is does not matter.
+            across = (knee.translation - knees[k, 0]) @ (np.eye(3) - np.outer(*[knee.rotation[:, 1]] * 2))
+            assert np.abs(across).max() < 5e-3 * scale, (name, forward)
 
 
 def test_heading_does_not_matter(body, standing, reduced):

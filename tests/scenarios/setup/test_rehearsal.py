@@ -8,8 +8,9 @@ import pytest
 import surefoot
 from surefoot.errors import ParameterError
 from surefoot.planner.types import Foot
+from surefoot.scenarios.setup.legs import leg_inertia
 from surefoot.scenarios.setup.rehearsal import check_legs, joint_angles, rehearsed
-from surefoot.scenarios.setup.stance import body_of, feet_at, leg_inertia, start_posture
+from surefoot.scenarios.setup.stance import body_of, feet_at, start_posture
 from surefoot.scenarios.setup.stances import SPARE
 from surefoot.scenarios.setup.straight import pitch_joints, shank_outline
 from surefoot.scenarios.setup.walk import Walk, resolve

@@ -13,6 +13,7 @@ can bring the DCM back until the foot lands, nothing is adapted.
 
 import math
 from dataclasses import dataclass
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ from surefoot.planner.model.dcm import decays, nominal_dcm
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support, ZmpReference
-from surefoot.planner.types import Array, FeetState, Foot, PhaseKind
+from surefoot.planner.types import Array, FeetState, PhaseKind
 from surefoot.planner.walk.reach import Legs
 from surefoot.planner.walk.stepper import Stepper
 
@@ -96,7 +97,7 @@ class Situation:
             omega=window.omega,
             reference=window.driving,
             nominal=(stepper.footsteps.position[stepper.row + 1, :2] - support.origin) @ rotation,
-            side=1.0 if foot is Foot.LEFT else -1.0,
+            side=foot.side,
             swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
             double=0.0 if swings else phase.left,
             single=phase.left if swings else swing.samples * stepper.sample_time,
@@ -196,7 +197,7 @@ class Recovery:
         self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
         self._size = parameters.size
         self._weights = self._size.times((_PLACE, _STRETCH, _SECOND, _UNREACHED), "1/m^2")
-        self._boxes = {side: np.array(legs.boxes(side)) for side in (1.0, -1.0)}
+        self._boxes = {key: np.array(legs.boxes(*key)) for key in product((1.0, -1.0), (True, False))}
 
     def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
         """DCM error of a robot that stands, or will without another step, and whether no CoP can hold it.
@@ -260,8 +261,7 @@ class Recovery:
         # What the CoP holds until the step after it, or in a stand on both feet for ever.
         held_next = growth * _HELD * now.reference.half_size[-1] if now.last else (growth - 1.0) * half
         # Of each box that the foot may land in, shape (boxes, n).
-        room, boxes = now.nominal + now.room, self._boxes[now.side]
-        boxes = boxes if now.crosses else boxes[:1]
+        room, boxes = now.nominal + now.room, self._boxes[now.side, now.crosses]
         lower, upper = np.maximum(boxes[:, :1], room[0]), np.minimum(boxes[:, 1:], room[1])
         places = self.legs.within(_between(_between(wanted, low, high), lower, upper), com + hip)
         places = _between(places, lower, upper)

@@ -24,6 +24,11 @@ class Foot(IntEnum):
         """The opposite foot."""
         return Foot(1 - self)
 
+    @property
+    def side(self) -> float:
+        """+1 for the left foot, -1 for the right one: which way is outward, to the left counted positive."""
+        return 1.0 - 2.0 * self
+
 
 class PhaseKind(IntEnum):
     """Support phase."""

@@ -43,7 +43,7 @@ class Landing:
 
 def landing(stride: Stride, foot: Foot) -> Landing:
     """Where a foot lands that makes a stride (see `planner.walk.footsteps.plan_footsteps`)."""
-    side, half = (1.0 if foot is Foot.LEFT else -1.0), 0.5 * stride.width
+    side, half = foot.side, 0.5 * stride.width
     forward, left = _advance(stride)
     ahead = forward - side * half * math.sin(stride.turn)
     return Landing(ahead, side * left + half * (1.0 + math.cos(stride.turn)), stride.turn)
@@ -174,11 +174,14 @@ class Legs:
             return None
         return self if adaptation is StepAdaptation.CROSSING else replace(self, across=None)
 
-    def boxes(self, side: float) -> list[tuple[Array, Array]]:
-        """Lower and upper corners of boxes, one of which holds the landing of a left (+1) or right (-1) foot."""
+    def boxes(self, side: float, crosses: bool = True) -> list[tuple[Array, Array]]:
+        """Lower and upper corners of boxes, one of which holds the landing of a left (+1) or right (-1) foot.
+
+        The first is beside its stance foot; those beyond it are left out for a step that must not cross.
+        """
         most = 2.0 * self.radius
         boxes = [self._beside(side)]
-        if self.across is not None:
+        if crosses and self.across is not None:
             boxes += [
                 self._box(side, self.clear, most, -self.across),
                 self._box(side, -most, -self.clear, -self.across),

@@ -362,9 +362,11 @@ class Stepper:
             return
         stance, t = self.footsteps.footstep(self.row), self.sample_time
         rotation, origin = frame_rotation(stance.yaw), stance.position[:2]
-        times = np.arange(max(time, swing.start_time), swing.glide_end + 0.5 * t, t)
+        side, times = swing.foot.side, np.arange(max(time, swing.start_time), swing.glide_end + 0.5 * t, t)
+        if not (side * ((swing.positions(times[[0, -1]])[:, :2] - origin) @ rotation)[:, 1] < 0.0).any():
+            return  # as nearly all of them: beside its stance foot at both ends
         way = (swing.positions(times)[:, :2] - origin) @ rotation
-        corner = self._legs.corner(way, 1.0 if swing.foot is Foot.LEFT else -1.0)
+        corner = self._legs.corner(way, side)
         if corner is None:
             return
         bent = swing.around(origin + rotation @ corner, t)

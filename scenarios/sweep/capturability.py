@@ -223,7 +223,7 @@ def _ways(walk: Walk, view: LogView, swing: Foot, at: tuple[int, float], left: t
     most = np.array(walk.legs.acceleration)
     for double, single in itertools.product(*_times(walk, left)):
         foot = swing_box(here, speed, most, single)
-        for box in _boxes(walk, 1.0 if swing is Foot.LEFT else -1.0):
+        for box in _boxes(walk, swing.side):
             low, high = np.maximum(box[0], foot[0]), np.minimum(box[1], foot[1])
             if (low <= high).all():
                 yield way(double, single, landing_points(stance, half, (low, high)))

@@ -89,6 +89,21 @@ def test_who_stands_on_both_feet_has_the_room_between_them():
     assert catch(situation(1.01 * (held + more), **starting)) is not None
 
 
+def test_a_step_that_is_adapted_counts_on_four_fifths_of_the_room_between_the_feet():
+    """Until the foot lands what the CoP does with it has grown by e^{ωT}, and moves the step the less.
+
+    The ZMP of this situation is all on the new foot when that lands, so that a shift counts as it is.
+    """
+    free, error = replace(LEGS, radius=4.0, near=-4.0, across=None, acceleration=(1e4, 1e4)), (0.0, 0.25)
+    now = situation()
+    lifts, wide = round(0.2 / T), np.tile(HALF, (len(now.stiffness), 1))
+    wide[:lifts] += (0.0, 0.1)
+    more = viability_weights(now.stiffness, now.omega, T) @ (wide - HALF)
+    caught = [catch(situation(error, double=0.2, half=half), False, free) for half in (HALF, wide)]
+    narrow, broad = (0.5 * (one.low + one.high) for one in caught)
+    np.testing.assert_allclose(narrow - broad, 0.8 * np.exp(OMEGA * 0.5) * more, atol=2e-3)
+
+
 @pytest.mark.parametrize("share", [0.3, 0.5])
 @pytest.mark.parametrize("error", [(0.08, 0.0), (-0.06, 0.0), (0.0, 0.06), (0.05, 0.05)])
 def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error, share):

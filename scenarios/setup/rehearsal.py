@@ -28,6 +28,12 @@ FAST = 0.35
 _GRID = 0.002
 """Distance of the points at which the ground is looked at, for the reference robot [m]."""
 
+_HALVINGS = 5
+"""How often that distance is halved to find an edge in it [-]."""
+
+_CLEAR = 0.004
+"""Distance of a shank from an edge that is too small to be sure of, likewise: knees are as far off in the chain [m]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Rehearsed:
@@ -157,18 +163,19 @@ def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]
         if len(outline) < 3:
             continue
         depth, at = _overlap(walk, way, foot, outline[ConvexHull(outline).vertices], knees[foot], ankles[foot])
-        if depth > 0.0:
+        if depth > -_CLEAR * walk.size.length:
+            near = f"{depth:.3f} m into" if depth > 0.0 else f"within {-depth:.3f} m of"
             raise ParameterError(
                 ("terrain", "riser"),
-                f"the {foot.name.lower()} shank of '{walk.robot.name}' would come {depth:.3f} m into the edge ahead "
+                f"the {foot.name.lower()} shank of '{walk.robot.name}' would come {near} the edge ahead "
                 f"{at * way.sample_time:.2f} s after the start",
                 "use lower risers or deeper treads",
             )
 
 
 def _overlap(walk: Walk, way: Rehearsed, foot: int, outline: Array, knees: Array, ankles: Array) -> tuple[float, int]:
-    """How deep the shank of a standing foot is in the ground ahead at worst, and at which tick [m, -]."""
-    hull, worst, when, known = ConvexHull(outline), 0.0, 0, (math.nan, math.nan)
+    """How deep the shank of a standing foot is in an edge ahead at worst, negative outside, and when [m, ticks]."""
+    hull, worst, when, known = ConvexHull(outline), -math.inf, 0, (math.nan, math.nan)
     edges = np.zeros((0, 2))
     for k in np.flatnonzero(way.standing[foot]):
         sole, heading = way.soles[foot, k], np.array([math.cos(way.heading[foot, k]), math.sin(way.heading[foot, k])])
@@ -193,4 +200,9 @@ def _edges(walk: Walk, sole: Array, heading: Array) -> Array:
     ahead = np.arange(0.0, 0.6 * walk.robot.leg_length, grid)
     heights = walk.terrain.heights(sole[:2] + ahead[:, None] * heading) - sole[2]
     rises = np.flatnonzero(np.diff(heights) > grid)
-    return np.column_stack((ahead[rises + 1], heights[rises + 1]))
+    before, behind, upper = ahead[rises], ahead[rises + 1], heights[rises + 1]
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (before + behind)
+        low = walk.terrain.heights(sole[:2] + middle[:, None] * heading) - sole[2] < upper - 0.5 * grid
+        before, behind = np.where(low, middle, before), np.where(low, behind, middle)
+    return np.column_stack((behind, upper))

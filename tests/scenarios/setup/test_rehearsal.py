@@ -88,6 +88,29 @@ def test_a_shank_that_would_meet_the_riser_ahead_is_refused(monkeypatch: pytest.
         check_legs(walk, feet, leg)
 
 
+def test_a_shank_so_near_to_the_riser_that_it_may_meet_it_is_refused(monkeypatch: pytest.MonkeyPatch):
+    """Four millimetres are what the chain's knees may be off."""
+    walk, feet, leg = legs_of(resolve(surefoot.load("walk", {**QUICK, **STAIRS, "gait.single_support": 0.6})))
+    outline = shank_outline(walk.robot, Foot.LEFT)
+
+    def said(ahead: float) -> str:
+        moved = np.concatenate((outline, outline + np.array([ahead, 0.0])))
+        outlines = {Foot.LEFT: moved, Foot.RIGHT: outline}
+        monkeypatch.setattr("surefoot.scenarios.setup.rehearsal.shank_outline", lambda _, foot: outlines[foot])
+        try:
+            check_legs(walk, feet, leg)
+        except ParameterError as error:
+            return error.what
+        return ""
+
+    near, far = 0.0, 0.4
+    while far - near > 2e-4:
+        middle = 0.5 * (near + far)
+        near, far = (near, middle) if "into the edge" in said(middle) else (middle, far)
+    assert "would come within 0.002 m of the edge ahead" in said(near - 0.002)
+    assert said(near - 0.005) == ""
+
+
 def test_an_ankle_that_would_come_to_its_end_before_the_foot_rolls_is_named(brisk):
     """A walk whose feet roll is refused where the ankles have just less range than its first steps take."""
     walk, feet, leg = brisk

@@ -15,7 +15,7 @@ from surefoot.planner.types import Array
 _REST = 4e-3
 """Share of the first guess's error that the hips may keep; a constant rest does no harm [-]."""
 
-_BEND = 0.012
+_BEND = 0.01
 """Share of its length by which a leg stays the more bent the nearer it comes to straight, or its sole out of reach: the
 knee of a straight leg would move infinitely fast [-]."""
 

@@ -31,8 +31,8 @@ _GRID = 0.002
 _HALVINGS = 5
 """How often that distance is halved to find an edge in it [-]."""
 
-_CLEAR = 0.004
-"""Distance of a shank from an edge that is too small to be sure of, likewise: knees are as far off in the chain [m]."""
+_CLEAR = 0.002
+"""Distance of a shank from an edge that is too small to be sure of, likewise [m]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,7 +46,7 @@ def test_treads_two_centimetres_off_are_found(tmp_path, name):
 @pytest.mark.physics
 def test_the_rise_of_the_paper_is_out_of_reach_of_legs(tmp_path):
     """Negative control: risers that are climbed in single support are not in double support: the robot falls."""
-    flight = ("terrain.riser=0.15", "terrain.count=2", "gait.steps=3")
+    flight = ("terrain.riser=0.17", "terrain.count=2", "gait.steps=3")
     assert reasons(tmp_path, "stair-climbing", *flight) == ()
     found = reasons(tmp_path, "stair-climbing", *flight, "planner.rise=double")
     assert found[0].startswith("fell is true at ")

@@ -17,7 +17,8 @@ _REST = 4e-3
 
 _BEND = 0.01
 """Share of its length by which a leg stays the more bent the nearer it comes to straight, or its sole out of reach: the
-knee of a straight leg would move infinitely fast [-]."""
+knee of a straight leg would move infinitely fast. Two per cent cost ordinary walks a millimetre of ZMP; with 0.8 two
+pushes of the paper's gait fell that are survived with one [-]."""
 
 _OUTWARD = np.array([1.0, -1.0])[:, None, None]
 """Which way is outward for the left and the right leg, along the left [-]."""

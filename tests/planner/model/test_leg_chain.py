@@ -87,6 +87,25 @@ def test_heavy_legs_take_more_corrections():
     assert np.abs(found).max() < 3e-3
 
 
+def test_a_heavy_leg_whose_mass_lies_ahead_leaves_the_com_where_it_was_asked_for():
+    thigh, shank = replace(THIGH, mass=0.17, ahead=0.05), replace(SHANK, mass=0.15, ahead=0.1)
+    chain = replace(CHAIN, thigh=thigh, shank=shank)
+    com, soles = walking()
+    points, masses = bodies(chain, com - np.array([0.0, 0.0, 0.2]), soles, np.zeros((2, len(com))))
+    assert np.abs(np.einsum("k,kni->ni", masses, points)).max() < 1e-3
+
+
+@pytest.mark.parametrize(("degrees", "most"), [(10.0, 4.5), (20.0, 1.5), (40.0, 0.5)])
+def test_a_knee_near_straight_is_hardly_bent_more_than_it_is(degrees, most):
+    angle = np.radians(degrees)
+    reach = np.sqrt(THIGH.length**2 + SHANK.length**2 + 2.0 * THIGH.length * SHANK.length * np.cos(angle))
+    hips, ankles = np.zeros((2, 1, 3)), np.zeros((2, 1, 3))
+    ankles[..., 2] = -reach
+    knee = CHAIN._bent(hips, ankles, np.broadcast_to([1.0, 0.0, 0.0], (2, 1, 3)))[0, 0]
+    lean = np.arcsin(SHANK.length * np.sin(angle) / reach)  # of the thigh, in the triangle of hip, knee and ankle
+    assert 0.0 <= 2.0 * np.degrees(np.arctan2(knee[0], -knee[2]) - lean) < most
+
+
 OUTWARD = replace(CHAIN, thigh=replace(THIGH, outward=0.05), shank=replace(SHANK, outward=0.03), foot_outward=0.02)
 AHEAD = replace(CHAIN, thigh=replace(THIGH, ahead=0.1), shank=replace(SHANK, ahead=0.2))
 

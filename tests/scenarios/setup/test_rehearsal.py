@@ -9,7 +9,7 @@ import surefoot
 from surefoot.errors import ParameterError
 from surefoot.planner.types import Foot
 from surefoot.scenarios.setup.legs import leg_inertia
-from surefoot.scenarios.setup.rehearsal import check_legs, joint_angles, rehearsed
+from surefoot.scenarios.setup.rehearsal import _edges, check_legs, joint_angles, rehearsed
 from surefoot.scenarios.setup.stance import body_of, feet_at, start_posture
 from surefoot.scenarios.setup.stances import SPARE
 from surefoot.scenarios.setup.straight import pitch_joints, shank_outline
@@ -86,6 +86,13 @@ def test_a_shank_that_would_meet_the_riser_ahead_is_refused(monkeypatch: pytest.
     monkeypatch.setattr("surefoot.scenarios.setup.rehearsal.shank_outline", lambda *_: thick)
     with pytest.raises(ParameterError, match=r"shank of 'humanoid100' would come 0\.\d+ m into the edge ahead"):
         check_legs(walk, feet, leg)
+
+
+def test_an_edge_is_where_it_is_wherever_it_is_seen_from():
+    walk = resolve(surefoot.load("walk", {**QUICK, **STAIRS}))
+    ahead = np.array([1.0, 0.0])
+    seen = [x + _edges(walk, np.array([x, 0.1, 0.0]), ahead)[0, 0] for x in np.linspace(0.0, 0.005, 11)]
+    assert np.ptp(seen) < 1e-4
 
 
 def test_a_shank_so_near_to_the_riser_that_it_may_meet_it_is_refused(monkeypatch: pytest.MonkeyPatch):

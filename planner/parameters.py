@@ -27,9 +27,9 @@ class GroundSearch:
         ParameterError: a number is negative, an acceleration is zero, or one that must be finite is not.
     """
 
-    touchdown_speed: float = quantity(0.005, "m/s")
+    touchdown_speed: float = quantity(0.015, "m/s")
     speed: float = quantity(0.15, "m/s")
-    acceleration: float = quantity(1.0, "m/s^2")
+    acceleration: float = quantity(0.5, "m/s^2")
     hurry_after: float = quantity(math.inf, "s")
     hurry_speed: float = quantity(0.5, "m/s")
     hurry_acceleration: float = quantity(16.0, "m/s^2")
@@ -161,7 +161,7 @@ class PlannerParameters:
     freeze_time: float = quantity(0.08, "s")
     late_touchdown: float = quantity(0.3, "s")
     apex_share: float = quantity(0.5, "-")
-    touchdown_lead: float = quantity(0.03, "s")
+    touchdown_lead: float = quantity(0.02, "s")
     search: GroundSearch = field(default_factory=GroundSearch)
     solvers: tuple[str, str] = SOLVERS
     size: Similarity = REFERENCE_SIZE

@@ -54,7 +54,7 @@ def _add_options(root: ElementTree.Element, timestep: float) -> None:
         gravity=f"0 0 {-GRAVITY!r}",
         integrator="Euler",
         cone="elliptic",
-        impratio="10",
+        impratio="20",
         jacobian="dense",
         solver="Newton",
     )

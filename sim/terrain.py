@@ -29,7 +29,7 @@ def add_terrain(worldbody: ElementTree.Element, terrain: Terrain, size: Similari
         "group": "0",
         "friction": numbers((terrain.friction, 0.0, 0.0)),
         "solref": f"{SETTLING * size.time!r} 1",
-        "solimp": f"0.95 0.99 {SINKING * size.length!r}",
+        "solimp": f"0.9 0.95 {SINKING * size.length!r}",
     }
     plane = {"name": GROUND, "type": "plane", "size": "0 0 1", "material": "floor"}
     place = {"pos": numbers((0.0, 0.0, terrain.plane))} if terrain.plane != 0.0 else {}

@@ -26,7 +26,7 @@ from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.posture import POSTURE, RULES
+from surefoot.scenarios.setup.posture import POSTURE, Rule, nearer_landings, rules
 from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
@@ -89,7 +89,9 @@ def say_for(source: Source, overrides: Overrides, robots: Robots) -> tuple[str, 
     if before is None or after is None:
         return None
     effort = _effort(source.value, (str(origin), soles), (str(robot), RobotSettings()), robots)
-    _Translation(source, str(origin), before, after, effort).run()
+    gait = source.value.get("gait")
+    posture = rules(nearer_landings(gait if isinstance(gait, dict) else {}, bool(source.value.get("commands"))))
+    _Translation(source, str(origin), before, after, effort, posture).run()
     return str(origin), str(robot)
 
 
@@ -126,6 +128,7 @@ class _Translation:
         before: facts of that one, with the soles that the file gives it.
         after: of the one that it is run with.
         effort: how many times the share of its motors' torque that one takes to stand on one foot.
+        rules: of the keys that follow from more than its size.
     """
 
     source: Source
@@ -133,6 +136,7 @@ class _Translation:
     before: RobotFacts
     after: RobotFacts
     effort: float
+    rules: dict[Key, Rule]
 
     def run(self) -> None:
         """Translate every number that has a unit; what is of a wrong type stays for the schema to tell."""
@@ -207,7 +211,7 @@ class _Translation:
         """The value for the other robot."""
         with suppress(PydanticCustomError):
             value = Unit(unit).number(value)
-        rule = RULES.get(key) if _is_number(value) else None
+        rule = self.rules.get(key) if _is_number(value) else None
         if rule is not None:
             return rule(value, self.before, self.after)
         return _times(value, _against(self.after.size, self.before.size, unit))
@@ -234,9 +238,10 @@ def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scena
     before, after = (_facts(name, RobotSettings(), robots) for name in (REFERENCE, scenario.robot))
     gait, changed = scenario.gait, {}
     if before is not None and after is not None:
+        posture = rules(nearer_landings(gait.model_dump(exclude_unset=True), bool(scenario.commands)))
         for name in POSTURE:
             if name not in gait.model_fields_set:
-                changed[name] = RULES["gait", name](getattr(gait, name), before, after)
+                changed[name] = posture["gait", name](getattr(gait, name), before, after)
     rates, sample_time = _clock(scenario, size)
     update: dict[str, Any] = {
         "gait": followed.gait.model_copy(update=changed),

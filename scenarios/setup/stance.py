@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 STOPS_OFF = 1e-3
 """How far from the ends of their ranges joints are held, since a touchdown shakes them past where that is [rad]."""
 
-SOLE_SINKAGE = 5e-5
+SOLE_SINKAGE = 1.3e-4
 """How far the reference robot's soles sink into the simulated ground under its weight [m]."""
 
 

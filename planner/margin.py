@@ -24,8 +24,9 @@ from surefoot.planner.recovery import PEAK, SHORTEST, Recovery, Situation
 from surefoot.planner.references.window import Window
 from surefoot.planner.types import Array
 
-_SINGLES = tuple(i / 6 for i in range(7))
-"""Times of single support that are looked at beside the present one, between the shortest and the longest [-]."""
+_SINGLES = (0.0, 0.1, 0.2, 0.3, 0.45, 0.65, 1.0)
+"""Times of single support that are looked at beside the present one, between the shortest and the longest [-]; close
+where they are short, since there a swing's reach grows fast."""
 
 _LONGER = 0.2
 """By how much it may last longer than now [s]."""

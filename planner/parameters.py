@@ -27,7 +27,7 @@ class GroundSearch:
         ParameterError: a number is negative, an acceleration is zero, or one that must be finite is not.
     """
 
-    touchdown_speed: float = quantity(0.015, "m/s")
+    touchdown_speed: float = quantity(0.01, "m/s")
     speed: float = quantity(0.15, "m/s")
     acceleration: float = quantity(0.5, "m/s^2")
     hurry_after: float = quantity(math.inf, "s")

@@ -1,6 +1,6 @@
 """What the planner hands over at every tick, and the references that follow from it at any instant."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -140,6 +140,14 @@ class PlanSample:
     swing: Array
     swing_velocity: Array
     swing_acceleration: Array
+
+    def until(self, middle: "PlanSample") -> "PlanSample":
+        """What is to be done over a time that begins with this sample: its state, and all else of the middle."""
+        if middle.swing_foot is not self.swing_foot:
+            return middle
+        return replace(
+            middle, com=self.com, com_velocity=self.com_velocity, swing=self.swing, swing_velocity=self.swing_velocity
+        )
 
 
 class PlanSampler:

@@ -16,7 +16,12 @@ GROUND = "ground"
 
 SETTLING, SINKING = 0.01, 0.0001
 """Time constant of the ground [s] and depth over which it grows rigid [m], for the reference robot: 5 ms critically
-damped, nearly rigid from the first micrometre, so that a standing sole sinks in by micrometres."""
+damped, so that a standing sole sinks in by a tenth of a millimetre."""
+
+IMPEDANCE = 0.9, 0.95
+"""Of a contact, at its first touch and at that depth [-]; MuJoCo's own. Its contacts leave out J' v, what a sole is
+accelerated by with its joints' velocities alone, which shifts the depth at which the sole bears a load. That depth
+grows with what the impedance lacks of 1: at 0.95 soles unloaded to 200 N came up out of contact for a step."""
 
 
 def add_terrain(worldbody: ElementTree.Element, terrain: Terrain, size: Similarity = REFERENCE_SIZE) -> None:
@@ -29,7 +34,7 @@ def add_terrain(worldbody: ElementTree.Element, terrain: Terrain, size: Similari
         "group": "0",
         "friction": numbers((terrain.friction, 0.0, 0.0)),
         "solref": f"{SETTLING * size.time!r} 1",
-        "solimp": f"0.9 0.95 {SINKING * size.length!r}",
+        "solimp": numbers((*IMPEDANCE, SINKING * size.length)),
     }
     plane = {"name": GROUND, "type": "plane", "size": "0 0 1", "material": "floor"}
     place = {"pos": numbers((0.0, 0.0, terrain.plane))} if terrain.plane != 0.0 else {}

@@ -83,9 +83,11 @@ def com_acceleration(
     """CoM acceleration that tracks the reference.
 
     Horizontal: with ξ = c + c'/ω and e = ξ - ξ_ref, the pendulum's commanded point is p = p_ref + k e, moved so that
-    the ZMP p + o with the reference's offset o lies in the support region, and c'' = λ (c - p). On the reference this
-    returns the reference's own acceleration. Since ξ' = (λ/ω)(ξ - p) for ω' = ω² - λ (Hopkins, Hong and Leonessa,
-    Humanoids 2014, eq. 10), the error obeys e' = -(λ/ω)(k - 1) e.
+    the ZMP p + o with the reference's offset o lies in the support region, and
+    c'' = c''_ref + λ (c - c_ref - p + p_ref).
+    That is c'' = λ (c - p) for a reference of one instant; that of a control tick has its state at the begin and all
+    else in the middle. On the reference this returns the reference's own acceleration. Since ξ' = (λ/ω)(ξ - p) for
+    ω' = ω² - λ (Hopkins, Hong and Leonessa, Humanoids 2014, eq. 10), the error obeys e' = -(λ/ω)(k - 1) e.
     Vertical: c_z'' = z_ref'' + k_z (z_ref - z) + d_z (z_ref' - z').
 
     Args:
@@ -98,7 +100,6 @@ def com_acceleration(
     Returns:
         x, y, z [m/s^2].
     """
-    x, y, _ = com.tolist()
     dx, dy, dz = (com - reference.com).tolist()
     vx, vy, vz = (com_velocity - reference.com_velocity).tolist()
     px, py = reference.zmp.tolist()
@@ -106,9 +107,9 @@ def com_acceleration(
     zmp_x, zmp_y = region.project(
         px + offset_x + gains.dcm * (dx + vx / reference.omega), py + offset_y + gains.dcm * (dy + vy / reference.omega)
     )
-    planned = float(reference.com_acceleration[2])
+    ax, ay, planned = reference.com_acceleration.tolist()
     return (
-        reference.stiffness * (x - zmp_x + offset_x),
-        reference.stiffness * (y - zmp_y + offset_y),
+        ax + reference.stiffness * (px + offset_x + dx - zmp_x),
+        ay + reference.stiffness * (py + offset_y + dy - zmp_y),
         planned - gains.height_stiffness * dz - gains.height_damping * vz,
     )

@@ -77,7 +77,9 @@ NO_LOAD = ExternalLoad(np.zeros(3), np.zeros(3), 1.0)
 
 @dataclass(frozen=True, slots=True)
 class WbcReference:
-    """What the whole-body controller shall do at this instant; world frame.
+    """What the whole-body controller shall do until its next tick; world frame.
+
+    Positions and velocities are those of now, accelerations and ZMPs those in the middle of the time until then.
 
     Attributes:
         com: CoM position, shape (3,) [m].

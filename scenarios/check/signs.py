@@ -111,14 +111,12 @@ def _landing_yaw(run: RunView, parts: Sequence[Stage]) -> Array:
 
 
 def _swing_error(run: RunView, parts: Sequence[Stage]) -> Array:
-    """Greatest distance of the swing sole in each stage from its reference of half a tick later, which it follows."""
+    """Greatest distance of the swing sole in each stage from its reference."""
     planned, found = run.field("/reference", "swing_position"), np.full((len(parts), 1), np.nan)
     for row, one in enumerate(parts):
         swing = slice(one.begin, one.landed)
         if one.foot >= 0 and one.landed > one.begin:
-            here = planned[swing]
-            reference = 0.5 * (here + np.append(here[1:], here[-1:], axis=0))
-            found[row] = np.linalg.norm(run.sole(one.foot)[swing, :3] - reference, axis=1).max()
+            found[row] = np.linalg.norm(run.sole(one.foot)[swing, :3] - planned[swing], axis=1).max()
     return found
 
 

@@ -157,7 +157,7 @@ def _swinging(plan: WalkPlan) -> Foot | None:
 
 
 def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
-    """What the whole-body controller shall do at the sample's instant of the plan.
+    """What the whole-body controller shall do at the sample's instant of the plan, or over a tick that it stands for.
 
     The heading of pelvis and torso is the mean of both feet's yaws, so that it turns smoothly with the swing foot.
     """

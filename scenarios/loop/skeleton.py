@@ -117,7 +117,7 @@ class Walker(Protocol):
         Args:
             tick: number of the tick.
             plan: that is followed.
-            sample: of it, for the middle of the tick.
+            sample: of it, its state that of now, and all else that of the middle of the tick (see `PlanSample.until`).
         """
         ...
 
@@ -265,8 +265,9 @@ class ClosedLoop:
         if self._pushes:
             self._push(now, plan)
         sample = planning.sampler.sample(now)
-        # What is decided now acts until the next tick: it is to do what is planned for the middle of that.
-        build_time, solve_time = walker.act(tick, plan, planning.sampler.sample(now + 0.5 / rate))
+        # What is decided now acts until the next tick, so that it is to do what is planned for the middle of that; the
+        # state is held against that of now, from which on it does so.
+        build_time, solve_time = walker.act(tick, plan, sample.until(planning.sampler.sample(now + 0.5 / rate)))
         watch.lap()
         walker.record(now_ns, sample)
         self._recorder.reference(now_ns, plan, sample)

@@ -36,6 +36,33 @@ def test_derivatives_within_and_across_samples(plan):
         np.testing.assert_allclose(np.gradient(values, step, axis=0)[1:-1], rates[1:-1], atol=tolerance)
 
 
+@pytest.mark.parametrize("number", [130, 180])
+def test_who_does_over_each_tick_what_the_middle_says_stays_on_the_plan(diagonal, number):
+    """CoM and swing foot, with the acceleration of the middle held over each of 5 ticks of 2 ms."""
+    plan, h = diagonal[1].plans[number], 0.002
+    sampler = PlanSampler(plan)
+    state = None
+    for i in range(6):
+        now = sampler.sample(plan.time + h * i)
+        asked = now.until(sampler.sample(plan.time + h * (i + 0.5)))
+        for k, (value, rate, bend) in enumerate(
+            (("com", "com_velocity", "com_acceleration"), ("swing", "swing_velocity", "swing_acceleration"))
+        ):
+            state = state or [[now.com, now.com_velocity], [now.swing, now.swing_velocity]]
+            position, velocity = state[k]
+            np.testing.assert_allclose(position, getattr(asked, value), atol=2e-7)
+            np.testing.assert_allclose(velocity, getattr(asked, rate), atol=2e-5)
+            a = getattr(asked, bend)
+            state[k] = [position + h * velocity + 0.5 * h**2 * a, velocity + h * a]
+
+
+def test_a_swing_that_begins_within_a_tick_is_done_as_in_its_middle(diagonal):
+    plan = next(p for p in diagonal[1].plans if p.swing is not None)
+    standing = next(p for p in diagonal[1].plans if p.swing is None)
+    now, middle = (PlanSampler(p).sample(p.time) for p in (standing, plan))
+    assert now.until(middle) is middle
+
+
 def test_zmp_and_dcm_fit_the_motion(plan):
     sample = PlanSampler(plan).sample(plan.time + 0.033)
     np.testing.assert_allclose(

@@ -15,7 +15,7 @@ from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load, read_scenario
-from surefoot.scenarios.setup.posture import com_height, step_width, tread
+from surefoot.scenarios.setup.posture import CLEAR, com_height, nearer_landings, step_width, tread
 from surefoot.scenarios.setup.robot import HIPS, SHANKS, RegisteredRobots
 from surefoot.scenarios.setup.sized import clock
 from surefoot.scenarios.setup.walk import resolve
@@ -161,9 +161,43 @@ def test_legs_are_bent_as_much_and_feet_no_nearer():
     height = com_height(0.99, full, wide)
     assert (height - 0.05) / wide.leg_length == pytest.approx((0.99 - full.com_above_hip) / full.leg_length)
     width = step_width(0.2, full, wide)
-    assert width == pytest.approx(0.05 + 0.08 - 0.25 * full.hip_width)
+    assert width == pytest.approx(0.05 + 0.04 - 0.25 * full.shank_spacing)
+    assert width - wide.shank_spacing == pytest.approx(0.25 * (0.2 - full.shank_spacing))
     assert width - wide.foot_width >= 0.25 * (0.2 - full.foot_width)
-    assert step_width(0.2, full, replace(wide, hip_width=0.01, shank_spacing=0.01, foot_width=0.01)) == 0.05
+    assert step_width(0.2, full, replace(wide, hip_width=0.3, shank_spacing=0.01, foot_width=0.01)) == 0.05
+
+
+@pytest.mark.parametrize("spacing", [0.01, 0.035, 0.06])
+@pytest.mark.parametrize("nearer", [0.0, 0.03, 0.1])
+def test_feet_whose_way_is_known_keep_a_part_of_their_room(spacing, nearer):
+    robots = RegisteredRobots()
+    full, other = robots.facts("humanoid100", RobotSettings()), robots.facts("small", RobotSettings())
+    other = replace(other, shank_spacing=spacing, foot_width=0.01)
+    width, room = step_width(0.2, full, other, nearer), 0.2 - full.shank_spacing - nearer
+    assert 0.05 <= width <= step_width(0.2, full, other)
+    kept = width - 0.25 * nearer - spacing
+    assert kept >= 0.25 * min(CLEAR, room) - 1e-12
+    assert width == 0.05 or kept == pytest.approx(0.25 * min(CLEAR, room))
+
+
+@pytest.mark.parametrize(
+    ("gait", "told", "nearer"),
+    [
+        ({}, False, 0.0),
+        ({"lateral_step": -0.06}, False, 0.06),
+        ({"velocity": [{"time": 0.0, "v_x": 0.3}, {"time": 2.0}]}, False, 0.0),
+        ({"velocity": [{"time": 0.0, "v_y": 0.1}]}, False, math.inf),
+        ({"velocity": [{"time": 0.0, "v_x": 0.3, "yaw_rate": 0.1}]}, False, math.inf),
+        ({"turn": 0.1}, False, math.inf),
+        ({"waypoints": [{"x": 1.0}]}, False, math.inf),
+        ({"footsteps": [{"foot": "left"}]}, False, math.inf),
+        ({}, True, math.inf),
+        ({"lateral_step": "wide"}, False, math.inf),
+        ({"velocity": 3}, False, 0.0),
+    ],
+)
+def test_feet_may_land_anywhere_where_the_walk_turns_or_is_told(gait, told, nearer):
+    assert nearer_landings(gait, told) == nearer
 
 
 def test_treads_are_as_deep_as_soles_ask_for():

@@ -9,9 +9,9 @@ from surefoot.scenarios.log import read
 pytestmark = pytest.mark.physics
 
 
-@pytest.mark.parametrize("name", ["slope", "walk"])
-def test_a_sole_keeps_its_contact_until_it_is_lifted(tmp_path, name):
-    run(load(name), out=tmp_path)
+@pytest.mark.parametrize(("name", "robot", "share"), [("slope", "humanoid100", 0.95), ("walk", "alexander", 0.7)])
+def test_a_sole_keeps_its_contact_until_it_is_lifted(tmp_path, name, robot, share):
+    run(load(name, {"robot": robot}), out=tmp_path)
     log = read(next(tmp_path.rglob("log.mcap")))
     contact, planned = log["/contact"].columns(), log["/wbc"].columns()
     least = np.inf
@@ -21,4 +21,4 @@ def test_a_sole_keeps_its_contact_until_it_is_lifted(tmp_path, name):
         held = np.convolve(contact[f"active_{k}"], np.ones(60), "full")[: len(asked)] == 60
         bearing = held[1:] & (asked[:-1] > 60.0)
         least = min(least, float((given[1:] / np.where(asked[:-1] > 0.0, asked[:-1], np.nan))[bearing].min()))
-    assert least > 0.7
+    assert least > share

@@ -14,7 +14,7 @@ class ContactParameters:
         ParameterError: one is negative or not finite, a time or a number of ticks is zero, or a share is above 1.
     """
 
-    felt_force: float = number(20.0, "N", "normal force above which a foot feels the ground")
+    felt_force: float = number(8.0, "N", "normal force above which a foot feels the ground")
     felt_ticks: int = number(2, "-", "consecutive control ticks of that force before it counts", positive=True)
     early_progress: float = number(0.6, "-", "share of its swing from which a swing foot may land", most=1.0)
     early_cap: float = number(50.0, "N", "load allowed on a foot that landed before its time")

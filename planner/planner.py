@@ -220,7 +220,7 @@ class WalkingPlanner:
         samples = stepper.samples(outlook.reach)
         reference = outlook.zmp(samples, support)
         # Vertical motion planner of the CoM, with it the varying dynamics.
-        height = outlook.com_height(samples, support, reference)
+        height = outlook.com_height(stepper, samples, support, reference)
         return outlook.window(stepper, samples, support, reference, height, local[:, 0], state.time, state.lasting)
 
     def _steps_out(self, local: Array, window: Window) -> bool:

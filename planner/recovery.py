@@ -20,6 +20,7 @@ import numpy as np
 
 from surefoot.planner.model.dcm import decays, nominal_dcm
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.references.com_height import LIFTING
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support, ZmpReference
 from surefoot.planner.types import Array, FeetState, PhaseKind
@@ -102,7 +103,7 @@ class Situation:
             double=0.0 if swings else phase.left,
             single=phase.left if swings else swing.samples * stepper.sample_time,
             cycle=stepper.queue.gait.period,
-            shortest=yet * math.sqrt(PEAK * abs(step.climb) / _CLIMBING),
+            shortest=yet * math.sqrt(PEAK * abs(step.climb) / LIFTING),
             room=stepper.room(0),
             adapted=stepper.adapted,
             last=stepper.stops,
@@ -170,9 +171,6 @@ _OUTWARD = 3.0
 
 _WORTH = 0.001
 """Cost that other times must save [-]."""
-
-_CLIMBING = 5.0
-"""Vertical acceleration of the body with which it may be lifted or lowered onto a step [m/s^2]."""
 
 PEAK, _BRAKING, _GAINING = 5.77, 1.9, 3.9
 """Greatest acceleration of a quintic to rest over way / T², and what of it a speed / T takes off at its end and its

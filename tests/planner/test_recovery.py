@@ -12,6 +12,7 @@ from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.recovery import Recovery, Situation, moving_cop, pendulum_com
+from surefoot.planner.references.com_height import LIFTING
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import PhaseKind
 from surefoot.planner.walk.gait import GaitParameters
@@ -221,6 +222,20 @@ def test_a_pushed_pendulum_survives_more_the_more_it_may_adapt(stand, direction,
     survived = [greatest(stand, level, direction) for level in LEVELS]
     assert min(survived[1:]) > survived[0] > 0.0
     assert survived[-1] == max(survived) > least * survived[0]
+
+
+def test_a_body_whose_step_is_hurried_is_not_let_fall(stand):
+    """Its height goes on smoothly, and its feet press; hurried through its law it would fall with 10 m/s^2."""
+    gait = GaitParameters(
+        steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95, apex_ss=0.03
+    )
+    push = PointPush(gait.lift_off(3) + 0.1, 0.1, np.array([900.0, 0.0]))
+    planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
+    plans = walk_pendulum(planner, stand(), gait.lift_off(5), com=com, pushes=(push,)).plans
+    assert min(plan.balance.delay for plan in plans) < -0.05
+    z = np.array([(plan.com[:2, 2], plan.com_velocity[:2, 2], plan.com_acceleration[:2, 2]) for plan in plans])
+    assert np.abs(z[..., 2, :]).max() < LIFTING + 1e-6
+    np.testing.assert_allclose(z[1:, :2, 0], z[:-1, :2, 1], atol=1e-9)
 
 
 def test_what_a_push_leaves_to_the_cop_moves_no_step(stand):

@@ -13,7 +13,6 @@ can bring the DCM back until the foot lands, nothing is adapted.
 
 import math
 from dataclasses import dataclass
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -50,6 +49,7 @@ class Situation:
         adapted: whether the step is being adapted already.
         last: whether the robot stands after it.
         crosses: whether it may land beyond its stance foot, as far as legs may at all.
+        turn: heading in which it lands against that of its stance foot [rad].
     """
 
     com: Array
@@ -68,6 +68,7 @@ class Situation:
     adapted: bool
     last: bool
     crosses: bool
+    turn: float = 0.0
 
     @classmethod
     def of(
@@ -110,6 +111,7 @@ class Situation:
             last=stepper.stops,
             # A leg that lets the body down from its face has its knee in the way.
             crosses=stepper.wide or step.climb >= 0.0,
+            turn=stepper.turn(0),
         )
 
 
@@ -196,7 +198,6 @@ class Recovery:
         self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
         self._size = parameters.size
         self._weights = self._size.times((_PLACE, _STRETCH, _SECOND, _UNREACHED), "1/m^2")
-        self._boxes = {key: np.array(legs.boxes(*key)) for key in product((1.0, -1.0), (True, False))}
 
     def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
         """DCM error of a robot that stands, or will without another step, and whether no CoP can hold it.
@@ -260,7 +261,7 @@ class Recovery:
         # What the CoP holds until the step after it, or in a stand on both feet for ever.
         held_next = growth * _HELD * now.reference.half_size[-1] if now.last else (growth - 1.0) * half
         # Of each box that the foot may land in, shape (boxes, n).
-        room, boxes = now.nominal + now.room, self._boxes[now.side, now.crosses]
+        room, boxes = now.nominal + now.room, self.boxes(now)
         lower, upper = np.maximum(boxes[:, :1], room[0]), np.minimum(boxes[:, 1:], room[1])
         places = self.legs.within(_between(_between(wanted, low, high), lower, upper), com + hip)
         places = _between(places, lower, upper)
@@ -286,6 +287,17 @@ class Recovery:
             least, most = np.maximum(least, wanted[best] - held), np.minimum(most, wanted[best] + held)
         lower, upper = np.maximum(lower, np.minimum(least, place)), np.minimum(upper, np.maximum(most, place))
         return Catch(float(doubles[best] if now.double else singles[best]), lower, upper, more)
+
+    def boxes(self, now: Situation) -> Array:
+        """Lower and upper corners of where the step may land, as far as its stance foot is concerned.
+
+        Args:
+            now: the situation.
+
+        Returns:
+            Shape (boxes, 2, 2) [m].
+        """
+        return np.array(self.legs.turned(now.turn).boxes(now.side, now.crosses))
 
     def _times(self, now: Situation, fine: bool) -> tuple[Array, Array]:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
@@ -323,7 +335,7 @@ class Recovery:
             singles: times left of the swing, shape (n,) [s].
             places: where it lands, shape (boxes, n, 2) [m].
         """
-        legs, side, (here, speed) = self.legs, now.side, now.swing
+        legs, side, (here, speed) = self.legs.turned(now.turn), now.side, now.swing
         crossing = np.where(side * here[1] < 0.0, here[0], np.where(side * places[..., 1] < 0.0, places[..., 0], 0.0))
         lacking = np.zeros(crossing.shape)
         which = np.nonzero(crossing)

@@ -198,6 +198,15 @@ def test_who_is_pushed_over_the_stance_foot_crosses_where_it_may():
     assert beside.low[1] >= LEGS.near - 1e-9
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+def test_a_foot_that_turns_lands_the_farther_beside_its_stance_foot(turn):
+    """Pushed over the stance foot: one that lands on it would be held off it in the air."""
+    legs = replace(LEGS, across=None, sole=(0.22, 0.11))
+    caught = catch(situation((0.0, -0.1), 0.4, swing=((0.0, 0.2), (0.0, 0.0)), turn=turn), legs=legs)
+    assert caught.low[1] == pytest.approx(legs.turned(turn).near)
+    assert legs.turned(0.3).near > legs.near + 0.025
+
+
 def test_a_step_that_legs_cannot_make_long_enough_is_made_sooner():
     slow = {"single": 1.0, "swing": ((-0.3, 0.2), (0.0, 0.0))}
     assert catch(situation((0.14, 0.0), **slow)).left < 0.9

@@ -359,6 +359,9 @@ class Stepper:
         elif not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
             # Over edges the foot keeps to the times in which its course clears them.
             self.swing = self.swing.retargeted(time, target, self.adapted and self.wide, LEAST_GLIDE * self._size.time)
+        if self.adapted and self.swing.search.hurry_after > 0.0:
+            # While a foot that is to catch the body searches for the ground the DCM goes on away from it.
+            self.swing = replace(self.swing, search=replace(self.swing.search, hurry_after=0.0))
         self._go_around(self.swing, time)
 
     def _go_around(self, swing: SwingTrajectory, time: float) -> None:

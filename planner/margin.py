@@ -14,7 +14,6 @@ forward near = -far. Before that the present step lands, at the best of some tim
 
 import math
 from dataclasses import dataclass, field
-from itertools import product
 
 import numpy as np
 
@@ -114,10 +113,6 @@ class Reserve:
         shortest = SHORTEST["single"] * time
         self.cycle = SHORTEST["double"] * time + max(shortest, parameters.touchdown_lead + float(swung))
         self._recovery, self._radius = recovery, legs.radius
-        self._boxes = {
-            key: np.stack([_edges(*box) for box in legs.boxes(*key)], axis=1)[:, None]
-            for key in product((1.0, -1.0), (True, False))
-        }
         # Columns of four edges each.
         self._half = _edges(-half_size, half_size)[:, None]
         self._hip = _edges(*2 * (np.array([0.0, 0.5 * legs.hip_width]),))[:, None]
@@ -195,5 +190,5 @@ class Reserve:
         if fixed:
             return _edges(now.nominal, now.nominal)[:, None, None]
         room = _edges(*(now.nominal + now.room))[:, None, None]
-        boxes = self._boxes[now.side, now.crosses]
+        boxes = np.stack([_edges(*box) for box in self._recovery.boxes(now)], axis=1)[:, None]
         return np.minimum(np.minimum(boxes, room), self._recovery.swung(now, singles)[..., None])

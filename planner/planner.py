@@ -220,7 +220,7 @@ class WalkingPlanner:
         samples = stepper.samples(outlook.reach)
         reference = outlook.zmp(samples, support)
         # Vertical motion planner of the CoM, with it the varying dynamics.
-        height = outlook.com_height(samples, support, reference)
+        height = outlook.com_height(stepper, samples, support, reference)
         return outlook.window(stepper, samples, support, reference, height, local[:, 0], state.time, state.lasting)
 
     def _steps_out(self, local: Array, window: Window) -> bool:
@@ -344,7 +344,8 @@ class WalkingPlanner:
             return context
         if not stepper.adapted:
             return replace(context, reach=(increment, increment))
-        boxes = [self._recovery.legs.beside(increment[0], side), self._recovery.legs.beside(increment[1], -side)]
+        legs = [self._recovery.legs.turned(stepper.turn(ahead)) for ahead in (0, 1)]
+        boxes = [legs[0].beside(increment[0], side), legs[1].beside(increment[1], -side)]
         low, high = np.array(boxes).swapaxes(0, 1)
         rooms = np.zeros((2, 2, 2))
         rooms[: len(ahead)] = [stepper.room(number) for number in range(len(ahead))]

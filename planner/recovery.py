@@ -13,15 +13,16 @@ can bring the DCM back until the foot lands, nothing is adapted.
 
 import math
 from dataclasses import dataclass
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from surefoot.planner.model.dcm import decays, nominal_dcm
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.references.com_height import LIFTING
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support, ZmpReference
+from surefoot.planner.swing.trajectory import detour
 from surefoot.planner.types import Array, FeetState, PhaseKind
 from surefoot.planner.walk.reach import Legs
 from surefoot.planner.walk.stepper import Stepper
@@ -48,6 +49,7 @@ class Situation:
         adapted: whether the step is being adapted already.
         last: whether the robot stands after it.
         crosses: whether it may land beyond its stance foot, as far as legs may at all.
+        turn: heading in which it lands against that of its stance foot [rad].
     """
 
     com: Array
@@ -66,6 +68,7 @@ class Situation:
     adapted: bool
     last: bool
     crosses: bool
+    turn: float = 0.0
 
     @classmethod
     def of(
@@ -102,12 +105,13 @@ class Situation:
             double=0.0 if swings else phase.left,
             single=phase.left if swings else swing.samples * stepper.sample_time,
             cycle=stepper.queue.gait.period,
-            shortest=yet * math.sqrt(PEAK * abs(step.climb) / _CLIMBING),
+            shortest=yet * math.sqrt(PEAK * abs(step.climb) / LIFTING),
             room=stepper.room(0),
             adapted=stepper.adapted,
             last=stepper.stops,
             # A leg that lets the body down from its face has its knee in the way.
             crosses=stepper.wide or step.climb >= 0.0,
+            turn=stepper.turn(0),
         )
 
 
@@ -171,9 +175,6 @@ _OUTWARD = 3.0
 _WORTH = 0.001
 """Cost that other times must save [-]."""
 
-_CLIMBING = 5.0
-"""Vertical acceleration of the body with which it may be lifted or lowered onto a step [m/s^2]."""
-
 PEAK, _BRAKING, _GAINING = 5.77, 1.9, 3.9
 """Greatest acceleration of a quintic to rest over way / T², and what of it a speed / T takes off at its end and its
 begin [-]."""
@@ -197,7 +198,6 @@ class Recovery:
         self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
         self._size = parameters.size
         self._weights = self._size.times((_PLACE, _STRETCH, _SECOND, _UNREACHED), "1/m^2")
-        self._boxes = {key: np.array(legs.boxes(*key)) for key in product((1.0, -1.0), (True, False))}
 
     def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
         """DCM error of a robot that stands, or will without another step, and whether no CoP can hold it.
@@ -261,7 +261,7 @@ class Recovery:
         # What the CoP holds until the step after it, or in a stand on both feet for ever.
         held_next = growth * _HELD * now.reference.half_size[-1] if now.last else (growth - 1.0) * half
         # Of each box that the foot may land in, shape (boxes, n).
-        room, boxes = now.nominal + now.room, self._boxes[now.side, now.crosses]
+        room, boxes = now.nominal + now.room, self.boxes(now)
         lower, upper = np.maximum(boxes[:, :1], room[0]), np.minimum(boxes[:, 1:], room[1])
         places = self.legs.within(_between(_between(wanted, low, high), lower, upper), com + hip)
         places = _between(places, lower, upper)
@@ -270,6 +270,7 @@ class Recovery:
         second[..., 1] *= np.where(now.side * short[..., 1] > 0.0, _OUTWARD, 1.0)
         total = cost + shift * ((places - now.nominal) ** 2).sum(axis=-1) + second_shift * (second**2).sum(axis=-1)
         total = total + unreached * ((places - _between(places, low, high)) ** 2).sum(axis=-1)
+        total = total + unreached * self.lacking_around(now, singles, places) ** 2
         total[(lower > upper).any(axis=(1, 2))] = np.inf
         least_cost, rows = total.min(axis=1), np.arange(len(total))
         cheapest = np.where(least_cost < total[:, -1] - _WORTH, total.argmin(axis=1), -1)
@@ -286,6 +287,17 @@ class Recovery:
             least, most = np.maximum(least, wanted[best] - held), np.minimum(most, wanted[best] + held)
         lower, upper = np.maximum(lower, np.minimum(least, place)), np.minimum(upper, np.maximum(most, place))
         return Catch(float(doubles[best] if now.double else singles[best]), lower, upper, more)
+
+    def boxes(self, now: Situation) -> Array:
+        """Lower and upper corners of where the step may land, as far as its stance foot is concerned.
+
+        Args:
+            now: the situation.
+
+        Returns:
+            Shape (boxes, 2, 2) [m].
+        """
+        return np.array(self.legs.turned(now.turn).boxes(now.side, now.crosses))
 
     def _times(self, now: Situation, fine: bool) -> tuple[Array, Array]:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
@@ -311,6 +323,65 @@ class Recovery:
                 edges.append((side * at, hardest, (_BRAKING if onward > 0.0 else _GAINING) * onward))
         place, hardest, onward = np.array(edges).T[:, :, None]
         return np.asarray(place + (hardest * time**2 + onward * time) / PEAK)
+
+    def lacking_around(self, now: Situation, singles: Array, places: Array) -> Array:
+        """Way that a foot lacks of places in times since it has to pass around the stance leg, shape (boxes, n) [m].
+
+        It is bent as that of the swing will be (see `SwingTrajectory.around`), here at nine shares of its time, and
+        lacks the share by which the hips cannot swing it so hard.
+
+        Args:
+            now: the situation.
+            singles: times left of the swing, shape (n,) [s].
+            places: where it lands, shape (boxes, n, 2) [m].
+        """
+        legs, side, (here, speed) = self.legs.turned(now.turn), now.side, now.swing
+        crossing = np.where(side * here[1] < 0.0, here[0], np.where(side * places[..., 1] < 0.0, places[..., 0], 0.0))
+        lacking = np.zeros(crossing.shape)
+        which = np.nonzero(crossing)
+        if not len(which[0]):
+            return lacking
+        time = np.maximum(singles - self._lead, self._sample_time)[which[1], None, None]
+        way, onward = (places[which] - here)[:, None], speed * time
+        passed = here + way * _AT_REST[0][:, None] + onward * _MOVING[0][:, None]
+        met = ((np.abs(passed[..., 0]) < legs.clear) & (side * passed[..., 1] < legs.near)).any(axis=1)
+        corner = np.stack((np.copysign(legs.clear, crossing[which]), np.full(len(met), side * legs.near)), axis=1)
+        astray = corner[:, None] - passed
+        rows, best = np.arange(len(met)), np.argmin((astray**2).sum(axis=-1) / _DEARER, axis=1)
+        bend = way * _AT_REST[1][:, None] + onward * _MOVING[1][:, None]
+        bend = bend + astray[rows, best][:, None] * _AROUND[best][..., None]
+        hardest = (np.abs(bend) / (time**2 * legs.acceleration)).max(axis=(1, 2))
+        lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
+        return lacking
+
+
+_SHARES = np.linspace(0.1, 0.9, 9)
+"""Shares of a swing's time at which its way around the stance leg is looked at [-]."""
+
+_DEARER = (_SHARES * (1.0 - _SHARES)) ** 5
+"""What a way round at these is divided by to be compared."""
+
+
+def _unit_ways() -> tuple[Array, Array, Array]:
+    """Quintics to rest in a unit of time and their accelerations at `_SHARES`, shape (2, 9) each.
+
+    One goes a unit of way from rest, one has a unit of speed and goes none; of a way round by a unit at each of these
+    shares the accelerations, shape (9, 9).
+    """
+    u = _SHARES
+    rest = np.stack((u**3 * (10.0 - 15.0 * u + 6.0 * u**2), 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u)))
+    moving = np.stack((u - 6.0 * u**3 + 8.0 * u**4 - 3.0 * u**5, -36.0 * u + 96.0 * u**2 - 60.0 * u**3))
+    order = np.arange(6.0)
+    factors = (order * (order - 1.0))[2:]
+    around = []
+    for share in u.tolist():
+        since = np.where(u <= share, u, u - share)[:, None] ** order[:4] * factors
+        before, after = detour(share, 1.0)
+        around.append(np.where(u <= share, since @ before[2:], since @ after[2:]))
+    return rest, moving, np.array(around)
+
+
+_AT_REST, _MOVING, _AROUND = _unit_ways()
 
 
 def _landing(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from surefoot.planner.model.dcm import natural_frequency, nominal_motion
 from surefoot.planner.model.leg_chain import LegChain
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.references.com_height import HeightPreview, HeightProfile, preview_height
+from surefoot.planner.references.com_height import Bridge, HeightPreview, HeightProfile, preview_height
 from surefoot.planner.references.leg_offset import Feet, nominal_feet, softening, zmp_offset
 from surefoot.planner.references.zmp_reference import (
     Support,
@@ -142,6 +142,9 @@ class Outlook:
         self._same_swing = _SAME_SWING * self._length
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
+        # The bridge, and of the last plan its tick, how often the clock had been told to go otherwise, and the height.
+        self._bridge: Bridge | None = None
+        self._before: tuple[int, int, Array] | None = None
 
     @property
     def reach(self) -> int:
@@ -162,9 +165,35 @@ class Outlook:
         """
         return zmp_reference(samples, support.table).part(slice(1, -1))
 
-    def com_height(self, samples: PhaseSamples, support: Support, reference: ZmpReference) -> HeightPreview:
-        """CoM height and stiffness over the samples of a reference: the paper's vertical motion planner."""
-        return preview_height(self._profile, self._gait, samples, support.heights, reference.height, self._length)
+    def com_height(
+        self, stepper: Stepper, samples: PhaseSamples, support: Support, reference: ZmpReference
+    ) -> HeightPreview:
+        """CoM height and stiffness over the samples of a reference: the paper's vertical motion planner.
+
+        Args:
+            stepper: the clock and the steps in sight.
+            samples: the phases from the sample before now to the one after the last of interest.
+            support: what carries the robot now, with the plan frame.
+            reference: ZMP.
+        """
+        clock = stepper.clock
+
+        def bridged(height: Array) -> Array:
+            """The height where a step that is adapted has changed how the clock goes."""
+            if self._before is not None and self._before[1] != clock.taken and (stepper.adapted or self._bridge):
+                tick, _, before = self._before
+                state = before[:, min(clock.ticks - tick, 1)]
+                self._bridge = Bridge.onto(height, state, clock.ticks, stepper.left, self._sample_time)
+            if self._bridge is not None:
+                if clock.ticks >= self._bridge.start + self._bridge.samples:
+                    self._bridge = None
+                else:
+                    height = self._bridge.over(height, clock.ticks)
+            self._before = clock.ticks, clock.taken, height[:, :2].copy()
+            return height
+
+        profile, gait = self._profile, self._gait
+        return preview_height(profile, gait, samples, support.heights, reference.height, self._length, bridged)
 
     def window(
         self,

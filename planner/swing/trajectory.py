@@ -159,7 +159,7 @@ class SwingTrajectory:
         ways = corner - times[:, None] ** _EXPONENTS @ self.level[:, :2]
         best = int(np.argmin((ways**2).sum(axis=1) / (share * (1.0 - share)) ** 5))
         time, way = float(times[best]), np.append(ways[best], np.zeros(len(_GLIDING) - 2))
-        before, after = _bump(time, duration)
+        before, after = detour(time, duration)
         onward = shifted(self.level, time) + after[:, None] * way
         return replace(self, level=self.level + before[:, None] * way, bend_time=start + time, onward=onward)
 
@@ -288,7 +288,7 @@ def start_swing(
     return trajectory._with_height(times.lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
 
 
-def _bump(time: float, duration: float) -> tuple[Array, Array]:
+def detour(time: float, duration: float) -> tuple[Array, Array]:
     """Coefficients of 1, t, ..., t^5 of the least jerk from rest at zero to one at a time and back, shape (6,) each."""
     a, b = time, duration - time
     # Jerk and its rate do not jump where both quintics meet, with velocity v and acceleration w.

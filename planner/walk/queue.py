@@ -16,7 +16,7 @@ from surefoot.planner.walk.footsteps import Path, start_footholds
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Phase, PhaseSamples
 from surefoot.planner.walk.reach import Landing, check_reach
-from surefoot.planner.walk.source import GaitSource, Interlude, Request, StepSource
+from surefoot.planner.walk.source import GaitSource, Interlude, Request, StepOrder, StepSource
 
 _MORE_STEPS = 3
 """Steps in sight beyond a window: its last support points depend on the ones after them, and a plan tells three."""
@@ -144,7 +144,7 @@ class StepQueue:
             return True
         if self._standing:
             stand = max(in_samples(order.stand, t), now - phases[-1].start)
-            self._begin_bout(phases[-1], stand, order.hurried)
+            self._begin_bout(phases[-1], stand, order)
         self._lay(order.stride)
         return True
 
@@ -155,10 +155,12 @@ class StepQueue:
         x, y = path.middle + self.footsteps.shift
         return Pose(float(x), float(y), path.yaw)
 
-    def _begin_bout(self, stand: Phase, samples: float, hurried: bool) -> None:
-        double = self._durations[1]
+    def _begin_bout(self, stand: Phase, samples: float, order: StepOrder) -> None:
+        double, ramp = self._durations[1], order.farther * self._durations[1]
         self.phases[-1:] = [replace(stand, samples=samples)] if samples else []
-        shift, rest = (double, 0.0) if hurried else (WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double)
+        shift, rest = (
+            (double, 0.0) if order.hurried else (ramp + (WEIGHT_SHIFT - 1) * double, (WEIGHT_SHIFT - 1) * double)
+        )
         self.phases.append(Phase(PhaseKind.DOUBLE, stand.start + samples, shift, stand.step, None, stand.support, rest))
 
     def _end_bout(self) -> None:
@@ -226,10 +228,14 @@ class StepQueue:
     def go_on(self, present: Phase, foot: Foot | None = None, at_once: bool = True) -> None:
         """Make a step on the spot where the robot stands or would stand next, before anything else.
 
+        The weight goes from between the feet onto one of them. In the time that it usually takes it gets there only
+        from feet as near to each other as usual: who is to step at leisure takes the longer the wider it stands, once
+        its weight has begun to shift. A longer rest before that would take the CoM farther than the rear leg reaches.
+
         Args:
             present: the phase now.
             foot: that makes it, of a robot that stands; else it is the one that landed first.
-            at_once: with a weight shift no longer than any.
+            at_once: with a weight shift no longer than any, wherever the feet are.
         """
         at = self.phases.index(present)
         stand = next(n for n, phase in enumerate(self.phases[at:], at) if phase.kind is PhaseKind.STAND)
@@ -237,7 +243,15 @@ class StepQueue:
         last = self._last.number
         if foot is not None and self.gait.step_foot(last + 1) is not foot:
             self._swap_feet(last)
-        self._source = Interlude(self._source, last + 1, self.gait.step_width, at_once)
+        farther = 1.0 if at_once else max(1.0, self._apart(last))
+        self._source = Interlude(self._source, last + 1, self.gait.step_width, at_once, farther)
+
+    def _apart(self, last: int) -> float:
+        """How many times as far apart as nominally the feet stand with which a step and the one before it landed."""
+        row, places = last + 1 - self.footsteps.first, (self.steps[last].place, self.steps[last - 1].place)
+        ways = self.footsteps.position[row] - self.footsteps.position[row - 1], places[0].position - places[1].position
+        here, usual = (float(np.hypot(*way[:2])) for way in ways)
+        return here / usual
 
     def _swap_feet(self, last: int) -> None:
         """Let the other foot be the one that landed last, so that this one makes the next step."""

@@ -43,11 +43,13 @@ class StepOrder:
         stand: standing before the weight shift to it; of a step that follows another without a stop it says nothing
             [s].
         hurried: its weight shift takes no longer than any, and begins at once.
+        farther: how many times as far as usual that goes, and as long it takes once it has begun [-].
     """
 
     stride: Stride
     stand: float = 0.0
     hurried: bool = False
+    farther: float = 1.0
 
 
 class StepSource(Protocol):
@@ -89,14 +91,15 @@ class Interlude:
         step: number of the step.
         width: of the stance that it keeps [m].
         hurried: see `StepOrder`.
+        farther: likewise [-].
     """
 
-    def __init__(self, source: StepSource, step: int, width: float, hurried: bool) -> None:
+    def __init__(self, source: StepSource, step: int, width: float, hurried: bool, farther: float = 1.0) -> None:
         before = source if isinstance(source, Interlude) else None
         self._source: StepSource = source if before is None else before._source
         self._taken: int = 1 if before is None else before._taken + (step > before._step)
         self._step: int = step
-        self._spot = StepOrder(Stride(0.0, 0.0, 0.0, width), hurried=hurried)
+        self._spot = StepOrder(Stride(0.0, 0.0, 0.0, width), hurried=hurried, farther=farther)
 
     def order(self, at: Request) -> StepOrder | None:
         """See `StepSource`."""

@@ -160,6 +160,11 @@ class Stepper:
         step = self.queue.steps[self.landed + 1 + ahead]
         return turned_room(step.room, step.place.yaw - float(self.footsteps.yaw[self.row]))
 
+    def turn(self, ahead: int) -> float:
+        """Heading of the next footstep (0) or a later one against the one before it; zero where there is none [rad]."""
+        yaws = self.footsteps.yaw[self.row + ahead : self.row + ahead + 2]
+        return wrap_angle(float(yaws[1] - yaws[0])) if len(yaws) == 2 else 0.0
+
     @property
     def stands(self) -> bool:
         """Whether no foot is to swing before the robot stands, which may be moved to step."""
@@ -354,6 +359,9 @@ class Stepper:
         elif not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
             # Over edges the foot keeps to the times in which its course clears them.
             self.swing = self.swing.retargeted(time, target, self.adapted and self.wide, LEAST_GLIDE * self._size.time)
+        if self.adapted and self.swing.search.hurry_after > 0.0:
+            # While a foot that is to catch the body searches for the ground the DCM goes on away from it.
+            self.swing = replace(self.swing, search=replace(self.swing.search, hurry_after=0.0))
         self._go_around(self.swing, time)
 
     def _go_around(self, swing: SwingTrajectory, time: float) -> None:
@@ -366,7 +374,7 @@ class Stepper:
         if not (side * ((swing.positions(times[[0, -1]])[:, :2] - origin) @ rotation)[:, 1] < 0.0).any():
             return  # as nearly all of them: beside its stance foot at both ends
         way = (swing.positions(times)[:, :2] - origin) @ rotation
-        corner = self._legs.corner(way, side)
+        corner = self._legs.turned(wrap_angle(float(swing.target[3]) - stance.yaw)).corner(way, side)
         if corner is None:
             return
         bent = swing.around(origin + rotation @ corner, t)

@@ -12,8 +12,10 @@ from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.recovery import Recovery, Situation, moving_cop, pendulum_com
+from surefoot.planner.references.com_height import LIFTING
 from surefoot.planner.references.zmp_reference import ZmpReference
-from surefoot.planner.types import PhaseKind
+from surefoot.planner.swing.trajectory import SwingTimes, start_swing
+from surefoot.planner.types import Foot, PhaseKind
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import Legs
 
@@ -158,6 +160,25 @@ def test_a_step_is_not_hurried_to_a_place_that_its_foot_cannot_be_swung_to(behin
     assert caught.low[0] <= front
 
 
+@pytest.mark.parametrize("time", [0.16, 0.2, 0.25, 0.3, 0.4])
+@pytest.mark.parametrize(("here", "place"), [((-0.35, 0.5), (0.3, -0.1)), ((0.3, -0.1), (0.0, 0.2))])
+def test_a_way_around_the_stance_leg_lacks_what_hips_cannot_swing_of_it(time, here, place):
+    """Held against the swing that is bent so; in a long time it lacks nothing, and beside the leg it never does."""
+    here, place = np.array(here), np.array(place)
+    now, recovery = situation(swing=(here, (0.0, 0.0))), Recovery(LEGS, P, True)
+    lacking = recovery.lacking_around(now, np.array([time, 2.0]), np.tile(place, (1, 2, 1)))[0]
+    length = time - P.touchdown_lead
+    times = SwingTimes(0.0, 0.0, 0.5 * length, length, length)
+    pose, target = np.append(here, np.zeros(4)), np.append(place, np.zeros(4))
+    swing = start_swing(Foot.LEFT, pose, target, times, 0.05, P)
+    instants = np.linspace(0.0, length, 100)
+    bent = swing.around(LEGS.corner(swing.positions(instants)[:, :2], 1.0), 0.1 * length)
+    hardest = np.abs([bent.evaluate(at)[2, :2] / LEGS.acceleration for at in instants[:-1]]).max()
+    expected = (1.0 - 1.0 / max(hardest, 1.0)) * np.hypot(*(place - here))
+    np.testing.assert_allclose(lacking, (expected, 0.0), atol=0.03)
+    assert recovery.lacking_around(situation(), np.array([time]), np.array([[[0.3, 0.3]]]))[0, 0] == 0.0
+
+
 @pytest.mark.parametrize("direction", np.linspace(-np.pi, np.pi, 12, endpoint=False))
 @pytest.mark.parametrize("single", [0.1, 0.3, 0.8])
 def test_the_box_is_in_reach_of_the_legs(direction, single):
@@ -175,6 +196,15 @@ def test_who_is_pushed_over_the_stance_foot_crosses_where_it_may():
     crossing, beside = catch(now), catch(now, legs=replace(LEGS, across=None))
     assert crossing.low[1] < 0.0
     assert beside.low[1] >= LEGS.near - 1e-9
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+def test_a_foot_that_turns_lands_the_farther_beside_its_stance_foot(turn):
+    """Pushed over the stance foot: one that lands on it would be held off it in the air."""
+    legs = replace(LEGS, across=None, sole=(0.22, 0.11))
+    caught = catch(situation((0.0, -0.1), 0.4, swing=((0.0, 0.2), (0.0, 0.0)), turn=turn), legs=legs)
+    assert caught.low[1] == pytest.approx(legs.turned(turn).near)
+    assert legs.turned(0.3).near > legs.near + 0.025
 
 
 def test_a_step_that_legs_cannot_make_long_enough_is_made_sooner():
@@ -221,6 +251,34 @@ def test_a_pushed_pendulum_survives_more_the_more_it_may_adapt(stand, direction,
     survived = [greatest(stand, level, direction) for level in LEVELS]
     assert min(survived[1:]) > survived[0] > 0.0
     assert survived[-1] == max(survived) > least * survived[0]
+
+
+def test_a_body_whose_step_is_hurried_is_not_let_fall(stand):
+    """Its height goes on smoothly, and its feet press; hurried through its law it would fall with 10 m/s^2."""
+    gait = GaitParameters(
+        steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95, apex_ss=0.03
+    )
+    push = PointPush(gait.lift_off(3) + 0.1, 0.1, np.array([900.0, 0.0]))
+    planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
+    plans = walk_pendulum(planner, stand(), gait.lift_off(5), com=com, pushes=(push,)).plans
+    assert min(plan.balance.delay for plan in plans) < -0.05
+    z = np.array([(plan.com[:2, 2], plan.com_velocity[:2, 2], plan.com_acceleration[:2, 2]) for plan in plans])
+    assert np.abs(z[..., 2, :]).max() < LIFTING + 1e-6
+    np.testing.assert_allclose(z[1:, :2, 0], z[:-1, :2, 1], atol=1e-9)
+
+
+def test_a_foot_that_is_to_catch_the_body_searches_for_the_ground_in_haste(stand):
+    """And no other: a gentle search, for 4 mm, takes 0.06 s, in which the DCM goes a fifth farther away."""
+    gait = GaitParameters(steps=4, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
+    push = PointPush(gait.lift_off(2) + 0.1, 0.1, np.array([400.0, 0.0]))
+    planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
+    plans = walk_pendulum(planner, stand(), gait.lift_off(4), com=com, pushes=(push,)).plans
+    first, pushed = ([plan.swing for plan in plans if plan.swing is not None and plan.phase.step == n] for n in (1, 2))
+    assert {swing.search for swing in first} == {P.search}
+    assert pushed[0].search == P.search
+    hasty = pushed[-1].search
+    assert hasty == replace(P.search, hurry_after=0.0)
+    assert hasty.motion(0.03)[0] > 0.004 > P.search.motion(0.06)[0]
 
 
 def test_what_a_push_leaves_to_the_cop_moves_no_step(stand):

@@ -4,7 +4,9 @@ import pytest
 from surefoot.planner.check import check_height
 from surefoot.planner.references.com_height import (
     BENT_KNEES,
+    LIFTING,
     BentKneeHeight,
+    Bridge,
     PaperHeight,
     Rise,
     SmoothHeight,
@@ -150,3 +152,22 @@ def test_a_stop_on_a_tread_leaves_the_level_alone(schedule, place):
         if phase.kind is PhaseKind.STAND and phase.step:
             level = feet[phase.step + 1]
             np.testing.assert_allclose(height[0, round(phase.start)], gait.com_height + level, atol=1e-12)
+
+
+@pytest.mark.parametrize("left", [1.0, 8.4, 30.0])
+@pytest.mark.parametrize(("rise", "speed"), [(0.0, 0.0), (0.03, -0.1), (-0.02, 0.15)])
+def test_a_bridge_goes_smoothly_from_a_state_to_its_law(preview, rise, speed, left):
+    """Once the phase ends, or as soon after it as the body is not accelerated too hard."""
+    t = 0.01
+    law = preview(SmoothHeight(), sample_time=t)[0].height[:, 20:]
+    state = law[:, 0] + (rise, speed, 0.0)
+    bridge = Bridge.onto(law, state, 7, left, t)
+    height = bridge.over(law, 7)
+    np.testing.assert_allclose(height[:, 0], state, atol=1e-12)
+    np.testing.assert_array_equal(height[:, bridge.samples :], law[:, bridge.samples :])
+    assert bridge.samples >= left
+    assert np.abs(height[2, : bridge.samples]).max() <= max(LIFTING, abs(state[2])) + 1e-9
+    np.testing.assert_allclose(np.gradient(height[0], t)[1:-1], height[1, 1:-1], atol=0.02)
+    np.testing.assert_allclose(np.gradient(height[1], t)[1:-1], height[2, 1:-1], atol=1.0)
+    # At a later tick it is what it was to be then.
+    np.testing.assert_allclose(bridge.over(law[:, 1:], 8), height[:, 1:], atol=1e-12)

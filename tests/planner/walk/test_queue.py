@@ -231,3 +231,19 @@ def test_a_foot_left_far_behind_rolls_as_it_leaves_the_ground(stand):
         if angle is not None:
             assert double.roll.angle == pytest.approx(angle, abs=1e-9)
             assert double.start < double.roll.start < double.end < double.roll.end < after.end
+
+
+@pytest.mark.parametrize(("apart", "farther"), [(0.2, 1), (0.1, 1), (0.6, 3), (0.9, 4.5)])
+def test_who_brings_its_feet_together_at_leisure_shifts_its_weight_as_long_as_it_is_wide(stand, apart, farther):
+    """At once it does so in the time of any step, and at rest in twice that, and in more from feet that are astride."""
+    gait = GaitParameters(steps=0, single_support=0.5, double_support=0.12)
+    for at_once, lasts in ((True, 6.0), (False, 6.0 + 6.0 * farther)):
+        queue = StepQueue(gait, stand(gait.step_width), Ground(flat(), np.array([0.11, 0.055]), PlannerParameters()))
+        queue.extend(50.0)
+        aside = queue.footsteps.position[1] * (1.0, (apart - 0.1) / 0.1, 1.0)
+        queue.footsteps = queue.footsteps.moved(1, aside, flat())
+        queue.go_on(queue.phase(10.0), at_once=at_once)
+        queue.extend(1000.0, 10.0)
+        double = queue.phases[1]
+        assert (double.kind, double.samples) == (PhaseKind.DOUBLE, pytest.approx(lasts))
+        assert double.rest == pytest.approx(0.0 if at_once else 6.0)

@@ -1,7 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from surefoot.planner.walk.reach import Legs
+from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.walk.reach import Legs, StepRegion
 
 pytestmark = pytest.mark.unit
 
@@ -31,3 +34,19 @@ def test_a_foot_that_crosses_goes_ahead_first_and_comes_back_before_it_passes(si
         assert found is None
     else:
         np.testing.assert_allclose(found, corner * mirror)
+
+
+@pytest.mark.parametrize("turn", [-0.3, 0.1, 0.3])
+def test_a_foot_that_lands_turned_keeps_as_clear_of_its_stance_foot_as_one_that_does_not(turn):
+    """Wherever ahead of or behind it lands, and ahead of it wherever beside."""
+    sole = np.array([0.22, 0.11])
+    legs = replace(LEGS, sole=tuple(sole.tolist()))
+    turned, level = legs.turned(turn), legs.turned(0.0)
+    assert level is legs
+    assert LEGS.turned(turn).near == LEGS.near
+    corners = 0.5 * sole * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]]) @ frame_rotation(turn).T
+    assert turned.near + corners[:, 1].min() == pytest.approx(legs.near - 0.5 * sole[1])
+    assert turned.clear + corners[:, 0].min() == pytest.approx(legs.clear - 0.5 * sole[0])
+    # As a step that is commanded.
+    region = StepRegion(0.5, (0.0, 0.5), tuple(sole.tolist()), gap=legs.near - sole[1])
+    assert turned.near == pytest.approx(region.nearest(turn))

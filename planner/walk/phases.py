@@ -6,6 +6,7 @@ tick, faster or slower where the walk hurries or slows down within a phase.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -49,14 +50,14 @@ class Pace:
     def over(cls, way: float, length: float, rate: float, bend: float) -> "Pace":
         """A way of the clock in a length of time, from a rate [-] and its derivative [1/sample] on.
 
-        Where the clock would stand still or go back it takes a length nearer to what it takes at its present rate.
+        Where the clock would stand still or go back it takes the nearest length in which it does not. A clock that is
+        slow and slows down may have none: it stops to slow down at once.
         """
-        for _ in range(_TRIES):
-            start, end = np.array([[0.0], [rate], [bend]]), np.array([[way], [1.0], [0.0]])
-            pace = cls(quintic(start, end, length), length, way)
-            if pace.at(np.linspace(0.0, length, 33))[1].min() > _SLOWEST:
+        for slowing, factor in product((bend, max(bend, 0.0)), _LENGTHS):
+            start, end = np.array([[0.0], [rate], [slowing]]), np.array([[way], [1.0], [0.0]])
+            pace = cls(quintic(start, end, factor * length), factor * length, way)
+            if pace.at(np.linspace(0.0, pace.length, 33))[1].min() > _SLOWEST:
                 break
-            length = 0.5 * (length + way / max(rate, _SLOWEST))
         return pace
 
     def at(self, time: Array) -> tuple[Array, Array, Array]:
@@ -91,7 +92,9 @@ class Hurry:
         return self.clock + way * t, rate, bend / t
 
 
-_TRIES = 20
+_LENGTHS = tuple(float(1.1 ** (sign * k)) for k in range(16) for sign in (1, -1))[1:]
+"""Shares of a length that are tried in its place [-]."""
+
 _SLOWEST = 0.05
 """Rate of the clock below which no pace goes [-]."""
 

@@ -180,3 +180,16 @@ def test_a_pace_goes_on_from_its_rate_never_back_and_ends_at_the_clocks_own(way,
     assert speed[-1] == pytest.approx(1.0, abs=1e-6)
     assert pace.at(np.array([pace.length + 2.0]))[0][0] == pytest.approx(way + 2.0)
     assert speed.min() > 0.0
+
+
+@given(
+    st.floats(4.0, 60.0), st.floats(0.5, 2.0), st.floats(0.06, 0.2), st.floats(-0.05, 0.0),
+)  # fmt: skip
+def test_a_slow_clock_is_not_told_to_stay_slow(way, ratio, rate, bend):
+    """Nor where it is slowing down so fast that no pace goes on from that."""
+    pace = Pace.over(way, way * ratio, rate, bend)
+    _, speed, change = pace.at(np.linspace(0.0, pace.length, 200))
+    assert speed[0] == pytest.approx(rate)
+    assert speed.min() > 0.0
+    assert change[0] >= bend - 1e-9
+    assert pace.length < 4.2 * way * ratio

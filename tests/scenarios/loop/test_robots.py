@@ -21,11 +21,18 @@ def test_a_scenario_of_the_catalogue_passes(tmp_path: Path, robot: str, scenario
     assert verdict["wbc_fallbacks"] == 0
 
 
-def test_talos_walks_fast(tmp_path: Path) -> None:
-    """A foot that rolls comes level while its shank swings forward: its ankle, of 5.8 rad/s, would else be too slow."""
-    gait = {"single_support": 0.5, "double_support": 0.1, "step_length": 0.4, "com_height": 0.84, "heel_off": 0.4}
-    keys = {"robot": "talos", "criteria.speed_mean": {"min": 0.6}, **{f"gait.{key}": gait[key] for key in gait}}
-    verdict = run_scenario(surefoot.load("walk-fast", keys), tmp_path).verdict
+@pytest.mark.parametrize(
+    ("robot", "speed", "gait"),
+    [
+        # A foot that rolls comes level while its shank swings forward: this ankle, of 5.8 rad/s, would else be too slow.
+        ("talos", 0.6, {"single_support": 0.5, "double_support": 0.1, "com_height": 0.84, "heel_off": 0.4}),
+        ("g1", 0.8, {"single_support": 0.39, "double_support": 0.08, "com_height": 0.62, "heel_off": 0.5}),
+    ],
+)
+def test_a_robot_walks_fast(tmp_path: Path, robot: str, speed: float, gait: dict[str, float]) -> None:
+    keys = {f"gait.{key}": value for key, value in {**gait, "step_length": 0.4}.items()}
+    settings = {"robot": robot, "criteria.speed_mean": {"min": speed}, **keys}
+    verdict = run_scenario(surefoot.load("walk-fast", settings), tmp_path).verdict
     assert verdict.passed, verdict.reasons
 
 

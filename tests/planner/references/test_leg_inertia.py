@@ -103,7 +103,8 @@ def test_impossible_legs_are_refused(ratio):
 def test_zmp_of_the_plan_is_that_of_the_links_while_a_swing_goes_elsewhere(stand, kick):
     """But for the ticks in which the swing is sent elsewhere, whose bend no spline of samples follows.
 
-    Until its touchdown: a foot that searches for the ground is expected to find it at once. The last kick sends it across the stance foot in a tenth of a second.
+    Until its touchdown: a foot that searches for the ground is expected to find it at once. The last kick sends it
+    across the stance foot in a tenth of a second.
     """
     errors = []
     for plan in plans(stand, LEG, until=1.9, kick=kick):

@@ -21,8 +21,7 @@ criteria: {fell: false}
 """
 
 NAMES = {
-    # In the air the feed-forward does nearly all; what a soft foot does otherwise is to land.
-    "task gain quartered": ("largest distance of the ZMP from its reference in step 1: ", "balance"),
+    "task gain quartered": ("swing task: largest distance of the left sole from its reference in step 1: ", "feet"),
     "gravity compensation of a leg dropped": ("torque of the left leg \\(RMS\\) at the first tick: ", "torques"),
     "foot target off by 1 cm": ("left sole at touchdown of step 1: (9|10)\\.\\d mm ahead of the baseline", "soles"),
     "torque 4 ms late": (

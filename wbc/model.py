@@ -56,6 +56,7 @@ class RobotTerms:
         sole_velocity, sole_bias: shape (2, 6).
         sole_wrench_map: from both sole wrenches to their force and moment about the world's origin, shape (6, 12).
         torso_position: shape (3,).
+        waist: whether the torso can move against the pelvis.
         torso_jacobian: angular rows, shape (3, nv); torso_velocity, torso_bias: shape (3,).
     """
 
@@ -75,6 +76,7 @@ class RobotTerms:
         self.v: Array = np.zeros(model.nv)
         self._soles = tuple(_frame_id(model, name) for name in frames.soles)
         self._torso = _frame_id(model, frames.torso)
+        self.waist = model.frames[self._torso].parentJoint != 1
         self.mass = self.model_mass = float(sum(inertia.mass for inertia in model.inertias))
         self.load, self.wrench_unit = NO_LOAD, wrench_unit
         # Views of Pinocchio's own memory need no copy. M is symmetric and column-major: its transpose is contiguous.

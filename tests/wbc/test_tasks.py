@@ -64,6 +64,11 @@ def test_the_default_layout_is_the_controllers(robot):
     assert [size for _, size in DEFAULT_LAYOUT] == [3, 3, 3, 3, 6]
 
 
+def test_a_torso_that_is_the_pelvis_is_held_once(robot):
+    pelvis = replace(robot, frames=replace(robot.frames, torso="pelvis"))
+    assert [name for name, _ in pelvis.controller().task_layout] == ["CoM", "angular momentum", "pelvis", "swing foot"]
+
+
 def test_the_cost_is_least_squares_plus_a_diagonal(written):
     _, qp, tasks = written()
     T, t = tasks.rows, tasks.target

@@ -17,6 +17,7 @@ def default_tasks(
     length: float,
     ankles: AnkleStops | None = None,
     hips: HipStops | None = None,
+    waist: bool = True,
 ) -> tuple[Task, ...]:
     """The tasks in the order of their rows.
 
@@ -29,12 +30,14 @@ def default_tasks(
         length: size of the robot (see `surefoot.similarity`) [-].
         ankles: where they end; None for nowhere.
         hips: where they end; None for nowhere.
+        waist: whether the torso can move against the pelvis. Without, they are one body, which the pelvis's task holds:
+            twice the weight would throw the CoM up for a friction about the vertical that its yaw is not worth.
     """
+    trunk = (Pelvis(weights, gains, hips), Torso(weights, gains))
     return (
         CentreOfMass(weights, balance, region),
         AngularMomentum(weights, gains),
-        Pelvis(weights, gains, hips),
-        Torso(weights, gains),
+        *(trunk if waist else trunk[:1]),
         SwingFoot(weights, gains, toe, length, ankles),
     )
 

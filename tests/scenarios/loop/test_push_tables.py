@@ -98,7 +98,7 @@ def test_the_papers_gait(phase: str, direction: str, rung: int, tmp_path: Path) 
 @pytest.mark.parametrize("eighth", range(8))
 @pytest.mark.parametrize(
     ("keys", "impulse", "duration"),
-    [({**FEET, **GAIT}, 0.5, 7.0), ({}, 0.2, 20.0)],
+    [({**FEET, **GAIT}, 0.5, 8.0), ({}, 0.2, 20.0)],
     ids=["human-size feet", "7.5 cm feet"],
 )
 def test_standing(keys: dict[str, object], impulse: float, duration: float, eighth: int, tmp_path: Path) -> None:

@@ -27,6 +27,9 @@ from surefoot.planner.walk.stepper import Stepper
 _TICKS = 5
 """Ticks for which an offset of the legs serves; making it costs more than the rest of a plan."""
 
+_SAME_HEIGHT = 0.005
+"""Difference of what the reference robot's CoM is to be lower by that changes nothing [m]."""
+
 _SAME_SWING = 0.005
 """By how far its footstep may have been moved for which one still serves, of the reference robot: it moves the DCM by
 less than a millimetre, and the ZMP for that time by one or, in the fastest of swings, six [m]."""
@@ -142,9 +145,10 @@ class Outlook:
         self._same_swing = _SAME_SWING * self._length
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
-        # The bridge, and of the last plan its tick, how often the clock had been told to go otherwise, and the height.
+        # The bridge, and of the last plan its tick, how often the clock had been told to go otherwise, the height, and how
+        # much lower than by its law that is.
         self._bridge: Bridge | None = None
-        self._before: tuple[int, int, Array] | None = None
+        self._before: tuple[int, int, Array, float] | None = None
 
     @property
     def reach(self) -> int:
@@ -179,9 +183,15 @@ class Outlook:
         clock = stepper.clock
 
         def bridged(height: Array) -> Array:
-            """The height where a step that is adapted has changed how the clock goes."""
-            if self._before is not None and self._before[1] != clock.taken and (stepper.adapted or self._bridge):
-                tick, _, before = self._before
+            """The height where a step that is adapted has changed how the clock goes, or is too long for it."""
+            lower, hurried = stepper.lowering, False
+            if self._before is not None:
+                tick, taken, before, low = self._before
+                hurried = taken != clock.taken and (stepper.adapted or self._bridge is not None)
+                hurried |= abs(lower - low) > _SAME_HEIGHT * self._length
+                lower = lower if hurried else low
+            height[0] -= lower
+            if hurried:
                 state = before[:, min(clock.ticks - tick, 1)]
                 self._bridge = Bridge.onto(height, state, clock.ticks, stepper.left, self._sample_time)
             if self._bridge is not None:
@@ -189,7 +199,7 @@ class Outlook:
                     self._bridge = None
                 else:
                     height = self._bridge.over(height, clock.ticks)
-            self._before = clock.ticks, clock.taken, height[:, :2].copy()
+            self._before = clock.ticks, clock.taken, height[:, :2].copy(), lower
             return height
 
         profile, gait = self._profile, self._gait

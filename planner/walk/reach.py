@@ -160,6 +160,8 @@ class Legs:
         clear: distance ahead of or behind the stance foot from which on it is [m].
         acceleration: of a swinging sole that the hips' torques allow, forward and sideways [m/s^2].
         sole: length and width of the soles; those of points need no more room where they are turned [m].
+        height: of the hips over the soles at the CoM height of the gait [m].
+        length: from a hip to its sole with the knee straight [m].
     """
 
     radius: float
@@ -169,6 +171,17 @@ class Legs:
     clear: float
     acceleration: tuple[float, float]
     sole: tuple[float, float] = (0.0, 0.0)
+    height: float = 0.0
+    length: float = math.inf
+
+    def lowering(self, stride: float) -> float:
+        """How much lower than in the gait the CoM is to be for both legs to span a stride, with some of them left [m].
+
+        Args:
+            stride: distance between the feet [m].
+        """
+        span = min(0.5 * stride / _SPANNED, 0.9 * self.length)
+        return max(self.height - math.sqrt(self.length**2 - span**2), 0.0) if math.isfinite(self.length) else 0.0
 
     def turned(self, turn: float) -> "Legs":
         """The same beside and ahead of a stance foot against which the foot that lands is turned.
@@ -268,6 +281,10 @@ def turned_room(room: Array, angle: float) -> Array:
     half = 0.5 * np.array(ways).reshape(2, 2)
     return np.array([-half[0], half[1]])
 
+
+_SPANNED = 0.75
+"""Share of what both legs span at a height that a step which is adapted makes use of: the body is not midway between
+the feet when it lands [-]."""
 
 _PARALLEL = 0.02
 """Angle up to which a room is one in another frame, too [rad]."""

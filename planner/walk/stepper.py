@@ -1,5 +1,6 @@
 """The way of a walk through the phases in sight, and its swing foot."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -67,6 +68,7 @@ class Stepper:
         early: the swing foot has landed before its time.
         fixed: the next footstep may not be shifted any more.
         adapted: place or time of the next footstep are being adapted.
+        stride: of the step that is being adapted, or was before the present double support; zero without [m].
         wide: whether footsteps may land anywhere in reach, and those after them are shifted with them.
         adapts: whether footsteps may be adapted at all.
     """
@@ -82,6 +84,7 @@ class Stepper:
         self.early = False
         self.fixed = False
         self.adapted = False
+        self.stride = 0.0
         self.wide = self._terrain.free_footholds
         # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
         adapts = parameters.step_adaptation is not StepAdaptation.NONE
@@ -349,6 +352,7 @@ class Stepper:
             held: keep to the target of before.
         """
         target = sole_pose(landing.position, landing.yaw, landing.normal)
+        self.stride = math.dist(landing.position, self.footsteps.position[self.row]) if self.adapted else 0.0
         if self.swing is None:
             foot, leaving = landing.foot, self.footsteps.footstep(self.row - 1)
             yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
@@ -382,6 +386,11 @@ class Stepper:
         # A way round that the hips cannot swing the foot in time would only make it late.
         if (hardest <= self._legs.acceleration).all():
             self.swing = bent
+
+    @property
+    def lowering(self) -> float:
+        """How much lower than by its law the CoM is to be for the legs to span the step that is adapted [m]."""
+        return self._legs.lowering(self.stride) if self.wide and self._legs is not None and self.stride else 0.0
 
     def roll(self, time: float) -> FootRoll | None:
         """Pitch of the foot that leaves the ground next or has just left it; None for one that stays level."""

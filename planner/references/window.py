@@ -145,8 +145,8 @@ class Outlook:
         self._same_swing = _SAME_SWING * self._length
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
-        # The bridge, and of the last plan its tick, how often the clock had been told to go otherwise, the height, and how
-        # much lower than by its law that is.
+        # The bridge, and of the last plan its tick, how often the clock had been told to go otherwise, the height, and
+        # how much lower than by its law that is.
         self._bridge: Bridge | None = None
         self._before: tuple[int, int, Array, float] | None = None
 
@@ -188,7 +188,7 @@ class Outlook:
             if self._before is not None:
                 tick, taken, before, low = self._before
                 hurried = taken != clock.taken and (stepper.adapted or self._bridge is not None)
-                hurried |= abs(lower - low) > _SAME_HEIGHT * self._length
+                hurried |= abs(lower - low) > _SAME_HEIGHT * self._length or (low > 0.0) is not (lower > 0.0)
                 lower = lower if hurried else low
             height[0] -= lower
             if hurried:

@@ -267,6 +267,29 @@ def test_a_body_whose_step_is_hurried_is_not_let_fall(stand):
     np.testing.assert_allclose(z[1:, :2, 0], z[:-1, :2, 1], atol=1e-9)
 
 
+@pytest.mark.parametrize("impulse", [700.0, 900.0])
+def test_the_body_goes_down_for_a_step_that_legs_do_not_span_at_its_height(stand, impulse):
+    """Smoothly, by its touchdown, and up again after it; legs that span nothing farther by it stay at their height."""
+    gait = GaitParameters(
+        steps=8, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95, apex_ss=0.0, apex_ds=0.0
+    )
+    push = PointPush(gait.lift_off(3) + 0.2, 0.1, np.array([impulse, 0.0]))
+    legs, com = replace(LEGS, height=0.85, length=0.94), np.array([0.0, 0.0, gait.com_height])
+    heights = []
+    for known in (LEGS, legs):
+        planner = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=known)
+        trace = walk_pendulum(planner, stand(), gait.duration, com=com, pushes=(push,))
+        assert trace.fall_time is None
+        heights.append(np.array([(plan.com[:2, 2], plan.com_velocity[:2, 2], plan.com_acceleration[:2, 2])
+                                 for plan in trace.plans]))  # fmt: skip
+    level, z = heights
+    np.testing.assert_allclose(level[:, 0], 0.95, atol=1e-9)
+    assert 0.015 < 0.95 - z[:, 0].min() <= legs.lowering(2.0 * legs.radius) + 1e-9
+    assert np.abs(z[..., 2, :]).max() < LIFTING + 1e-6
+    np.testing.assert_allclose(z[1:, :2, 0], z[:-1, :2, 1], atol=1e-9)
+    np.testing.assert_allclose(z[-1, 0], 0.95, atol=1e-6)
+
+
 def test_a_foot_that_is_to_catch_the_body_searches_for_the_ground_in_haste(stand):
     """And no other: a gentle search, for 4 mm, takes 0.06 s, in which the DCM goes a fifth farther away."""
     gait = GaitParameters(steps=4, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)

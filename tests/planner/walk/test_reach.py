@@ -50,3 +50,13 @@ def test_a_foot_that_lands_turned_keeps_as_clear_of_its_stance_foot_as_one_that_
     # As a step that is commanded.
     region = StepRegion(0.5, (0.0, 0.5), tuple(sole.tolist()), gap=legs.near - sole[1])
     assert turned.near == pytest.approx(region.nearest(turn))
+
+
+@pytest.mark.parametrize("stride", [0.0, 0.36, 0.55, 0.65, 0.75])
+def test_the_body_goes_as_low_as_legs_need_that_span_a_stride(stride):
+    """With a quarter of what straight legs span to spare, as the body is not midway between them."""
+    legs = replace(LEGS, height=0.85, length=0.94)
+    hips = 0.85 - legs.lowering(stride)
+    assert hips == 0.85 if stride < 0.6 else hips < 0.85
+    assert 2.0 * np.sqrt(0.94**2 - hips**2) >= stride / 0.75 - 1e-9
+    assert LEGS.lowering(stride) == 0.0  # of legs whose length nobody knows

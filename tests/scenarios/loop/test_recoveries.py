@@ -18,7 +18,7 @@ NATURAL = (
     "gait.double_support=0.12",
     "gait.com_height=0.95",
 )
-WALKING = (*NATURAL, "gait.steps=6", "gait.step_length=0.36")
+WALKING = (*NATURAL, "gait.steps=6", "gait.step_length=0.36", "duration=8.0")
 STANDING = (
     *NATURAL,
     "duration=7.0",
@@ -46,9 +46,9 @@ def assert_recovered(result):
     return metrics, log
 
 
-@pytest.mark.parametrize(("direction", "impulse"), [(FORWARD, 0.45), (RIGHT, 0.27)])
-def test_a_walk_goes_on_after_a_push_that_no_step_on_its_clock_could_catch(direction, impulse, tmp_path):
-    when = "step: 3, phase: single, fraction: 0.2"
+@pytest.mark.parametrize(("direction", "impulse", "fraction"), [(FORWARD, 0.785, 0.5), (RIGHT, 0.27, 0.2)])
+def test_a_walk_goes_on_after_a_push_that_no_step_on_its_clock_could_catch(direction, impulse, fraction, tmp_path):
+    when = f"step: 3, phase: single, fraction: {fraction}"
     metrics, _ = assert_recovered(pushed("walk", WALKING, impulse, direction, when, tmp_path / "free"))
     assert metrics["steps_taken"] >= 6
     as_laid = pushed("walk", (*WALKING, "planner.step_adaptation=none"), impulse, direction, when, tmp_path / "laid")

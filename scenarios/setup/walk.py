@@ -156,9 +156,17 @@ class Walk:
         radius = 0.5 * LEG_SHARE * leg_span(self.gait.com_height, facts)
         length = self.size.length
         clear = self.robot.sole_length + GAP * length
-        hips = self.gait.com_height - facts.com_above_hip
-        across, swing, leg = ACROSS * length, facts.swing_acceleration, facts.leg_length
-        return Legs(radius, facts.hip_width, apart, across, clear, swing, self.sole, hips, leg)
+        return Legs(
+            radius=radius,
+            hip_width=facts.hip_width,
+            near=apart,
+            across=ACROSS * length,
+            clear=clear,
+            acceleration=facts.swing_acceleration,
+            sole=self.sole,
+            height=self.gait.com_height - facts.com_above_hip,
+            length=facts.leg_length,
+        )
 
     def _cop_room(self, leg: LegInertia) -> tuple[float, float]:
         """How far from a sole's centre the ankle's torques bear the robot, ahead and behind, and to both sides [m]."""

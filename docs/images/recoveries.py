@@ -61,7 +61,13 @@ def _push(impulse: float, degrees: float, when: str) -> str:
 
 SWING = "step: 3, phase: single, fraction: 0.2"
 RECOVERIES = {
-    "recovery-forward.gif": Recovery("walk", WALK, _push(0.45, 0, SWING), Window(2.2, 4.6), SIDE),
+    "recovery-forward.gif": Recovery(
+        "walk",
+        (*WALK, "duration=6.0"),
+        _push(0.785, 0, "step: 3, phase: single, fraction: 0.5"),
+        Window(2.4, 5.2),
+        SIDE,
+    ),
     "recovery-crossing.gif": Recovery("walk", WALK, _push(0.27, -90, SWING), Window(2.2, 5.0), FRONT),
     "recovery-standing.gif": Recovery(
         "stand", (*NATURAL, "duration=4.0"), _push(0.5, 0, "time: 0.5"), Window(0.3, 3.0), SIDE

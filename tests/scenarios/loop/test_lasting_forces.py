@@ -45,8 +45,8 @@ def test_a_lasting_force_is_found_within_a_tenth_and_walked_with(tmp_path):
 
 @pytest.mark.physics
 def test_a_force_that_is_walked_with_fells_it_without_the_estimate(tmp_path):
-    assert walk(tmp_path, "walk", *NATURAL, pulled(55, "left")).verdict.reasons == ()
-    assert walk(tmp_path, "walk", *NATURAL, pulled(55, "left"), OFF, "duration=5").verdict.metrics["fell"]
+    assert walk(tmp_path, "walk", *NATURAL, pulled(65, "left")).verdict.reasons == ()
+    assert walk(tmp_path, "walk", *NATURAL, pulled(65, "left"), OFF, "duration=5").verdict.metrics["fell"]
 
 
 @pytest.mark.physics

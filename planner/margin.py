@@ -19,9 +19,10 @@ import numpy as np
 
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.recovery import PEAK, SHORTEST, Recovery, Situation
+from surefoot.planner.recovery import SHORTEST, Recovery, Situation
 from surefoot.planner.references.window import Window
 from surefoot.planner.types import Array
+from surefoot.planner.walk.hurry import PEAK
 
 _SINGLES = (0.0, 0.1, 0.2, 0.3, 0.45, 0.65, 1.0)
 """Times of single support that are looked at beside the present one, between the shortest and the longest [-]; close
@@ -191,4 +192,4 @@ class Reserve:
             return _edges(now.nominal, now.nominal)[:, None, None]
         room = _edges(*(now.nominal + now.room))[:, None, None]
         boxes = np.stack([_edges(*box) for box in self._recovery.boxes(now)], axis=1)[:, None]
-        return np.minimum(np.minimum(boxes, room), self._recovery.swung(now, singles)[..., None])
+        return np.minimum(np.minimum(boxes, room), self._recovery.haste.edges(now.foot, singles)[..., None])

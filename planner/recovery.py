@@ -17,13 +17,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.planner.model.dcm import decays, nominal_dcm
+from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import LIFTING
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support, ZmpReference
-from surefoot.planner.swing.trajectory import detour
 from surefoot.planner.types import Array, FeetState, PhaseKind
+from surefoot.planner.walk.hurry import PEAK, Haste, SwingState
 from surefoot.planner.walk.reach import Legs
 from surefoot.planner.walk.stepper import Stepper
 
@@ -69,6 +69,11 @@ class Situation:
     last: bool
     crosses: bool
     turn: float = 0.0
+
+    @property
+    def foot(self) -> SwingState:
+        """The foot that lands."""
+        return SwingState(self.swing, self.nominal, self.side, self.turn)
 
     @classmethod
     def of(
@@ -175,10 +180,6 @@ _OUTWARD = 3.0
 _WORTH = 0.001
 """Cost that other times must save [-]."""
 
-PEAK, _BRAKING, _GAINING = 5.77, 1.9, 3.9
-"""Greatest acceleration of a quintic to rest over way / T², and what of it a speed / T takes off at its end and its
-begin [-]."""
-
 
 class Recovery:
     """Chooses when the next step lands, and the box of where.
@@ -191,11 +192,13 @@ class Recovery:
     Attributes:
         legs: what they can do.
         timing: whether times may change.
+        haste: how far a foot can be swung in time.
     """
 
     def __init__(self, legs: Legs, parameters: PlannerParameters, timing: bool) -> None:
         self.legs, self.timing = legs, timing
-        self._sample_time, self._lead = parameters.sample_time, parameters.touchdown_lead
+        self._sample_time = parameters.sample_time
+        self.haste = Haste(legs, parameters.touchdown_lead, parameters.sample_time)
         self._size = parameters.size
         self._weights = self._size.times((_PLACE, _STRETCH, _SECOND, _UNREACHED), "1/m^2")
 
@@ -255,7 +258,7 @@ class Recovery:
         cost = _TIME * ((doubles - now.double) ** 2 + (singles - now.single) ** 2) / now.cycle**2
         shift, stretched, second_shift, unreached = self._weights
         cost = cost + stretched * np.maximum(stretch, 0.0) ** 2
-        swung = self.swung(now, singles)
+        swung = self.haste.edges(now.foot, singles)
         low, high = -swung[2:].T, swung[:2].T
         growth = np.exp(float(now.omega[0]) * now.cycle)
         # What the CoP holds until the step after it, or in a stand on both feet for ever.
@@ -270,7 +273,7 @@ class Recovery:
         second[..., 1] *= np.where(now.side * short[..., 1] > 0.0, _OUTWARD, 1.0)
         total = cost + shift * ((places - now.nominal) ** 2).sum(axis=-1) + second_shift * (second**2).sum(axis=-1)
         total = total + unreached * ((places - _between(places, low, high)) ** 2).sum(axis=-1)
-        total = total + unreached * self.lacking_around(now, singles, places) ** 2
+        total = total + unreached * self.haste.lacking_around(now.foot, singles, places) ** 2
         total[(lower > upper).any(axis=(1, 2))] = np.inf
         least_cost, rows = total.min(axis=1), np.arange(len(total))
         cheapest = np.where(least_cost < total[:, -1] - _WORTH, total.argmin(axis=1), -1)
@@ -308,80 +311,6 @@ class Recovery:
         doubles = _around(now.double, SHORTEST["double"] * time, time) if now.double else np.zeros(1)
         grid = np.zeros((len(doubles), len(singles)))
         return (doubles[:, None] + grid).ravel(), (singles + grid).ravel()
-
-    def swung(self, now: Situation, singles: Array) -> Array:
-        """Where the foot can be swung to in times: front, left, minus back and minus right edge, shape (4, n) [m].
-
-        It may always be swung as hard as it nominally is.
-        """
-        time, edges = np.maximum(singles - self._lead, self._sample_time), []
-        usual, (here, speeds) = float(time[-1]), now.swing.tolist()
-        for side in (1.0, -1.0):
-            for at, speed, aim, most in zip(here, speeds, now.nominal.tolist(), self.legs.acceleration, strict=True):
-                hardest = max(most, abs(PEAK * (aim - at) / (usual * usual) - _BRAKING * speed / usual))
-                onward = side * speed
-                edges.append((side * at, hardest, (_BRAKING if onward > 0.0 else _GAINING) * onward))
-        place, hardest, onward = np.array(edges).T[:, :, None]
-        return np.asarray(place + (hardest * time**2 + onward * time) / PEAK)
-
-    def lacking_around(self, now: Situation, singles: Array, places: Array) -> Array:
-        """Way that a foot lacks of places in times since it has to pass around the stance leg, shape (boxes, n) [m].
-
-        It is bent as that of the swing will be (see `SwingTrajectory.around`), here at nine shares of its time, and
-        lacks the share by which the hips cannot swing it so hard.
-
-        Args:
-            now: the situation.
-            singles: times left of the swing, shape (n,) [s].
-            places: where it lands, shape (boxes, n, 2) [m].
-        """
-        legs, side, (here, speed) = self.legs.turned(now.turn), now.side, now.swing
-        crossing = np.where(side * here[1] < 0.0, here[0], np.where(side * places[..., 1] < 0.0, places[..., 0], 0.0))
-        lacking = np.zeros(crossing.shape)
-        which = np.nonzero(crossing)
-        if not len(which[0]):
-            return lacking
-        time = np.maximum(singles - self._lead, self._sample_time)[which[1], None, None]
-        way, onward = (places[which] - here)[:, None], speed * time
-        passed = here + way * _AT_REST[0][:, None] + onward * _MOVING[0][:, None]
-        met = ((np.abs(passed[..., 0]) < legs.clear) & (side * passed[..., 1] < legs.near)).any(axis=1)
-        corner = np.stack((np.copysign(legs.clear, crossing[which]), np.full(len(met), side * legs.near)), axis=1)
-        astray = corner[:, None] - passed
-        rows, best = np.arange(len(met)), np.argmin((astray**2).sum(axis=-1) / _DEARER, axis=1)
-        bend = way * _AT_REST[1][:, None] + onward * _MOVING[1][:, None]
-        bend = bend + astray[rows, best][:, None] * _AROUND[best][..., None]
-        hardest = (np.abs(bend) / (time**2 * legs.acceleration)).max(axis=(1, 2))
-        lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
-        return lacking
-
-
-_SHARES = np.linspace(0.1, 0.9, 9)
-"""Shares of a swing's time at which its way around the stance leg is looked at [-]."""
-
-_DEARER = (_SHARES * (1.0 - _SHARES)) ** 5
-"""What a way round at these is divided by to be compared."""
-
-
-def _unit_ways() -> tuple[Array, Array, Array]:
-    """Quintics to rest in a unit of time and their accelerations at `_SHARES`, shape (2, 9) each.
-
-    One goes a unit of way from rest, one has a unit of speed and goes none; of a way round by a unit at each of these
-    shares the accelerations, shape (9, 9).
-    """
-    u = _SHARES
-    rest = np.stack((u**3 * (10.0 - 15.0 * u + 6.0 * u**2), 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u)))
-    moving = np.stack((u - 6.0 * u**3 + 8.0 * u**4 - 3.0 * u**5, -36.0 * u + 96.0 * u**2 - 60.0 * u**3))
-    order = np.arange(6.0)
-    factors = (order * (order - 1.0))[2:]
-    around = []
-    for share in u.tolist():
-        since = np.where(u <= share, u, u - share)[:, None] ** order[:4] * factors
-        before, after = detour(share, 1.0)
-        around.append(np.where(u <= share, since @ before[2:], since @ after[2:]))
-    return rest, moving, np.array(around)
-
-
-_AT_REST, _MOVING, _AROUND = _unit_ways()
 
 
 def _landing(
@@ -426,18 +355,3 @@ def _around(time: float, least: float, scale: float) -> Array:
     """Times about one, which is the last, by changes of this scale [s, s, -]."""
     times = time + scale * _CHANGES
     return np.append(times[times >= min(time, least)], time)
-
-
-def moving_cop(start: Array, end: Array, omega: float, times: Array) -> Array:
-    """What a CoP that moves evenly from start to end takes off the DCM in times, shape (n, 2) [m]; see the module."""
-    growth = np.exp(omega * times) - 1.0
-    return np.asarray(growth[:, None] * start + (growth / (omega * times) - 1.0)[:, None] * (end - start))
-
-
-def pendulum_com(com: Array, dcm: Array, cop: Array, growth: Array) -> Array:
-    """CoM once the DCM's distance from a constant CoP has grown by factors e^{ωt}, shape (n, 2) [m].
-
-    c' = ω (ξ - c) gives c(t) = c e^{-ωt} + p (1 - e^{-ωt}) + (ξ - p) sinh ωt.
-    """
-    grown = growth[:, None]
-    return np.asarray(com / grown + cop * (1.0 - 1.0 / grown) + 0.5 * (dcm - cop) * (grown - 1.0 / grown))

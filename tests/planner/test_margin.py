@@ -104,7 +104,7 @@ def rests(now, axis, box, steps, together, legs=LEGS):
     program.hold(now.single, -half * one, half * one)
     place = program.variable()
     program.within(place, box[0][axis] * one, box[1][axis] * one)
-    swung = Recovery(legs, P, False).swung(now, np.array([now.single]))[:, 0]
+    swung = Recovery(legs, P, False).haste.edges(now.foot, np.array([now.single]))[:, 0]
     program.within(place, -swung[2 + axis] * one, swung[axis] * one)
     hip = program.com + axis * 0.5 * side * legs.hip_width * one
     program.within(place, hip - legs.radius * one, hip + legs.radius * one)

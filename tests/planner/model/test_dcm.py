@@ -2,8 +2,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
-from surefoot.planner.model.dcm import dcm, natural_frequency, nominal_dcm, viability_weights
+from surefoot.planner.model.dcm import dcm, moving_cop, natural_frequency, nominal_dcm, pendulum_com, viability_weights
 from surefoot.planner.plants import Pendulum
 
 pytestmark = pytest.mark.unit
@@ -78,3 +79,21 @@ def test_terminal_set_is_viable_from_its_corners_and_not_beyond(corner):
             pendulum.advance(T, 0.5 * (before + after), WIDE, 9.81, np.zeros(2))
         distance = np.abs(pendulum.position + pendulum.velocity / omega[-1] - center[-1])
         assert np.all(distance <= half + 1e-4) if bounded else np.all(distance > 5.0)
+
+
+@pytest.mark.parametrize("time", [0.05, 0.3])
+def test_the_laws_of_dcm_and_com_are_the_motion_of_the_pendulum(time):
+    omega = 3.2
+    com, dcm, start, end = np.array([0.1, 0.02]), np.array([0.2, -0.03]), np.array([-0.1, 0.1]), np.array([0.2, 0.0])
+
+    def rate(at, state, moves):
+        cop = start + moves * (end - start) * at / time
+        return np.concatenate((omega * (state[2:] - state[:2]), omega * (state[2:] - cop)))
+
+    moved, fixed = (
+        solve_ivp(rate, (0.0, time), np.concatenate((com, dcm)), args=(moves,), rtol=1e-10, atol=1e-12).y[:, -1]
+        for moves in (1.0, 0.0)
+    )
+    grown = np.exp(omega * time)
+    np.testing.assert_allclose(grown * dcm - moving_cop(start, end, omega, np.array([time]))[0], moved[2:], atol=1e-8)
+    np.testing.assert_allclose(pendulum_com(com, dcm, start, np.array([grown]))[0], fixed[:2], atol=1e-8)

@@ -1,0 +1,123 @@
+"""How far hips swing a foot in the time that is left, straight or around the stance leg."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from surefoot.planner.swing.trajectory import detour
+from surefoot.planner.types import Array
+from surefoot.planner.walk.reach import Legs
+
+PEAK, _BRAKING, _GAINING = 5.77, 1.9, 3.9
+"""Greatest acceleration of a quintic to rest over way / T², and what of it a speed / T takes off at its end and its
+begin [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SwingState:
+    """A foot on its way, or about to leave, seen from its stance foot.
+
+    Attributes:
+        state: position and velocity, shape (2, 2) [m, m/s].
+        nominal: where it lands nominally, shape (2,) [m].
+        side: +1 for a left foot, -1 for a right one.
+        turn: heading in which it lands against that of its stance foot [rad].
+    """
+
+    state: Array
+    nominal: Array
+    side: float
+    turn: float
+
+
+@dataclass(frozen=True, slots=True)
+class Haste:
+    """Swings as hard as the hips' torques allow.
+
+    Attributes:
+        legs: say how hard that is.
+        lead: time by which a foot arrives before its swing ends [s].
+        least: shortest time of a swing [s].
+    """
+
+    legs: Legs
+    lead: float
+    least: float
+
+    def edges(self, swing: SwingState, singles: Array) -> Array:
+        """Where a foot can be swung to in times: front, left, minus back and minus right edge, shape (4, n) [m].
+
+        It may always be swung as hard as it nominally is.
+
+        Args:
+            swing: of the foot.
+            singles: times left of it, the last as planned, shape (n,) [s].
+        """
+        time, edges = np.maximum(singles - self.lead, self.least), []
+        usual, (here, speeds) = float(time[-1]), swing.state.tolist()
+        for side in (1.0, -1.0):
+            for at, speed, aim, most in zip(here, speeds, swing.nominal.tolist(), self.legs.acceleration, strict=True):
+                hardest = max(most, abs(PEAK * (aim - at) / (usual * usual) - _BRAKING * speed / usual))
+                onward = side * speed
+                edges.append((side * at, hardest, (_BRAKING if onward > 0.0 else _GAINING) * onward))
+        place, hardest, onward = np.array(edges).T[:, :, None]
+        return np.asarray(place + (hardest * time**2 + onward * time) / PEAK)
+
+    def lacking_around(self, swing: SwingState, singles: Array, places: Array) -> Array:
+        """Way that a foot lacks of places in times since it has to pass around the stance leg, shape (boxes, n) [m].
+
+        It is bent as that of the swing will be (see `SwingTrajectory.around`), here at nine shares of its time, and
+        lacks the share by which the hips cannot swing it so hard.
+
+        Args:
+            swing: of the foot.
+            singles: times left of it, shape (n,) [s].
+            places: where it lands, shape (boxes, n, 2) [m].
+        """
+        legs, side, (here, speed) = self.legs.turned(swing.turn), swing.side, swing.state
+        crossing = np.where(side * here[1] < 0.0, here[0], np.where(side * places[..., 1] < 0.0, places[..., 0], 0.0))
+        lacking = np.zeros(crossing.shape)
+        which = np.nonzero(crossing)
+        if not len(which[0]):
+            return lacking
+        time = np.maximum(singles - self.lead, self.least)[which[1], None, None]
+        way, onward = (places[which] - here)[:, None], speed * time
+        passed = here + way * _AT_REST[0][:, None] + onward * _MOVING[0][:, None]
+        met = ((np.abs(passed[..., 0]) < legs.clear) & (side * passed[..., 1] < legs.near)).any(axis=1)
+        corner = np.stack((np.copysign(legs.clear, crossing[which]), np.full(len(met), side * legs.near)), axis=1)
+        astray = corner[:, None] - passed
+        rows, best = np.arange(len(met)), np.argmin((astray**2).sum(axis=-1) / _DEARER, axis=1)
+        bend = way * _AT_REST[1][:, None] + onward * _MOVING[1][:, None]
+        bend = bend + astray[rows, best][:, None] * _AROUND[best][..., None]
+        hardest = (np.abs(bend) / (time**2 * legs.acceleration)).max(axis=(1, 2))
+        lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
+        return lacking
+
+
+_SHARES = np.linspace(0.1, 0.9, 9)
+"""Shares of a swing's time at which its way around the stance leg is looked at [-]."""
+
+_DEARER = (_SHARES * (1.0 - _SHARES)) ** 5
+"""What a way round at these is divided by to be compared."""
+
+
+def _unit_ways() -> tuple[Array, Array, Array]:
+    """Quintics to rest in a unit of time and their accelerations at `_SHARES`, shape (2, 9) each.
+
+    One goes a unit of way from rest, one has a unit of speed and goes none; of a way round by a unit at each of these
+    shares the accelerations, shape (9, 9).
+    """
+    u = _SHARES
+    rest = np.stack((u**3 * (10.0 - 15.0 * u + 6.0 * u**2), 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u)))
+    moving = np.stack((u - 6.0 * u**3 + 8.0 * u**4 - 3.0 * u**5, -36.0 * u + 96.0 * u**2 - 60.0 * u**3))
+    order = np.arange(6.0)
+    factors = (order * (order - 1.0))[2:]
+    around = []
+    for share in u.tolist():
+        since = np.where(u <= share, u, u - share)[:, None] ** order[:4] * factors
+        before, after = detour(share, 1.0)
+        around.append(np.where(u <= share, since @ before[2:], since @ after[2:]))
+    return rest, moving, np.array(around)
+
+
+_AT_REST, _MOVING, _AROUND = _unit_ways()

@@ -78,7 +78,7 @@ def test_forces_that_last_two_seconds(direction, phase, tmp_path):
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("direction", FORCES)
 def test_forces_that_last_on_small_feet(direction, phase, tmp_path):
-    keys = (pulled(25, direction, phase), "gait.initial_stand=0.4", "start.position_noise=0.0005")
+    keys = (pulled(25, direction, phase), "gait.initial_stand=0.4", "start.position_noise=0.0005", "duration=18.0")
     assert walk(tmp_path, "diagonal-walk", *keys).verdict.reasons == ()
 
 

@@ -160,7 +160,7 @@ class Legs:
         clear: distance ahead of or behind the stance foot from which on it is [m].
         acceleration: of a swinging sole that the hips' torques allow, forward and sideways [m/s^2].
         sole: length and width of the soles; those of points need no more room where they are turned [m].
-        height: of the hips over the soles at the CoM height of the gait [m].
+        height: of the hips over the soles as the robot stands [m].
         length: from a hip to its sole with the knee straight [m].
     """
 

@@ -164,7 +164,7 @@ class Walk:
             clear=clear,
             acceleration=facts.swing_acceleration,
             sole=self.sole,
-            height=self.gait.com_height - facts.com_above_hip,
+            height=self.standing_height - facts.com_above_hip,
             length=facts.leg_length,
         )
 

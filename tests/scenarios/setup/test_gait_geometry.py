@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from surefoot.planner.references.com_height import BENT_KNEES
 from surefoot.scenarios.file.schema import Gait, PushSettings, Scenario
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import (
@@ -14,6 +15,8 @@ from surefoot.scenarios.setup.gait import (
     phase_of,
     push_time,
 )
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
 
@@ -30,6 +33,13 @@ def test_at_the_longest_step_the_leg_is_straight(leg, bend, hips, feet):
 
 def test_lower_hips_reach_farther():
     assert longest_step(0.9, 0.8, 0.2, 0.25) > longest_step(0.9, 0.85, 0.2, 0.25)
+
+
+def test_who_walks_with_bent_knees_goes_down_less_for_a_long_step():
+    stretched, bent = (resolve(load("walk", {"planner.knee": knee})).legs for knee in ("stretched", "bent"))
+    assert bent.height == pytest.approx(stretched.height - BENT_KNEES)
+    assert bent.lowering(0.7) == pytest.approx(max(stretched.lowering(0.7) - BENT_KNEES, 0.0))
+    assert stretched.lowering(0.7) > 0.03
 
 
 def test_phases_follow_each_other():

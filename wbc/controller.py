@@ -140,8 +140,8 @@ class WholeBodyController:
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
         arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and parameters.arm_swing else None
         weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
-        waist = self.terms.waist
-        default = default_tasks(weights, gains, parameters.balance, self._region, toe, size.length, *stops, waist)
+        balance, waist = parameters.balance, self.terms.waist
+        default = default_tasks(weights, gains, balance, self._region, toe, size.length, *stops, waist=waist)
         diagonal = (
             Regularisation(weights, size.length),
             Posture(weights, gains, posture, leg_joints, arms),

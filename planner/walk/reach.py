@@ -181,7 +181,7 @@ class Legs:
             stride: distance between the feet [m].
         """
         span = min(0.5 * stride / _SPANNED, 0.9 * self.length)
-        return max(self.height - math.sqrt(self.length**2 - span**2), 0.0) if math.isfinite(self.length) else 0.0
+        return max(self.height - math.sqrt(self.length**2 - span**2), 0.0)
 
     def turned(self, turn: float) -> "Legs":
         """The same beside and ahead of a stance foot against which the foot that lands is turned.

@@ -1,5 +1,6 @@
 """Where and when a step lands after a push, held against the pendulum's own motion."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import PhaseKind
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import Legs
+from surefoot.planner.walk.stepper import Stepper
 
 pytestmark = pytest.mark.unit
 
@@ -231,7 +233,7 @@ def test_a_body_whose_step_is_hurried_is_not_let_fall(stand):
 
 @pytest.mark.parametrize("impulse", [700.0, 900.0])
 def test_the_body_goes_down_for_a_step_that_legs_do_not_span_at_its_height(stand, impulse):
-    """Smoothly, by its touchdown, and up again after it; legs that span nothing farther by it stay at their height."""
+    """Smoothly, until the next foot has left the ground; legs of which nobody knows how long they are stay as high."""
     gait = GaitParameters(
         steps=8, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95, apex_ss=0.0, apex_ds=0.0
     )
@@ -250,6 +252,25 @@ def test_the_body_goes_down_for_a_step_that_legs_do_not_span_at_its_height(stand
     assert np.abs(z[..., 2, :]).max() < LIFTING + 1e-6
     np.testing.assert_allclose(z[1:, :2, 0], z[:-1, :2, 1], atol=1e-9)
     np.testing.assert_allclose(z[-1, 0], 0.95, atol=1e-6)
+    apart = [(plan.com[0, 2], math.dist(*(foothold.position for foothold in plan.footholds)))
+             for plan in trace.plans if plan.phase.kind is PhaseKind.DOUBLE]  # fmt: skip
+    missing = [legs.lowering(stride) - (0.95 - height) for height, stride in apart if legs.lowering(stride) > 0.0]
+    assert missing
+    assert max(missing) < 0.005
+
+
+def test_a_body_that_has_gone_down_comes_up_again_all_the_way(stand, monkeypatch):
+    """However little is left of it: a difference that would change nothing else does."""
+    gait = GaitParameters(
+        steps=6, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95, apex_ss=0.0, apex_ds=0.0
+    )
+    lowering = {2: 0.009, 3: 0.0035}
+    monkeypatch.setattr(Stepper, "lowering", property(lambda self: lowering.get(self.landed, 0.0)))
+    planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
+    plans = walk_pendulum(planner, stand(), gait.duration, com=com).plans
+    lowest = {n: min(plan.com[0, 2] for plan in plans if plan.phase.step == n) for n in (3, 6)}
+    assert lowest[3] == pytest.approx(0.941, abs=1e-9)
+    assert lowest[6] == plans[-1].com[0, 2] == pytest.approx(0.95, abs=1e-9)
 
 
 def test_a_foot_that_is_to_catch_the_body_searches_for_the_ground_in_haste(stand):

@@ -4,10 +4,16 @@ import numpy as np
 import pytest
 
 from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.ground.terrain import Box, Terrain
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.queue import Ground, StepQueue
 from surefoot.planner.walk.reach import Legs, StepRegion
+from surefoot.planner.walk.stepper import Stepper
 
 pytestmark = pytest.mark.unit
 
+TREAD = Box(np.array([1.0, 0.0, 0.05]), np.array([0.3, 1.0, 0.05]), np.eye(3))
 LEGS = Legs(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
 
 
@@ -60,3 +66,14 @@ def test_the_body_goes_as_low_as_legs_need_that_span_a_stride(stride):
     assert hips == 0.85 if stride < 0.6 else hips < 0.85
     assert 2.0 * np.sqrt(0.94**2 - hips**2) >= stride / 0.75 - 1e-9
     assert LEGS.lowering(stride) == 0.0  # of legs whose length nobody knows
+
+
+@pytest.mark.parametrize(("ground", "free"), [(Terrain(), True), (Terrain((TREAD,)), False)])
+def test_the_body_goes_down_where_steps_may_land_anywhere(stand, ground, free):
+    """On stairs its height follows the faces, and knees need what is above them."""
+    legs = replace(LEGS, height=0.85, length=0.94)
+    queue = StepQueue(GaitParameters(steps=0), stand(), Ground(ground, np.array([0.11, 0.055]), PlannerParameters()))
+    stepper = Stepper(queue, 151, legs)
+    assert stepper.lowering == 0.0
+    stepper.stride = 0.7
+    assert stepper.lowering == (legs.lowering(0.7) if free else 0.0)

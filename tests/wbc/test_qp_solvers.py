@@ -87,10 +87,12 @@ def test_equalities_alone_are_met_and_optimal(problems):
 
 
 def test_contradicting_equalities_have_no_minimiser(problems):
-    qp = problems[0].copy()
-    qp.A[1] = qp.A[0]
-    solution = equalities_only(qp)
-    assert solution is None or solution.violation > 0.01
+    for qp in (problem.copy() for problem in problems):
+        row = qp.g.size + 1
+        qp.A[1] = qp.A[0]
+        qp.bounds_lower[row] = qp.bounds_upper[row] = qp.bounds_lower[row - 1] + 1.0
+        solution = equalities_only(qp)
+        assert solution is None or solution.violation > 0.49
 
 
 def test_violation_measures_bounds_and_rows(problems):

@@ -43,8 +43,12 @@ _NEIGHBOURS = (
 """Bodies with small links between them, whose shapes overlap at the joint."""
 
 _KEPT_APART = (
-    *((f"left_{part}", f"right_{part}") for part in ("thigh_shape", "shank_shape", "sole_box")),
-    *((f"{side}_sole_box", f"{other}_shank_shape") for side, other in (("left", "right"), ("right", "left"))),
+    *((f"left_{part}", f"right_{part}") for part in ("thigh_shape", "knee_shape", "shank_shape", "sole_box")),
+    *(
+        (f"{side}_{part}", f"{other}_{across}")
+        for part, across in (("knee_shape", "thigh_shape"), ("knee_shape", "shank_shape"), ("sole_box", "shank_shape"))
+        for side, other in (("left", "right"), ("right", "left"))
+    ),
     *((f"{side}_{part}_shape", f"{side}_thigh_shape") for side in ("left", "right") for part in ("forearm", "hand")),
 )
 """Contact shapes of different limbs that can meet in walking."""

@@ -104,7 +104,7 @@ def _thigh(side: str, outward: float, shank: Body) -> Body:
             Geom("ellipsoid", (0.078, 0.07, 0.15), (0.008, 0.008 * outward, -0.155)),
             Geom("capsule", (0.05,), ends=(0.0, 0.0, -0.16, 0.0, 0.0, -0.36)),
             Geom("ellipsoid", (0.045, 0.05, 0.11), (0.042, 0.006 * outward, -0.19), material="trim"),
-            Geom("sphere", (0.06,), knee, role=Role.COLLISION),
+            Geom("sphere", (0.06,), knee, role=Role.COLLISION, name=f"{side}_knee_shape"),
             _shape(f"{side}_thigh", 0.065, (0.005, 0.0, -0.1, 0.0, 0.0, -0.37)),
         ),
         children=(shank,),

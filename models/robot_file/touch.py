@@ -124,9 +124,9 @@ def shank_spacing(data: pin.Data, legs: tuple[Leg, Leg], hulls: dict[int, Hull],
 
 
 def limbs(legs: tuple[Leg, Leg], upper: Upper, hulls: dict[int, Hull]) -> list[tuple[int, int]]:
-    """Pairs of joints whose bodies can meet in walking: both thighs, both shanks, lower arms and thighs."""
+    """Pairs of joints whose bodies can meet in walking: thighs and shanks of both legs, lower arms and thighs."""
     thighs, shanks = ([leg.joints[leg.knee + offset] for leg in legs] for offset in (-1, 0))
-    pairs = [(thighs[0], thighs[1]), (shanks[0], shanks[1])]
+    pairs = [(thighs[0], thighs[1]), (shanks[0], shanks[1]), (thighs[0], shanks[1]), (thighs[1], shanks[0])]
     for arm, thigh in zip(upper.arms, thighs, strict=False):
         lower = [joint for joint in arm[len(arm) // 2 :] if joint in hulls]
         if lower:

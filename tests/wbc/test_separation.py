@@ -1,5 +1,7 @@
 """Limbs that keep apart: the rows against finite differences, and what obeying them does."""
 
+from itertools import product
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -47,6 +49,35 @@ def _crossing(robot, angle: float) -> np.ndarray:
     q = robot.standing.copy()
     q[robot.model.joints[robot.model.getJointId("left_hip_roll")].idx_q] -= angle
     return q
+
+
+def test_shapes_of_both_legs_that_come_nearest_are_kept_apart(robot, geometry) -> None:
+    """However hips, knees and ankles bend in walking and crossing: what is left out never meets first."""
+    pairs = {frozenset((pair.first, pair.second)) for pair in geometry.collisionPairs}
+    names, every = [shape.name for shape in geometry.geometryObjects], geometry.copy()
+    every.removeAllCollisionPairs()
+    left, right = ([k for k, name in enumerate(names) if name.startswith(side)] for side in ("left", "right"))
+    legs = [
+        [k for k in side if any(part in names[k] for part in ("thigh", "knee", "shank", "sole"))]
+        for side in (left, right)
+    ]
+    for one, other in product(*legs):
+        every.addCollisionPair(pin.CollisionPair(one, other))
+    data, shapes = robot.model.createData(), pin.GeometryData(every)
+    rng, near = np.random.default_rng(0), set()
+    ranges = {"hip_pitch": (-1.0, 0.5), "knee": (0.0, 1.2), "hip_roll": (-0.35, 0.2), "ankle_pitch": (-0.5, 0.3)}
+    for _ in range(6000):
+        q = robot.standing.copy()
+        for (name, (low, high)), (side, out) in product(ranges.items(), (("left", 1.0), ("right", -1.0))):
+            joint = robot.model.joints[robot.model.getJointId(f"{side}_{name}")]
+            q[joint.idx_q] = rng.uniform(low, high) * (out if name == "hip_roll" else 1.0)
+        pin.computeDistances(robot.model, data, every, shapes, q)
+        distances = [result.min_distance for result in shapes.distanceResults]
+        if 0.0 < min(distances) < 0.02:
+            pair = every.collisionPairs[int(np.argmin(distances))]
+            near.add(frozenset((pair.first, pair.second)))
+    assert len(near) >= 9
+    assert near <= pairs
 
 
 def test_far_limbs_bound_nothing(robot, geometry) -> None:

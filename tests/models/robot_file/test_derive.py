@@ -130,6 +130,14 @@ def test_arms_hang_free_of_the_body(tmp_path, shipped) -> None:
         assert hand[2] < shoulder[2] - 0.9 * np.linalg.norm(hand - shoulder)
 
 
+def test_each_leg_is_kept_from_thigh_shank_and_sole_of_the_other_one(tmp_path) -> None:
+    pairs = {frozenset(pair) for pair in described(tmp_path).kept_apart}
+    parts = [[f"{side}_{part}" for part in ("thigh_shape", "shank_shape", "sole_box")] for side in ("left", "right")]
+    across = {frozenset((one, other)) for one in parts[0] for other in parts[1]}
+    soles_and_thighs = {frozenset((parts[one][2], parts[1 - one][0])) for one in (0, 1)}
+    assert across - soles_and_thighs <= pairs
+
+
 def test_what_the_file_says_counts(tmp_path) -> None:
     text = biped.FILE + (
         "sole: {length: 0.1, width: 0.05, centre: [0.01, 0.005, -0.06]}\ncom_height: 0.55\n"

@@ -12,7 +12,8 @@ from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.planner.types import Array, FeetState
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import Flow, PhaseSamples
-from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.queue import StepQueue
+from surefoot.planner.walk.step import Ground
 
 _AT_ONCE = 2000
 """Samples of a walk that are checked together."""

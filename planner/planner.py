@@ -34,9 +34,10 @@ from surefoot.planner.types import (
 from surefoot.planner.walk.commands import Command, Orders, Twist
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.queue import StepQueue
 from surefoot.planner.walk.reach import GAP, Legs, StepRegion
 from surefoot.planner.walk.source import CommandSource
+from surefoot.planner.walk.step import Ground
 from surefoot.planner.walk.stepper import Stepper
 
 
@@ -185,8 +186,7 @@ class WalkingPlanner:
         if self._reserve is not None or not stepper.adapts:
             self._alarm.update(margins[1])
         catch = self._catch(situation)
-        if catch is not None and catch.more and stepper.stops:
-            stepper.go_on()
+        if catch is not None and catch.more and self._adds_steps(margins[0]):
             support, local, window = self._sight(state)
             catch = self._catch(Situation.of(state.time, stepper, local, feet, support, window))
         left = stepper.time_left
@@ -241,6 +241,24 @@ class WalkingPlanner:
         if stepper.phase.kind is PhaseKind.STAND and abs(error[1]) > ASIDE * length:
             stance = Foot.LEFT if error[1] > 0.0 else Foot.RIGHT
         stepper.go_on(None if stance is None else stance.other)
+        return True
+
+    def _adds_steps(self, margin: float) -> bool:
+        """Add steps before those to come where the next one leaves something to catch; says whether.
+
+        A robot that would stand makes one on the spot. On faces that footsteps were chosen for, one step of each foot
+        where it stands is sooner made than one that climbs.
+
+        Args:
+            margin: of the DCM inside what the CoP captures with steps as planned [m].
+        """
+        stepper = self._stepper
+        if stepper.stops:
+            stepper.go_on()
+        elif margin < 0.0 and stepper.climbs_next:
+            stepper.step_again()
+        else:
+            return False
         return True
 
     def _margins(

@@ -11,7 +11,6 @@ and with the limits of the legs as they are, over a list of times in place of a 
 can bring the DCM back until the foot lands, nothing is adapted.
 """
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -19,11 +18,10 @@ import numpy as np
 
 from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.references.com_height import LIFTING
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support, ZmpReference
 from surefoot.planner.types import Array, FeetState, PhaseKind
-from surefoot.planner.walk.hurry import PEAK, Haste, SwingState
+from surefoot.planner.walk.hurry import Haste, SwingState
 from surefoot.planner.walk.reach import Legs
 from surefoot.planner.walk.stepper import Stepper
 
@@ -110,7 +108,7 @@ class Situation:
             double=0.0 if swings else phase.left,
             single=phase.left if swings else swing.samples * stepper.sample_time,
             cycle=stepper.queue.gait.period,
-            shortest=yet * math.sqrt(PEAK * abs(step.climb) / LIFTING),
+            shortest=yet * stepper.quickest,
             room=stepper.room(0),
             adapted=stepper.adapted,
             last=stepper.stops,

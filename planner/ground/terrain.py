@@ -160,7 +160,7 @@ class Terrain:
         return np.array([-way[0], way[1]])
 
 
-_WAYS = 0.01 * np.arange(1.0, 41.0)
+_WAYS = 0.01 * np.arange(1.0, 81.0)
 """Ways by which a sole might be moved on its face, of the reference robot as all lengths here [m]."""
 
 _CORNERS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])

@@ -29,7 +29,8 @@ from surefoot.planner.swing.heel_off import bump
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Phase, PhaseSamples
-from surefoot.planner.walk.queue import StepQueue, unit_swing
+from surefoot.planner.walk.queue import StepQueue
+from surefoot.planner.walk.step import unit_swing
 from surefoot.planner.walk.stepper import Deviation
 
 

@@ -183,6 +183,7 @@ class SwingTrajectory:
         moved = replace(self, touchdown_time=touchdown, start_time=start, glide_end=end)
         if time < self.glide_end - TOUCHING:
             end = max(end, min(start + grid, touchdown))
+            end = min(end, start + max(_straight(state[:, :2], self.target[:2]), self.glide_end - start))
             level = _to_rest(state[:, _GLIDING], self.target[_GLIDING], end - start)
             moved = replace(moved, glide_end=end, level=level, bend_time=math.inf)
         if time < self.apex_time - TOUCHING:
@@ -296,6 +297,27 @@ def detour(time: float, duration: float) -> tuple[Array, Array]:
     meeting = np.linalg.solve(np.array(matrix), [-60.0 * (a**-3 + b**-3), -360.0 * (a**-4 - b**-4)])
     rest, top = np.zeros((3, 1)), np.append(1.0, meeting)[:, None]
     return quintic(rest, top, a)[:, 0], quintic(top, rest, b)[:, 0]
+
+
+def _straight(state: Array, target: Array) -> float:
+    """Longest time in which a quintic from a state to rest at a target does not go beyond that [s].
+
+    At a distance d, with speed v and acceleration a towards it, its end is at 10 d - 4 v T - a T² / 2 times the cube of
+    what is left of its time.
+
+    Args:
+        state: position, velocity and acceleration, shape (3, 2) [m, m/s, m/s^2].
+        target: shape (2,) [m].
+    """
+    way = target - state[0]
+    distance = math.hypot(*way)
+    if distance == 0.0:
+        return 0.0
+    speed, bend = (float(rate @ way) / distance for rate in state[1:])
+    inner = 16.0 * speed**2 + 20.0 * bend * distance
+    if inner < 0.0 or 4.0 * speed + math.sqrt(inner) <= 0.0:
+        return math.inf
+    return 20.0 * distance / (4.0 * speed + math.sqrt(inner))
 
 
 def _to_rest(state: Array, target: Array, duration: float) -> Array:

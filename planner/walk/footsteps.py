@@ -119,20 +119,14 @@ class FootstepPlan:
             normal = np.concatenate((normal[:row], terrain.normals(moved[row:, :2])))
         return replace(self, position=moved, normal=normal, shift=shift)
 
-    def followed(self, place: Footstep, terrain: Terrain) -> "FootstepPlan":
-        """The plan with one more footstep, shifted as those before it.
-
-        Args:
-            place: where it nominally is.
-            terrain: gives its height where it is shifted to.
-        """
-        xy = place.position[None, :2] + self.shift
+    def followed(self, place: Footstep) -> "FootstepPlan":
+        """The plan with one more footstep."""
         return replace(
             self,
             feet=(*self.feet, place.foot),
-            position=np.concatenate((self.position, np.column_stack((xy, terrain.heights(xy))))),
+            position=np.concatenate((self.position, place.position[None])),
             yaw=np.append(self.yaw, place.yaw),
-            normal=np.concatenate((self.normal, terrain.normals(xy))),
+            normal=np.concatenate((self.normal, place.normal[None])),
         )
 
     def supported(self, row: int, other: int) -> "FootstepPlan":

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.swing.trajectory import detour
-from surefoot.planner.types import Array
+from surefoot.planner.geometry import frame_rotation, wrap_angle
+from surefoot.planner.swing.trajectory import SwingTrajectory, detour
+from surefoot.planner.types import Array, Footstep
 from surefoot.planner.walk.reach import Legs
 
 PEAK, _BRAKING, _GAINING = 5.77, 1.9, 3.9
@@ -66,7 +67,7 @@ class Haste:
     def lacking_around(self, swing: SwingState, singles: Array, places: Array) -> Array:
         """Way that a foot lacks of places in times since it has to pass around the stance leg, shape (boxes, n) [m].
 
-        It is bent as that of the swing will be (see `SwingTrajectory.around`), here at nine shares of its time, and
+        It is bent as that of the swing will be (see `around_stance_leg`), here at nine shares of its time, and
         lacks the share by which the hips cannot swing it so hard.
 
         Args:
@@ -92,6 +93,35 @@ class Haste:
         hardest = (np.abs(bend) / (time**2 * legs.acceleration)).max(axis=(1, 2))
         lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
         return lacking
+
+
+def around_stance_leg(
+    swing: SwingTrajectory, stance: Footstep, legs: Legs, time: float, sample_time: float
+) -> SwingTrajectory:
+    """A swing, that from beyond the stance foot or to there bent to pass around the stance leg.
+
+    A way round that the hips cannot swing the foot in the time left would only make it late: then it goes straight.
+
+    Args:
+        swing: that of the next footstep.
+        stance: the foot beside which it passes.
+        legs: what they can do.
+        time: now [s].
+        sample_time: of the plans [s].
+    """
+    if swing.bent or time >= swing.glide_end:
+        return swing
+    rotation, origin, side = frame_rotation(stance.yaw), stance.position[:2], swing.foot.side
+    times = np.arange(max(time, swing.start_time), swing.glide_end + 0.5 * sample_time, sample_time)
+    if not (side * ((swing.positions(times[[0, -1]])[:, :2] - origin) @ rotation)[:, 1] < 0.0).any():
+        return swing  # as nearly all of them: beside its stance foot at both ends
+    way = (swing.positions(times)[:, :2] - origin) @ rotation
+    corner = legs.turned(wrap_angle(float(swing.target[3]) - stance.yaw)).corner(way, side)
+    if corner is None:
+        return swing
+    bent = swing.around(origin + rotation @ corner, sample_time)
+    hardest = np.abs([bent.evaluate(instant)[2, :2] @ rotation for instant in times.tolist()]).max(axis=0)
+    return bent if (hardest <= legs.acceleration).all() else swing
 
 
 _SHARES = np.linspace(0.1, 0.9, 9)

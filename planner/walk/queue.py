@@ -1,65 +1,23 @@
 """The steps in sight: a short queue that a source fills and the walk's clock empties."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.course import swing_course
 from surefoot.planner.swing.heel_off import LEVEL_AGAIN, roll_span, roll_times, stretched
-from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
-from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseKind
+from surefoot.planner.swing.trajectory import SwingCourse
+from surefoot.planner.types import Array, FeetState, Foot, PhaseKind
 from surefoot.planner.walk.commands import Pose
-from surefoot.planner.walk.footsteps import Path, start_footholds
+from surefoot.planner.walk.footsteps import start_footholds
 from surefoot.planner.walk.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Flow, Phase, PhaseSamples
 from surefoot.planner.walk.reach import Landing, check_reach
 from surefoot.planner.walk.source import GaitSource, Interlude, Request, StepOrder, StepSource
+from surefoot.planner.walk.step import Ground, Step, lay, unit_swing
 
 _MORE_STEPS = 3
 """Steps in sight beyond a window: its last support points depend on the ones after them, and a plan tells three."""
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """A step in sight.
-
-    Attributes:
-        number: in the walk, from 1.
-        stride: what it does to the path.
-        path: where the nominal path comes to with it.
-        place: its nominal footstep.
-        climb: height of that above where its foot nominally stood before [m].
-        room: by which it may land elsewhere on its face, least and greatest way in its own heading, shape (2, 2) [m].
-        course: of its swing over the ground.
-        swing: that swing to a footstep one metre ahead, in its own time.
-    """
-
-    number: int
-    stride: Stride
-    path: Path
-    place: Footstep
-    climb: float
-    room: Array
-    course: SwingCourse
-    swing: SwingTrajectory
-
-
-@dataclass(frozen=True, slots=True)
-class Ground:
-    """What a queue needs to lay steps.
-
-    Attributes:
-        terrain: the ground as the planner believes it to be.
-        half_size: half of the sole's length and width, shape (2,) [m].
-        parameters: of the planner.
-    """
-
-    terrain: Terrain
-    half_size: Array
-    parameters: PlannerParameters
 
 
 class StepQueue:
@@ -94,7 +52,7 @@ class StepQueue:
         swing = unit_swing(self._durations[0], 0.0, course, ground.parameters)
         # The start feet count as footsteps -1 and 0, so that the first steps are laid as all others.
         self.steps = {
-            number: Step(number, zero, path, start[number + 1], 0.0, np.zeros((2, 2)), course, swing)
+            number: Step(number, zero, path, start[number + 1], 0.0, 0.0, np.zeros((2, 2)), course, swing)
             for number in (-1, 0)
         }
         self.phases: list[Phase] = [Phase(PhaseKind.STAND, 0.0, np.inf, 0, None, 0)]
@@ -171,9 +129,9 @@ class StepQueue:
     def _lay(self, stride: Stride) -> None:
         """Lay a step: its foothold, its single support and the double support that follows."""
         gait, (single, double) = self.gait, self._durations
-        step = self._next(stride, single)
+        step = lay(stride, (self.steps[self._last.number - 1], self._last), gait, single, self.ground)
         check_reach(step.number, Landing.between(self._last.place, step.place), self.ground.parameters)
-        footsteps = self.footsteps.followed(step.place, self.ground.terrain)
+        footsteps = self.footsteps.followed(step.beside(self.footsteps.shift, self.ground.terrain))
         self.footsteps = footsteps.supported(step.number, step.number)
         self.steps[step.number] = step
         before = self.phases[-1]
@@ -184,23 +142,6 @@ class StepQueue:
         stance = gait.step_foot(number).other
         swing = Phase(PhaseKind.SINGLE, before.end, single, number, stance, support, roll=roll)
         self.phases += [swing, Phase(PhaseKind.DOUBLE, swing.end, double, number, None, support)]
-
-    def _next(self, stride: Stride, single: float) -> Step:
-        """The step after the last one."""
-        ground, number = self.ground, self._last.number + 1
-        foot = self.gait.step_foot(number)
-        path, xy = self._last.path.advanced(stride, foot)
-        point = xy[None]
-        position, normal = np.append(xy, ground.terrain.heights(point)), ground.terrain.normals(point)[0]
-        start, place = self.steps[number - 2].place, Footstep(foot, position, path.yaw, normal)
-        course = swing_course(
-            number, start, place, single, ground.terrain, ground.half_size, self.gait.swing_height, ground.parameters
-        )
-        # The start feet are measured, which may be a few nanometres off the ground.
-        climb = round(float(position[2] - start.position[2]), 6)
-        swing = unit_swing(single, climb, course, ground.parameters)
-        room = ground.terrain.room(position, path.yaw, ground.half_size, ground.parameters.size.length)
-        return Step(number, stride, path, place, climb, room, course, swing)
 
     def reorder(self, present: Phase, source: StepSource | None = None) -> None:
         """Ask anew for all steps but the one being swung and the one to which the weight is being shifted.
@@ -244,7 +185,18 @@ class StepQueue:
         if foot is not None and self.gait.step_foot(last + 1) is not foot:
             self._swap_feet(last)
         farther = 1.0 if at_once else max(1.0, self._apart(last))
-        self._source = Interlude(self._source, last + 1, self.gait.step_width, at_once, farther)
+        spot = StepOrder(Stride(0.0, 0.0, 0.0, self.gait.step_width), hurried=at_once, farther=farther)
+        self._source = Interlude(self._source, last + 1, spot)
+
+    def step_again(self, present: Phase) -> None:
+        """Before anything else let both feet land once more where they are with the step that is being swung.
+
+        Args:
+            present: the single support now.
+        """
+        stride = self.steps[present.step].stride
+        back = replace(stride, length=-stride.length, lateral=-stride.lateral, turn=-stride.turn)
+        self.reorder(present, Interlude(self._source, present.step + 1, StepOrder(back), StepOrder(stride)))
 
     def _apart(self, last: int) -> float:
         """How many times as far apart as nominally the feet stand with which a step and the one before it landed."""
@@ -331,6 +283,23 @@ class StepQueue:
         t = self.ground.parameters.sample_time
         return in_samples(self.gait.single_support, t), in_samples(self.gait.double_support, t)
 
+    def go_beside(self, step: int) -> None:
+        """Let all steps after one that has landed aside of its place on its face go as far aside, as far as theirs go.
+
+        Args:
+            step: that has just landed.
+        """
+        plan, terrain = self.footsteps, self.ground.terrain
+        row, place = step + 1 - plan.first, self.steps[step].place
+        aside = frame_rotation(place.yaw)[:, 1]
+        shift = aside * float(aside @ (plan.position[row] - place.position)[:2])
+        later = [self.steps[number].beside(shift, terrain) for number in range(step + 1, max(self.steps) + 1)]
+        position, normal = (
+            np.array([*values[: row + 1], *(getattr(one, name) for one in later)])
+            for name, values in (("position", plan.position), ("normal", plan.normal))
+        )
+        self.footsteps = replace(plan, position=position, normal=normal, shift=shift)
+
     def lift_heel(self, step: int, radius: float) -> None:
         """Let the foot that a step has left too far behind for its leg roll as it leaves the ground.
 
@@ -370,9 +339,3 @@ def _lasting(phase: Phase, single: float, double: float) -> tuple[float, float]:
     if phase.kind is PhaseKind.STAND:
         return phase.samples, 0.0
     return (WEIGHT_SHIFT * double, (WEIGHT_SHIFT - 1) * double) if phase.rest else (double, 0.0)
-
-
-def unit_swing(samples: float, climb: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTrajectory:
-    """A swing of so many samples from the origin at time 0 to a footstep one metre ahead that lies higher [m]."""
-    end, times = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), swing_times(0.0, samples, course, parameters)
-    return start_swing(Foot.LEFT, np.zeros(6), end, times, course.height, parameters)

@@ -84,28 +84,27 @@ class GaitSource:
 
 
 class Interlude:
-    """A step on the spot between those of another source, which goes on as if it had not been.
+    """Some steps between those of another source, which goes on as if they had not been.
 
     Args:
-        source: the other one, which may have been interrupted before.
-        step: number of the step.
-        width: of the stance that it keeps [m].
-        hurried: see `StepOrder`.
-        farther: likewise [-].
+        source: the other one; what is left of an interlude of its own is left out.
+        step: number of the first of these steps.
+        orders: the steps.
     """
 
-    def __init__(self, source: StepSource, step: int, width: float, hurried: bool, farther: float = 1.0) -> None:
+    def __init__(self, source: StepSource, step: int, *orders: StepOrder) -> None:
         before = source if isinstance(source, Interlude) else None
         self._source: StepSource = source if before is None else before._source
-        self._taken: int = 1 if before is None else before._taken + (step > before._step)
+        self._taken: int = 0 if before is None else before._taken + min(step - before._step, len(before._orders))
         self._step: int = step
-        self._spot = StepOrder(Stride(0.0, 0.0, 0.0, width), hurried=hurried, farther=farther)
+        self._orders: tuple[StepOrder, ...] = orders
 
     def order(self, at: Request) -> StepOrder | None:
         """See `StepSource`."""
-        if at.step == self._step:
-            return self._spot
-        return self._source.order(replace(at, step=at.step - self._taken))
+        since = at.step - self._step
+        if since < len(self._orders):
+            return self._orders[since]
+        return self._source.order(replace(at, step=at.step - self._taken - len(self._orders)))
 
 
 _SOFTLY = 0.4

@@ -7,11 +7,13 @@ import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, sole_pose, wrap_angle
 from surefoot.planner.parameters import StepAdaptation
+from surefoot.planner.references.com_height import LIFTING
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
 from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.hurry import PEAK, around_stance_leg
 from surefoot.planner.walk.phases import CLOCK_ROUNDING, Clock, PhaseSamples
 from surefoot.planner.walk.queue import StepQueue
 from surefoot.planner.walk.reach import Legs, turned_room
@@ -161,7 +163,25 @@ class Stepper:
             Least and greatest way in the heading of the foot that landed last, shape (2, 2) [m].
         """
         step = self.queue.steps[self.landed + 1 + ahead]
-        return turned_room(step.room, step.place.yaw - float(self.footsteps.yaw[self.row]))
+        way = (self.footsteps.position[self.row + 1 + ahead] - step.place.position)[:2] @ frame_rotation(step.place.yaw)
+        return turned_room(step.room - way, step.place.yaw - float(self.footsteps.yaw[self.row]))
+
+    @property
+    def quickest(self) -> float:
+        """Shortest time in which body and foot can come to the height of the next footstep [s].
+
+        Zero where no legs are known.
+        """
+        step = self.queue.steps[self.landed + 1]
+        if self._legs is None:
+            return 0.0
+        return math.sqrt(max(PEAK * abs(step.lift) / LIFTING, step.hardest / self._legs.acceleration[0]))
+
+    @property
+    def climbs_next(self) -> bool:
+        """Whether a foot swings, on faces that footsteps were chosen for, and the step after it climbs."""
+        step = self.queue.steps.get(self.landed + 2)
+        return self.swing_foot is not None and not self.wide and step is not None and step.climb != 0.0
 
     def turn(self, ahead: int) -> float:
         """Heading of the next footstep (0) or a later one against the one before it; zero where there is none [rad]."""
@@ -189,6 +209,12 @@ class Stepper:
     def go_on(self, foot: Foot | None = None, at_once: bool = True) -> None:
         """Make a step on the spot where the robot stands or would stand next (see `StepQueue.go_on`)."""
         self.queue.go_on(self.phase, foot, at_once)
+        self.revision += 1
+        self._look_ahead(self.clock.now)
+
+    def step_again(self) -> None:
+        """Make a step with each foot where it is, before the next one (see `StepQueue.step_again`)."""
+        self.queue.step_again(self.phase)
         self.revision += 1
         self._look_ahead(self.clock.now)
 
@@ -333,6 +359,9 @@ class Stepper:
         self.landed += 1
         if self.adapted and self._legs is not None:
             self.queue.lift_heel(self.landed, self._legs.radius)
+            if not self.wide:
+                self.queue.go_beside(self.landed)
+                self.revision += 1
         self.waited, self.early, self.fixed, self.adapted = 0, False, False, False
 
     def fix_imminent(self, time: float) -> None:
@@ -366,26 +395,9 @@ class Stepper:
         if self.adapted and self.swing.search.hurry_after > 0.0:
             # While a foot that is to catch the body searches for the ground the DCM goes on away from it.
             self.swing = replace(self.swing, search=replace(self.swing.search, hurry_after=0.0))
-        self._go_around(self.swing, time)
-
-    def _go_around(self, swing: SwingTrajectory, time: float) -> None:
-        """Let a swing from beyond the stance foot, or to there, pass around the stance leg."""
-        if self._legs is None or swing.bent or time >= swing.glide_end:
-            return
-        stance, t = self.footsteps.footstep(self.row), self.sample_time
-        rotation, origin = frame_rotation(stance.yaw), stance.position[:2]
-        side, times = swing.foot.side, np.arange(max(time, swing.start_time), swing.glide_end + 0.5 * t, t)
-        if not (side * ((swing.positions(times[[0, -1]])[:, :2] - origin) @ rotation)[:, 1] < 0.0).any():
-            return  # as nearly all of them: beside its stance foot at both ends
-        way = (swing.positions(times)[:, :2] - origin) @ rotation
-        corner = self._legs.turned(wrap_angle(float(swing.target[3]) - stance.yaw)).corner(way, side)
-        if corner is None:
-            return
-        bent = swing.around(origin + rotation @ corner, t)
-        hardest = np.abs([bent.evaluate(instant)[2, :2] @ rotation for instant in times.tolist()]).max(axis=0)
-        # A way round that the hips cannot swing the foot in time would only make it late.
-        if (hardest <= self._legs.acceleration).all():
-            self.swing = bent
+        if self._legs is not None:
+            stance = self.footsteps.footstep(self.row)
+            self.swing = around_stance_leg(self.swing, stance, self._legs, time, self.sample_time)
 
     @property
     def lowering(self) -> float:

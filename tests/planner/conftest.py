@@ -11,7 +11,8 @@ from surefoot.planner.plants import PendulumTrace, walk_pendulum
 from surefoot.planner.types import FeetState, Foot
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import Flow
-from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.queue import StepQueue
+from surefoot.planner.walk.step import Ground
 
 
 def stand(width: float = 0.2, origin: tuple[float, float] = (0.0, 0.0), yaw: float = 0.0) -> FeetState:

@@ -7,15 +7,18 @@ import numpy as np
 import pytest
 
 from surefoot.planner.geometry import quintic
+from surefoot.planner.ground.stairs import Direction, Stairs
+from surefoot.planner.ground.terrain import Site
 from surefoot.planner.model.dcm import pendulum_com, viability_weights
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.recovery import Recovery, Situation
-from surefoot.planner.references.com_height import LIFTING
+from surefoot.planner.references.com_height import LIFTING, Rise, SmoothHeight
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import PhaseKind
 from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.hurry import PEAK
 from surefoot.planner.walk.reach import Legs
 from surefoot.planner.walk.stepper import Stepper
 
@@ -386,3 +389,42 @@ def test_no_foot_crosses_where_the_stance_leg_lets_the_body_down():
     crossing, down = catch(situation(**pushed)), catch(situation(**pushed, crosses=False))
     assert crossing.low[1] < 0.0
     assert down.low[1] >= LEGS.near - 1e-9
+
+
+DESCENT = GaitParameters(steps=7, step_length=0.28, single_support=0.9, double_support=0.3, initial_stand=0.4)
+
+
+def down_stairs(stand, impulse, **keys):
+    """A pendulum that is pushed over its right stance foot early in step 3 of seven down a flight [N·s/kg]."""
+    terrain = Stairs(0.185, 0.28, 6, Direction.DOWN, start=0.14, landing=1.0, beyond=2.0).build(
+        Site(np.zeros(2), 0.0, 0.8)
+    )
+    feet = stand()
+    feet.position[:, 2] = terrain.height(0.0, 0.0)
+    planner = WalkingPlanner(
+        DESCENT, feet, 0.22, 0.11, terrain=terrain, height_profile=SmoothHeight(Rise.SINGLE), legs=LEGS, **keys
+    )
+    push = PointPush(DESCENT.lift_off(3) + 0.18, 0.1, np.array([0.0, -1000.0 * impulse]))
+    com = np.array([0.0, 0.0, feet.position[0, 2] + DESCENT.com_height])
+    return terrain, walk_pendulum(planner, feet, DESCENT.duration + 5.0, com=com, pushes=(push,))
+
+
+@pytest.mark.parametrize(
+    ("impulse", "treads"), [(0.0, range(1, 7)), (0.18, range(1, 7)), (0.22, (1, 2, 3, 2, 3, 4, 5, 6))]
+)
+def test_on_stairs_both_feet_step_where_they_are_before_the_walk_goes_on(stand, impulse, treads):
+    """To the side of the push, where a foot must not cross: the one on which it stood lands again, farther out."""
+    terrain, trace = down_stairs(stand, impulse)
+    assert trace.fall_time is None
+    last = trace.plans[-1]
+    assert last.phase.kind is PhaseKind.STAND
+    landed = {plan.phase.step: plan.swing.target for plan in trace.plans if plan.swing is not None}
+    assert [round(landed[step][0] / 0.28) for step in sorted(landed)] == [*treads, 6]
+    for target in landed.values():
+        assert target[2] == pytest.approx(terrain.height(*target[:2]), abs=1e-6)
+        assert abs(target[0] / 0.28 - round(target[0] / 0.28)) < 0.1
+    beside = last.footholds[0].position[1] - last.footholds[1].position[1]
+    assert beside == pytest.approx(0.2, abs=0.02)
+    # However it is hurried after its first fifth, the body goes down a riser by no more than LIFTING.
+    lasted = T * sum(plan.phase.step == 3 and plan.swing is not None for plan in trace.plans)
+    assert lasted > 0.18 + 0.8 * math.sqrt(PEAK * 0.185 / LIFTING) - T

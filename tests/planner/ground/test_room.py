@@ -30,7 +30,7 @@ def test_a_sole_keeps_off_the_edges_of_its_tread_and_a_shank_off_the_riser(direc
     position = np.append(place, level.height(*place))
     low, high = level.room(position, yaw, HALF)
     np.testing.assert_allclose((low[0], high[0]), room, atol=1e-9)
-    np.testing.assert_allclose((low[1], high[1]), (-0.4, 0.4), atol=1e-9)
+    np.testing.assert_allclose((low[1], high[1]), (-0.8, 0.8), atol=1e-9)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.1, -0.4, 1.2])

@@ -9,7 +9,8 @@ from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.zmp_reference import present_support, support_table, zmp_reference
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.phases import Flow
-from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.queue import StepQueue
+from surefoot.planner.walk.step import Ground
 from surefoot.planner.walk.stepper import Stepper
 
 pytestmark = pytest.mark.unit

@@ -104,6 +104,30 @@ def test_a_swing_that_glides_on_to_its_touchdown_bends_less():
     assert bends[1] < 0.6 * bends[0]
 
 
+@pytest.mark.parametrize("delay", [0.04, 0.1, 0.4])
+@pytest.mark.parametrize("time", [2.15, 2.3, 2.5, 2.7])
+def test_a_swing_that_is_put_off_does_not_go_beyond_its_target(time, delay):
+    """Its glide lasts no longer than a quintic comes to its target from one side; another one would go beyond it."""
+    before = swing()
+    after = before.retimed(time, delay, 0.02)
+    np.testing.assert_allclose(after.evaluate(time)[:2], before.evaluate(time)[:2], atol=1e-9)
+    assert after.touchdown_time == pytest.approx(before.touchdown_time + delay)
+    way = after.positions(np.linspace(time, after.touchdown_time, 400))[:, 0]
+    assert np.diff(way).min() > -1e-9
+    assert way.max() < before.target[0] + 1e-9
+    assert before.glide_end - 0.02 <= after.glide_end <= before.glide_end + delay + 0.02
+
+
+def test_a_swing_that_will_go_beyond_its_target_is_not_hurried_by_a_delay():
+    """Moved to two centimetres ahead of it, it can but go beyond and come back, in the time that it has."""
+    target = np.array(TARGET)
+    target[:2] = swing().evaluate(2.5)[0, :2] + (0.02, 0.0)
+    before = swing().retargeted(2.5, target)
+    after = before.retimed(2.5, 0.2, 0.02)
+    assert after.glide_end == pytest.approx(before.glide_end)
+    assert after.touchdown_time == pytest.approx(before.touchdown_time + 0.2)
+
+
 def test_a_swing_bends_round_a_corner_smoothly_and_lands_as_before():
     straight = swing(0.1)
     corner = np.array([1.25, 0.3])

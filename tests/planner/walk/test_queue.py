@@ -9,9 +9,10 @@ from surefoot.planner.types import Foot, PhaseKind
 from surefoot.planner.walk.commands import Twist
 from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
 from surefoot.planner.walk.phases import Flow
-from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.queue import StepQueue
 from surefoot.planner.walk.reach import StepRegion
 from surefoot.planner.walk.source import CommandSource, GaitSource
+from surefoot.planner.walk.step import Ground
 
 pytestmark = pytest.mark.unit
 

@@ -7,8 +7,9 @@ from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.queue import StepQueue
 from surefoot.planner.walk.reach import Legs, StepRegion
+from surefoot.planner.walk.step import Ground
 from surefoot.planner.walk.stepper import Stepper
 
 pytestmark = pytest.mark.unit

@@ -9,9 +9,9 @@ from surefoot.errors import ParameterError
 from surefoot.planner.types import Foot
 from surefoot.planner.walk.commands import Command, Pose, Twist
 from surefoot.planner.walk.footsteps import Path
-from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.walk.gait import GaitParameters, Stride
 from surefoot.planner.walk.reach import StepRegion
-from surefoot.planner.walk.source import CommandSource, GaitSource, Interlude, Request, steps_ordered
+from surefoot.planner.walk.source import CommandSource, GaitSource, Interlude, Request, StepOrder, steps_ordered
 
 pytestmark = pytest.mark.unit
 
@@ -25,15 +25,30 @@ twists = st.builds(Twist, speeds, speeds, speeds)
 places = st.builds(Pose, st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
 
 
+def ordered(source, steps):
+    """Lengths of the strides that are ordered for these steps."""
+    orders = (source.order(Request(step, step * PERIOD, None, ORIGIN, PERIOD)) for step in steps)
+    return [order.stride.length if order else None for order in orders]
+
+
 def test_steps_between_those_of_a_gait_leave_them_as_they_were():
-    source = GaitSource(GaitParameters(steps=4, step_length=0.3))
+    source, spot = GaitSource(GaitParameters(steps=4, step_length=0.3)), StepOrder(Stride(0.0, 0.0, 0.0, 0.2))
     for step in (2, 2, 3, 5):
         # Step 2 is asked for anew while it has not been taken.
-        source = Interlude(source, step, 0.2, True)
-    lengths = [order.stride.length if (order := source.order(Request(n, n * PERIOD, None, ORIGIN, PERIOD))) else None
-               for n in range(5, 9)]  # fmt: skip
-    assert lengths == [0.0, 0.3, 0.0, None]
-    assert source.order(Request(5, 5 * PERIOD, None, ORIGIN, PERIOD)).hurried
+        source = Interlude(source, step, spot)
+    assert ordered(source, range(5, 9)) == [0.0, 0.3, 0.0, None]
+    assert source.order(Request(5, 5 * PERIOD, None, ORIGIN, PERIOD)) is spot
+
+
+@pytest.mark.parametrize(("again", "later"), [(2, [0.3, 0.3]), (3, [0.3, 0.3]), (4, [0.3, 0.3]), (5, [0.3])])
+def test_several_steps_between_are_taken_in_order_and_what_is_left_of_them_is_left_out(again, later):
+    """Before the second of four steps, and once more while none, one or both of them, or one more, have been taken."""
+    gait = GaitSource(GaitParameters(steps=4, step_length=0.3))
+    orders = [StepOrder(Stride(length, 0.0, 0.0, 0.2)) for length in (1.0, 2.0)]
+    source = Interlude(gait, 2, *orders)
+    assert ordered(source, range(2, 8)) == [1.0, 2.0, 0.3, 0.3, 0.0, None]
+    source = Interlude(source, again, *orders)
+    assert ordered(source, range(again, again + 4 + len(later))) == [1.0, 2.0, *later, 0.0, None]
 
 
 def walked(source, most=200, pose=ORIGIN):

@@ -3,7 +3,8 @@ import pytest
 
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.types import PhaseKind
-from surefoot.planner.walk.queue import Ground, StepQueue
+from surefoot.planner.walk.queue import StepQueue
+from surefoot.planner.walk.step import Ground
 from surefoot.scenarios.file.schema import Gait, Scenario
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import FINAL_STAND, phase_of

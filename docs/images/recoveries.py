@@ -30,9 +30,9 @@ NATURAL = (
     "gait.com_height=0.95",
 )
 WALK = (*NATURAL, "gait.steps=6", "gait.step_length=0.36")
-SIDE, FRONT, BEHIND = (
+SIDE, FRONT = (
     Camera(distance=3.2, azimuth=azimuth, elevation=elevation)
-    for azimuth, elevation in ((105.0, -10.0), (165.0, -12.0), (60.0, -18.0))
+    for azimuth, elevation in ((105.0, -10.0), (165.0, -12.0))
 )
 
 
@@ -75,9 +75,7 @@ RECOVERIES = {
     "recovery-sideways.gif": Recovery(
         "stand", (*NATURAL, "duration=4.5"), _push(0.5, 90, "time: 0.5"), Window(0.3, 3.6), FRONT
     ),
-    "recovery-stairs.gif": Recovery(
-        "stairs-up", (), _push(0.2, 90, "step: 3, phase: single, fraction: 0.5"), Window(4.5, 6.7), BEHIND
-    ),
+    "recovery-stairs.gif": Recovery("stairs-down", ("duration=17.0",), _push(0.2, -90, SWING), Window(4.0, 7.6), FRONT),
     "recovery-lasting.gif": Recovery(
         "walk",
         WALK,

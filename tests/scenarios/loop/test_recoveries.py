@@ -71,3 +71,17 @@ def test_a_foot_lands_beside_its_place_on_the_tread_but_on_it(tmp_path):
     assert metrics["steps_taken"] == metrics["steps_planned"]
     assert metrics["stair_edge_margin_min"] > 0.0
     assert np.ptp(log["/footstep"].field("planned")[:, 1]) > 0.25
+
+
+def test_down_stairs_the_foot_that_stood_lands_again_farther_out_before_the_walk_goes_on(tmp_path):
+    """The other one cannot land beyond it: there the knee of the leg that lets the body down is in its way."""
+    when = "step: 3, phase: single, fraction: 0.2"
+    result = pushed("stairs-down", ("duration=17.0",), 0.2, RIGHT, when, tmp_path)
+    metrics, log = assert_recovered(result)
+    assert metrics["steps_taken"] == metrics["steps_planned"] >= 9
+    assert metrics["stair_edge_margin_min"] > 0.0
+    steps = log["/footstep"]
+    again, before = (steps.field("actual")[steps.field("index").ravel() == number][0] for number in (4, 2))
+    assert steps.field("foot").ravel()[3] == 1
+    np.testing.assert_allclose(again[[0, 2]], before[[0, 2]], atol=0.03)
+    assert again[1] < before[1] - 0.25

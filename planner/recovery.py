@@ -112,8 +112,7 @@ class Situation:
             room=stepper.room(0),
             adapted=stepper.adapted,
             last=stepper.stops,
-            # A leg that lets the body down from its face has its knee in the way.
-            crosses=stepper.wide or step.climb >= 0.0,
+            crosses=stepper.may_cross,
             turn=stepper.turn(0),
         )
 

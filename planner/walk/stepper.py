@@ -178,6 +178,14 @@ class Stepper:
         return math.sqrt(max(PEAK * abs(step.lift) / LIFTING, step.hardest / self._legs.acceleration[0]))
 
     @property
+    def may_cross(self) -> bool:
+        """Whether the next footstep may lie beyond its stance foot, as far as the ground is concerned.
+
+        A leg that lets the body down from its face has its knee in the way.
+        """
+        return self.wide or self.queue.steps[self.landed + 1].lift >= 0.0
+
+    @property
     def climbs_next(self) -> bool:
         """Whether a foot swings, on faces that footsteps were chosen for, and the step after it climbs."""
         step = self.queue.steps.get(self.landed + 2)

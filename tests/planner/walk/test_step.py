@@ -137,3 +137,12 @@ def test_the_room_of_a_step_is_counted_from_where_it_now_is_to_land(stand):
     stepper.queue.footsteps = plan.moved(2, plan.position[2] + (0.01, 0.3, 0.0), flight(Direction.DOWN))
     stepper.queue.go_beside(1)
     np.testing.assert_allclose(stepper.room(1), before - [0.0, 0.3], atol=1e-12)
+
+
+@pytest.mark.parametrize(("direction", "may"), [(Direction.UP, 5 * [True]), (Direction.DOWN, [*(4 * [False]), True])])
+def test_no_foot_crosses_one_that_lets_the_body_down_which_the_last_step_of_a_flight_does_not(stand, direction, may):
+    stepper = Stepper(laid(STAIRS, stand, flight(direction)), 150, LEGS)
+    stepper.queue.extend(1000.0)
+    for landed, crosses in enumerate(may):
+        stepper.landed = landed
+        assert stepper.may_cross is crosses

@@ -85,3 +85,15 @@ def test_down_stairs_the_foot_that_stood_lands_again_farther_out_before_the_walk
     assert steps.field("foot").ravel()[3] == 1
     np.testing.assert_allclose(again[[0, 2]], before[[0, 2]], atol=0.03)
     assert again[1] < before[1] - 0.25
+
+
+def test_the_last_step_off_the_stairs_crosses(tmp_path):
+    """Its foot comes down from a tread, but the leg that stands lets nothing down."""
+    when = "step: 7, phase: single, fraction: 0.2"
+    result = pushed("stairs-down", ("duration=17.0",), 0.2, RIGHT, when, tmp_path)
+    metrics, log = assert_recovered(result)
+    assert metrics["steps_taken"] == metrics["steps_planned"]
+    steps = log["/footstep"]
+    last, stance = (steps.field("actual")[steps.field("index").ravel() == number][0] for number in (7, 6))
+    assert last[1] < stance[1] - 0.05
+    assert abs(last[0] - stance[0]) > 0.22

@@ -73,7 +73,7 @@ class Browser:
         """Run JavaScript in the page; gives what it returns."""
         return self._call("POST", "/execute/sync", {"script": script, "args": []})
 
-    def wait_for(self, script: str, seconds: float = 60.0) -> Any:
+    def wait_for(self, script: str, seconds: float = 180.0) -> Any:
         """Wait until JavaScript returns something true."""
         end = time.monotonic() + seconds
         while not (value := self.run(script)):

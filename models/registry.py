@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from surefoot.guard import taken_for
 from surefoot.models.humanoid100 import HUMANOID100
 from surefoot.models.types import Robot, RobotDescription, RobotError, RobotOptions, nearest
 from surefoot.plugins import Registry
@@ -62,7 +63,7 @@ def describe(name: str, options: RobotOptions) -> RobotDescription:
 
     Raises:
         UnknownRobotError: no robot has that name.
-        PluginError: the package that brings it cannot be used.
+        PluginError: the package that brings it cannot be used, or fails to build it.
         RobotError: an option is out of range, or the description contradicts itself.
     """
     if is_file(name):
@@ -71,7 +72,9 @@ def describe(name: str, options: RobotOptions) -> RobotDescription:
         robot = ROBOTS[name]
     except KeyError:
         raise UnknownRobotError(f"there is no robot '{name}': {nearest(name, robot_names())}") from None
-    description = robot.build(options)
+    description: RobotDescription = ROBOTS.guard(name).making.function(robot.build, taken_for(RobotDescription))(
+        options
+    )
     if description.name != name:
         raise RobotError(("name",), f"robot '{name}' describes itself as '{description.name}'", "use one name for both")
     return description

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from surefoot.errors import PluginError
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.robots import command as robots
 from surefoot.scenarios.terminal import BAD_INPUT, Commands, keys_from, set_up_streams
@@ -490,16 +491,27 @@ def main() -> None:
     sys.exit(interrupts.exit_code() if code == INTERRUPTED else code)
 
 
+def _meant(end: SystemExit) -> bool:
+    """Whether the command line itself ends the program, and no part of others that leaves."""
+    *_, (frame, _) = traceback.walk_tb(end.__traceback__)
+    return str(frame.f_globals.get("__name__")).partition(".")[0] in ("surefoot", "typer", "click")
+
+
 def _code() -> int | str | None:
     """Exit code of the command."""
     try:
         app(prog_name=app.info.name)  # not how it was started, which is no name that a shell can complete
     except SystemExit as end:
-        return end.code
-    except (ScenarioError, LogError) as error:
+        if _meant(end):
+            return end.code
+        traceback.print_exc()
+        return DEFECT
+    except (ScenarioError, LogError, PluginError) as error:
         typer.echo(str(error), err=True)
         return BAD_INPUT
-    except Exception:
+    except KeyboardInterrupt:
+        raise
+    except BaseException:
         traceback.print_exc()
         return DEFECT
     return 0

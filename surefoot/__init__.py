@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING
 from surefoot.lazy import face
 
 if TYPE_CHECKING:
-    from surefoot.errors import ParameterError
-    from surefoot.plugins import PluginError
+    from surefoot.errors import ParameterError, PartError, PluginError
     from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
     from surefoot.scenarios.file.schema import Scenario
     from surefoot.scenarios.judge.verdict import Verdict, judge
@@ -36,6 +35,7 @@ __all__ = [
     "Log",
     "LogError",
     "ParameterError",
+    "PartError",
     "Parts",
     "PluginError",
     "Result",
@@ -58,8 +58,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
     __getattr__, __dir__ = face(
         __name__,
         {
-            "errors": ("ParameterError",),
-            "plugins": ("PluginError",),
+            "errors": ("ParameterError", "PartError", "PluginError"),
             "scenarios.errors": ("LogError", "ScenarioError", "SetupError"),
             "scenarios.file.schema": ("Scenario",),
             "scenarios.judge.verdict": ("Verdict", "judge"),

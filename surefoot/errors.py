@@ -24,3 +24,27 @@ class ParameterError(ValueError):
     def __reduce__(self) -> tuple[type["ParameterError"], tuple[tuple[str | int, ...], str, str]]:
         """Survive the way between processes."""
         return type(self), (self.key, self.what, self.right)
+
+
+class PluginError(ValueError):
+    """What a package has registered cannot be used.
+
+    Attributes:
+        what: the fault, with the names of package and entry, without a full stop.
+        right: what would be right, without a full stop.
+    """
+
+    def __init__(self, what: str, right: str) -> None:
+        self.what, self.right = what, right
+        super().__init__(what, right)
+
+    def __str__(self) -> str:
+        return f"{self.what}; {self.right}"
+
+
+class PartError(PluginError):
+    """A part that is not Surefoot's own raised, left, or gave something else than it says; its cause is what it raised.
+
+    Attributes:
+        what: the part with its package, what it did, and the file and line of its author.
+    """

@@ -5,7 +5,7 @@ A package says in its ``pyproject.toml`` what it has, and every command finds it
     [project.entry-points."surefoot.profiles"]
     my-law = "my_package.laws:PROFILE"
 
-Nothing is imported before the name is asked for.
+Nothing is imported before the name is asked for. Whatever such an object does, a `Guard` stands around its calls.
 """
 
 import sys
@@ -17,26 +17,12 @@ from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 from typing import TypeVar, cast
 
+from surefoot.errors import PluginError
+from surefoot.guard import OWN_GUARD, OWN_PACKAGE, Guard, said
+
+__all__ = ["OWN_PACKAGE", "PluginError", "Registry", "entry_points", "package_of"]
+
 T = TypeVar("T")
-
-OWN_PACKAGE = "surefoot"
-"""The package of what is in no entry point."""
-
-
-class PluginError(ValueError):
-    """What a package has registered cannot be used.
-
-    Attributes:
-        what: the fault, with the names of package and entry, without a full stop.
-        right: what would be right, without a full stop.
-    """
-
-    def __init__(self, what: str, right: str) -> None:
-        self.what, self.right = what, right
-        super().__init__(what, right)
-
-    def __str__(self) -> str:
-        return f"{self.what}; {self.right}"
 
 
 class Registry(Mapping[str, T]):
@@ -108,6 +94,18 @@ class Registry(Mapping[str, T]):
             return OWN_PACKAGE
         return "" if name in self._added else " and ".join(map(package_of, self._entries(name)))
 
+    def guard(self, name: str) -> Guard:
+        """What stands around the calls of the object of a name, which is one of those that there are."""
+        if name in self._own:
+            return OWN_GUARD
+        package = self.package(name)
+        kind = self.group.removeprefix(f"{OWN_PACKAGE}.").removesuffix("s")
+        return Guard(f"{kind} '{name}' of {f'package {package}' if package else 'this program'}")
+
+    def owns(self, thing: object) -> bool:
+        """Whether an object is one of this package's own."""
+        return any(thing is one for one in self._own.values())
+
     def clashes(self) -> dict[str, PluginError]:
         """What to say of each name of surefoot's own under which another package has something too.
 
@@ -166,6 +164,8 @@ def _load(entry: EntryPoint) -> object:
     try:
         with redirect_stdout(sys.stderr):
             return entry.load()
-    except (Exception, SystemExit) as error:
-        what = f"'{entry.name}' of package {package_of(entry)} cannot be loaded, {type(error).__name__}: {error}"
-        raise PluginError(" ".join(what.split()), "mend or remove it") from error
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        what = f"'{entry.name}' of package {package_of(entry)} cannot be loaded, {said(error)}"
+        raise PluginError(what, "mend or remove it") from error

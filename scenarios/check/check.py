@@ -8,6 +8,7 @@ from typing import Literal
 
 import yaml
 
+from surefoot.errors import PluginError
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.check.baseline import ENDING, Baseline, Move, read_baseline, write_baseline
 from surefoot.scenarios.check.trace import Parting
@@ -123,7 +124,7 @@ def run_case(case: Case, out: Path) -> Checked:
         result = run_scenario(case.scenario, out)
         log = read(result.log)
         now = Baseline.of(case.scenario.name, case.settings, result.verdict.metrics, log)
-    except (ScenarioError, SetupError, LogError) as refusal:
+    except (ScenarioError, SetupError, PluginError, LogError) as refusal:
         return Checked(case, "could not run", (" ".join(str(refusal).split()),))
     return _held_against_baseline(case, result.verdict, replace(Checked(case, "same"), log=result.log, now=now))
 

@@ -5,6 +5,7 @@
 
 import keyword
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import NoneType, UnionType
@@ -127,7 +128,7 @@ class Metric(Generic[T]):
         """What its function gives; what cannot be told counts as None."""
         try:
             given = get_type_hints(self.function).get("return", NoneType)
-        except (NameError, TypeError, AttributeError, SyntaxError):
+        except Exception:  # annotations in quotes are expressions of their author
             return (NoneType,)
         return get_args(given) if isinstance(given, UnionType) or get_origin(given) is Union else (given,)
 
@@ -154,7 +155,9 @@ class Metric(Generic[T]):
 
 
 def _is_number(value: Any) -> bool:
-    return value is None or isinstance(value, bool | int | float)
+    """Whether it is one that can be compared, scaled and written, or None; no float is as great as some integers."""
+    whole = isinstance(value, int)
+    return value is None or isinstance(value, float) or (whole and value.bit_length() <= sys.float_info.max_exp - 1)
 
 
 def reduction(*needs: str) -> Callable[[Callable[[RunView], Array]], Reduction]:

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from surefoot.errors import PartError
+from surefoot.guard import Guard, MisfitError, shown
 from surefoot.plugins import PluginError, Registry
 from surefoot.scenarios.errors import LogError, Problem, nearest
 from surefoot.scenarios.judge import balance, computing, effort, feet, health, walking
@@ -148,16 +150,15 @@ def _foreign_value(run: RunView, name: str, notes: list[str]) -> Any:
     except PluginError as error:
         notes.append(f"metric {error}")
         return None
-    place = f"metric {name} of {metric.function.__module__}"
     try:
-        value = _value(run, metric)
-    except Exception as error:
-        notes.append(f"{place} failed, {type(error).__name__}: {error}")
+        with METRICS.guard(name):
+            value = _value(run, metric)
+            if not metric.fits(value):
+                raise MisfitError(f"gave {shown(value)}, which is not what it says it gives")
+            return value
+    except PartError as fault:
+        notes.append(fault.what)
         return None
-    if not metric.fits(value):
-        notes.append(f"{place} gave {value!r}, which is not what it says it gives")
-        return None
-    return value
 
 
 def _value(run: RunView, metric: Metric[Any]) -> Any:
@@ -167,14 +168,19 @@ def _value(run: RunView, metric: Metric[Any]) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """The value for JSON: what is not a finite number becomes None."""
+    """The value for JSON: what is not a finite number becomes None, and a number of a class of its own a plain one."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, list | tuple):
         return [_plain(element) for element in value]
     if isinstance(value, dict):
         return {key: _plain(element) for key, element in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    if isinstance(value, float):
+        return float.__pos__(value) if math.isfinite(value) else None
+    return int.__pos__(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+_REDUCING = Guard("a reduction")
 
 
 def digest(log: Log) -> Digest:
@@ -195,8 +201,9 @@ def digest(log: Log) -> Digest:
             for reduction in wanted:
                 if reduction not in failed and run.has(*reduction.needs):
                     try:
-                        found[reduction] = np.asarray(reduction(run))
-                    except Exception:
+                        with _REDUCING:
+                            found[reduction] = np.asarray(reduction(run))
+                    except PartError:
                         failed.add(reduction)  # its metric will say so, computing it anew
         return found
 

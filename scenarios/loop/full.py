@@ -1,13 +1,15 @@
 """The closed loop in full physics: a simulated robot under its whole-body controller, planner and log around it."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
+from operator import index
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.guard import Guard, MisfitError, shown
 from surefoot.models.pinocchio import limb_shapes, pinocchio_model
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState, LastingForce
@@ -22,6 +24,7 @@ from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.setup.legs import leg_inertia
+from surefoot.scenarios.setup.parts import ESTIMATE, TASK, guarded
 from surefoot.scenarios.setup.rehearsal import check_legs
 from surefoot.scenarios.setup.stance import (
     Body,
@@ -43,7 +46,7 @@ from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.statics import LEVER, standing_torque
-from surefoot.wbc.tasks import TASKS, TaskFactory
+from surefoot.wbc.tasks import TASKS, Task, TaskFactory
 from surefoot.wbc.types import NO_LOAD, FootSensing, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
@@ -107,12 +110,12 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
         nj=layout.joints, nq=len(q), nv=layout.nv, horizon=planner.parameters.horizon, tasks=controller.task_layout
     )
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
-    estimator = (parts.estimator or ESTIMATORS[walk.sensing.source])(walk)
+    estimator = _estimator(walk, parts)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
     walker = SimulatedRobot(walk, world, controller, estimator, body.limits, body_recorder, view)
     faults = FaultSchedule(walk.faults, walk.rates.control)
-    planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands)
+    planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands, walk.guard)
     return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
 
 
@@ -146,7 +149,7 @@ class SimulatedRobot:
         recorder: Recorder,
         view: BodyView,
     ) -> None:
-        self.world, self.controller, self._estimator = world, controller, estimator
+        self.world, self.controller, self._estimate = world, controller, estimator.estimate
         self._recorder, self._view = recorder, view
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
         known = estimator.is_truth and walk.true_robot is walk.robot
@@ -167,7 +170,7 @@ class SimulatedRobot:
     def sense(self, tick: int, now: float) -> None:
         """See `Walker`."""
         self.measurement = measurement = self.world.measure()
-        state = self._estimator.estimate(measurement)
+        state = self._estimate(measurement)
         if self._faults.active("state_nan", tick):
             state = RobotState(np.full_like(state.q, np.nan), state.v)
         if not np.isfinite(np.dot(state.q, state.q) + np.dot(state.v, state.v)):
@@ -252,10 +255,32 @@ class SimulatedRobot:
         self.world.push(push)
 
 
+def _estimator(walk: Walk, parts: Parts) -> Estimator:
+    """The estimator that a program hands over, else that which the scenario names."""
+    source = walk.sensing.source
+    make = parts.estimator or ESTIMATORS[source]
+    guard = ESTIMATORS.guard(source) if parts.estimator is None else Guard.of_program("estimator", make)
+    with guard.making:
+        made: Estimator = guarded(make(walk), guard, ESTIMATE)
+        return made
+
+
+def _tasks(walk: Walk, body: Body, parts: Parts) -> Iterator[Task]:
+    """The tasks that the scenario names, then those that a program hands over."""
+    named = ((TASKS[name], TASKS.guard(name)) for name in walk.tasks)
+    for make, guard in (*named, *((make, Guard.of_program("task", make)) for make in parts.tasks)):
+        with guard.making:
+            task = guarded(make(body.model, body.frames), guard, TASK)
+            if not isinstance(task.name, str):
+                raise MisfitError(f"has the name {shown(task.name)}, which is no text")
+            index(task.size)
+            np.asarray(task.weight, dtype=np.float64)
+        yield task
+
+
 def _controller(walk: Walk, body: Body, posture: Array, parts: Parts) -> WholeBodyController:
     robot = walk.robot
     shoulders = robot.joint_indices(robot.roles.arm_swing or ())
-    makers = (*(TASKS[name] for name in walk.tasks), *parts.tasks)
     return parts.controller(
         model=body.model,
         frames=body.frames,
@@ -268,5 +293,5 @@ def _controller(walk: Walk, body: Body, posture: Array, parts: Parts) -> WholeBo
         limbs=limb_shapes(robot, body.model),
         arm_joints=(shoulders[0], shoulders[1]) if shoulders else None,
         arm_back=robot.roles.arm_back,
-        tasks=tuple(make(body.model, body.frames) for make in makers),
+        tasks=tuple(_tasks(walk, body, parts)),
     )

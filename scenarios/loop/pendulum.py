@@ -125,7 +125,7 @@ def pendulum_loop(walk: Walk, writer: LogWriter) -> ClosedLoop:
     point_recorder, recorder = PendulumRecorder(writer, sizes, walk.true_mass), WalkRecorder(writer, sizes)
     view = PointView(writer, walk.sole, walk.rates.control)
     faults = FaultSchedule(walk.faults, walk.rates.control)
-    planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands)
+    planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands, walk.guard)
     walker = PointMass(walk, point_recorder, view)
     return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
 

@@ -2,12 +2,13 @@
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.guard import OWN_GUARD, Guard
 from surefoot.planner.geometry import sole_rates, sole_rotation
 from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.planner import WalkingPlanner
@@ -17,6 +18,7 @@ from surefoot.scenarios.file.schema import Fault, Rates
 from surefoot.scenarios.loop.sensing import PlannerSensing
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.setup.events import FaultWindow
+from surefoot.scenarios.setup.parts import plan as taken_plan
 from surefoot.wbc.types import WbcReference
 
 ROUNDING = 1e-6
@@ -44,6 +46,15 @@ class Planning:
 
     A command is taken by the first plan at or after its time.
 
+    Args:
+        planner: what plans.
+        sensing: what it is told of the state.
+        recorder: of its channels.
+        faults: injected.
+        rates: of the clock.
+        commands: that it hears while the walk goes on.
+        guard: around the calls of the planner.
+
     Attributes:
         planner: what plans.
         plan: the latest plan; there is none before the first `update`.
@@ -58,8 +69,10 @@ class Planning:
         faults: FaultSchedule,
         rates: Rates,
         commands: Sequence[TimedCommand] = (),
+        guard: Guard = OWN_GUARD,
     ) -> None:
         self.planner, self._sensing, self._recorder, self._faults = planner, sensing, recorder, faults
+        self._guard = guard
         self._every, self._rate = rates.control // rates.planner, rates.control
         self.plan: WalkPlan
         self.sampler: PlanSampler
@@ -89,7 +102,8 @@ class Planning:
         if self._started and self._faults.active("planner_freeze", tick):
             return
         self._tell(tick)
-        self.plan = plan = self.planner.update(sensed.given, feet)
+        update: Callable[[CentroidalState, FeetState], WalkPlan] = self._guard.function(self.planner.update, taken_plan)
+        self.plan = plan = update(sensed.given, feet)
         self.sampler = PlanSampler(plan)
         self._started = True
         self._recorder.plan(now_ns, plan)

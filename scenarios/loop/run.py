@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from threadpoolctl import threadpool_limits
 
+from surefoot.errors import PartError
+from surefoot.guard import said, shown
 from surefoot.models.mjcf import without_looks
 from surefoot.planner.laws.profiles import Profile
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
@@ -15,7 +17,7 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import Verdict, judge
 from surefoot.scenarios.log import AttachedFile, LogWriter, read
 from surefoot.scenarios.loop.interrupts import Interrupts, held_back
-from surefoot.scenarios.loop.skeleton import ClosedLoop, End, OnProgress, Progress, refusing, run_loop
+from surefoot.scenarios.loop.skeleton import ClosedLoop, End, OnProgress, Progress, fault_end, refusing, run_loop
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import (
     END_RECORD,
@@ -194,7 +196,7 @@ def closed_loop(walk: Walk, writer: LogWriter, parts: "Parts | None" = None) -> 
 
 def note_parts(writer: LogWriter, given: Mapping[str, object]) -> None:
     """Write down which parts a program has put in the place of surefoot's own, for no log can carry them."""
-    others = {name: repr(part) for name, part in given.items() if part is not None}
+    others = {name: shown(part) for name, part in given.items() if part is not None}
     if others:
         writer.add_metadata(PARTS_RECORD, others)
 
@@ -281,19 +283,23 @@ def _watched(
     except (KeyboardInterrupt, Exception) as error:
         # A signal that comes while a compiled part converts an argument is told by that part as a wrong argument.
         if interrupts.count == 0 and not isinstance(error, KeyboardInterrupt):
-            if isinstance(error, ScenarioError | SetupError):
-                writer.discard()
-            elif not isinstance(error, LogError):
-                write_end(writer, End("fault", last.time, f"internal error, {type(error).__name__}: {error}"))
-            raise
-        end = End("interrupted", last.time, "interrupted by the user")
+            if not isinstance(error, PartError):
+                if isinstance(error, ScenarioError | SetupError):
+                    writer.discard()
+                elif not isinstance(error, LogError):
+                    write_end(writer, End("fault", last.time, f"internal error, {said(error)}"))
+                raise
+            end = fault_end(error, last.time)
+        else:
+            end = End("interrupted", last.time, "interrupted by the user")
     write_end(writer, end)
     return end
 
 
 def write_end(writer: LogWriter, end: End) -> None:
     """Write how a run ended, the last record of its log."""
-    writer.add_metadata(END_RECORD, {"kind": end.kind, "time": f"{end.time:.6f}", "reason": end.reason})
+    told = {"kind": end.kind, "time": f"{end.time:.6f}", "reason": end.reason}
+    writer.add_metadata(END_RECORD, {**told, "traceback": end.trace} if end.trace else told)
 
 
 def made_folder(path: Path) -> Path:

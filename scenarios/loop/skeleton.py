@@ -4,11 +4,13 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from traceback import format_exception
 from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import PartError
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
@@ -49,11 +51,25 @@ class End:
         kind: completed; fall; fault (NaN, divergence, solver failure); interrupted by the user.
         time: simulated [s].
         reason: in words; empty when completed.
+        trace: where in the code a part of others failed; empty otherwise.
     """
 
     kind: Literal["completed", "fall", "fault", "interrupted"]
     time: float
     reason: str = ""
+    trace: str = ""
+
+
+LONGEST_TRACE = 20_000
+"""Characters of a traceback that a log keeps, the last ones."""
+
+
+def fault_end(fault: RunFault | PartError, time: float) -> End:
+    """The end of a run by a fault at a simulated time [s]."""
+    if not isinstance(fault, PartError):
+        return End("fault", time, str(fault))
+    trace = "" if fault.__cause__ is None else "".join(format_exception(fault.__cause__))
+    return End("fault", time, fault.what, trace[-LONGEST_TRACE:])
 
 
 OnProgress = Callable[[Progress], None]
@@ -65,9 +81,12 @@ def refusing() -> Iterator[None]:
 
     Raises:
         SetupError: instead of a ValueError.
+        PartError: a part of others fails, which no scenario mends.
     """
     try:
         yield
+    except PartError:
+        raise
     except ValueError as refusal:
         raise SetupError(scenario_problem(refusal)) from refusal
 
@@ -196,6 +215,7 @@ class ClosedLoop:
         end: how the run ended, or will have ended if nothing happens.
         fell: whether the walker has fallen.
         done: whether the run is over: its time, a while after a fall, or a fault.
+        fault: that ended it, None where none has.
     """
 
     def __init__(
@@ -215,6 +235,7 @@ class ClosedLoop:
         self.end = End("completed", self._ticks / rate)
         self.fell = False
         self.done = self._last == 0
+        self.fault: RunFault | PartError | None = None
 
     @property
     def time(self) -> float:
@@ -236,8 +257,8 @@ class ClosedLoop:
         tick, rate = self.tick, self.rate
         try:
             sample, fallen = self._step(tick)
-        except RunFault as fault:
-            self.end, self.done = End("fault", tick / rate, str(fault)), True
+        except (RunFault, PartError) as fault:
+            self.end, self.done, self.fault = fault_end(fault, tick / rate), True, fault
             return None
         if fallen and not self.fell:
             self.fell = True

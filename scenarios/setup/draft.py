@@ -33,7 +33,7 @@ from surefoot.scenarios.setup.gait import (
     longest_landing,
     step_region,
 )
-from surefoot.scenarios.setup.terrain import KINDS, TerrainKind
+from surefoot.scenarios.setup.terrain import TerrainKind, kind_of
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 _STREAM = 2
@@ -100,7 +100,7 @@ class Draft:
     @cached_property
     def kind(self) -> TerrainKind:
         """The kind of ground."""
-        return KINDS[self.keys.terrain.kind]
+        return kind_of(self.keys.terrain.kind)
 
     @cached_property
     def terrain(self) -> Terrain:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import yaml
 from pydantic import ValidationError
 
-from surefoot.errors import ParameterError
+from surefoot.errors import ParameterError, PartError
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError
 from surefoot.scenarios.file.criteria import Bound
@@ -36,7 +36,7 @@ from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria_checks import criteria_problems
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
 from surefoot.scenarios.setup.sized import draft_of, say_for
-from surefoot.scenarios.setup.terrain import KINDS
+from surefoot.scenarios.setup.terrain import kind_of
 
 LOG_ENDING = ".mcap"
 MOST_TOLD = 20
@@ -172,9 +172,8 @@ def read_scenario(
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
-    draft = draft_of(KINDS[scenario.terrain.kind].completed(scenario), robots)
-    scenario = draft.keys
-    semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *check(draft, robots)]
+    scenario, unfit = _checked(scenario, robots)
+    semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *unfit]
     problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems:
         raise ScenarioError(_told(source, problems))
@@ -264,8 +263,17 @@ def _sound(values: dict[str, Any], robots: Robots) -> Scenario | None:
     scenario, problems = _validated(given)
     if problems:
         return None
-    draft = draft_of(KINDS[scenario.terrain.kind].completed(scenario), robots)
-    return None if check(draft, robots) else draft.keys
+    scenario, unfit = _checked(scenario, robots)
+    return None if unfit else scenario
+
+
+def _checked(scenario: Scenario, robots: Robots) -> tuple[Scenario, list[Problem]]:
+    """The scenario with what follows from its ground, and what of it does not fit together."""
+    try:
+        draft = draft_of(kind_of(scenario.terrain.kind).completed(scenario), robots)
+        return draft.keys, check(draft, robots)
+    except PartError as fault:  # of the ground: what is wrong with a robot is among the checks
+        return scenario, [Problem(("terrain", "kind"), fault.what, fault.right)]
 
 
 def _told(source: Source, problems: list[Problem]) -> list[str]:

@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass, replace
+from operator import index
 from typing import TYPE_CHECKING
 
 import numpy as np
 import yaml
 
+from surefoot.guard import Guard
 from surefoot.planner.check import check_walk
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.laws.profiles import Profile
@@ -23,6 +25,7 @@ from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings
 from surefoot.scenarios.setup.commands import told
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import PushPoint, leg_span, step_region
+from surefoot.scenarios.setup.parts import guarded_law, profile_guard
 from surefoot.scenarios.setup.robot import describe, facts_of, size_of, stance_widening, true_robot
 from surefoot.sim.pushes import Push
 from surefoot.similarity import REFERENCE_SIZE, Similarity
@@ -81,6 +84,7 @@ class Walk:
         start_height: of the ground there [m].
         stance: the feet there, side by side.
         profile: formulation of the planner.
+        guard: stands around the calls of what the profile brings.
         parameters: of the planner, for legs without inertia.
         controller: weights and gains of the whole-body controller.
         tasks: of other packages in its QP, by name.
@@ -116,6 +120,7 @@ class Walk:
     start_height: float
     stance: FeetState
     profile: Profile
+    guard: Guard
     parameters: PlannerParameters
     controller: WbcParameters
     tasks: tuple[str, ...]
@@ -188,13 +193,18 @@ class Walk:
 
         Raises:
             ParameterError: it cannot plan this gait.
+            PartError: the profile, of others, fails to make it.
         """
         parameters = replace(self.parameters, leg=leg, cop_room=self._cop_room(leg))
         given = (self.gait, feet, *self.sole, self.terrain, parameters, self.heights)
-        if self.profile.planner is not None:
-            return self.profile.planner(*given, self.profile)
+        profile = guarded_law(self.profile, self.guard)
+        if profile.planner is not None:
+            with self.guard.making:
+                planner = profile.planner(*given, profile)
+                index(planner.parameters.horizon)
+                return planner
         check_walk(*given)
-        return WalkingPlanner(*given, self.profile, self.region, self.legs)
+        return WalkingPlanner(*given, profile, self.region, self.legs)
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:
@@ -245,6 +255,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         start_height=draft.start_height,
         stance=draft.stance,
         profile=draft.profile,
+        guard=profile_guard(draft.profile, given=profile is not None),
         # Adaptation leaves at least half the planned gap between soles.
         parameters=replace(draft.parameters, reach_width=(apart, far)),
         controller=controller_parameters(keys.wbc, draft.size),

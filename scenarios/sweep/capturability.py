@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from surefoot.errors import ParameterError
+from surefoot.errors import ParameterError, PluginError
 from surefoot.planner.geometry import frame_rotation, sole_corners
 from surefoot.planner.parameters import StepAdaptation
 from surefoot.planner.recovery import SHORTEST
@@ -168,7 +168,7 @@ def moment_of(log: Path, push: int) -> Moment | None:
         scenario = load(log)
         walk = resolve(scenario)
         return _moment(scenario, walk, LogView(read(log)), push) if walk.terrain_kind == "flat" else None
-    except (ScenarioError, SetupError, ParameterError, LogError, MissingError, IndexError):
+    except (ScenarioError, SetupError, ParameterError, PluginError, LogError, MissingError, IndexError):
         return None
 
 

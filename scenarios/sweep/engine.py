@@ -15,6 +15,8 @@ from os import _exit
 from pathlib import Path
 from typing import Any, Literal, Protocol, TypeVar
 
+from surefoot.errors import PluginError
+from surefoot.guard import said
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.loop.run import made_folder, run_scenario
 from surefoot.scenarios.record.provenance import LOG_NAME
@@ -108,12 +110,12 @@ def perform(point: Point, scratch: Path, kept: Path, keep_all: bool) -> Record:
             shutil.rmtree(kept / point.name, ignore_errors=True)
             result.log.parent.rename(made_folder(kept) / point.name)
             record = replace(record, log=f"{kept.name}/{point.name}/{LOG_NAME}")
-    except (ScenarioError, SetupError) as refusal:
+    except (ScenarioError, SetupError, PluginError) as refusal:
         record = replace(record, status="refused", reasons=(" ".join(str(refusal).split()),))
     except LogError as error:
         record = replace(record, status="broken", reasons=(" ".join(str(error).split()),))
     except Exception as error:
-        record = replace(record, status="broken", reasons=(f"internal error, {type(error).__name__}: {error}",))
+        record = replace(record, status="broken", reasons=(f"internal error, {said(error)}",))
     finally:
         shutil.rmtree(own, ignore_errors=True)
     return replace(record, wall_time=time.perf_counter() - begin)

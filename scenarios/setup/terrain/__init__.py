@@ -1,9 +1,13 @@
 """The kinds of terrain that a scenario may name: what their keys mean, and what makes them impossible."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, cast
 
+from surefoot.guard import Guarded, taken_for
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.plugins import Registry
+from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.terrain.blocks import BlocksKind
 from surefoot.scenarios.setup.terrain.kind import TerrainKind
 from surefoot.scenarios.setup.terrain.slope import SlopeKind
@@ -28,4 +32,28 @@ _OWN: tuple[TerrainKind, ...] = (FlatKind(), StairsKind(), BlocksKind(), SlopeKi
 KINDS = Registry("surefoot.terrains", TerrainKind, {kind.name: kind for kind in _OWN})
 """Every kind of terrain by its name: these, and those of other packages (see `surefoot.plugins`)."""
 
-__all__ = ["KINDS", "TerrainKind"]
+__all__ = ["KINDS", "TerrainKind", "kind_of"]
+
+
+def kind_of(name: str) -> TerrainKind:
+    """The kind of terrain of a name, behind its guard where another package brings it.
+
+    Raises:
+        KeyError: there is none.
+        PluginError: its package cannot be used; so say all that it has, wherever it fails.
+    """
+    kind = KINDS[name]
+    guard = KINDS.guard(name)
+    return cast("TerrainKind", Guarded(kind, guard.making, _TAKEN)) if guard.who else kind
+
+
+def _problems(answer: Iterable[Problem], *_: Any) -> list[Problem]:
+    return [taken_for(Problem)(problem) for problem in answer]
+
+
+_TAKEN: dict[str, Callable[..., Any]] = {
+    "build": taken_for(Terrain),
+    "completed": taken_for(Scenario),
+    "start_height": lambda height, *_: float(height),
+    "problems": _problems,
+}

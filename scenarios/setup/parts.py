@@ -1,0 +1,109 @@
+"""Parts of others in the loop: each behind its guard, with what it gives held against what its protocol says."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from surefoot.guard import Guard, Guarded, MisfitError, taken_for
+from surefoot.planner.laws.law import Motion, MotionPlanner, MotionProblem
+from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.types import Array
+
+if TYPE_CHECKING:
+    from surefoot.sim.measurement import Measurement
+    from surefoot.wbc.types import RobotState
+
+Shape = tuple[int, ...]
+
+
+def profile_guard(profile: Profile, given: bool) -> Guard:
+    """What stands around the calls of what a profile brings.
+
+    Args:
+        profile: of the planner.
+        given: whether a program has handed it over, in place of a name.
+    """
+    if PROFILES.owns(profile) or not given:
+        return PROFILES.guard(profile.name)
+    return Guard(f"profile '{profile.name}' of this program")
+
+
+def guarded_law(profile: Profile, guard: Guard) -> Profile:
+    """A profile whose law of motion stays behind its guard."""
+    if not guard.who:
+        return profile
+
+    def law(*given: Any) -> MotionPlanner:
+        with guard.making:
+            return cast("MotionPlanner", Guarded(profile.law(*given), guard, {"plan": _motion}))
+
+    return replace(profile, law=law)
+
+
+def guarded(part: Any, guard: Guard, take: dict[str, Callable[..., Any]]) -> Any:
+    """A part behind its guard; itself where it is Surefoot's own."""
+    return Guarded(part, guard, take) if guard.who else part
+
+
+def _motion(answer: Motion, problem: MotionProblem) -> Motion:
+    """What a law gives."""
+    fit(answer.jerk, problem.fallback.shape, "jerk")
+    fit(answer.shifts, (2, 2), "shifts")
+    for name in ("zmp_slack", "terminal_slack"):
+        fit(getattr(answer, name), (2,), name, finite=False)
+    return answer
+
+
+_SAMPLED: dict[str, Shape] = {
+    **dict.fromkeys(("com", "com_velocity", "com_acceleration"), (3,)),
+    **dict.fromkeys(("zmp", "zmp_offset", "zmp_reference"), (2,)),
+    **dict.fromkeys(("stiffness", "omega", "load_left"), ()),
+}
+"""Fields of a plan that have a value at each end of a sample, and the shape of one."""
+
+
+def plan(answer: WalkPlan, *_: Any) -> WalkPlan:
+    """What a planner gives; see `surefoot.guard.Guard.function`."""
+    taken_for(WalkPlan)(answer)
+    horizon = len(answer.jerk)
+    fit(answer.jerk, (horizon, 2), "jerk")
+    for name, shape in _SAMPLED.items():
+        fit(getattr(answer, name), (horizon + 1, *shape), name)
+    return answer
+
+
+def _state(answer: "RobotState", measurement: "Measurement") -> "RobotState":
+    """What an estimator gives."""
+    fit(answer.q, measurement.q.shape, "q")
+    fit(answer.v, measurement.v.shape, "v")
+    return answer
+
+
+def _wanted(answer: Iterable[float], terms: Any, reference: Any, scale: Array, rows: Array) -> Any:
+    """What a task gives, and has written into its rows."""
+    wanted = np.fromiter(answer, np.float64)
+    fit(wanted, scale.shape[:1], "acceleration")
+    fit(rows, rows.shape, "rows")
+    return wanted.tolist()
+
+
+ESTIMATE = {"estimate": _state}
+TASK = {"write": _wanted}
+"""By the methods of an estimator and of a task, what is taken for their answers."""
+
+
+def fit(value: Any, shape: Shape, name: str, finite: bool = True) -> None:
+    """Hold an array against what it should be.
+
+    Raises:
+        MisfitError: it has another shape, or a value that is no number.
+    """
+    array = np.asarray(value, dtype=np.float64)
+    if array.shape != shape:
+        raise MisfitError(f"gave {name} of shape {array.shape}, which should be {shape}")
+    # One number that is not finite makes their sum so.
+    if finite and not np.isfinite(array.sum()) and not np.isfinite(array).all():
+        raise MisfitError(f"gave {name} with values that are not finite")

@@ -11,6 +11,7 @@ from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from shlex import quote
 from types import ModuleType
+from typing import Any
 
 Key = tuple[str | int, ...]
 """Path of a value in a scenario: keys and list indices."""
@@ -33,7 +34,15 @@ class Problem:
     at_key: bool = False
 
     def __str__(self) -> str:
-        return f"{self.what}; {self.right if isinstance(self.right, str) else self.right()}"
+        return f"{self.what}; {self._told}"
+
+    @property
+    def _told(self) -> str:
+        return self.right if isinstance(self.right, str) else self.right()
+
+    def __reduce__(self) -> tuple[type["Problem"], tuple[Key, str, str, bool]]:
+        """Survive the way between processes, where what says what would be right may not be known."""
+        return type(self), (self.key, self.what, self._told, self.at_key)
 
 
 LONGEST_SENTENCE = 2000
@@ -52,6 +61,10 @@ class ScenarioError(Exception):
         self.problems = tuple(map(_readable, problems))
         super().__init__("\n".join(self.problems))
 
+    def __reduce__(self) -> tuple[type["ScenarioError"], tuple[tuple[str, ...]], dict[str, Any]]:
+        """Survive the way between processes, sentences that were cut short already as they are."""
+        return type(self), ((),), {"problems": self.problems, "args": self.args}
+
 
 class SetupError(Exception):
     """A scenario that passed every check, but that a part of the stack refuses.
@@ -63,6 +76,10 @@ class SetupError(Exception):
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
         super().__init__(str(problem))
+
+    def __reduce__(self) -> tuple[type["SetupError"], tuple[Problem]]:
+        """Survive the way between processes."""
+        return type(self), (self.problem,)
 
 
 class LogError(Exception):

@@ -4,19 +4,17 @@ import json
 import math
 from collections.abc import Callable, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
 from surefoot.errors import ParameterError
 from surefoot.planner.laws.profiles import Profile
-from surefoot.planner.plan import Planner, PlanSample, WalkPlan
-from surefoot.planner.types import PhaseKind
+from surefoot.planner.plan import Planner, PlanSample
 from surefoot.planner.walk.commands import Orders
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
@@ -29,9 +27,8 @@ from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, ST
 from surefoot.scenarios.setup.commands import timed_command
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
-from surefoot.sim.measurement import Measurement
+from surefoot.scenarios.tick import Tick
 from surefoot.sim.pushes import Push
-from surefoot.wbc.types import RobotState, WbcReport
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
@@ -39,43 +36,7 @@ if TYPE_CHECKING:
     from surefoot.wbc.controller import WholeBodyController
     from surefoot.wbc.tasks import TaskFactory
 
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True, repr=False)
-class Tick:
-    """What happened in one control tick; its arrays are its own.
-
-    Attributes:
-        time: begin of the tick [s].
-        com: true CoM, shape (3,) [m].
-        com_velocity: shape (3,) [m/s].
-        zmp: true ZMP, shape (2,) [m]; NaN in flight.
-        plan: the plan that is followed.
-        reference: its references at this instant.
-        fell: whether the robot has fallen, now or before.
-        state: state that the controller was given; None on a pendulum.
-        report: what the whole-body controller did, its torques and contact wrenches; None on a pendulum.
-        measurement: what the sensors said, and the true state; None on a pendulum.
-    """
-
-    time: float
-    com: Array
-    com_velocity: Array
-    zmp: Array
-    plan: WalkPlan
-    reference: PlanSample
-    fell: bool
-    state: RobotState | None
-    report: WbcReport | None
-    measurement: Measurement | None
-
-    def __repr__(self) -> str:
-        """A line: when, where in the gait, where the CoM is."""
-        phase, (x, y, z) = self.plan.phase, self.com.tolist()
-        where = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support"}.get(phase.kind, "single support")
-        fallen = ", fallen" if self.fell else ""
-        return f"<Tick {self.time:.3f} s, {where}, step {phase.step}, CoM ({x:.3f}, {y:.3f}, {z:.3f}) m{fallen}>"
+__all__ = ["Simulation", "Tick"]
 
 
 class Simulation:
@@ -104,6 +65,7 @@ class Simulation:
     Raises:
         ScenarioError: the scenario cannot be found or run.
         SetupError: a part refuses it.
+        PartError: a part of others cannot be made.
         LogError: the log exists or cannot be written.
     """
 
@@ -145,6 +107,7 @@ class Simulation:
         except BaseException:
             self._writer.discard()
             raise
+        self._end_when_over()
 
     @property
     def time(self) -> float:
@@ -194,13 +157,24 @@ class Simulation:
 
     def advance(self) -> None:
         """Go through one control tick without a look at it, which saves a tenth of the time; errors as of `step`."""
+        self._refuse_when_over()
+        loop = self._loop
+        time, sample = loop.time, loop.step()
+        self._end_when_over()
+        if sample is None:
+            raise RunFault(f"{loop.end.reason}; reset() begins anew") from loop.fault
+        self._last = (time, sample)
+
+    def _refuse_when_over(self) -> None:
         loop = self._loop
         if loop.done:
             raise RunFault(f"the run is over at {loop.end.time:.3f} s, {loop.end.kind}; reset() begins anew")
-        time, sample = loop.time, loop.step()
-        if sample is None:
-            raise RunFault(f"{loop.end.reason}; reset() begins anew")
-        self._last = (time, sample)
+
+    def _end_when_over(self) -> None:
+        """Make the log whole once nothing more will happen, whether or not anyone closes the simulation."""
+        if self._loop.done:
+            write_end(self._writer, self._loop.end)
+            self._writer.close()
 
     def look(self) -> Tick:
         """The last tick.
@@ -249,6 +223,7 @@ class Simulation:
             swing_height: clearance of the steps to come [m].
 
         Raises:
+            RunFault: the run is over.
             ParameterError: a number is out of bounds, the ground has edges, or the planner takes no commands.
         """
         velocity = {"v_x": v_x, "v_y": v_y, "yaw_rate": yaw_rate}
@@ -269,6 +244,7 @@ class Simulation:
         self._tell({"place": {"x": x, "y": y, "yaw": yaw}})
 
     def _tell(self, keys: dict[str, Any]) -> None:
+        self._refuse_when_over()
         if not keys:
             right = "give a velocity, or what of the gait is to change"
             raise ParameterError(("command",), "a command that says nothing", right)
@@ -301,8 +277,10 @@ class Simulation:
             body: on whose CoM it acts; the torso if None, the point mass on a pendulum.
 
         Raises:
+            RunFault: the run is over.
             ParameterError: the force is not finite or not of three numbers, the time is not positive, the body unknown.
         """
+        self._refuse_when_over()
         vector = np.array(force, dtype=np.float64)
         if vector.shape != (3,) or not np.isfinite(vector).all():
             raise ParameterError(("force",), f"a push of {force!r} N", "give three finite numbers, in the world frame")
@@ -330,12 +308,12 @@ class Simulation:
         self._begin()
 
     def close(self) -> None:
-        """End the run and make its log whole; a second call does nothing."""
+        """End the run, whose log is whole then as it is once the run is over; a second call does nothing."""
         if self._closed:
             return
         self._closed = True
-        end = self._loop.end if self._loop.done else End("interrupted", self.time, STOPPED)
-        write_end(self._writer, end)
+        if not self._loop.done:
+            write_end(self._writer, End("interrupted", self.time, STOPPED))
         self._writer.close()
         self._threads.restore_original_limits()
 

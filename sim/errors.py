@@ -16,6 +16,10 @@ class SimulationDiverged(RuntimeError):  # noqa: N818  the event, not a mistake 
         self.time = time
         self.cause = cause
 
+    def __reduce__(self) -> tuple[type["SimulationDiverged"], tuple[float, str]]:
+        """Survive the way between processes."""
+        return type(self), (self.time, self.cause)
+
 
 class WorldError(ParameterError):
     """A world was asked for that cannot be built, or a call does not fit it; the key starts with the argument."""

@@ -89,9 +89,9 @@ class Guard:
         def call(*given: Any, **named: Any) -> Any:
             try:
                 return take(function(*given, **named), *given, **named)
-            except (KeyboardInterrupt, PartError, *self.through):
-                raise
             except BaseException as error:
+                if self._lets(error):
+                    raise
                 raise self._blame(error, function) from error
 
         return call
@@ -105,8 +105,11 @@ class Guard:
         Raises:
             PartError: in its place.
         """
-        if self.who and error is not None and not isinstance(error, (KeyboardInterrupt, PartError, *self.through)):
+        if self.who and error is not None and not self._lets(error):
             raise self._blame(error) from error
+
+    def _lets(self, error: BaseException) -> bool:
+        return isinstance(error, (KeyboardInterrupt, PartError, *self.through))
 
     def _blame(self, error: BaseException, function: Callable[..., Any] | None = None) -> PartError:
         place = _authors_line(error.__traceback__) or _definition(function)

@@ -187,7 +187,9 @@ def _group(name: str, parameters: Any, doc: str, more: dict[str, Any] | None = N
     """A group with a key for every field of a dataclass, each null by default: the controller's own value."""
     values = {entry: getattr(parameters, entry.name) for entry in fields(parameters)}
     keys = {entry.name: _key(entry, value) for entry, value in values.items() if not isinstance(value, Similarity)}
-    return create_model(name, __base__=Group, __doc__=doc, **keys, **(more or {}))
+    made: type[Group] = create_model(name, __base__=Group, __doc__=doc, __module__=__name__, **keys, **(more or {}))
+    globals()[name] = made  # where pickle looks for it
+    return made
 
 
 def _key(entry: "DataclassField[Any]", value: Any) -> Any:

@@ -8,6 +8,9 @@ import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
+from operator import attrgetter
+from pickle import PicklingError
 from types import NoneType, UnionType
 from typing import Any, Generic, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -41,6 +44,25 @@ LITTLE = {"m": 2e-4, "rad": 2e-3, "s": 0.011, "m/s": 2e-3, "": 2e-3}
 """How much it may differ beside that, by its unit: less than what anyone would call a change of the walk."""
 
 
+ByName = tuple[Callable[[str, str], Any], tuple[str, str]]
+"""How pickle makes a thing again that a module has under the name of its function."""
+
+
+def _named(module: str, name: str) -> Any:
+    return attrgetter(name)(import_module(module))
+
+
+def _by_name(thing: Any, function: Callable[..., Any]) -> ByName:
+    place = function.__module__, function.__qualname__
+    try:
+        if _named(*place) is thing:
+            return _named, place
+    except (ImportError, AttributeError):
+        pass
+    what = f"{type(thing).__name__} {'.'.join(place)} is not what its module has under that name"
+    raise PicklingError(f"{what}; make it at the top of a module, with the decorator")
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Reduction:
     """A function that makes wide channels narrow while a log is read, so that they need not be held for a whole run.
@@ -56,6 +78,10 @@ class Reduction:
     def __call__(self, run: RunView) -> Array:
         """The values of a part of a run, shape (n, ...)."""
         return self.function(run)
+
+    def __reduce__(self) -> ByName:
+        """Go to another process by name."""
+        return _by_name(self, self.function)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,6 +127,10 @@ class Metric(Generic[T]):
     def __call__(self, run: RunView) -> T:
         """Its value for a run."""
         return self.function(run)
+
+    def __reduce__(self) -> ByName:
+        """Go to another process by name."""
+        return _by_name(self, self.function)
 
     @property
     def meaning(self) -> str:

@@ -5,7 +5,7 @@ import math
 import mmap
 import stat
 import zlib
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -68,6 +68,10 @@ class Log:
         self.topics = tuple(reversed(self._ids))
         self.joints = _joints(self.metadata)
         self._loaded: dict[str, ChannelData] = {}
+
+    def __reduce__(self) -> tuple[Callable[[Path], "Log"], tuple[Path]]:
+        """Go to another process by its place, where it is read again."""
+        return read, (self.path.absolute(),)
 
     def __contains__(self, topic: str) -> bool:
         return topic in self._ids

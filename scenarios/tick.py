@@ -1,0 +1,49 @@
+"""What a simulation that is stepped from outside says of each of its control ticks."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.types import PhaseKind
+from surefoot.sim.measurement import Measurement
+from surefoot.wbc.types import RobotState, WbcReport
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Tick:
+    """What happened in one control tick; its arrays are its own.
+
+    Attributes:
+        time: begin of the tick [s].
+        com: true CoM, shape (3,) [m].
+        com_velocity: shape (3,) [m/s].
+        zmp: true ZMP, shape (2,) [m]; NaN in flight.
+        plan: the plan that is followed.
+        reference: its references at this instant.
+        fell: whether the robot has fallen, now or before.
+        state: state that the controller was given; None on a pendulum.
+        report: what the whole-body controller did, its torques and contact wrenches; None on a pendulum.
+        measurement: what the sensors said, and the true state; None on a pendulum.
+    """
+
+    time: float
+    com: Array
+    com_velocity: Array
+    zmp: Array
+    plan: WalkPlan
+    reference: PlanSample
+    fell: bool
+    state: RobotState | None
+    report: WbcReport | None
+    measurement: Measurement | None
+
+    def __repr__(self) -> str:
+        """A line: when, where in the gait, where the CoM is."""
+        phase, (x, y, z) = self.plan.phase, self.com.tolist()
+        where = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support"}.get(phase.kind, "single support")
+        fallen = ", fallen" if self.fell else ""
+        return f"<Tick {self.time:.3f} s, {where}, step {phase.step}, CoM ({x:.3f}, {y:.3f}, {z:.3f}) m{fallen}>"

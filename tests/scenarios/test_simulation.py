@@ -192,3 +192,35 @@ def test_a_log_that_was_closed_is_walked_again_as_long_as_it_was(scenario, tmp_p
         assert sim.look().time == pytest.approx(99 / 500)
     again = surefoot.run(surefoot.load(str(log)), out=tmp_path)
     assert same_content(log, again.log) == []
+
+
+@pytest.mark.parametrize("fidelity", ["full", "pendulum"])
+def test_a_run_that_is_over_leaves_a_whole_log_though_nobody_closes_it(fidelity, tmp_path):
+    short = surefoot.load("walk", {**BRIEF, "duration": 0.1, "fidelity": fidelity, "criteria": {"fell": False}})
+    sim = surefoot.Simulation(short, log=tmp_path / "over.mcap")
+    while not sim.done:
+        sim.step()
+    verdict = surefoot.judge(surefoot.read(tmp_path / "over.mcap"))
+    assert (verdict.passed, verdict.reasons) == (True, ())
+    for late in (lambda: sim.push((1.0, 0.0, 0.0)), lambda: sim.command(v_x=0.1), sim.step):
+        with pytest.raises(surefoot.RunFault, match=r"the run is over at 0\.100 s, completed"):
+            late()
+    sim.close()
+    sim.close()
+    assert surefoot.judge(surefoot.read(tmp_path / "over.mcap")) == verdict
+
+
+def test_a_part_that_leaves_ends_the_run_in_the_log_and_for_the_program(tmp_path):
+    class Leaving(Lazy):
+        def plan(self, problem):
+            raise SystemExit
+
+    profile = Profile("leaving", "leaves", PROFILES["default"].parameters, Leaving, moves=False)
+    scenario = surefoot.load("walk", {**BRIEF, "fidelity": "pendulum"})
+    sim = surefoot.Simulation(scenario, log=tmp_path / "left.mcap", planner=profile)
+    with pytest.raises(surefoot.RunFault, match=r"profile 'leaving' of this program: SystemExit, .*\.py:\d+") as caught:
+        sim.step()
+    assert isinstance(caught.value.__cause__.__cause__, SystemExit)
+    log = surefoot.read(tmp_path / "left.mcap")
+    assert "SystemExit" in log.metadata["end"]["traceback"]
+    assert not surefoot.judge(log).passed

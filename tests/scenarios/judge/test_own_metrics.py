@@ -1,6 +1,8 @@
 """Metrics of one's own: computed, shown and bounded like ours; a bad or missing one never lets a run pass."""
 
+import json
 import re
+import sys
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from types import SimpleNamespace
@@ -135,12 +137,15 @@ def test_its_fields_and_reductions_are_gathered_while_the_log_is_read(brought, t
 @pytest.mark.parametrize(
     ("function", "note"),
     [
-        (lambda run: 1 / 0, "failed, ZeroDivisionError: division by zero"),
-        (lambda run: run.field("/truth", "nothing"), "failed, LogError: channel /truth has no field 'nothing'"),
-        (lambda run: run.field("/truth", "com").fill(0.0), "failed, ValueError: assignment destination is read-only"),
+        (lambda run: 1 / 0, "ZeroDivisionError: division by zero"),
+        (lambda run: sys.exit(), "SystemExit"),
+        (lambda run: run.field("/truth", "nothing"), "LogError: channel /truth has no field 'nothing'"),
+        (lambda run: run.field("/truth", "com").fill(0.0), "ValueError: assignment destination is read-only"),
         (lambda run: [1.0, 2.0], "gave [1.0, 2.0], which is not what it says it gives"),
         (lambda run: [], "gave [], which is not what it says it gives"),
         (lambda run: "much", "gave 'much', which is not what it says it gives"),
+        (lambda run: 10**5000, "gave <int that cannot be shown>, which is not what it says it gives"),
+        (lambda run: 10**400, "gave 10000"),
     ],
 )
 @pytest.mark.parametrize("bound", ["{min: 0}", "{equals: true}", "{equals: steps_planned}"])
@@ -151,10 +156,43 @@ def test_one_that_fails_is_a_note_and_its_criterion_a_reason(brought, verdict, f
     assert found["grip"] is None
     assert len(found.reasons) == 1
     assert found.reasons[0].startswith("grip is not available")
-    assert any(f"metric grip of {__name__} {note}" in said for said in found.notes)
+    (said,) = [said for said in found.notes if "grip" in said]
+    assert said.startswith(f"metric 'grip' of this program: {note}")
+    assert f"{__file__}:" in said or note.startswith("gave")
+    assert json.loads(json.dumps(found.to_json()))["grip"] is None
 
 
-@pytest.mark.parametrize("result", [lambda run: 1 / 0, lambda run: 3.0, lambda run: np.zeros((2, run.ticks))])
+class OddFloat(float):
+    """Less than everything, and equal to it."""
+
+    __lt__ = __le__ = __eq__ = lambda self, other: True
+    __gt__ = __ge__ = __ne__ = lambda self, other: False
+    __hash__ = float.__hash__
+    __float__ = lambda self: 0.0  # noqa: E731
+    __repr__ = lambda self: "0.0"  # noqa: E731
+
+
+class OddInt(int):
+    """Likewise."""
+
+    __lt__ = __le__ = __eq__ = lambda self, other: True
+    __gt__ = __ge__ = __ne__ = lambda self, other: False
+    __hash__ = int.__hash__
+    __repr__ = lambda self: "0"  # noqa: E731
+
+
+@pytest.mark.parametrize("value", [OddFloat(7.0), OddInt(7), [OddFloat(7.0), 1.0], np.array([7.0, 1.0])])
+def test_a_number_of_a_class_of_its_own_is_what_it_holds(brought, verdict, value):
+    brought(made(lambda run: value, size=2 if isinstance(value, list | np.ndarray) else 1))
+    found = verdict(grip="{max: 1}")
+    assert not found.passed
+    first = found["grip"][0] if isinstance(found["grip"], list) else found["grip"]
+    assert (type(first) in (int, float), repr(first).removesuffix(".0")) == (True, "7")
+
+
+@pytest.mark.parametrize(
+    "result", [lambda run: 1 / 0, lambda run: sys.exit(), lambda run: 3.0, lambda run: np.zeros((2, run.ticks))]
+)
 def test_a_reduction_that_fails_spares_the_others(brought, verdict, result):
     broken = reduction("/torque")(result)
     brought(made(lambda run: float(run.reduced(broken)), reduces=(broken,)))

@@ -1,0 +1,139 @@
+"""Scenarios that give every key of the schema a value which is not its default."""
+
+from collections.abc import Iterator
+from inspect import isclass
+from typing import Any, get_args
+
+import yaml
+from pydantic import BaseModel
+
+from surefoot.scenarios.file.group import Group, controller_parameters
+from surefoot.scenarios.file.schema import Scenario
+
+NOT_YET = {f"sensing.{name}" for name in ("encoder_noise", "gyro_noise", "accelerometer_noise", "wrench_noise")}
+NOT_YET |= {"sensing.latency"}
+"""Keys of which this version has only the default."""
+
+TEXTS = {
+    "options": """
+        robot: humanoid100
+        sized_for: humanoid100
+        seed: 3
+        duration: 0.06
+        robot_options: {foot_length: 0.16, foot_width: 0.08, payload_mass: 2, payload_body: torso}
+        start: {x: 0.1, y: -0.1, yaw: 0.2, position_noise: 0.001, angle_noise: 0.001}
+        rates: {physics: 2000, control: 1000, planner: 100}
+        planner: {sample_time: 0.01}
+        criteria: {fell: false, steps_taken: {max: 5}}
+        """,
+    "steps": """
+        duration: 0.06
+        gait: {steps: 4, step_length: 0.15, step_width: 0.21, lateral_step: 0.01, turn: 0.02, single_support: 0.8,
+               double_support: 0.2, swing_height: 0.04, com_height: 0.98, initial_stand: 0.5, apex_single: 0.01,
+               apex_double: 0.001, heel_off: 0.1}
+        planner: {profile: repaired, horizon: 60, control_horizon: 3, jerk_limit: 20, jerk_rate_limit: 10,
+                  step_adaptation: none, knee: bent, rise: double, filter: kalman}
+        sensing: {source: truth, zmp_noise: 0.001, com_noise: 0.001, force_estimate: false}
+        """,
+    "velocity": """
+        duration: 0.06
+        gait: {velocity: [{time: 0, v_x: 0.1, v_y: 0.02, yaw_rate: 0.05}, {time: 6}]}
+        """,
+    "footsteps": """
+        duration: 0.06
+        gait: {footsteps: [{foot: right, x: 0.1, y: -0.1, yaw: 0.05}, {foot: left, x: 0.1, y: 0.1, yaw: 0.05}]}
+        """,
+    "waypoints": """
+        duration: 0.06
+        gait: {waypoints: [{x: 0.4, y: 0.1, yaw: 0.3}]}
+        """,
+    "stairs": """
+        duration: 0.06
+        terrain: {kind: stairs, riser: 0.05, tread: 0.32, count: 3, direction: up_down, start: 0.18, landing: 1,
+                  height_noise: 0.002, friction: 0.9}
+        gait: {steps: 12, step_length: 0.32}
+        """,
+    "slope": """
+        duration: 0.06
+        terrain: {kind: slope, angle: 0.05}
+        """,
+    "errors": """
+        duration: 0.06
+        errors: {com_height: 0.01, mass_scale: 1.02, link_mass_noise: 0.02, torso_com: [0.01, 0, 0],
+                 payload: {mass: 1, body: torso}, friction: 0.1, ground_noise: 0.005,
+                 ground: [{x: 0.6, y: 0.05, length: 0.2, width: 1, height: 0.01}]}
+        pushes: [{time: 0.02, duration: 0.02, force: [10, 0, 0], body: pelvis}]
+        faults: [{kind: qp_failure, time: 0.04, duration: 0.01}]
+        """,
+    "commands": """
+        duration: 0.3
+        commands:
+          - {time: 0.1, v_x: 0.1, v_y: 0.02, yaw_rate: 0.1, single_support: 1, double_support: 0.4, swing_height: 0.04}
+          - {time: 0.2, place: {x: 0.4, y: 0.1, yaw: 0.2}}
+        gait: {initial_stand: 0.2}
+        fidelity: pendulum
+        """,
+    "pendulum": """
+        fidelity: pendulum
+        gait: {steps: 2, single_support: 0.6, double_support: 0.2, initial_stand: 0.2}
+        pendulum: {plant: cart_table, feedback: 2}
+        pushes: [{step: 1, phase: single, fraction: 0.5, duration: 0.1, impulse: 0.01, direction: 0.5}]
+        rates: {physics: 500, control: 100}
+        """,
+}
+
+
+def _of_controller(parameters: Any, model: type[BaseModel]) -> dict[str, Any]:
+    """Every key of a group of ``wbc``, a little more than what the controller has."""
+    values = {}
+    for name, field in model.model_fields.items():
+        inner = next(_groups(field.annotation), None)
+        value = getattr(parameters, name, None)
+        if inner is not None:
+            values[name] = _of_controller(value, inner)
+        elif isinstance(value, tuple):
+            values[name] = [1.001 * one for one in value]
+        elif isinstance(value, float):
+            values[name] = 0.999 * value
+        else:
+            values[name] = {"friction": 0.7, "tasks": []}.get(name, value)
+    return values
+
+
+def _groups(annotation: Any) -> Iterator[type[Group]]:
+    if isclass(annotation) and issubclass(annotation, Group):
+        yield annotation
+    for argument in get_args(annotation):
+        yield from _groups(argument)
+
+
+def keys(model: type[BaseModel], place: str = "") -> Iterator[str]:
+    """Dotted keys of a group that lead to values; those of the groups of a list like any."""
+    for name, field in model.model_fields.items():
+        inner = next(_groups(field.annotation), None)
+        if inner is None:
+            yield f"{place}{name}"
+        else:
+            yield from keys(inner, f"{place}{name}.")
+
+
+def given(value: Any, place: str = "") -> Iterator[str]:
+    """Dotted keys that plain values give; criteria are one."""
+    if isinstance(value, dict) and place != "criteria.":
+        for name, inside in value.items():
+            yield from given(inside, f"{place}{name}.")
+    elif isinstance(value, list) and any(isinstance(inside, dict) for inside in value):
+        for inside in value:
+            yield from given(inside, place)
+    else:
+        yield place.rstrip(".")
+
+
+WBC = _of_controller(controller_parameters(None), next(_groups(Scenario.model_fields["wbc"].annotation)))
+
+SCENARIOS: dict[str, dict[str, Any]] = {
+    **{name: yaml.safe_load(text) for name, text in TEXTS.items()},
+    "wbc": {"duration": 0.06, "wbc": WBC},
+    **{f"wbc-{name}": {"duration": 0.06, "wbc": {name: value}} for name, value in WBC.items()},
+}
+"""By name, as plain values."""

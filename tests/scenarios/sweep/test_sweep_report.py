@@ -5,7 +5,7 @@ import io
 import re
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import unescape
 from html.parser import HTMLParser
 from urllib.parse import unquote
@@ -16,6 +16,7 @@ from surefoot.scenarios.sweep import report
 from surefoot.scenarios.sweep.campaign import read_campaign
 from surefoot.scenarios.sweep.engine import LocalWorker, outcome_of, run_cells
 from surefoot.scenarios.sweep.journal import Journal
+from surefoot.scenarios.sweep.made_of import MadeOf
 from surefoot.scenarios.sweep.points import Record, cells
 from surefoot.scenarios.sweep.sweep import PAGE, Swept, write
 from surefoot.scenarios.sweep.table import wilson
@@ -64,7 +65,7 @@ class Ruled:
     rule: Callable
 
     def __call__(self, point):
-        return self.rule(point)
+        return replace(self.rule(point), made_by=MadeOf().of(point))
 
     def close(self):
         pass

@@ -81,8 +81,8 @@ def _ring(radius: float, height: float) -> Array:
 
 
 @lru_cache(maxsize=256)
-def _mesh(path: Path) -> tuple[Array, Faces]:
-    """Vertices and faces of a mesh file, as written.
+def _mesh(path: Path, _changed: tuple[int, int]) -> tuple[Array, Faces]:
+    """Vertices and faces of a mesh file, as written, once for as long as it has the same time and size.
 
     Raises:
         RobotError: it cannot be read.
@@ -146,7 +146,7 @@ def _urdf_shape(link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Co
         if not place.is_file():
             what = f"{path}: mesh {reference} of link '{link}' is not there"
             raise RobotError(("model",), what, f"put it at {place}, or correct the reference")
-        vertices, faces = _mesh(place)
+        vertices, faces = _mesh(place, (place.stat().st_mtime_ns, place.stat().st_size))
         scale = _floats(thing.get("scale"), (1.0, 1.0, 1.0))
         faces = faces if np.prod(scale) > 0 else faces[:, ::-1]
         colour = colour_in_file(place) if rgba is None else None

@@ -66,7 +66,7 @@ def run_experiments(
     told = (bar.run, bar.cell) if bar is not None else ()
     with Journal(folder, keep_all=True) as journal:
         run_cells(map(Single, points.values()), journal, workers, *told)
-        records = {experiment: journal.said(point.id) for experiment, point in points.items()}
+        records = {experiment: journal.said(point) for experiment, point in points.items()}
     return tuple(outcome_of(one, record, folder) for one, record in records.items() if record is not None)
 
 

@@ -57,7 +57,7 @@ def bars(
         for one, panel in zip(every, panels, strict=False):
             searches = [search for search in found if _is_of(search.labels, panel)]
             shown = [record for record in records if _is_of(panel, record.at, partly=True)]
-            top = 1.06 * max([search.shown for search in searches] + [record.value for record in shown])
+            top = 1.06 * max([search.shown for search in searches] + [record.value for record in shown]) or 1.0
             _limits(one, top, [(_place(search, shades, groups), limit(search.labels)) for search in searches], shades)
             _searches(one, searches, shades, groups)
             _published(one, shown, groups, marks)

@@ -11,29 +11,29 @@ from surefoot.scenarios.errors import ScenarioError, require
 from surefoot.scenarios.loop.run import made_folder
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.sweep.engine import Worker, perform
-from surefoot.scenarios.sweep.journal import LOGS, made_by
+from surefoot.scenarios.sweep.journal import LOGS
+from surefoot.scenarios.sweep.made_of import OF_A_MACHINE, MadeOf
 from surefoot.scenarios.sweep.points import Point, Record
 
 PATIENCE = 10.0
 """How long a cluster may take to answer [s]."""
 
-_HERE = ("machine", "python")
-"""Versions in which a cluster's machines may differ from this one and from each other."""
-
 
 class Away(NamedTuple):
-    """What comes back from another machine: what became of a run, and the files of its folder."""
+    """What comes back from another machine: what became of a run, what made it, and the files of its folder."""
 
     record: Record
+    made_by: str
     files: dict[str, bytes]
 
 
 def perform_away(point: Point, keep_all: bool) -> Away:
     """Make a run on a machine that shares no disk with the one that asks; arguments as of `perform`."""
+    made_by = MadeOf().of(point, anywhere=True)
     with tempfile.TemporaryDirectory(prefix="surefoot-") as folder:
         record = perform(point, Path(folder) / "run", Path(folder) / LOGS, keep_all)
         kept = (Path(folder) / record.log).parent if record.log else None
-        return Away(record, {path.name: path.read_bytes() for path in kept.iterdir()} if kept else {})
+        return Away(record, made_by, {path.name: path.read_bytes() for path in kept.iterdir()} if kept else {})
 
 
 class ClusterWorker:
@@ -49,6 +49,7 @@ class ClusterWorker:
 
     def __init__(self, client: Any, folder: Path, keep_all: bool) -> None:
         self._client, self._folder, self._keep_all = client, folder, keep_all
+        self._made_of = MadeOf()
 
     def __call__(self, point: Point) -> Record:
         """See `Worker`."""
@@ -62,7 +63,8 @@ class ClusterWorker:
             own = made_folder(self._folder / LOGS / point.name)
             for name, content in away.files.items():
                 (own / name).write_bytes(content)
-        return replace(away.record, made_by=made_by())
+        alike = away.made_by == self._made_of.of(point, anywhere=True)
+        return replace(away.record, made_by=self._made_of.of(point) if alike else away.made_by)
 
     def close(self) -> None:
         """Leave the cluster."""
@@ -123,6 +125,6 @@ def _check_versions(address: str, client: Any) -> None:
         if not isinstance(theirs, dict):
             raise ScenarioError([f"--cluster {address}: worker {worker} cannot run Surefoot, {theirs}; {right}"])
         for name, version in own.items():
-            if name not in _HERE and theirs.get(name) != version:
+            if name not in OF_A_MACHINE and theirs.get(name) != version:
                 what = f"worker {worker} has {name} {theirs.get(name)}, and this machine {version}"
                 raise ScenarioError([f"--cluster {address}: {what}; {right}"])

@@ -21,7 +21,8 @@ from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.loop.run import made_folder, run_scenario
 from surefoot.scenarios.record.provenance import LOG_NAME
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.sweep.journal import LOGS, SCRATCH, Journal, made_by
+from surefoot.scenarios.sweep.journal import LOGS, SCRATCH, Journal
+from surefoot.scenarios.sweep.made_of import MadeOf
 from surefoot.scenarios.sweep.points import Point, Record, Search, Threshold
 
 T = TypeVar("T")
@@ -96,7 +97,7 @@ def perform(point: Point, scratch: Path, kept: Path, keep_all: bool) -> Record:
         what became of it; its log is relative to the directory of `kept`.
     """
     begin, own = time.perf_counter(), scratch / point.id
-    record = Record(point.id, "broken", made_by=made_by())
+    record = Record(point.id, "broken", made_by=MadeOf().of(point))
     try:
         shutil.rmtree(own, ignore_errors=True)
         result = run_scenario(read_scenario(*point.base.written, point.settings), made_folder(own))
@@ -288,7 +289,7 @@ def _slot(
                     if stop.is_set():
                         return
                     record = worker(point)
-                    journal.add(record)
+                    journal.add(point, record)
                     told.put(record)
             told.put("cell")
     except Exception as error:
@@ -303,8 +304,8 @@ def _asked(cell: Searched, journal: Journal) -> Iterator[tuple[Point, Record | N
     with suppress(StopIteration):
         point = next(search)
         while True:
-            yield point, journal.get(point.id)
-            record = journal.said(point.id)
+            yield point, journal.get(point)
+            record = journal.said(point)
             if record is None or record.status == "broken":
                 return
             point = search.send(record)
@@ -316,7 +317,7 @@ def outcome_of(cell: Searched, journal: Journal) -> Outcome:
     search = cell.search()
     try:
         point = next(search)
-        while (record := journal.said(point.id)) is not None:
+        while (record := journal.said(point)) is not None:
             runs.append((point, record))
             point = search.send(record)
     except StopIteration as end:

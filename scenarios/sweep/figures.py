@@ -14,11 +14,14 @@ from matplotlib.ticker import MaxNLocator
 from surefoot.scenarios.palette import FAIL, GREY, PASS, paler
 from surefoot.scenarios.show.figures.style import CYCLE, in_style, note
 from surefoot.scenarios.sweep.points import Threshold
+from surefoot.scenarios.sweep.spec import MOST
 from surefoot.scenarios.sweep.table import key_unit, wilson
 
 WIDTH = 11.6
 """Of a figure on a page [in]."""
 MOST_PANELS = 12
+ROUNDING, TINY = 1e-9, 1e-100
+"""Values that differ by less, as a share of the greatest or at all, are drawn as the same."""
 ROUND = {0.0: "forward", 0.25: "", 0.5: "left", 0.75: "", 1.0: "backward", 1.25: "", 1.5: "right", 1.75: ""}
 """What directions are called, by their angle from the world's x axis [pi rad]."""
 
@@ -61,13 +64,18 @@ class Axis(NamedTuple):
 
     @property
     def numeric(self) -> bool:
-        """Whether its values are numbers."""
-        return all(isinstance(value, int | float) and not isinstance(value, bool) for value in self.values)
+        """Whether its values are numbers that an axis can have."""
+        return all(is_number(value) and abs(value) <= MOST for value in self.values)
 
     @property
     def heading(self) -> str:
         """Name and unit."""
         return with_unit(self.name)
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a number, be it NaN or infinite, and no truth value."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def with_unit(key: str) -> str:
@@ -252,31 +260,41 @@ def distributions(spreads: Sequence[Spread]) -> Figure:
         figure, every = _panels(len(spreads), None, 1.9, most=4)
         for one, spread in zip(every, spreads, strict=True):
             _histogram(one, spread)
-        handles, labels = every[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper left", ncols=4)
+        known = {label: handle for one in every for handle, label in zip(*one.get_legend_handles_labels(), strict=True)}
+        figure.legend(known.values(), known.keys(), loc="outside upper left", ncols=4)
     return figure
 
 
 def _histogram(axes: Axes, spread: Spread) -> None:
-    values = [*spread.passed, *spread.failed]
     axes.set_xlabel(spread.name)
-    if not values:
-        note(axes, "no value")
-        return
-    groups, colors = [list(spread.passed), list(spread.failed)], [PASS, FAIL]
-    if all(isinstance(value, int | float) and not isinstance(value, bool) for value in values):
-        edges = np.histogram_bin_edges(np.array(values, dtype=float), bins=min(max(5, round(len(values) ** 0.5)), 24))
-        axes.hist(groups, bins=list(edges), stacked=True, color=colors, label=["met", "missed"])
-        for bound in spread.bounds:
+    values, colors = [*spread.passed, *spread.failed], [PASS, FAIL]
+    if all(map(is_number, values)):
+        groups = [[float(one) for one in group if abs(one) <= MOST] for group in (spread.passed, spread.failed)]
+        shown = [one for group in groups for one in group]
+        if len(shown) < len(values) or not values:
+            note(axes, f"{len(values) - len(shown)} values beyond all bounds" if values else "no value")
+        if shown:
+            axes.hist(groups, bins=_edges(shown), stacked=True, color=colors, label=["met", "missed"])
+        for bound in (bound for bound in spread.bounds if abs(bound) <= MOST):
             axes.axvline(bound, color="black", linestyle=(0, (4, 2)), linewidth=0.9)
         axes.margins(x=0.03)
     else:
         names = sorted({str(value) for value in values})
-        counts = [[sum(str(value) == name for value in group) for name in names] for group in groups]
+        counts = [[sum(str(value) == name for value in group) for name in names] for group in spread[1:3]]
         axes.bar(names, counts[0], 0.6, color=PASS, label="met")
         axes.bar(names, counts[1], 0.6, counts[0], color=FAIL, label="missed")
         axes.set_xlim(-0.6, len(names) - 0.4)
     axes.yaxis.set_major_locator(MaxNLocator(nbins=5, integer=True))
+
+
+def _edges(values: Sequence[float]) -> list[float]:
+    """Edges of the bins of a histogram; values that differ by rounding alone stand in the middle of a wider range."""
+    count, low, high = min(max(5, round(len(values) ** 0.5)), 24), min(values), max(values)
+    if high - low <= max(ROUNDING * max(abs(low), abs(high)), TINY):
+        middle = 0.5 * (low + high)
+        aside = 0.05 * abs(middle) if abs(middle) > TINY else 0.5
+        low, high = middle - aside, middle + aside
+    return [float(edge) for edge in np.linspace(low, high, count + 1)]
 
 
 def success_along(axis: Axis, counts: Sequence[tuple[int, int]]) -> Figure:

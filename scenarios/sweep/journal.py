@@ -2,12 +2,11 @@
 
 import contextlib
 import fcntl
-import hashlib
 import json
 import os
 import shutil
 import threading
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Self
 
@@ -16,10 +15,15 @@ from pydantic import TypeAdapter
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.loop.run import made_folder
 from surefoot.scenarios.output import reason
-from surefoot.scenarios.record.provenance import relevant_versions
-from surefoot.scenarios.sweep.points import Record
+from surefoot.scenarios.sweep.made_of import MadeOf
+from surefoot.scenarios.sweep.points import Point, Record
 
 JOURNAL, LOGS, SCRATCH = "runs.jsonl", "logs", ".running"
+
+CHANGED = (
+    "its robot, or the code that made it, is not that with which the campaign began; "
+    "let both be the same everywhere, and give the command again"
+)
 
 _RECORD = TypeAdapter(Record)
 
@@ -27,8 +31,8 @@ _RECORD = TypeAdapter(Record)
 class Journal:
     """The results of a campaign, one line each, of which a killed process loses none that was told.
 
-    Results of other versions or another code than those that run now are passed over, and made anew. So is one whose
-    log is gone or cut.
+    Results of other versions, other code or another robot than those that run now are passed over, and made anew. So is
+    one whose log is gone or cut.
 
     Args:
         folder: the campaign's directory, made where it is missing; held until `close`, so that of two processes only
@@ -45,11 +49,11 @@ class Journal:
 
     def __init__(self, folder: Path, keep_all: bool = False) -> None:
         self.folder = made_folder(folder)
-        self.made_by = made_by()
         self.stale = 0
+        self._made_of = MadeOf()
         self._records: dict[str, Record] = {}
         self._broken: dict[str, Record] = {}
-        self._writing = threading.Lock()
+        self._writing, self._looking = threading.Lock(), threading.Lock()
         path = folder / JOURNAL
         if not path.exists() and any(folder.iterdir()):
             raise LogError(f"{folder}: holds something else than a campaign; choose an empty directory with --out")
@@ -63,20 +67,32 @@ class Journal:
         self._read(keep_all)
         shutil.rmtree(self.folder / SCRATCH, ignore_errors=True)  # of runs that were killed
 
-    def get(self, point_id: str) -> Record | None:
-        """The result of a run; None when there is none, or it was broken."""
-        return self._records.get(point_id)
+    def get(self, point: Point) -> Record | None:
+        """The result of a run; None when there is none that is of today, or it was broken."""
+        record = self._records.get(point.id)
+        if record is None or record.made_by == self.made_by(point):
+            return record
+        del self._records[point.id]
+        self.stale += 1
+        return None
 
-    def said(self, point_id: str) -> Record | None:
+    def said(self, point: Point) -> Record | None:
         """The result of a run, also a broken one of this time."""
-        return self._records.get(point_id) or self._broken.get(point_id)
+        return self.get(point) or self._broken.get(point.id)
 
-    def add(self, record: Record) -> None:
+    def made_by(self, point: Point) -> str:
+        """Digest of what a run is made of; a robot is described once, and by one thread."""
+        with self._looking:
+            return self._made_of.of(point)
+
+    def add(self, point: Point, record: Record) -> None:
         """Write a result down; a broken one is only remembered, so that it is tried again at the next start.
 
         Raises:
             LogError: it cannot be written.
         """
+        if record.status != "broken" and record.made_by != self.made_by(point):
+            record = replace(record, status="broken", reasons=(CHANGED,))
         if record.status == "broken":
             self._broken[record.id] = record
             return
@@ -104,7 +120,7 @@ class Journal:
             whole += len(line)
             with contextlib.suppress(ValueError):
                 record = _RECORD.validate_json(line)
-                if record.made_by == self.made_by and self._has_log(record, keep_all):
+                if self._has_log(record, keep_all):
                     self._records[record.id] = record
                 else:
                     self._records.pop(record.id, None)
@@ -124,8 +140,3 @@ class Journal:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-
-def made_by() -> str:
-    """Digest of all that a result depends on but its scenario: two results of the same may stand in one table."""
-    return hashlib.sha256(json.dumps(dict(relevant_versions()), sort_keys=True).encode()).hexdigest()[:16]

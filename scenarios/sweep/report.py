@@ -240,7 +240,7 @@ def _rate_row(name: str, value: str, runs: Runs) -> Row:
 def _split(key: str, runs: Runs) -> Iterator[tuple[str, Runs]]:
     """Runs by the quarter of a drawn number, or by a drawn choice."""
     values = [point.labels[key] for point, _ in runs]
-    if len(set(map(str, values))) <= 4 or not _are_numbers(values):
+    if len(set(map(str, values))) <= 4 or not Axis(key, tuple(values)).numeric:
         for one in sorted(set(map(str, values))):
             yield one, [run for run in runs if str(run[0].labels[key]) == one]
         return
@@ -356,7 +356,3 @@ def _judged(runs: Runs) -> Runs:
 
 def _passed(runs: Runs) -> int:
     return Counter(record.status for _, record in runs)["pass"]
-
-
-def _are_numbers(values: Iterable[Any]) -> bool:
-    return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)

@@ -6,18 +6,22 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from surefoot.scenarios.errors import nearest
-from surefoot.scenarios.file.group import WHOLE, Finite, Group
+from surefoot.scenarios.file.group import WHOLE, Group
 
 MOST_RUNS = 1_000_000
+MOST = 1e100
+"""No value that is searched, drawn or shown on an axis is farther from zero, so that no difference of two overflows."""
+
+Number = Annotated[float, Field(ge=-MOST, le=MOST, allow_inf_nan=False)]
 
 
 class Draw(Group):
     """A distribution of which a value is drawn for each seed."""
 
-    uniform: Annotated[list[Finite], Field(min_length=2, max_length=2)] | None = Field(
+    uniform: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = Field(
         default=None, description="least and greatest value"
     )
-    normal: Annotated[list[Finite], Field(min_length=2, max_length=2)] | None = Field(
+    normal: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = Field(
         default=None, description="mean and standard deviation"
     )
     choice: Annotated[list[Any], Field(min_length=1)] | None = Field(default=None, description="one of these")
@@ -37,8 +41,8 @@ class Bisect(Group):
     """The search for the value of a key from which on runs fail."""
 
     key: str = Field(description="of the scenario")
-    low: Finite = Field(description="one end of the range")
-    high: Finite = Field(description="the other")
+    low: Number = Field(description="one end of the range")
+    high: Number = Field(description="the other")
     tolerance: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = Field(
         default=None, description="how well the threshold shall be known; the range is halved"
     )
@@ -54,6 +58,12 @@ class Bisect(Group):
             raise ValueError(f"the range from {self.low:g} to {self.high:g} is empty; give low below high")
         if self.ratio is not None and self.low <= 0.0:
             raise ValueError(f"low is {self.low:g}, from which no ratio leads upwards; give more than 0")
+        if self.ratio is not None and math.log(self.high) - math.log(self.low) > MOST_RUNS * math.log(self.ratio):
+            raise ValueError(f"the ladder has more than {MOST_RUNS} rungs; give a greater ratio")
+        if self.ratio is not None and not math.isfinite(self.high / self.low):
+            raise ValueError(
+                f"the range from {self.low:g} to {self.high:g} is too wide for a ladder; give a greater low"
+            )
         return self
 
     @property
@@ -68,7 +78,7 @@ class Published(Group):
     """A value of the searched key that others have published, drawn beside the thresholds."""
 
     name: str = Field(min_length=1, description="of whom or what it is")
-    value: Finite = Field(description="in the unit of the searched key")
+    value: Number = Field(description="in the unit of the searched key")
     source: str = Field(min_length=1, description="where it was published")
     at: dict[str, Any] = Field(default={}, description="settings of axes that it is comparable with")
 

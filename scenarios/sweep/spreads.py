@@ -7,8 +7,9 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.sweep.figures import Spread, text, with_unit
+from surefoot.scenarios.sweep.figures import Spread, is_number, text, with_unit
 from surefoot.scenarios.sweep.points import Point, Record
+from surefoot.scenarios.sweep.table import as_float
 
 Runs = Sequence[tuple[Point, Record]]
 """Runs with what became of each."""
@@ -71,5 +72,5 @@ def _numbers(values: Iterable[Any]) -> list[float]:
         several = (
             value if isinstance(value, list | tuple) else list(value.values()) if isinstance(value, dict) else [value]
         )
-        found += [float(one) for one in several if isinstance(one, int | float) and not isinstance(one, bool)]
+        found += [as_float(one) for one in several if is_number(one)]
     return found

@@ -96,7 +96,8 @@ class Swept:
     def notes(self) -> Iterator[str]:
         """What is to be known beside the result, a sentence each."""
         if self.stale:
-            yield f"{self.stale} results were of other versions, or lacked their log, and were not taken over"
+            others = "of another robot, another code or other versions, or lacked their log"
+            yield f"{self.stale} results were {others}, and were not taken over"
         if not has_parquet():
             yield f"no parquet is written; install it with: {install_command('parquet')}"
         broken = (reason for record in self.records if record.status == "broken" for reason in record.reasons)

@@ -20,6 +20,8 @@ from surefoot.scenarios.sweep.engine import Outcome
 from surefoot.scenarios.sweep.points import Cell
 
 Value = bool | int | float | str | None
+_MOST_WHOLE = 2**63 - 1
+"""What a column of whole numbers can hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,11 +235,19 @@ def _column(name: str, values: Sequence[Any], unit: str, meaning: str) -> Column
     """A column of one type: whole and other numbers are numbers, and what is mixed or no plain value is text."""
     kinds = {type(value) for value in values if value is not None}
     make: Callable[[Any], Value] = lambda value: value  # noqa: E731
-    if kinds == {int, float}:
-        make = float
+    if kinds == {int, float} or (kinds == {int} and any(abs(value or 0) > _MOST_WHOLE for value in values)):
+        make = as_float
     elif len(kinds) > 1 or not kinds <= {bool, int, float, str}:
         make = lambda value: value if isinstance(value, str) else json.dumps(value)  # noqa: E731
     return Column(name, unit, meaning, tuple(None if value is None else make(value) for value in values))
+
+
+def as_float(value: float) -> float:
+    """A number as a float, infinite where it is too great for one."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
 
 
 def _metric_columns(rows: Sequence[Mapping[str, Any]]) -> Iterator[Column]:

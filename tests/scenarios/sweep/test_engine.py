@@ -21,7 +21,8 @@ from surefoot.scenarios.sweep.engine import (
     perform,
     run_cells,
 )
-from surefoot.scenarios.sweep.journal import JOURNAL, LOGS, SCRATCH, Journal, made_by
+from surefoot.scenarios.sweep.journal import CHANGED, JOURNAL, LOGS, SCRATCH, Journal
+from surefoot.scenarios.sweep.made_of import MadeOf
 from surefoot.scenarios.sweep.points import Point, Record
 
 pytestmark = pytest.mark.unit
@@ -48,7 +49,7 @@ class Counting:
 
     def __call__(self, one):
         self.asked.append(one.settings["seed"])
-        return Record(one.id, self.status, made_by=made_by(), metrics={"steps_taken": one.settings["seed"]})
+        return Record(one.id, self.status, made_by=MadeOf().of(one), metrics={"steps_taken": one.settings["seed"]})
 
     def close(self):
         pass
@@ -102,11 +103,24 @@ def test_results_of_other_code_are_made_anew(tmp_path, monkeypatch):
     asked = []
     with Journal(tmp_path) as journal:
         run_cells(CELLS, journal, [Counting(asked)])
-    monkeypatch.setattr("surefoot.scenarios.sweep.journal.relevant_versions", lambda: {"numpy": "other"})
+    monkeypatch.setattr("surefoot.scenarios.sweep.made_of.relevant_versions", lambda: {"numpy": "other"})
     with Journal(tmp_path) as journal:
-        assert journal.stale == 6
+        assert not outcome_of(CELLS[0], journal).runs
         run_cells(CELLS, journal, [Counting(asked)])
+        assert journal.stale == 6
     assert len(asked) == 12
+
+
+def test_what_changes_while_the_campaign_goes_on_gives_no_result(tmp_path, monkeypatch):
+    with Journal(tmp_path) as journal:
+        run_cells(CELLS[:3], journal, [Counting([])])
+        monkeypatch.setattr(Counting, "__call__", lambda _, one: Record(one.id, "pass", made_by="another robot"))
+        run_cells(CELLS, journal, [Counting([])])
+        outcomes = [outcome_of(cell, journal) for cell in CELLS]
+    assert [outcome.complete for outcome in outcomes] == [True] * 3 + [False] * 3
+    assert outcomes[3].runs[0][1].reasons == (CHANGED,)
+    with Journal(tmp_path) as journal:
+        assert [journal.get(one) is not None for one in POINTS] == [True] * 3 + [False] * 3
 
 
 def test_a_directory_belongs_to_one_process_and_to_campaigns(tmp_path):
@@ -138,13 +152,13 @@ def test_a_run_and_its_log(tmp_path):
 def test_a_log_that_is_gone_or_cut_is_made_again(tmp_path, lost):
     with Journal(tmp_path, keep_all=True) as journal:
         record = perform(point(), tmp_path / SCRATCH, tmp_path / LOGS, keep_all=True)
-        journal.add(record)
+        journal.add(point(), record)
     if lost == "its end":
         os.truncate(tmp_path / record.log, 100)
     elif lost == "all":
         (tmp_path / record.log).unlink()
     with Journal(tmp_path, keep_all=True) as journal:
-        assert (journal.get(record.id) == record) == (lost == "nothing")
+        assert (journal.get(point()) == record) == (lost == "nothing")
 
 
 @pytest.mark.parametrize(
@@ -206,11 +220,11 @@ def test_ctrl_c_lets_runs_under_way_end_and_begins_no_other(tmp_path):
         with pytest.raises(InterruptedRunsError):
             run_cells(cells, journal, [Counting(asked)], interrupt)
         assert 0 < len(asked) < 1000
-        assert all(journal.get(one.point.id) for one in cells[: len(asked)])
+        assert all(journal.get(one.point) for one in cells[: len(asked)])
 
 
 def test_a_full_disk_ends_the_campaign(tmp_path, monkeypatch):
     with Journal(tmp_path) as journal:
-        monkeypatch.setattr(journal, "add", lambda record: (_ for _ in ()).throw(LogError("no room")))
+        monkeypatch.setattr(journal, "add", lambda *_: (_ for _ in ()).throw(LogError("no room")))
         with pytest.raises(LogError, match="no room"):
             run_cells(CELLS, journal, [Counting([])])

@@ -5,17 +5,19 @@ import io
 import re
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import unescape
 from html.parser import HTMLParser
 from urllib.parse import unquote
 
 import pytest
 
+from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.sweep import report
 from surefoot.scenarios.sweep.campaign import read_campaign
 from surefoot.scenarios.sweep.engine import LocalWorker, outcome_of, run_cells
 from surefoot.scenarios.sweep.journal import Journal
+from surefoot.scenarios.sweep.made_of import MadeOf
 from surefoot.scenarios.sweep.points import Record, cells
 from surefoot.scenarios.sweep.sweep import PAGE, Swept, write
 from surefoot.scenarios.sweep.table import wilson
@@ -64,7 +66,7 @@ class Ruled:
     rule: Callable
 
     def __call__(self, point):
-        return self.rule(point)
+        return replace(self.rule(point), made_by=MadeOf().of(point))
 
     def close(self):
         pass
@@ -205,6 +207,74 @@ def test_no_campaign_is_too_poor_for_a_page(tmp_path, rule, more):
     assert "nan" not in re.sub(r"<(?:style|svg).*?</(?:style|svg)>", "", text, flags=re.DOTALL)
     if not whole.ran:
         assert "success rate," not in text
+
+
+ALMOST = """
+scenario: walk
+set: {fidelity: pendulum, criteria: {fell: false, speed_mean: {max: 0.5}, steps_taken: 4}}
+sample:
+  gait.swing_height: {normal: [0.05, 1.0e-18]}
+  gait.com_height: {choice: [0.9, 0.9000000000000001, 0.9000000000000002, 0.9000000000000004, 0.9000000000000005]}
+seeds: 12
+"""
+EXTREMES = {
+    "rounding": (0.3, 0.1 + 0.2),
+    "rounding of much": (1e17, 1e17 + 32),
+    "nothing": (0.0, 5e-324),
+    "the same": (0.0, 0.0),
+    "all there is": (-1.7e308, 1.7e308),
+    "too great for a float": (10**400, 1),
+    "too great for a column": (10**30, -(10**30)),
+    "little and much": (1e-300, 1e100),
+    "truth": (True, 0.5),
+    "none": (None, None),
+    "words": ("x", 1.0),
+    "lists": ([1e308, 0.1], [0.1, 5e-324]),
+}
+
+
+@pytest.mark.parametrize("values", EXTREMES.values(), ids=EXTREMES)
+def test_every_campaign_has_its_page_whatever_was_measured(tmp_path, values):
+    names = ("speed_mean", "steps_taken", "metric_of_others")
+    whole = swept(tmp_path, ALMOST, lambda one: passed(one, **dict.fromkeys(names, values[one.settings["seed"] % 2])))
+    write(whole)
+    rows = Page((tmp_path / PAGE).read_text()).rows["success"]
+    assert rows[1][:4] == ["all runs", "", "12", "12"]
+    assert len(list(csv.DictReader(io.StringIO((tmp_path / "table.csv").read_text())))) == 12
+
+
+@pytest.mark.parametrize("seeds", [1, 2])
+@pytest.mark.parametrize("status", ["pass", "fail", "refused", "broken"])
+def test_every_campaign_has_its_page_however_few_runs_it_has(tmp_path, status, seeds):
+    text = ALMOST.replace("seeds: 12", f"seeds: {seeds}") + "grid: {gait.step_length: [0.2, 1.0e-300]}\n"
+    write(swept(tmp_path, text, lambda one: Record(one.id, status, ("so it is",), {"speed_mean": 0.3})))
+    assert (tmp_path / PAGE).read_text().endswith("</html>\n")
+
+
+@pytest.mark.parametrize("reached", [-1e100, 5e-324, 1e17, 1e100])
+@pytest.mark.parametrize("axis", ["gait.step_length: [0.2, 0.20000000000000004]", "pushes.0.direction: [0.0, 1.0, 2.0]",
+                                  "a: {x: {}, y: {}}\n  b: {x: {}, y: {}}"])  # fmt: skip
+def test_every_search_has_its_page_wherever_it_ends(tmp_path, axis, reached):
+    text = "scenario: walk\nset: {fidelity: pendulum, pushes: [{time: 1, duration: 0.1, impulse: 0.1, direction: 0}]}\n"
+    key = "criteria.speed_mean.max"
+    text += f"grid:\n  {axis}\nbisect: {{key: {key}, low: -1.0e+100, high: 1.0e+100, tolerance: 1.0e+98}}\n"
+    write(swept(tmp_path, text, lambda one: (passed if one.settings[key] <= reached else failed)(one)))
+    assert "thresholds-figure" in (tmp_path / PAGE).read_text()
+
+
+@pytest.mark.parametrize(
+    ("key", "of"),
+    [
+        ("sample", "{criteria.speed_mean.max: {uniform: [-1.7e+308, 1.7e+308]}}"),
+        ("bisect", "{key: criteria.speed_mean.max, low: 1.0e-300, high: 1.0e+100, ratio: 1.5}"),
+        ("bisect", "{key: criteria.speed_mean.max, low: 0.1, high: 0.2, ratio: 1.000000000001}"),
+        ("bisect", "{key: criteria.speed_mean.max, low: 0.1, high: 1.7e+308, tolerance: 1}"),
+    ],
+)
+def test_ranges_that_no_number_spans_are_refused(tmp_path, key, of):
+    (tmp_path / "spec.yaml").write_text(f"scenario: walk\n{key}: {of}\n")
+    with pytest.raises(ScenarioError, match=rf"spec.yaml:2:.*{key}.*; "):
+        read_campaign(str(tmp_path / "spec.yaml"))
 
 
 PUSHES = """

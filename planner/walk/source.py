@@ -116,7 +116,7 @@ _SHARE = 0.6
 _THERE = 0.002
 """Distance from a place at which a walk to it is over, of the reference robot [m], or in heading [rad]."""
 
-_AWAY = 0.008
+AWAY = 0.008
 """Distance from it at which a robot that stands there goes on, likewise [m, rad]."""
 
 _ASTRAY = 1.0
@@ -184,7 +184,7 @@ class CommandSource:
 
     def _onward(self, at: Request) -> Array:
         """Length, lateral and turn of the stride to the next place, zero at the last one, shape (3,) [m, rad]."""
-        near = _AWAY if at.before is None else _THERE
+        near = AWAY if at.before is None else _THERE
         # How many places were reached before which step: a step may be asked for anew.
         self._reached = {step: count for step, count in self._reached.items() if step < at.step}
         reached = max(self._reached.values(), default=0)

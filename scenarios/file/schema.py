@@ -54,6 +54,7 @@ Newtons = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False), NEWTON]
 Force = Annotated[tuple[Newtons, Newtons, Newtons], BeforeValidator(as_tuple)]
 Offset = Annotated[float, Field(ge=-0.5, le=0.5, allow_inf_nan=False), METRE]
 Impulse = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False), Unit("N·s/kg")]
+Live = Annotated[bool, Field(description="given by hand while a run went on, so that it need not act for a pass")]
 
 
 class RobotSettings(Group):
@@ -144,6 +145,17 @@ class CommandSettings(Group):
     swing_height: Annotated[float, Field(gt=0, le=0.5, allow_inf_nan=False), METRE] | None = Field(
         default=None, description="apex of the swing foot from then on, null: as it was"
     )
+    live: Live = False
+
+    def superseded_by(self, other: "CommandSettings") -> set[str]:
+        """Keys of this one that a later one leaves without effect, if nothing comes between them."""
+        given, others = ({name for name, value in one if value is not None} for one in (self, other))
+        leads = _LEADING & given if _LEADING & others else set()
+        return leads | given & others - _LEADING - {"time", "live"}
+
+
+_LEADING = {"v_x", "v_y", "yaw_rate", "place"}
+"""Keys of a command that say where to walk, each of which replaces all."""
 
 
 class Gait(Group):
@@ -329,6 +341,7 @@ class PushSettings(Group):
         default=None, description="where the impulse points on the ground, from the world's x axis to the left, null: 0"
     )
     body: str | None = Field(default=None, description="body it acts on, at its centre of mass; null: the torso")
+    live: Live = False
 
 
 class PendulumSettings(Group):

@@ -19,6 +19,7 @@ from surefoot.scenarios.file.group import unknown
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import decoded, parse
 from surefoot.scenarios.file.translate import without
+from surefoot.scenarios.judge.acted import idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.agreement import contradictions
 from surefoot.scenarios.judge.digest import Digest, RunView
 from surefoot.scenarios.judge.metrics import digest, known, measure
@@ -116,9 +117,6 @@ def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
         yield f"the whole-body QP needed its second solver at {failures} ticks"
 
 
-AT_PLACE = 0.02
-"""Distance from the place where the robot was told to go within which it is there, if no criterion says it [m]."""
-
 _LOSSES_SAID = 3
 _ACCEPTED_ENDS = ("completed", "fall")
 
@@ -204,9 +202,11 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     (scenario, absent), gathered = _known_part(log), gathered or digest(log)
     measured = measure(gathered)
     criteria = asked(scenario.criteria, scenario.fidelity)
-    size = RunView(gathered).constants.similarity
-    untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(RunView(gathered))
-    undone = (*_unacted(log, scenario, size), *_not_there(measured.values, criteria, AT_PLACE * size.length))
+    run = RunView(gathered)
+    size = run.constants.similarity
+    untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(run)
+    idle = (*_unacted(log, scenario, size), *idle_commands(run, scenario.commands), *unmet_ground(run))
+    undone = (*idle, *not_there(measured.values, criteria, size.length))
     reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
     said = (*skipped, *notes(Draft(scenario, size)), *_degraded(measured.values), *measured.notes)
@@ -289,13 +289,6 @@ def _unacted(log: Log, scenario: Scenario, size: Similarity) -> list[str]:
         return [problem.what for problem in never_act(Draft(scenario, size), end)]
     except ParameterError as fault:
         return [f"when its pushes and faults act cannot be known: {fault}"]
-
-
-def _not_there(metrics: Mapping[str, Any], criteria: Mapping[str, Bound], near: float) -> Iterator[str]:
-    """Say that the robot is not near where it was told to go [m], unless a criterion says how far from it it may be."""
-    error = metrics.get("place_error")
-    if error is not None and "place_error" not in criteria and error > near:
-        yield f"the robot is {error:.3g} m from where it was told to go last; it must be within {near:g} m"
 
 
 def _incomplete(log: Log) -> list[str]:

@@ -84,6 +84,40 @@ def heading_error(run: RunView) -> float | None:
     return float(abs(np.angle(np.exp(1j * turned).sum())))
 
 
+AT_WAYPOINT = 0.05
+"""Distance of a sole from where it would stand at a waypoint within which the robot has come there [m]."""
+
+WAYPOINT_HEADING = 0.1
+"""Likewise the difference of its heading from the one asked for there [rad]."""
+
+
+@metric(needs=("/truth", "/contact"), reads={"/contact": ("felt",)}, least=0.0)
+def waypoints_missed(run: RunView) -> int | None:
+    """Waypoints that no foot on the ground came to with the heading asked for, each after the one before it."""
+    places = run.constants.waypoints
+    if not places:
+        return None
+    tick, missed = 0, 0
+    for place in places:
+        there = np.flatnonzero(_stands_at(run, place)[tick:])
+        missed += not len(there)
+        tick += int(there[0]) if len(there) else 0
+    return missed
+
+
+def _stands_at(run: RunView, place: tuple[float, float, float]) -> Mask:
+    """Ticks in which a loaded foot is where it would stand in a stance at a place, as wide as the one at the start."""
+    (x, y, yaw), near = place, run.constants.similarity.times(AT_WAYPOINT, "m")
+    left = 0.5 * np.hypot(*(run.soles[0, 0, :2] - run.soles[0, 1, :2])) * np.array([-np.sin(yaw), np.cos(yaw)])
+    stands = np.zeros(run.ticks, dtype=np.bool_)
+    for foot, beside in ((0, left), (1, -left)):
+        away = run.sole(foot)[:, :2] - ((x, y) + beside)
+        turned = np.abs(np.angle(np.exp(1j * (run.sole_yaw[:, foot] - yaw))))
+        loaded = run.field("/contact", "felt")[:, foot] != 0
+        stands |= loaded & (np.hypot(*away.T) < near) & (turned < WAYPOINT_HEADING)
+    return stands
+
+
 def _led(run: RunView) -> bool:
     """Whether the robot was told where to go."""
     log = run.log["/command"]

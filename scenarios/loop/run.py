@@ -248,6 +248,8 @@ def run_constants(walk: Walk) -> RunConstants:
         plane=walk.true_terrain.plane,
         size=(walk.size.length, walk.size.mass),
         knee_straight=_knee_straight(robot),
+        unforeseen=walk.unforeseen,
+        waypoints=walk.waypoints,
     )
 
 

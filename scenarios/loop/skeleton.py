@@ -232,6 +232,7 @@ class ClosedLoop:
         self._ticks = self._last = round(duration * rate)
         self.tick = 0
         self._pushes = list(pushes)
+        self._begun: list[tuple[PushPoint, Push]] = []
         self.end = End("completed", self._ticks / rate)
         self.fell = False
         self.done = self._last == 0
@@ -266,10 +267,19 @@ class ClosedLoop:
             self._last = min(self._last, tick + round(AFTER_FALL * rate))
         self.tick = tick + 1
         self.done = self.tick >= self._last
-        if self.done and self._pushes and not self.fell:
-            point = self._pushes[0][0]
-            self.end = End("fault", self.tick / rate, f"a push never acted: the walk never came to {point}")
+        if self.done and not self.fell and (broken := self._broken_promise()):
+            self.end = End("fault", self.tick / rate, broken)
         return sample
+
+    def _broken_promise(self) -> str:
+        """Which push at a point of the gait did not act, or not to its end; empty when all did that are to."""
+        for point, _ in self._pushes:
+            if point.promised:
+                return f"a push never acted: the walk never came to {point}"
+        for point, push in self._begun:
+            if point.promised and push.time + push.duration > self.time + ROUNDING / self.rate:
+                return f"a push at {push.time:.3f} s, {point}, would have lasted {push.duration:g} s and was cut off"
+        return ""
 
     def _step(self, tick: int) -> tuple[PlanSample, bool]:
         watch = Watch.start()
@@ -308,7 +318,8 @@ class ClosedLoop:
             begin = max(now, plan.time + point.left(plan.phase))
             # At the end of the tick too: there the next phase may begin, which does not know the point any more.
             if begin < now + (1.0 + ROUNDING) / self.rate:
-                self.walker.push(replace(push, time=begin))
+                self._begun.append((point, replace(push, time=begin)))
+                self.walker.push(self._begun[-1][1])
             else:
                 self._pushes.append((point, push))
 

@@ -90,6 +90,9 @@ class RunConstants:
         velocity_limit: no-load speed by joint; empty in a log that lacks them [rad/s].
         plane: height of the ground plane; a log has it where it is not 0 [m].
         knee_straight: angles of the knees at which the legs are straight; a log has it where they are not 0 [rad].
+        unforeseen: numbers of the boxes that are not where planner and controller believe them to be, by the key of the
+            scenario that has put them there; a log has it where there are any.
+        waypoints: places to go to one after another, as x, y [m] and heading [rad] in the world; likewise.
         size: length and mass of the robot over the reference's; a log has it where they are not 1 [-].
     """
 
@@ -115,6 +118,8 @@ class RunConstants:
     plane: float = 0.0
     size: tuple[float, float] = (1.0, 1.0)
     knee_straight: tuple[float, ...] = ()
+    unforeseen: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    waypoints: tuple[tuple[float, float, float], ...] = ()
 
     @property
     def similarity(self) -> Similarity:
@@ -128,8 +133,9 @@ class RunConstants:
             del written["plane"]
         if self.size == (1.0, 1.0):
             del written["size"]
-        if not self.knee_straight:
-            del written["knee_straight"]
+        for name in ("knee_straight", "unforeseen", "waypoints"):
+            if not written[name]:
+                del written[name]
         return {name: json.dumps(value) for name, value in written.items()}
 
     @classmethod
@@ -169,8 +175,12 @@ class RunConstants:
             if len(values) != len(self.joint_names) or any(math.isnan(value) for value in values):
                 return f"{name}, of {len(values)} numbers for {len(self.joint_names)} joints"
         boxes_fit = all(len(box) == 15 and all(map(math.isfinite, box)) for box in self.boxes)
-        if not (boxes_fit and math.isfinite(self.plane)):
+        numbers = [number for found in self.unforeseen.values() for number in found]
+        numbered = all(0 <= number < len(self.boxes) for number in numbers)
+        if not (boxes_fit and numbered and math.isfinite(self.plane)):
             return "ground"
+        if not all(map(math.isfinite, (part for place in self.waypoints for part in place))):
+            return "waypoint"
         return ""
 
 

@@ -13,7 +13,7 @@ from surefoot.scenarios.file.schema import Gait, Sensing, TerrainSettings
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.commands import told_problems
 from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.events import idle_commands, never_act
+from surefoot.scenarios.setup.events import cut_off, idle_commands, never_act, slight
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
 from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known
 from surefoot.scenarios.setup.sized import default_of
@@ -49,7 +49,8 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
         *clock,
         *_durations(draft),
         *told_problems(draft),
-        *(() if clock else never_act(draft, draft.duration)),
+        *(() if clock else (*never_act(draft, draft.duration), *cut_off(draft))),
+        *slight(draft),
         *(() if commands else idle_commands(draft)),
         *_beliefs(draft),
         *_controller(draft),

@@ -1,14 +1,15 @@
 """What a walk is told while it goes on, and the places that it goes to: in the planner's terms, and what is wrong."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.walk.commands import Command, Pose, TimedCommand, Twist
-from surefoot.planner.walk.source import CommandSource, steps_ordered
+from surefoot.planner.walk.source import AWAY, CommandSource, steps_ordered
 from surefoot.scenarios.errors import Key, Problem
 from surefoot.scenarios.file.schema import CommandSettings
 from surefoot.scenarios.setup.gait import step_region
@@ -71,6 +72,7 @@ def told_problems(draft: "Draft") -> Iterator[Problem]:
         return
     for index, command in enumerate(keys.commands):
         yield from _command_problems(draft, ("commands", index), command)
+    yield from _no_way(draft)
     where: list[Key] = [("gait", "waypoints")] if keys.gait.waypoints else []
     where += [("commands", index) for index in range(len(keys.commands))]
     if where and keys.terrain.kind != "flat":
@@ -85,16 +87,25 @@ def told_problems(draft: "Draft") -> Iterator[Problem]:
         yield Problem(("commands",), "commands that do not end with a stop", "end them with v_x: 0, or give duration")
 
 
+def _no_way(draft: "Draft") -> Iterator[Problem]:
+    """List waypoints at which the robot is already, where it stands at first or at the waypoint before."""
+    before, where = Pose(0.0, 0.0, 0.0), "the robot starts"
+    for index, to in enumerate(draft.keys.gait.waypoints):
+        place, turn = Pose(to.x, to.y, to.yaw), abs(wrap_angle(to.yaw - before.yaw))
+        if max(math.dist(place[:2], before[:2]) / draft.size.length, turn) <= AWAY:
+            what = f"gait.waypoints.{index} is where {where}, so that no step goes there"
+            yield Problem(("gait", "waypoints", index), what, "give another place or heading, or leave it out")
+        before, where = place, f"gait.waypoints.{index} is"
+
+
 def _command_problems(draft: "Draft", key: Key, command: CommandSettings) -> Iterator[Problem]:
-    given = {name for name in type(command).model_fields if getattr(command, name) is not None} - {"time"}
+    given = {name for name in type(command).model_fields if getattr(command, name) is not None} - {"time", "live"}
     name = f"commands.{key[1]}"
     if not given:
         yield Problem(key, f"{name} says nothing", "give a velocity, a place, or what of the gait is to change")
     if "place" in given and given & {"v_x", "v_y", "yaw_rate"}:
         yield Problem(key, f"{name} has both a place and a velocity", "give one of them")
-    if draft.keys.duration is not None and command.time >= draft.keys.duration:
-        what = f"{name} comes at {command.time:g} s and never acts: the run ends at {draft.keys.duration:g} s"
-        yield Problem((*key, "time"), what, "let it come before")
+    yield from _unheard(draft, key)
     durations = {entry: getattr(command, entry) for entry in ("single_support", "double_support")}
     try:
         given_durations = {entry: value for entry, value in durations.items() if value is not None}
@@ -102,6 +113,34 @@ def _command_problems(draft: "Draft", key: Key, command: CommandSettings) -> Ite
     except ParameterError as fault:
         if durations[str(fault.key[-1])] is not None:
             yield Problem((*key, fault.key[-1]), f"{name}.{fault.what}", fault.right)
+
+
+def _unheard(draft: "Draft", key: Key) -> Iterator[Problem]:
+    """List what of a promised command no plan hears of: it comes after the last one, or is superseded before the next.
+
+    A command is taken by the first plan at or after its time; of two that one plan takes the later one holds.
+    """
+    told, index = draft.keys.commands, int(key[1])
+    command, name = told[index], f"commands.{key[1]}"
+    rate, end = draft.keys.rates.planner, draft.keys.duration
+    heard = plan_of(command, rate)
+    if command.live:
+        return
+    if end is not None and heard / rate >= end - 1e-9:
+        what = f"{name} comes at {command.time:g} s and never acts: "
+        what += f"the run ends at {end:g} s" if command.time >= end else f"no plan comes before the end at {end:g} s"
+        yield Problem((*key, "time"), what, "let it come before")
+        return
+    for number, other in enumerate(told):
+        later = (other.time, number) > (command.time, index) and plan_of(other, rate) == heard
+        for entry in sorted(command.superseded_by(other)) if later and not other.live else ():
+            what = f"{name}.{entry} never acts: commands.{number} supersedes it before the plan at {heard / rate:g} s"
+            yield Problem((*key, entry), what, "leave one of them out, or let a plan come between")
+
+
+def plan_of(command: CommandSettings, rate: int) -> int:
+    """Number of the first plan that hears of a command, where plans come at a rate [Hz]."""
+    return math.ceil(command.time * rate - 1e-6)
 
 
 def _leads(command: CommandSettings) -> bool:

@@ -134,6 +134,28 @@ class Draft:
         return replace(terrain, boxes=(*terrain.boxes, *hidden)) if hidden else terrain
 
     @cached_property
+    def unforeseen(self) -> dict[str, tuple[int, ...]]:
+        """Numbers of the boxes of the true ground that lie elsewhere than believed, by the key that has put them there.
+
+        Where the robot starts is known.
+        """
+        true, hidden = self.true_terrain.boxes, len(self.keys.errors.ground or ())
+        first = len(true) - hidden
+        noisy = "errors.ground_noise" if self.tiles is not None else "terrain.height_noise"
+        believed = (None,) * first if self.tiles is not None else self.terrain.boxes
+        other = tuple(
+            number
+            for number, (box, known) in enumerate(zip(true[:first], believed, strict=True))
+            if box is not known and (known is not None or self._top(box) != self.start_height)
+        )
+        found = {noisy: other} if self.tiles is not None or self.keys.terrain.height_noise else {}
+        return found | {f"errors.ground.{index}": (first + index,) for index in range(hidden)}
+
+    def _top(self, box: Box) -> float:
+        """Height of a level box [m]."""
+        return float(box.center[2] + box.half_size[2])
+
+    @cached_property
     def tiles(self) -> Tiles | None:
         """What lies in truth where level ground is believed in; None when it is level."""
         keys = self.keys

@@ -8,10 +8,15 @@ from dataclasses import dataclass
 from surefoot.errors import ParameterError
 from surefoot.planner.walk.commands import velocity_bouts
 from surefoot.scenarios.errors import Problem
-from surefoot.scenarios.file.schema import Fault, Rates, VelocitySettings
+from surefoot.scenarios.file.schema import Fault, PushSettings, Rates, VelocitySettings
+from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import gait_of, push_time, timeline_of, twist_of, uncommanded
 from surefoot.sim.pushes import physics_window
+
+LEAST = 1e-9
+"""Least impulse per kilogram that pushes, with which a robot moves by a nanometre in a second, and the least of other
+sizes that act: a nanometre, a nanoradian, the mass of a grain of dust [SI]."""
 
 MOST_IDLE = 20
 """Commands that never act of which a scenario is told."""
@@ -52,13 +57,13 @@ class FaultWindow:
 
 
 def never_act(draft: Draft, end: float) -> Iterator[Problem]:
-    """List the pushes and faults that do nothing in a run that ends at this time [s].
+    """List the promised pushes and the faults that do nothing in a run that ends at this time [s].
 
     Raises:
         ParameterError: the gait cannot be walked, so that its phases have no times.
     """
     rates = draft.keys.rates
-    for index, push in enumerate(draft.keys.pushes):
+    for index, push in _promised(draft):
         key, name = ("pushes", index), f"pushes.{index}"
         # Whether a walk that is told where to go comes to a step, the run will show.
         time = 0.0 if draft.told and push.time is None else push_time(draft.gait, push)
@@ -68,9 +73,8 @@ def never_act(draft: Draft, end: float) -> Iterator[Problem]:
         elif stop <= start:
             what = f"{name}.duration {push.duration:g} s rounds to nothing on a clock of {rates.physics} Hz"
             yield Problem((*key, "duration"), what, "give it at least 1e-6 s")
-        elif not (push.impulse or any(push.force or ())):
-            given = "force" if push.impulse is None else "impulse"
-            yield Problem((*key, given), f"{name}.{given} is zero, which pushes nothing", "give more, or no push")
+        else:
+            yield from _weak(key, push)
     for index, fault in enumerate(draft.keys.faults):
         key, name = ("faults", index), f"faults.{index}"
         first = FaultWindow.of(fault, rates.control).first_act(rates)
@@ -80,6 +84,77 @@ def never_act(draft: Draft, end: float) -> Iterator[Problem]:
             yield Problem((*key, "duration"), what, f"give it at least {1 / every:g} s")
         elif first >= end:
             yield _too_late((*key, "time"), f"{name} acts first at", first, end)
+
+
+def cut_off(draft: Draft) -> Iterator[Problem]:
+    """List the promised pushes and the faults that the end of the run cuts off.
+
+    Raises:
+        ParameterError: the gait cannot be walked, so that its phases have no times.
+    """
+    rates = draft.keys.rates
+    end = round(draft.duration * rates.control) / rates.control
+    last = round(end * rates.physics, 6)
+    for index, push in _promised(draft):
+        if push.time is None and draft.told:
+            continue
+        start, stop = physics_window(push_time(draft.gait, push), push.duration, rates.physics)
+        if start < last < stop:
+            room = (last - start) / rates.physics
+            hint = meant(push.duration, "s", room)
+            yield _cut(("pushes", index, "duration"), stop / rates.physics, end, f"at most {room:.6g} s{hint}")
+    for index, fault in enumerate(draft.keys.faults):
+        window = FaultWindow.of(fault, rates.control)
+        if window.start / rates.control < end < window.end / rates.control < math.inf:
+            right = f"at most {end - fault.time:.6g} s, or no duration"
+            yield _cut(("faults", index, "duration"), window.end / rates.control, end, right)
+
+
+def _cut(key: tuple[str | int, ...], stop: float, end: float, right: str) -> Problem:
+    what = f"{key[0]}.{key[1]} would last until {stop:.6g} s, and the end of the run at {end:.6g} s cuts it off"
+    return Problem(key, what, f"give it {right}")
+
+
+def _promised(draft: Draft) -> Iterator[tuple[int, PushSettings]]:
+    """The pushes that are to act, with their numbers; those given by hand in a run of which this is the log need not."""
+    return ((index, push) for index, push in enumerate(draft.keys.pushes) if not push.live)
+
+
+def _weak(key: tuple[str | int, ...], push: PushSettings) -> Iterator[Problem]:
+    """Tell a push that moves nothing; of a force given in newtons the mass does not matter, as that of any robot."""
+    given = "force" if push.impulse is None else "impulse"
+    name = f"{key[0]}.{key[1]}.{given}"
+    impulse = push.duration * math.hypot(*(push.force or ())) if push.impulse is None else push.impulse
+    if impulse == 0.0 and not any(push.force or ()):
+        yield Problem((*key, given), f"{name} is zero, which pushes nothing", "give more, or no push")
+    elif impulse < LEAST:
+        unit = "N·s" if push.impulse is None else "N·s/kg"
+        what = f"{name} makes an impulse of {impulse:.3g} {unit}, by which no robot moves as far as an atom is wide"
+        yield Problem((*key, given), what, f"give at least {LEAST:g} {unit}, or no push")
+
+
+_SIZES = (
+    ("robot_options", ("payload_mass",)),
+    ("terrain", ("riser", "height_noise", "angle")),
+    ("gait", ("apex_single", "apex_double", "heel_off")),
+    ("sensing", ("zmp_noise", "com_noise")),
+    ("start", ("position_noise", "angle_noise")),
+    ("errors", ("com_height", "link_mass_noise", "friction", "ground_noise")),
+)
+"""Keys of a size that is either 0 or meant to act; a place or a direction may be any number."""
+
+
+def slight(draft: Draft) -> Iterator[Problem]:
+    """List sizes that are not zero and so small that nothing follows from them but rounding."""
+    keys, errors = draft.keys, draft.keys.errors
+    sizes = [((group, name), getattr(getattr(keys, group), name)) for group, names in _SIZES for name in names]
+    sizes += [(("errors", "torso_com"), math.hypot(*(errors.torso_com or (0.0,))))]
+    sizes += [(("errors", "payload", "mass"), errors.payload.mass)] if errors.payload is not None else []
+    sizes += [(("errors", "ground", index, "height"), box.height) for index, box in enumerate(errors.ground or ())]
+    for key, size in sizes:
+        if size and abs(size) < LEAST:
+            what = f"{'.'.join(map(str, key))} {size:g} is too small to change anything"
+            yield Problem(key, what, f"use {'0, or ' if key[-1] != 'height' else ''}at least {LEAST:g}")
 
 
 def _too_late(key: tuple[str | int, ...], what: str, time: float, end: float) -> Problem:

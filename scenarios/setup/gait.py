@@ -168,18 +168,21 @@ class PushPoint:
         step: number of the step.
         kind: single support, or the double support before it.
         fraction: of that phase that has gone by [-].
+        promised: whether the run is no pass unless it comes to act, wholly.
     """
 
     step: int
     kind: PhaseKind
     fraction: float
+    promised: bool = True
 
     @classmethod
     def of(cls, push: PushSettings) -> "PushPoint | None":
         """The point of a push; None of one that begins at a time."""
         if push.step is None or push.phase is None:
             return None
-        return cls(push.step, PhaseKind.SINGLE if push.phase == "single" else PhaseKind.DOUBLE, push.fraction or 0.0)
+        kind = PhaseKind.SINGLE if push.phase == "single" else PhaseKind.DOUBLE
+        return cls(push.step, kind, push.fraction or 0.0, not push.live)
 
     def left(self, phase: PhaseInfo) -> float:
         """Time until it is reached, on the clock of the gait; infinite in other phases [s]."""

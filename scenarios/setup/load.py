@@ -84,9 +84,16 @@ def attached_scenario(path: str) -> tuple[str, str]:
 
 
 def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
-    """The text of a scenario with the pushes and commands that were given while it ran, as long as it ran then."""
+    """The text of a scenario with the pushes and commands that were given while it ran, as long as it ran then.
+
+    What was given by hand was promised to nobody; nor was what the scenario holds, in a run that was ended by hand.
+    """
     given = {
-        keys: [json.loads(record[kind.strip()]) for name, record in metadata.items() if name.startswith(kind)]
+        keys: [
+            {**json.loads(record[kind.strip()]), "live": True}
+            for name, record in metadata.items()
+            if name.startswith(kind)
+        ]
         for keys, kind in (("pushes", PUSH_RECORD), ("commands", COMMAND_RECORD))
     }
     end = metadata.get(END_RECORD, {})
@@ -99,7 +106,19 @@ def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
         for name in ("pushes", "commands", "faults"):
             # What was to come later has not acted.
             keys[name] = [entry for entry in keys.get(name, []) if (entry.get("time") or 0.0) < keys["duration"]]
+        if end.get("reason") == STOPPED or end["kind"] == "fall":
+            for name in ("pushes", "commands"):
+                keys[name] = [{**entry, "live": True} for entry in keys[name]]
+            keys["faults"] = [_until(keys["duration"], entry) for entry in keys["faults"]]
     return yaml.safe_dump(keys, sort_keys=False)
+
+
+def _until(end: float, fault: dict[str, Any]) -> dict[str, Any]:
+    """A fault that lasts to the end of the run, if it would last longer [s]."""
+    lasts = fault.get("duration")
+    if lasts is None or fault["time"] + lasts <= end:
+        return fault
+    return {name: value for name, value in fault.items() if name != "duration"}
 
 
 def written(reference: str) -> Written:

@@ -1,6 +1,7 @@
 """A scenario resolved: what it means, computed once, in the terms of the layers below; nobody there sees a scenario."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from operator import index
 from typing import TYPE_CHECKING
@@ -17,12 +18,12 @@ from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.types import GRAVITY, Array, FeetState
-from surefoot.planner.walk.commands import TimedCommand
+from surefoot.planner.walk.commands import Pose, TimedCommand
 from surefoot.planner.walk.gait import GaitParameters
 from surefoot.planner.walk.reach import Legs, StepRegion
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
-from surefoot.scenarios.setup.commands import told
+from surefoot.scenarios.setup.commands import told, waypoints
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import PushPoint, leg_span, step_region
 from surefoot.scenarios.setup.parts import guarded_law, profile_guard
@@ -80,6 +81,8 @@ class Walk:
         terrain: the ground as believed.
         true_terrain: the ground as simulated.
         terrain_kind: name of its kind.
+        unforeseen: numbers of the boxes of the simulated ground that lie elsewhere than believed, by the key that has
+            put them there.
         start: where the walk starts, with its noises.
         start_height: of the ground there [m].
         stance: the feet there, side by side.
@@ -90,6 +93,7 @@ class Walk:
         tasks: of other packages in its QP, by name.
         sensing: noises of what is measured.
         filter: filter of the planner's state: none, kalman or zmp_only.
+        waypoints: places in the world to go to one after another, as the first of the commands says.
         commands: that the walk hears while it goes on.
         pushes: on bodies, world frame, that begin at a time.
         gait_pushes: those that begin at a point of the gait, whenever it is reached.
@@ -116,6 +120,7 @@ class Walk:
     terrain: Terrain
     true_terrain: Terrain
     terrain_kind: str
+    unforeseen: Mapping[str, tuple[int, ...]]
     start: Start
     start_height: float
     stance: FeetState
@@ -126,6 +131,7 @@ class Walk:
     tasks: tuple[str, ...]
     sensing: Sensing
     filter: str
+    waypoints: tuple[Pose, ...]
     commands: tuple[TimedCommand, ...]
     pushes: tuple[Push, ...]
     gait_pushes: tuple[tuple[PushPoint, Push], ...]
@@ -251,6 +257,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         terrain=draft.terrain,
         true_terrain=draft.true_terrain,
         terrain_kind=keys.terrain.kind,
+        unforeseen=draft.unforeseen if keys.fidelity == "full" else {},
         start=keys.start,
         start_height=draft.start_height,
         stance=draft.stance,
@@ -262,6 +269,7 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         tasks=keys.wbc.tasks if keys.wbc is not None else (),
         sensing=keys.sensing,
         filter=_filter(draft),
+        waypoints=waypoints(draft),
         commands=told(draft),
         pushes=timed,
         gait_pushes=pointed,

@@ -1,0 +1,161 @@
+"""Whether what a scenario asks for came to act in its run: its commands, its places, the ground that nobody believes in."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.schema import CommandSettings
+from surefoot.scenarios.judge.body import headings
+from surefoot.scenarios.judge.digest import Array, Mask, RunView
+from surefoot.scenarios.judge.walking import runs_of
+
+AT_PLACE = 0.02
+"""Distance from the place where the robot was told to go within which it is there, if no criterion says it [m]."""
+
+AT_HEADING = 0.02
+"""Likewise the difference from the heading that it was told to have there, a little more than a degree [rad]."""
+
+_SAME_TIME = 1e-6
+"""Times of commands are sums and carry rounding [s]."""
+
+
+def not_there(metrics: Mapping[str, object], criteria: Mapping[str, Bound], length: float) -> Iterator[str]:
+    """Say what of its way the robot has not gone, unless a criterion says how far from it it may be.
+
+    Args:
+        metrics: of the run.
+        criteria: that are asked.
+        length: of the robot over that of the reference [-].
+    """
+    for name, near, unit in (("place_error", AT_PLACE * length, "m"), ("heading_error", AT_HEADING, "rad")):
+        error = metrics.get(name)
+        if isinstance(error, float) and name not in criteria and error > near:
+            yield f"the robot is {error:.3g} {unit} from where it was told to go last; it must be within {near:g} {unit}"
+    missed = metrics.get("waypoints_missed")
+    if missed and "waypoints_missed" not in criteria:
+        yield f"the robot never came to {missed} of its waypoints, with the heading asked for there"
+
+
+@dataclass(frozen=True, slots=True)
+class _Gait:
+    """When a run planned, and what its feet did.
+
+    Attributes:
+        plans: times of the plans, shape (n,) [s].
+        time: of the control ticks, shape (m,) [s].
+        phase: 0 standing, 1 double, 2 single support, shape (m,).
+        swings: first and last tick of each swing.
+    """
+
+    plans: Array
+    time: Array
+    phase: Array
+    swings: list[tuple[int, int]]
+
+    @classmethod
+    def of(cls, run: RunView) -> "_Gait":
+        return cls(run.log["/plan"].time, run.time, run.field("/reference", "phase"), runs_of(run.single_support))
+
+    def heard(self, command: CommandSettings) -> float:
+        """Time of the plan that takes a command, infinite when none does [s]."""
+        later = np.flatnonzero(self.plans >= command.time - _SAME_TIME)
+        return float(self.plans[later[0]]) if len(later) else math.inf
+
+    def stepping(self, begin: float, end: float) -> bool:
+        """Whether a foot is swung or the weight shifted between two times."""
+        return bool(self.phase[(self.time >= begin - _SAME_TIME) & (self.time < end - _SAME_TIME)].any())
+
+    def laid(self, time: float) -> int:
+        """Steps whose swing is fixed at a time: those begun, and the one to which the weight is being shifted."""
+        begun = sum(self.time[first] <= time for first, _ in self.swings)
+        here = int(np.searchsorted(self.time, time - _SAME_TIME))
+        ahead = np.flatnonzero(self.phase[here:] != 1)
+        shifting = len(ahead) and ahead[0] > 0 and self.phase[here + ahead[0]] == 2
+        return int(begun) + bool(shifting)
+
+
+def idle_commands(run: RunView, commands: Sequence[CommandSettings]) -> Iterator[str]:
+    """Say which of the promised commands of a scenario came to nothing.
+
+    Where to walk, and how long supports last, acts on a robot that steps before another command supersedes it; a swing
+    height on the next step that is not yet begun. One that asks to stand, or for what holds anyway, asks for no change.
+    """
+    if not commands or not run.has("/plan", "/reference", "/truth"):
+        return
+    gait = _Gait.of(run)
+    order = sorted(range(len(commands)), key=lambda index: commands[index].time)
+    for place, index in enumerate(order):
+        command, later = commands[index], [commands[other] for other in order[place + 1 :]]
+        if not command.live:
+            yield from _idle(f"commands.{index}", command, [other for other in later if not other.live], gait)
+
+
+def _idle(name: str, command: CommandSettings, later: Sequence[CommandSettings], gait: _Gait) -> Iterator[str]:
+    begin = gait.heard(command)
+    if math.isinf(begin):
+        yield f"{name} came at {command.time:g} s and never acted: no plan was made after it"
+        return
+    for entry in _asked(command):
+        until = next((gait.heard(other) for other in later if entry in command.superseded_by(other)), math.inf)
+        if until <= begin:
+            yield f"{name}.{entry} never acted: another command superseded it before a plan was made"
+        elif entry == "swing_height":
+            if gait.laid(min(until, gait.time[-1])) == gait.laid(begin):
+                yield f"{name}.{entry} never acted: the robot began no step by it"
+        elif not gait.stepping(begin, until):
+            yield f"{name}.{entry} never acted: the robot stood for as long as it held"
+
+
+def _asked(command: CommandSettings) -> Iterator[str]:
+    """Keys of what a command wants changed; of a velocity one that is not zero, none when it asks to stand."""
+    leading = ("v_x", "v_y", "yaw_rate")
+    yield from [name for name in leading if getattr(command, name)][:1]
+    for name in ("place", "single_support", "double_support", "swing_height"):
+        if getattr(command, name) is not None:
+            yield name
+
+
+def unmet_ground(run: RunView) -> Iterator[str]:
+    """Say which ground that is not as believed no foot came upon, so that it was no test."""
+    unforeseen = run.constants.unforeseen
+    if not unforeseen or not run.has("/truth", "/contact"):
+        return
+    soles, later = _stances(run, 0), _stances(run, run.walking.start) if run.walking.stop else np.zeros((0, 3))
+    half = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
+    for key, numbers in unforeseen.items():
+        # Noise leaves the ground as it is believed to be where the robot starts; a box may lie there too.
+        stances = soles if key.startswith("errors.ground.") else later
+        if not any(_touches(stances, half, run.constants.boxes[number]).any() for number in numbers):
+            yield f"{key} never acted: no foot came upon ground that is not as believed"
+
+
+def _stances(run: RunView, start: int) -> Array:
+    """Places and headings of the soles in the middle of each contact from a tick on, shape (n, 3) [m, m, rad]."""
+    felt = run.field("/contact", "felt") != 0
+    found = []
+    for foot in (0, 1):
+        rows = [(begin + end) // 2 for begin, end in runs_of(felt[:, foot]) if begin >= start]
+        sole = run.sole(foot)[rows]
+        found.append(np.column_stack([sole[:, :2], headings(sole[:, 3:])]))
+    return np.concatenate(found)
+
+
+def _touches(soles: Array, half: Array, box: Sequence[float]) -> Mask:
+    """Which soles have a part over a box: two rectangles on the ground are apart if an axis of one of them parts them.
+
+    Args:
+        soles: places and headings, shape (n, 3).
+        half: half length and width of a sole, shape (2,) [m].
+        box: centre, half sizes and rotation to the world, row by row.
+    """
+    centre, size, axes = np.array(box[:2]), np.array(box[3:5]), np.array(box[6:]).reshape(3, 3)[:2, :2].T
+    c, s = np.cos(soles[:, 2]), np.sin(soles[:, 2])
+    own = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=1)
+    between = centre - soles[:, :2]
+    across = np.abs(own @ axes.T)  # of each axis of the sole along each of the box
+    apart_by_sole = np.abs(np.einsum("nij,nj->ni", own, between)) > half + across @ size
+    apart_by_box = np.abs(between @ axes.T) > size + np.einsum("nij,i->nj", across, half)
+    return np.asarray(~(apart_by_sole.any(axis=1) | apart_by_box.any(axis=1)))

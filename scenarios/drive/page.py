@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import asdict
+from functools import partial
 from http.client import HTTPConnection
 from importlib.resources import files
 from queue import SimpleQueue
@@ -16,13 +17,14 @@ import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.scenarios import palette
+from surefoot.scenarios.drive.channel import DRAWN, Channel
 from surefoot.scenarios.drive.picture import Instant, Pictures
-from surefoot.scenarios.drive.server import PageServer
 from surefoot.scenarios.drive.session import Gait, Input, Pace, Push, Reset, Status, Velocity
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.scenarios.show.replay.content import Array
+from surefoot.scenarios.show.replay.gate import LOCALHOST, VIEWER, Gate, serving
 from surefoot.scenarios.show.replay.page import AXES, BALANCE, FEET_NAMES, MARGINS
-from surefoot.scenarios.show.replay.scene import LOCALHOST, PORT, ViserScene, rgb, serving
+from surefoot.scenarios.show.replay.scene import ViserScene, rgb
 from surefoot.scenarios.simulation import Tick
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 
@@ -57,33 +59,42 @@ FARTHER = 1.5
 LEAST_PULL = 1.0
 """A shorter drag pushes nothing [N·s]."""
 
+FARTHEST = 1e6
+"""No point that a browser sends has a greater coordinate [m]."""
+
+LONGEST_QUOTE = 40
+"""Characters of what is refused that are said again."""
+
+CHANNEL = "session"
+"""Name of the page's websocket, below its address."""
+
+_SOON = "<!doctype html><meta http-equiv=refresh content=1><title>surefoot drive</title>The first run begins."
+
 
 class DrivePage:
     """Shows the runs of a session, and gives it what the user does; see `session.Page`.
 
     Args:
         viewer: shows the robot.
-        port: of the page; the first free one if None.
+        gate: of the viewer, which gets the page.
         inputs: get what the user does.
-
-    Raises:
-        LogError: the port is taken.
     """
 
-    def __init__(self, viewer: "viser.ViserServer", port: int | None, inputs: "SimpleQueue[Input]") -> None:
-        self._viewer, self._inputs = viewer, inputs
+    def __init__(self, viewer: "viser.ViserServer", gate: Gate, inputs: "SimpleQueue[Input]") -> None:
+        self._viewer, self._gate, self._inputs = viewer, gate, inputs
         self._follow, self._size = True, REFERENCE_SIZE
         self._impulse: float | None = None
         self._pull: Array | None = None
         self._pushed: dict[str, Any] | None = None
         self._pictures: Pictures
         self._scene: ViserScene | None = None
-        self._server = PageServer(port, self._take, lambda: inputs.put(Velocity()))
+        self._channel = Channel(self._take, lambda: inputs.put(Velocity()))
+        gate.page, gate.sockets = _SOON, {CHANNEL: self._channel.serve}
 
     @property
     def address(self) -> str:
         """Where the page is."""
-        return self._server.address
+        return self._gate.address
 
     def begin(self, robot: Any) -> None:
         """See `session.Page`; the robot is a `Simulation`, and the same for all runs."""
@@ -92,13 +103,18 @@ class DrivePage:
             self._pictures, self._size = Pictures(robot.walk), robot.walk.size
             if self._impulse is None:  # a page may have told its own before the first run begins
                 self._impulse = self._size.times(IMPULSE, "N·s")
-            self._server.page = _page(_viewer_page(self._viewer.get_port()), self._viewer.get_port(), robot.walk)
+            self._gate.page = _page(_viewer_page(self._gate), robot.walk)
         self._pictures.begin()
 
     def pushed(self, push: Push, time: float) -> None:
         """See `session.Page`."""
         self._pictures.pushed(push, time)
         self._pushed = {**self._told(np.array(push.impulse)), "body": push.body, "time": time}
+
+    @property
+    def drawn(self) -> bool:
+        """See `session.Page`."""
+        return self._channel.drawn
 
     def show(self, tick: Tick, status: Status) -> None:
         """See `session.Page`."""
@@ -119,11 +135,7 @@ class DrivePage:
             "pushed": self._pushed,
             "pull": None if pull is None else self._told(pull),
         }
-        self._server.tell(json.dumps(news).replace("NaN", "null"))
-
-    def close(self) -> None:
-        """Stop serving."""
-        self._server.close()
+        self._channel.tell(json.dumps(news).replace("NaN", "null"))
 
     def _followed(self) -> Any:
         try:
@@ -137,22 +149,27 @@ class DrivePage:
         camera = self._viewer.initial_camera
         camera.position = camera.look_at + FARTHER * (camera.position - camera.look_at)
         for body, node in scene.skin:
-            node.on_click(lambda event, body=body: self._clicked(body, event))
-            node.on_drag("left")(lambda event, body=body: self._dragged(body, event))
+            node.on_click(partial(self._clicked, body))
+            node.on_drag("left")(partial(self._dragged, body))
         look: dict[str, Any] = {"head_radius": 0.035, "head_length": 0.08, "shaft_radius": 0.015, "visible": False}
         self._arrow = self._viewer.scene.add_arrows("/Pull", np.zeros((1, 2, 3)), rgb(palette.PUSH), **look)
         return scene
 
-    def _clicked(self, body: str, event: Any) -> None:
+    # Coroutines, since viser calls those one after the other, on the thread of the sockets.
+    async def _clicked(self, body: str, event: Any) -> None:
         """Push along the view, but not into the ground."""
-        x, y, _ = event.ray_direction
-        length = math.hypot(x, y)
-        if length > 1e-6 and self._impulse is not None:
+        direction = _vector(event.ray_direction)
+        if direction is None or self._impulse is None:
+            return
+        x, y, _ = direction.tolist()
+        if (length := math.hypot(x, y)) > 1e-6:
             self._inputs.put(Push((self._impulse * x / length, self._impulse * y / length, 0.0), body))
 
-    def _dragged(self, body: str, event: Any) -> None:
+    async def _dragged(self, body: str, event: Any) -> None:
         """Pull towards the pointer when it is released; an arrow shows how until then."""
-        start, end = np.array(event.start_position), np.array(event.end_position)
+        start, end = _vector(event.start_position), _vector(event.end_position)
+        if start is None or end is None:
+            return
         pull = self._size.times(PULL, "N·s/m")
         impulse = pull * (end - start)
         size = float(np.linalg.norm(impulse))
@@ -169,22 +186,25 @@ class DrivePage:
         size = float(np.linalg.norm(impulse))
         return {"impulse": size, "specific": size / self._pictures.walk.true_mass}
 
-    def _take(self, text: str) -> None:
+    def _take(self, given: Mapping[str, Any]) -> None:
         """Take what the page sends.
 
         Raises:
             ValueError: it is not what the page would send.
         """
-        given = json.loads(text)
-        kind = given.pop("kind", None) if isinstance(given, dict) else None
+        kind = given.get("kind")
         if kind == "click":
-            self._impulse = _number(given, "impulse", 0.0, self._size.times(GREATEST_IMPULSE, "N·s"))
+            self._impulse = _above_zero(given, "impulse", self._size.times(GREATEST_IMPULSE, "N·s"))
         elif kind == "camera":
-            self._follow = bool(given.get("follows"))
+            self._follow = _switch(given, "follows")
         elif kind == "layer":
-            layer = given.get("layer")
-            if self._scene is not None and isinstance(layer, str) and layer in self._scene.layers:
-                self._scene.layers[layer].visible = bool(given.get("shown"))
+            layer, shown = given.get("layer"), _switch(given, "shown")
+            if layer not in LAYERS:
+                raise ValueError(f"no layer is called {_short(layer)}")
+            if self._scene is not None and layer in self._scene.layers:
+                self._scene.layers[layer].visible = shown
+        elif kind == "shadows":
+            self._viewer.scene.configure_default_lights(cast_shadow=_switch(given, "shown"))
         else:
             self._inputs.put(read_input(kind, given, self._size))
 
@@ -199,11 +219,11 @@ def _gait_ranges(size: Similarity) -> dict[str, tuple[float, float]]:
     return {key: size.times(ends, GAIT_UNITS[key]) for key, ends in GAIT_RANGES.items()}
 
 
-def read_input(kind: str | None, given: Mapping[str, Any], size: Similarity = REFERENCE_SIZE) -> Input:
+def read_input(kind: Any, given: Mapping[str, Any], size: Similarity = REFERENCE_SIZE) -> Input:
     """An input as the page sends it, bent into what may be asked for of a robot of a size.
 
     Raises:
-        ValueError: there is no such input, or a value is no number.
+        ValueError: there is no such input, or a value is not of its kind.
     """
     if kind == "velocity":
         return Velocity(**{key: _number(given, key, -most, most) for key, most in asdict(_limits(size)).items()})
@@ -211,29 +231,60 @@ def read_input(kind: str | None, given: Mapping[str, Any], size: Similarity = RE
         ranges = _gait_ranges(size)
         return Gait(**{key: _number(given, key, *ranges[key]) for key in ranges if key in given})
     if kind == "pace":
-        speed = _number(given, "speed", min(SPEEDS), max(SPEEDS)) if "speed" in given else None
-        return Pace(speed, bool(given["paused"]) if "paused" in given else None)
+        speed = max(_above_zero(given, "speed", max(SPEEDS)), min(SPEEDS)) if "speed" in given else None
+        return Pace(speed, _switch(given, "paused") if "paused" in given else None)
     if kind == "reset":
         return Reset()
-    raise ValueError(f"no input is called {kind}")
+    raise ValueError(f"no input is called {_short(kind)}")
 
 
 def _number(given: Mapping[str, Any], key: str, low: float, high: float) -> float:
     value = given.get(key)
-    if not isinstance(value, int | float) or not math.isfinite(value):
-        raise ValueError(f"{key} is {value}, which is no number")
-    return min(max(float(value), low), high)
+    try:
+        if isinstance(value, bool) or not math.isfinite(value):  # type: ignore[arg-type]
+            raise ValueError
+        return min(max(float(value), low), high)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{key} is {_short(value)}, which is no number") from None
+
+
+def _above_zero(given: Mapping[str, Any], key: str, high: float) -> float:
+    value = _number(given, key, -math.inf, high)
+    if value <= 0.0:
+        raise ValueError(f"{key} is {_short(value)}; give more than 0")
+    return value
+
+
+def _switch(given: Mapping[str, Any], key: str) -> bool:
+    value = given.get(key)
+    if not isinstance(value, bool):
+        raise ValueError(f"{key} is {_short(value)}; give true or false")
+    return value
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= LONGEST_QUOTE else f"{text[:LONGEST_QUOTE]}..."
+
+
+def _vector(value: Any) -> Array | None:
+    """A point or direction that a browser has sent, shape (3,); None if it is none."""
+    try:
+        vector = np.asarray(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return vector if vector.shape == (3,) and (np.abs(vector) <= FARTHEST).all() else None
 
 
 def _numbers(velocity: Any) -> list[float]:
     return [float(velocity.v_x), float(velocity.v_y), float(velocity.yaw_rate)]
 
 
-def _viewer_page(port: int) -> str:
+def _viewer_page(gate: Gate) -> str:
     """The page that viser serves: its viewer."""
-    connection = HTTPConnection(LOCALHOST, port, timeout=30)
+    connection = HTTPConnection(LOCALHOST, gate.port, timeout=30)
     with closing(connection):
-        connection.request("GET", "/")
+        connection.request("GET", f"/{gate.token}/{VIEWER}")
         return connection.getresponse().read().decode()
 
 
@@ -241,8 +292,8 @@ class _Page(Template):
     delimiter = "@"  # JavaScript has other uses for the usual one
 
 
-def _page(viewer: str, port: int, walk: Walk) -> str:
-    """Viser's page, told where its server is, with the controls beside it."""
+def _page(viewer: str, walk: Walk) -> str:
+    """Viser's page with the controls beside it."""
     size, ranges = walk.size, _gait_ranges(walk.size)
     gait = {key: float(getattr(walk.gait, key)) for key in ranges}
     curves, margins = (
@@ -267,15 +318,17 @@ def _page(viewer: str, port: int, walk: Walk) -> str:
     text = files(__package__).joinpath("drive.html").read_text(encoding="utf-8")
     head, column = text.split("<!-- the column -->")
     title = html.escape(f"{walk.name}, seed {walk.seed}")
-    filled = _Page(column).substitute(title=title, data=json.dumps(data).replace("</", "<\\/"))
+    names = {"title": title, "channel": CHANNEL, "drawn": DRAWN}
+    filled = _Page(column).substitute(names, data=json.dumps(data).replace("</", "<\\/"))
     before, after = viewer.split("<head>", 1)
     top, tail = after.rsplit("</body>", 1)
-    begin = _Page(head).substitute(address=f"ws://{LOCALHOST}:{port}", title=title)
+    begin = _Page(head).substitute(title=title)
     return f"{before}<head>{begin}{top}{filled}</body>{tail}"
 
 
 @contextmanager
 def opened(port: int | None, inputs: "SimpleQueue[Input]") -> Iterator[DrivePage]:
-    """A page for as long as the context lasts; errors as of `serving` and `DrivePage`."""
-    with serving((port or PORT) + 1) as viewer, closing(DrivePage(viewer, port, inputs)) as page:
-        yield page
+    """A page for as long as the context lasts; errors as of `serving`."""
+    gate = Gate(port)
+    with serving(gate) as viewer:
+        yield DrivePage(viewer, gate, inputs)

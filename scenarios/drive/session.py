@@ -63,7 +63,7 @@ COMMAND_PERIOD = 0.1
 """Least time between two commands, simulated [s]; a stop does not wait."""
 
 PICTURE_PERIOD, SLOWEST_PICTURES = 1 / 30, 1 / 5
-"""Time between pictures where there is time for them, and where there is none [s]."""
+"""Time between pictures where there is time for them and the browser keeps up, and otherwise [s]."""
 
 BURST = 0.008
 """How long control ticks are simulated before inputs are looked at again [s]."""
@@ -149,6 +149,10 @@ class Status:
 class Page(Protocol):
     """Where the robot is seen."""
 
+    @property
+    def drawn(self) -> bool:
+        """Whether all that was shown has been drawn where somebody looks."""
+
     def begin(self, robot: Any) -> None:
         """A run begins."""
 
@@ -209,7 +213,7 @@ class Session:
         self._step_until(now + BURST)
         now = self._clock()
         lag = self._lag(now)
-        period = PICTURE_PERIOD if moving and lag < NO_TIME else SLOWEST_PICTURES
+        period = PICTURE_PERIOD if moving and lag < NO_TIME and self._page.drawn else SLOWEST_PICTURES
         if now - self._shown_at >= period - 1e-6:
             self._shown_at = now
             with suppress(RunFault):  # there is nothing to see of a run that ended in its first tick

@@ -44,7 +44,8 @@ class Browser:
             "args": [*FLAGS, f"--window-size={size[0]},{size[1]}", f"--user-data-dir={profile}"],
             "binary": shutil.which("chromium"),
         }
-        wanted = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": options}}
+        waits = {"script": 180_000, "pageLoad": 180_000}  # in milliseconds; pictures are drawn in software, beside other work
+        wanted = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": options, "timeouts": waits}}
         self._session = ""
         try:
             self._session = f"/session/{self._started(wanted)['sessionId']}"
@@ -66,7 +67,7 @@ class Browser:
         data = json.dumps(body or {}).encode() if method == "POST" else None
         headers = {"Content-Type": "application/json"}
         request = urllib.request.Request(self._server + self._session + path, data, headers, method=method)
-        with urllib.request.urlopen(request, timeout=120) as answer:
+        with urllib.request.urlopen(request, timeout=200) as answer:
             return json.load(answer)["value"]
 
     def run(self, script: str) -> Any:

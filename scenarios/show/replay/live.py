@@ -1,5 +1,6 @@
 """A replay in the browser that follows a log while it is written."""
 
+import math
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -11,8 +12,9 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.show.replay.content import Replay
 from surefoot.scenarios.show.replay.extract import extract
+from surefoot.scenarios.show.replay.gate import Gate, serving
 from surefoot.scenarios.show.replay.poses import Window
-from surefoot.scenarios.show.replay.scene import LOCALHOST, ViserScene, serving
+from surefoot.scenarios.show.replay.scene import ViserScene
 
 if TYPE_CHECKING:
     import viser
@@ -27,7 +29,8 @@ POLL = 1.0
 PATIENCE = 15.0
 """How long a log may lack its first control tick [s]."""
 
-SPEEDS = ("0.1x", "0.25x", "0.5x", "1x", "2x", "4x")
+SPEEDS = {"0.1x": 0.1, "0.25x": 0.25, "0.5x": 0.5, "1x": 1.0, "2x": 2.0, "4x": 4.0}
+"""Of replayed over wall-clock time, by what they are called."""
 
 
 def serve(path: Path, window: Window, say: Callable[[str], None]) -> None:
@@ -40,11 +43,12 @@ def serve(path: Path, window: Window, say: Callable[[str], None]) -> None:
 
     Raises:
         MissingExtraError: viser is not installed.
-        LogError: the log holds nothing to show.
+        LogError: the log holds nothing to show; errors as of `serving`.
     """
-    with serving() as server:
+    gate = Gate()
+    with serving(gate) as server:
         replay = _first(path, window)
-        say(f"http://{LOCALHOST}:{server.get_port()} shows {path}; Ctrl-C stops")
+        say(f"{gate.address} shows {path}; Ctrl-C stops")
         player, size, looked = Player(server, replay), path.stat().st_size, time.monotonic()
         while True:
             time.sleep(1.0 / window.frame_rate)
@@ -81,7 +85,7 @@ class Player:
         self._playing = gui.add_checkbox("play", initial_value=True)
         self._following = gui.add_checkbox("follow the run", initial_value=False, hint="show the end of a growing log")
         self._camera = gui.add_checkbox("camera follows the robot", initial_value=True)
-        self._speed = gui.add_dropdown("speed", options=SPEEDS, initial_value="1x")
+        self._speed = gui.add_dropdown("speed", options=tuple(SPEEDS), initial_value="1x")
         self._now = first
         self._slider.on_update(self._sought)
         with gui.add_folder("show"):
@@ -91,7 +95,7 @@ class Player:
 
     def _sought(self, event: Any) -> None:
         """Stay where the user has moved the slider to."""
-        if event.client is not None:
+        if event.client is not None and math.isfinite(event.target.value):
             self._now, self._playing.value, self._following.value = event.target.value, False, False
 
     def replace(self, replay: Replay) -> None:
@@ -107,7 +111,7 @@ class Player:
         if self._following.value:
             self._now = float(times[-1])
         elif self._playing.value:
-            self._now += elapsed * float(self._speed.value.rstrip("x"))
+            self._now += elapsed * SPEEDS.get(self._speed.value, 1.0)
             self._now = self._now if self._now <= times[-1] else float(times[0])
         if self._playing.value or self._following.value:
             self._slider.value = round(self._now, 3)

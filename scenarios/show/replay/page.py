@@ -25,7 +25,8 @@ from surefoot.scenarios.palette import (
 )
 from surefoot.scenarios.show.logview import LogView, MissingError
 from surefoot.scenarios.show.replay.content import Array, Replay
-from surefoot.scenarios.show.replay.scene import ViserScene, serving
+from surefoot.scenarios.show.replay.gate import serving
+from surefoot.scenarios.show.replay.scene import ViserScene
 
 
 @dataclass(frozen=True, slots=True)

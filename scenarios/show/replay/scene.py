@@ -1,13 +1,10 @@
 """The replay in viser: the stage, the robot on it, and the marks beside it."""
 
-import contextlib
-import io
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from surefoot.scenarios.errors import require
 from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.replay.content import Array, Footprint, Replay, Track
 
@@ -81,12 +78,6 @@ def rgb(color: Color) -> tuple[int, int, int]:
 GROUND = "/Ground"
 """The node of the ground."""
 
-LOCALHOST = "127.0.0.1"
-"""A replay is for this machine alone."""
-
-PORT = 8080
-"""The first to try; viser takes the next free one."""
-
 STEP_BACK = np.array([1.7, -2.0, 0.35])
 """From what the camera looks at to where it stands at first [m]."""
 
@@ -95,26 +86,6 @@ LOOK_AT_HEIGHT = 0.75
 
 GROUND_DEPTH = np.array([0.0, 0.0, -0.002])
 """Where the ground is drawn, so that it does not fight with what lies on it [m]."""
-
-
-@contextlib.contextmanager
-def serving(port: int = PORT) -> "Iterator[viser.ViserServer]":
-    """A server of viser on this machine for as long as the context lasts; it says nothing on standard output.
-
-    Args:
-        port: the first to try.
-
-    Raises:
-        MissingExtraError: viser is not installed.
-    """
-    viser = require("viser", "replay", "the replay in a browser")
-    with contextlib.redirect_stdout(io.StringIO()):
-        server = viser.ViserServer(host=LOCALHOST, port=port, verbose=False)
-    try:
-        yield server
-    finally:
-        with contextlib.redirect_stdout(io.StringIO()):
-            server.stop()
 
 
 def set_stage(server: "viser.ViserServer", replay: Replay) -> Any:

@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import urllib.request
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import pytest
 from browser import Browser
 
 import surefoot
+from surefoot.scenarios.drive.page import CHANNEL
 
 pytestmark = [
     pytest.mark.physics,
@@ -35,6 +35,7 @@ TORSO = (0.495, 0.3)
 @pytest.fixture(scope="module")
 def driven(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Browser, subprocess.Popen[str], Path]]:
     pytest.importorskip("viser")
+    client = pytest.importorskip("websockets.sync.client")
     folder = tmp_path_factory.mktemp("drive")
     command = [sys.executable, "-m", "surefoot", "drive", "--out", str(folder)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"})
@@ -42,8 +43,9 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Browser, 
         assert process.stdout is not None
         address = process.stdout.readline().split()[0]
         process.stdout.readline()  # the log, before the page is there
-        for given in ({"kind": "pace", "paused": True}, {"kind": "click", "impulse": 5.0}):
-            urllib.request.urlopen(f"{address}/input", json.dumps(given).encode(), timeout=30).close()
+        with client.connect(f"{address.replace('http', 'ws')}{CHANNEL}") as socket:
+            for given in ({"kind": "pace", "paused": True}, {"kind": "click", "impulse": 5.0}):
+                socket.send(json.dumps(given))
         with Browser(address, folder / "profile", (640, 420)) as page:
             page.wait_for(CANVAS)
             page.wait_for(TEXT % "clock" + ".includes('paused')")

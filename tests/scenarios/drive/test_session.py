@@ -86,7 +86,7 @@ class Page:
 
     def __init__(self, clock: Clock, cost: float) -> None:
         self._clock, self._cost = clock, cost
-        self.begun, self.pushes = 0, []
+        self.begun, self.pushes, self.drawn = 0, [], True
         self.shown: list[tuple[float, Status]] = []
 
     def begin(self, robot: Any) -> None:
@@ -143,6 +143,14 @@ def test_pictures_are_left_out_before_time_is_lost():
     assert drive.robot.time == pytest.approx(20.0, abs=0.2)
     assert len(drive.page.shown) < 20 * 6
     assert drive.status.note == ""
+
+
+def test_a_browser_that_draws_slowly_gets_few_pictures_which_leaves_it_less_to_draw():
+    drive = Drive()
+    drive.page.drawn = False
+    drive.go_on(10.0)
+    assert 10 * 4 < len(drive.page.shown) <= 10 * 5 + 1
+    assert drive.robot.time == pytest.approx(10.0, abs=0.02)
 
 
 def test_a_machine_that_is_too_slow_is_told_of_and_still_shows_pictures():

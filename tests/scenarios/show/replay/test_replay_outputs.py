@@ -237,8 +237,8 @@ def test_a_failure_leaves_the_older_file(tmp_path):
 
 def test_a_live_view_plays_and_follows_a_growing_log(log_path, tmp_path):
     pytest.importorskip("viser")
+    from surefoot.scenarios.show.replay.gate import serving
     from surefoot.scenarios.show.replay.live import Player
-    from surefoot.scenarios.show.replay.scene import serving
 
     growing = tmp_path / "growing.mcap"
     growing.write_bytes(log_path.read_bytes()[: log_path.stat().st_size // 2])

@@ -1,0 +1,241 @@
+"""The one way to a viewer: a port of this machine, and a check that no page of others passes.
+
+A browser lets any page send requests to this machine and connect to its sockets. So an answer is given only to requests
+with the token in its path, for a host that is this machine (a name that others point here is not), from a page of this
+address or from no page at all.
+"""
+
+import asyncio
+import contextlib
+import importlib
+import io
+import logging
+import secrets
+import socket
+import warnings
+from collections.abc import Awaitable, Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from surefoot.scenarios.errors import LogError, require
+from surefoot.scenarios.output import reason
+
+if TYPE_CHECKING:
+    import viser
+    from websockets.asyncio.server import ServerConnection
+    from websockets.http11 import Request, Response
+
+LOCALHOST = "127.0.0.1"
+"""A viewer is for this machine alone."""
+
+HOSTS = (LOCALHOST, "localhost", "::1")
+"""Names of this machine; the port may be another one, that of a tunnel."""
+
+PORT = 8080
+"""The first to try."""
+
+TRIES = 1000
+"""Ports that are tried when none was asked for."""
+
+LONGEST_MESSAGE = 100_000
+"""Bytes of what a page sends at once; no honest message is longer."""
+
+VIEWER = "viewer"
+"""Name of the viewer's own page, where another one is served at the address."""
+
+HEADERS = {"Cache-Control": "no-store", "Referrer-Policy": "no-referrer", "X-Frame-Options": "DENY"}
+"""Of every page: its address holds the token, which nothing else shall learn."""
+
+logger = logging.getLogger(__name__)
+"""Told of bad requests and broken connections, which are no business of the terminal."""
+logger.addHandler(logging.NullHandler())
+logger.propagate = False
+
+Handler = Callable[["ServerConnection"], Awaitable[None]]
+Answer = Callable[["ServerConnection", "Request"], "Response | None"]
+
+
+@dataclass(slots=True)
+class Gate:
+    """Says whom a viewer answers, and what.
+
+    Attributes:
+        port: asked for, the first free one if None; once it serves, the one that is listened on.
+        page: what is served in place of the viewer's own page, if anything.
+        sockets: handlers of the websockets below the address, by name, beside the viewer's own at the address.
+        token: part of the address, not to be guessed.
+    """
+
+    port: int | None = None
+    page: str | None = None
+    sockets: Mapping[str, Handler] = field(default_factory=dict)
+    token: str = field(default_factory=lambda: secrets.token_urlsafe(16))
+
+    @property
+    def address(self) -> str:
+        """Of the page."""
+        return f"http://{LOCALHOST}:{self.port}/{self.token}/"
+
+    def refusal(self, request: "Request") -> str | None:
+        """Why a request is not answered, if so."""
+        hosts, origins = (request.headers.get_all(name) for name in ("Host", "Origin"))
+        if len(hosts) != 1 or _hostname(hosts[0]) not in HOSTS:
+            return f"this address is not served; open {LOCALHOST} or localhost"
+        if origins and [origin.lower() for origin in origins] != [f"http://{hosts[0].lower()}"]:
+            return "pages of others are not answered"
+        token = request.path.split("?")[0].split("/")[1:2]
+        if not secrets.compare_digest("".join(token).encode(errors="replace"), self.token.encode()):
+            return "the address lacks its token; open the whole address that the command has said"
+        return None
+
+    def answered(self, connection: "ServerConnection", request: "Request", viewer: Answer) -> "Response | None":
+        """The answer to a request; None makes it a websocket.
+
+        Args:
+            connection: that the request came on.
+            request: in question.
+            viewer: answers with the viewer's own page.
+        """
+        if (refusal := self.refusal(request)) is not None:
+            return connection.respond(HTTPStatus.FORBIDDEN, refusal + "\n")
+        name = self._name(request)
+        if "Upgrade" in request.headers:
+            known = name == "" or name in self.sockets
+            return None if known else connection.respond(HTTPStatus.NOT_FOUND, "no such socket\n")
+        if name == "" and self.page is not None:
+            response = connection.respond(HTTPStatus.OK, self.page)
+            del response.headers["Content-Type"]
+            response.headers["Content-Type"] = "text/html; charset=utf-8"
+        elif name in ("", VIEWER):
+            response = viewer(connection, replace(request, path="/")) or connection.respond(HTTPStatus.NOT_FOUND, "")
+        else:
+            return connection.respond(HTTPStatus.NOT_FOUND, "no such page\n")
+        response.headers.update(HEADERS)
+        return response
+
+    async def handle(self, connection: "ServerConnection", viewer: Handler) -> None:
+        """Serve a websocket that was let in."""
+        assert connection.request is not None
+        name = self._name(connection.request)
+        if name in self.sockets:
+            await self.sockets[name](connection)
+        elif connection.subprotocol != f"viser-v{importlib.import_module('viser').__version__}":
+            await connection.close(1002, "another version of viser; load the page anew")
+        else:
+            await viewer(connection)
+
+    @staticmethod
+    def _name(request: "Request") -> str:
+        """What is asked for, below the token."""
+        return "/".join(request.path.split("?")[0].split("/")[2:])
+
+
+def _hostname(host: str) -> str | None:
+    try:
+        split = urlsplit(f"//{host}")
+        return split.hostname if split.netloc == host and "@" not in host else None
+    except ValueError:
+        return None
+
+
+@contextlib.contextmanager
+def serving(gate: Gate | None = None) -> "Iterator[viser.ViserServer]":
+    """A viewer for as long as the context lasts; it says nothing on standard output.
+
+    Args:
+        gate: who may come in; nobody can connect if None.
+
+    Raises:
+        MissingExtraError: viser is not installed.
+        LogError: the port is taken; viser is one that the gate cannot stand before.
+    """
+    viser = require("viser", "replay", "the replay in a browser")
+    with contextlib.closing(_bound(gate.port) if gate else socket.socket()) as listener:
+        if gate is None:
+            listener.bind((LOCALHOST, 0))
+        else:
+            gate.port = listener.getsockname()[1]
+        with contextlib.redirect_stdout(io.StringIO()), _guarded(gate, listener) as guards:
+            server = viser.ViserServer(host=LOCALHOST, port=0, verbose=False)
+        try:
+            if not guards:
+                raise LogError(f"viser {viser.__version__}: cannot be guarded from other pages; install viser 1.1.1")
+            yield server
+        finally:
+            with contextlib.redirect_stdout(io.StringIO()):
+                server.stop()
+
+
+@contextlib.contextmanager
+def _guarded(gate: Gate | None, listener: socket.socket) -> Iterator[list[Any]]:
+    """Put the gate before the server of websockets that begins within the context; gives those that did.
+
+    Viser has no way to ask for this. It serves by one call of `websockets.asyncio.server.serve`, so that all that is
+    set here is what that function documents.
+    """
+    module: Any = importlib.import_module("websockets.asyncio.server")
+    serve, guards = module.serve, []
+
+    def guarded(handler: Handler, *_: object, process_request: Answer, **options: Any) -> Any:
+        asyncio.get_running_loop().set_exception_handler(_note)
+        warnings.filterwarnings("ignore", module=r"viser\b")  # of frames that are not as they should be
+        places = {key: value for key, value in options.items() if key not in ("host", "port")}
+        ours: dict[str, Any] = {"sock": listener, "logger": logger, "max_size": LONGEST_MESSAGE}
+        if gate is None:
+            ours["start_serving"] = False
+        else:
+            ours["process_request"] = lambda connection, request: gate.answered(connection, request, process_request)
+            ours["create_connection"] = _answering(module.ServerConnection)
+        guards.append(gate)
+        return serve(handler if gate is None else lambda connection: gate.handle(connection, handler), **places | ours)
+
+    module.serve = guarded
+    try:
+        yield guards
+    finally:
+        module.serve = serve
+
+
+def _note(_: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    logger.debug("%s", context.get("message"), exc_info=context.get("exception"))
+
+
+def _answering(connection: Any) -> Any:
+    """A kind of connection that also answers what is no GET request, which websockets closes without a word."""
+
+    class Connection(connection):  # type: ignore[misc]
+        begun = b""
+
+        def data_received(self, data: bytes) -> None:
+            self.begun += data[: len(_GET) - len(self.begun)]
+            if _GET.startswith(self.begun):
+                super().data_received(data)
+            elif not self.transport.is_closing():
+                self.transport.write(_NO_GET)
+                self.transport.close()
+
+    return Connection
+
+
+_GET, _SENTENCE = b"GET ", b"pages are read with GET, and all else goes through their websockets\n"
+_NO_GET = (
+    b"HTTP/1.1 405 Method Not Allowed\r\nAllow: GET\r\nConnection: close\r\n"
+    b"Content-Type: text/plain; charset=utf-8\r\nContent-Length: %d\r\n\r\n%s" % (len(_SENTENCE), _SENTENCE)
+)
+
+
+def _bound(port: int | None) -> socket.socket:
+    """A socket that listens on a port, the first free one if None.
+
+    Raises:
+        LogError: it is taken.
+    """
+    for tried in range(PORT, PORT + TRIES) if port is None else ():
+        with contextlib.suppress(OSError):
+            return socket.create_server((LOCALHOST, tried))
+    try:
+        return socket.create_server((LOCALHOST, port or 0))
+    except OSError as error:
+        raise LogError(f"--port {port}: cannot be listened on, {reason(error)}; choose another one") from None

@@ -1,0 +1,159 @@
+"""Only the page of the address that was said is answered, whatever is sent; nothing of it reaches the terminal."""
+
+import random
+import socket
+import struct
+import time
+from collections.abc import Iterator
+
+import pytest
+from strangers import ask, exchange, let_in, listening
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log import Log
+from surefoot.scenarios.show.replay.extract import extract
+from surefoot.scenarios.show.replay.gate import LONGEST_MESSAGE, Gate, serving
+from surefoot.scenarios.show.replay.live import serve
+from surefoot.scenarios.show.replay.poses import Window
+
+pytestmark = pytest.mark.unit
+
+viser = pytest.importorskip("viser")
+msgspec = pytest.importorskip("msgspec")
+client = pytest.importorskip("websockets.sync.client")
+
+
+@pytest.fixture
+def address() -> Iterator[str]:
+    gate = Gate()
+    with serving(gate):
+        yield gate.address
+
+
+def connected(address: str, **options):
+    return client.connect(address.replace("http", "ws"), subprotocols=[f"viser-v{viser.__version__}"], **options)
+
+
+def test_pages_of_others_and_names_pointed_here_are_refused_on_every_socket(address):
+    assert let_in(address) == []
+    assert ask(address)[0] == 200
+    assert ask(address, Origin=address.removesuffix("/").rpartition("/")[0])[0] == 200
+    assert ask(address, Host="localhost:9000", Origin="http://localhost:9000")[0] == 200  # through a tunnel
+    with connected(address, origin=address.removesuffix("/").rpartition("/")[0]) as page:
+        assert len(page.recv(timeout=10)) > 16
+    with connected(address) as program:
+        assert len(program.recv(timeout=10)) > 16
+
+
+def test_a_refusal_says_what_would_be_right(address):
+    assert "the whole address that the command has said" in ask(address[:-3])[1]
+    assert "open 127.0.0.1" in ask(address, Host="evil.example")[1]
+    answer = exchange(address, b"POST /input HTTP/1.1\r\nContent-Length: 9000\r\n\r\n" + 9000 * b"[")
+    assert answer.startswith("HTTP/1.1 405")
+    assert "through their websockets" in answer
+
+
+def test_a_live_view_is_behind_the_gate_and_on_one_port(log_path):
+    before, seen = listening(), []
+
+    def say(text: str) -> None:
+        address = text.split()[0]
+        seen.append(([port for port in listening() if port not in before], let_in(address), ask(address)[0]))
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        serve(log_path, Window(), say)
+    ((ports, strangers, own),) = seen
+    assert (len(ports), strangers, own) == (1, [], 200)
+
+
+def test_a_recorder_listens_nowhere():
+    before = listening()
+    with serving() as server:
+        assert listening() == before
+        with pytest.raises(ConnectionRefusedError):
+            socket.create_connection(("127.0.0.1", server.get_port()), timeout=5)
+
+
+def test_a_viser_that_cannot_be_guarded_is_not_used(monkeypatch):
+    stopped = []
+
+    class Server:
+        def __init__(self, **_: object) -> None:
+            pass
+
+        def stop(self) -> None:
+            stopped.append(True)
+
+    monkeypatch.setattr(viser, "ViserServer", Server)
+    with pytest.raises(LogError, match="cannot be guarded from other pages"), serving(Gate()):
+        pass
+    assert stopped
+
+
+def test_a_port_that_is_taken_is_told_of():
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with pytest.raises(LogError, match=f"--port {port}: cannot be listened on"), serving(Gate(port)):
+            pass
+
+
+def packed(**message: object) -> bytes:
+    return bytes(msgspec.msgpack.encode(message))
+
+
+HANDS = {"ray_origin": [0, 0, 0], "ray_direction": "up", "screen_pos": [0, 0], "instance_index": None, "modifier": None}
+FRAMES = (
+    "text",
+    b"",
+    b"\xc1",
+    b"\x91" * 5000,
+    packed(type="NoSuchMessage"),
+    packed(type="ViewerCameraMessage"),
+    packed(type="SceneNodeClickMessage", name="/Robot/torso/0", **HANDS),
+    packed(type="GuiUpdateMessage", uuid="x", updates={"value": "nan"}),
+    packed(kind="nothing"),
+    b"\x00" * (LONGEST_MESSAGE + 1),
+)
+
+
+def test_bad_frames_and_noise_leave_the_terminal_alone_and_the_page_open(recwarn, address, capfd):
+    random.seed(20)
+    host = ("127.0.0.1", int(address.split(":")[2].split("/")[0]))
+    half_open = [socket.create_connection(host) for _ in range(30)]
+    for number, connection in enumerate(half_open):
+        connection.sendall([b"", b"GET", b"GET / HT", b"GET / HTTP/1.1\r\nHost:"][number % 4])
+    for frame in FRAMES:
+        with connected(address) as page:
+            page.send(frame)
+            page.recv(timeout=10)
+    old = client.connect(address.replace("http", "ws"))
+    with old, pytest.raises(Exception, match="another version of viser"):
+        old.recv(timeout=10)
+    for _ in range(200):
+        with socket.create_connection(host) as connection:
+            begin = random.choice([b"", b"GET ", b"GET / HTTP/1.1\r\n"])
+            connection.sendall(begin + random.randbytes(random.randrange(300)))
+            if random.random() < 0.5:  # a reset instead of an end
+                connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+    assert ask(address)[0] == 200
+    for connection in half_open:
+        connection.close()
+    time.sleep(0.3)
+    captured = capfd.readouterr()
+    assert (captured.out, captured.err, recwarn.list) == ("", "", [])
+
+
+def test_what_a_page_sends_does_not_end_a_live_view(log: Log):
+    from types import SimpleNamespace
+
+    from surefoot.scenarios.show.replay.live import Player
+
+    with serving() as server:
+        player = Player(server, extract(log))
+        player._sought(SimpleNamespace(client=object(), target=SimpleNamespace(value=float("nan"))))
+        player._speed.value = "much"
+        player.advance(time.monotonic() + 0.1)
+        assert player._slider.value == pytest.approx(0.1, abs=0.05)

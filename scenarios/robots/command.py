@@ -17,32 +17,28 @@ MISSED, INTERRUPTED = 1, 130
 def check(
     robot: Annotated[str, typer.Argument(metavar="FILE", help="A robot file, or the name of a robot.")],
     walk: Annotated[bool, typer.Option("--walk", help="Run the scenarios that it accepts.")] = False,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="SCENARIO", help="Of the catalogue this scenario alone; repeatable.")
+    ] = None,
     jobs: Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")] = None,
     out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/robot"),
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
 ) -> None:
     """Say what was derived of a robot, measure it, and which scenarios it takes."""
-    from surefoot.scenarios import catalogue
     from surefoot.scenarios.robots import report
     from surefoot.scenarios.robots.examine import examine, known
-    from surefoot.scenarios.robots.walks import rows
+    from surefoot.scenarios.robots.walks import chosen, rows
     from surefoot.scenarios.show.console import plain_console
     from surefoot.scenarios.sweep.sweep import cores
 
-    console = plain_console()
+    names, console = chosen(only or ()), plain_console()
     explained = known(robot)
     found = examine(explained.description)
     if not as_json:
         report.print_examination(console, explained, found)
-    width = max(map(len, catalogue.OWN))
     try:
-        table = rows(
-            robot,
-            walk,
-            jobs or cores(),
-            out,
-            lambda row: None if as_json else report.print_row(console, row, width),
-        )
+        with report.CatalogueBar(None if as_json else console, names) as bar:
+            table = rows(robot, names, walk, jobs or cores(), out, bar)
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None

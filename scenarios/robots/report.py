@@ -6,13 +6,14 @@ from dataclasses import asdict
 from typing import Any
 
 from rich.console import Console
+from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from surefoot.models.robot_file.build import Explanation
 from surefoot.models.types import RobotDescription
 from surefoot.scenarios.robots.examine import PARITY, Examination
-from surefoot.scenarios.robots.walks import Row
+from surefoot.scenarios.robots.walks import Row, Watcher
 from surefoot.scenarios.setup.standing import TorqueMargin
-from surefoot.scenarios.show.console import plain_table
+from surefoot.scenarios.show.console import TerminalLine, plain_table
 
 _STYLES = {"walks": "bold green", "fails": "bold red", "refused": "yellow", "accepted": None}
 
@@ -71,6 +72,36 @@ def _margin(margin: TorqueMargin) -> str:
 
 def _deg(angle: float) -> str:
     return f"{math.degrees(angle):.3f} deg"
+
+
+class CatalogueBar(TerminalLine, Watcher):
+    """Prints each row as it is known, and on a terminal how much simulated time is left and how long that takes.
+
+    Args:
+        console: gets the rows; None where nobody is to see them.
+        names: of the scenarios.
+    """
+
+    def __init__(self, console: Console | None, names: Sequence[str]) -> None:
+        left = (TextColumn("left"), TimeRemainingColumn(elapsed_when_finished=True))
+        super().__init__(TextColumn("{task.fields[state]}"), BarColumn(), TimeElapsedColumn(), *left)
+        self._console, self._width = console, max(map(len, names))
+        self._task = self._bar.add_task("", total=None, state=f"looking at {len(names)} scenarios")
+        self._left = 0
+
+    def begun(self, runs: int, duration: float) -> None:
+        """See `Watcher`."""
+        self._left = runs
+        self._bar.update(self._task, total=duration, state=f"{runs} runs, {duration:.0f} s of simulated time")
+
+    def done(self, row: Row) -> None:
+        """See `Watcher`."""
+        if row.outcome in ("walks", "fails"):
+            self._left -= 1
+            self._bar.update(self._task, advance=row.duration, state=f"{self._left} runs left")
+        if self._console is not None:
+            with self.hidden():
+                print_row(self._console, row, self._width)
 
 
 def print_row(console: Console, row: Row, width: int) -> None:

@@ -4,7 +4,8 @@ import csv
 import importlib
 import io
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -39,11 +40,24 @@ class TerminalLine:
 
     def __init__(self, *columns: ProgressColumn) -> None:
         console = Console(stderr=True)
-        self._bar = RichProgress(*columns, console=console, transient=True, disable=not console.is_terminal)
+        self._bar = RichProgress(
+            *columns, console=console, transient=True, disable=not console.is_terminal, redirect_stdout=False
+        )
 
     def __enter__(self) -> Self:
         self._bar.start()
         return self
+
+    @contextmanager
+    def hidden(self) -> Iterator[None]:
+        """Make way for what is printed meanwhile."""
+        if not self._bar.disable:
+            self._bar.stop()
+        try:
+            yield
+        finally:
+            if not self._bar.disable:
+                self._bar.start()
 
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None

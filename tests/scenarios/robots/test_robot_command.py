@@ -12,7 +12,7 @@ from surefoot.models.humanoid100 import HUMANOID100
 from surefoot.models.types import Robot, RobotDescription, RobotOptions
 from surefoot.scenarios import catalogue, cli
 from surefoot.scenarios.robots import walks
-from surefoot.scenarios.robots.walks import Row, rows
+from surefoot.scenarios.robots.walks import Row, Watcher, rows
 
 pytestmark = pytest.mark.unit
 
@@ -84,7 +84,7 @@ def test_what_fails_is_told_with_its_reasons(surefoot, monkeypatch: pytest.Monke
         Row("walk", "fails", ("fell is true",)),
         Row("stairs-tall", "refused", ("too tall",)),
     )
-    monkeypatch.setattr(walks, "rows", lambda *given: [given[-1](row) for row in told] and told)
+    monkeypatch.setattr(walks, "rows", lambda *given: [given[-1].done(row) for row in told] and told)
     code, out, _ = surefoot("robot", "check", "humanoid100", "--walk")
     assert code == 1
     assert "- fell is true" in out and "- too tall" in out
@@ -93,7 +93,55 @@ def test_what_fails_is_told_with_its_reasons(surefoot, monkeypatch: pytest.Monke
 
 def test_what_cannot_be_taken_is_refused_before_any_run(few: tuple[str, ...], tmp_path) -> None:
     """A payload that no catalogue scenario asks for is none of its business; a scenario with a fault is."""
-    found = rows("nobody", walk=True, jobs=1, out=tmp_path)
+    found = rows("nobody", few, walk=True, jobs=1, out=tmp_path)
     assert [row.outcome for row in found] == ["refused"] * 3
     assert all("nobody" in row.why[0] for row in found)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_only_what_is_named_is_looked_at_in_the_order_of_the_catalogue(surefoot) -> None:
+    code, out, _ = surefoot("robot", "check", "humanoid100", "--only", "walk", "--only", "stand", "--json")
+    assert code == 0
+    assert [row["scenario"] for row in json.loads(out)["scenarios"]] == ["stand", "walk"]
+
+
+def test_a_scenario_that_the_catalogue_has_not_got_is_bad_input(surefoot) -> None:
+    code, out, err = surefoot("robot", "check", "humanoid100", "--only", "wakl")
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1 and "did you mean 'walk'?" in err
+
+
+class Noting(Watcher):
+    """Writes down what it is told."""
+
+    def __init__(self) -> None:
+        self.told: list[str] = []
+
+    def begun(self, runs: int, duration: float) -> None:
+        self.told.append(f"{runs} runs of {duration:.2f} s")
+
+    def done(self, row: Row) -> None:
+        self.told.append(f"{row.scenario} {row.outcome}")
+
+
+def test_each_scenario_is_looked_at_once_and_the_longest_run_comes_first(monkeypatch, tmp_path) -> None:
+    """What is refused is known before any run, and how much there is to run, too."""
+    durations = {"stand": 1.0, "stairs-tall": 0.0, "walk": 2.0, "slope": 3.0}
+    looked: list[str] = []
+
+    def alone(work, arguments, jobs, lost):
+        return (work(*given) for given in arguments)
+
+    def look(name: str, robot: str):
+        looked.append(name)
+        outcome = "accepted" if durations[name] else "refused"
+        return walks._Looked(Row(name, outcome, duration=durations[name]), name if durations[name] else None)
+
+    monkeypatch.setattr(walks, "side_by_side", alone)
+    monkeypatch.setattr(walks, "_look", look)
+    monkeypatch.setattr(walks, "_run", lambda row, scenario, out: replace(row, outcome="walks"))
+    noting = Noting()
+    found = rows("humanoid100", tuple(durations), walk=True, jobs=2, out=tmp_path, watcher=noting)
+    assert looked == list(durations)
+    assert noting.told == ["3 runs of 6.00 s", "stairs-tall refused", "slope walks", "walk walks", "stand walks"]
+    assert [row.scenario for row in found] == list(durations)

@@ -1,0 +1,281 @@
+"""What becomes of public humanoids: read, derived, stood, walked, turned and pushed.
+
+    python benchmarks/robots.py [FOLDER]... [--only NAME]... [--jobs N] [--out DIR] [--markdown FILE]
+
+Some models come with packages, which pip installs; the others are looked for in the folders, which may be clones of
+their repositories. A robot file is drafted from each model as `surefoot robot new` does it, and the lines that somebody
+had to add are counted. Then it stands, walks, turns, and is pushed in the middle of a step from four sides. Where
+`walk` is refused with a gait that the robot can walk, it walks that one.
+"""
+
+import argparse
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import yaml
+
+from surefoot.models.robot_file.draft import draft
+from surefoot.models.types import RobotError
+from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.robots.examine import examine, known
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.sweep.engine import side_by_side
+from surefoot.scenarios.sweep.sweep import cores
+
+IMPULSE = 0.1
+"""Of each push, over the robot's mass [N s/kg]."""
+
+SIDES = (0, 90, 180, 270)
+"""Directions that pushes go to, from the way it walks to the left [deg]."""
+
+PUSHED = {"gait.steps": "9", "criteria": "{fell: false, steps_taken: steps_planned}"}
+"""Of the walk that is pushed in its fifth step."""
+
+DATA = "package://example-robot-data/robots"
+FOURIER = "package://fourier_robot_descriptions/assets/urdf"
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A model of a humanoid.
+
+    Attributes:
+        name: of the robot.
+        place: ``package://`` of an installed package, or the end of a path in one of the folders.
+        source: package or repository.
+        added: lines of the robot file that `surefoot robot new` does not write.
+    """
+
+    name: str
+    place: str
+    source: str
+    added: tuple[str, ...] = ()
+
+
+MODELS = (
+    Model("TALOS", f"{DATA}/talos_data/robots/talos_full_v2.urdf", "example-robot-data"),
+    Model("G1", f"{DATA}/g1_description/urdf/g1_29dof_rev_1_0.urdf", "example-robot-data"),
+    Model("Alexander", f"{DATA}/alexander_description/urdf/alexander_v1.lowerBodyOnly.urdf", "example-robot-data"),
+    Model("Romeo", f"{DATA}/romeo_description/urdf/romeo.urdf", "example-robot-data"),
+    Model("iCub", f"{DATA}/icub_description/robots/icub.urdf", "example-robot-data", ("inertia: repair",)),
+    Model(
+        "simple humanoid",
+        f"{DATA}/simple_humanoid_description/urdf/simple_humanoid.urdf",
+        "example-robot-data",
+        ("sole: {length: 0.22, width: 0.11, centre: [0.04, 0.0, -0.07]}",),
+    ),
+    Model("JVRC-1", "package://jvrc_description/urdf/jvrc1.urdf", "jvrc-description"),
+    Model("GR-1", f"{FOURIER}/gr1t1.urdf", "fourier-robot-descriptions"),
+    Model("GR-1 T2", f"{FOURIER}/gr1t2.urdf", "fourier-robot-descriptions"),
+    Model("GR-2", f"{FOURIER}/gr2t2.urdf", "fourier-robot-descriptions"),
+    Model("GR-3", f"{FOURIER}/gr3.urdf", "fourier-robot-descriptions"),
+    Model("QingLong", f"{FOURIER}/qinglong.urdf", "fourier-robot-descriptions"),
+    Model("G1 (MJCF)", "g1_description/g1_29dof_rev_1_0.xml", "unitreerobotics/unitree_ros"),
+    Model("H1", "h1_description/urdf/h1.urdf", "unitreerobotics/unitree_ros"),
+    Model("H1_2", "h1_2_description/h1_2.urdf", "unitreerobotics/unitree_ros"),
+    Model("H1_2 (MJCF)", "h1_2_description/h1_2.xml", "unitreerobotics/unitree_ros"),
+    Model("R1", "unitree_robots/r1/R1_C++.xml", "unitreerobotics/unitree_mujoco"),
+    Model("T1", "robots/T1/T1_23dof.urdf", "BoosterRobotics/booster_assets"),
+    Model("T1 (MJCF)", "robots/T1/T1_23dof.xml", "BoosterRobotics/booster_assets"),
+    Model("T1 (serial)", "resources/T1/T1_serial.urdf", "BoosterRobotics/booster_gym"),
+    Model("K1", "robots/K1/K1_22dof.urdf", "BoosterRobotics/booster_assets"),
+    Model("Atlas", "atlas/atlas_minimal_contact.urdf", "RobotLocomotion/models"),
+    Model("Valkyrie", "val_description/model/robots/valkyrie_A.urdf", "gkjohnson/nasa-urdf-robots"),
+    Model("iCub 2.5", "iCub/robots/iCubGazeboV2_5/model.urdf", "robotology/icub-models"),
+    Model("ergoCub", "ergoCub/robots/ergoCubSN000/model.urdf", "icub-tech-iit/ergocub-software"),
+    Model("X1", "robots/x1/urdf/x1.urdf", "AgibotTech/agibot_x1_train"),
+    Model("SA01", "zq_humanoid/urdf/zq_sa01.urdf", "engineai-robotics/engineai_legged_gym"),
+    Model("Pai", "pai_12dof/urdf/pai_12dof.urdf", "HighTorque-Robotics/livelybot_pi_rl_baseline"),
+    Model("AzureLoong", "models/AzureLoong.urdf", "loongOpen/OpenLoong-Dyn-Control"),
+    Model("XBot-L", "XBot/urdf/XBot-L.urdf", "roboterax/humanoid-gym"),
+    Model("NAO", "naoV50_generated_urdf/nao.urdf", "ros-naoqi/nao_robot"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What became of a robot.
+
+    Attributes:
+        model: that it was made of.
+        reads, derives, stands, walks, turns: whether it did; None where it did not come so far.
+        pushed: sides from which a push was survived with all steps taken; None where it was not pushed.
+        gait: settings over `walk` that a refusal proposed and that were walked instead.
+        missed: criteria of `walk` that were missed, or with other settings of that gait.
+        mass: of the robot [kg].
+        joints: that it has.
+        why: what kept it from more, one sentence each.
+    """
+
+    model: Model
+    reads: bool = False
+    derives: bool | None = None
+    stands: bool | None = None
+    walks: bool | None = None
+    turns: bool | None = None
+    pushed: int | None = None
+    gait: tuple[str, ...] = ()
+    missed: tuple[str, ...] = ()
+    mass: float = 0.0
+    joints: int = 0
+    why: tuple[str, ...] = ()
+
+    @property
+    def good(self) -> bool:
+        """Whether it takes all steps and survives every push with at most two lines added."""
+        return bool(self.walks) and self.pushed == len(SIDES) and len(self.model.added) <= 2
+
+
+def found(model: Model, folders: Sequence[Path]) -> str | None:
+    """What a robot file may call the model; None where no folder has it."""
+    if model.place.startswith("package://"):
+        return model.place
+    name = Path(model.place).name
+    here = (path for folder in folders for path in sorted(folder.rglob(name)) if path.as_posix().endswith(model.place))
+    return next((str(path.absolute()) for path in here), None)
+
+
+def examined(model: Model, place: str, out: Path) -> Row:
+    """Everything of one robot."""
+    row = Row(model)
+    try:
+        made = draft(place, Path())
+        row = replace(row, reads=True, derives=False)
+        file = out / "files" / f"{''.join(sign for sign in model.name if sign.isalnum())}.yaml"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(with_lines(made.text, model.added), encoding="utf-8")
+        robot = known(str(file)).description
+        row = replace(row, derives=True, mass=robot.mass, joints=len(robot.joint_names))
+        faults = examine(robot).faults
+    except (RobotError, ScenarioError) as refusal:
+        return replace(row, why=(" ".join(str(refusal).split()),))
+    return _moved(replace(row, why=faults), {"robot": str(file)}, out)
+
+
+def with_lines(text: str, added: Iterable[str]) -> str:
+    """A robot file with lines in place of those of the same keys."""
+    keys = {key for line in added for key in yaml.safe_load(line)}
+    kept = [line for line in text.splitlines() if line.partition(":")[0] not in keys]
+    return "\n".join([*kept, *added, ""])
+
+
+def _moved(row: Row, robot: Mapping[str, str], out: Path) -> Row:
+    """The row with what it did; `walk` first, since its refusal may propose a gait that all others take, too."""
+    stood = _run("stand", robot, out)
+    walked = _run("walk", robot, out)
+    if walked.refused and walked.proposed:
+        row = replace(row, gait=tuple(f"{key}={value}" for key, value in walked.proposed.items()))
+        robot = {**robot, **walked.proposed}
+        walked = _run("walk", robot, out)
+    row = replace(row, stands=stood.stayed, walks=walked.stayed, missed=walked.missed, why=(*row.why, *walked.refused))
+    if not walked.stayed:
+        return replace(row, why=(*row.why, *stood.refused))
+    turned = _run("walk-turn", robot, out)
+    survived, why = 0, [*row.why, *turned.refused]
+    for side in SIDES:
+        push = f"[{{step: 5, phase: single, fraction: 0.5, impulse: {IMPULSE}, direction: {side} deg}}]"
+        settings = {**robot, **PUSHED, "pushes": push}
+        pushed = _run("walk", settings, out)
+        survived += pushed.stayed
+        why += pushed.refused
+    return replace(row, turns=turned.stayed, pushed=survived, why=tuple(dict.fromkeys(why)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Walked:
+    """A run.
+
+    Attributes:
+        stayed: whether it took all its steps and did not fall.
+        missed: criteria that were missed.
+        refused: why there was no run, one sentence each.
+        proposed: settings that the refusal proposes.
+    """
+
+    stayed: bool = False
+    missed: tuple[str, ...] = ()
+    refused: tuple[str, ...] = ()
+    proposed: Mapping[str, str] = field(default_factory=dict)
+
+
+def _run(name: str, settings: Mapping[str, str], out: Path) -> _Walked:
+    try:
+        result = run_scenario(load(name, [f"{key}={value}" for key, value in settings.items()]), out / "logs")
+    except (ScenarioError, SetupError, LogError) as refusal:
+        return _Walked(refused=tuple(str(refusal).splitlines()))
+    metrics = result.verdict.metrics
+    stayed = not metrics["fell"] and metrics["steps_taken"] == metrics["steps_planned"]
+    return _Walked(stayed, tuple(result.verdict.reasons))
+
+
+def _lost(model: Model, place: str, out: Path, why: str) -> Row:
+    return Row(model, why=(why,))
+
+
+HEADINGS = (
+    *("robot", "source", "kg", "joints", "reads", "derives", "stands", "walks", "turns"),
+    *("pushed", "criteria missed", "lines added"),
+)
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """A row in words."""
+    told = {True: "yes", False: "**no**", None: "–"}
+    did = (told[value] for value in (row.reads, row.derives, row.stands, row.walks, row.turns))
+    pushed = "–" if row.pushed is None else f"{row.pushed} of {len(SIDES)}"
+    size = (f"{row.mass:.0f}", str(row.joints)) if row.derives else ("–", "–")
+    missed = str(len(row.missed)) if row.walks is not None else "–"
+    return (row.model.name, row.model.source, *size, *did, pushed, missed, str(len(row.model.added)))
+
+
+def table(rows: Sequence[Row]) -> str:
+    """All of it as Markdown: the table, then what is to be said of rows."""
+    lines = [_line(HEADINGS), _line("---" for _ in HEADINGS), *(_line(cells(row)) for row in rows), ""]
+    lines += [f"- {row.model.name}: {told}" for row in rows for told in _remarks(row)]
+    good = sum(row.good for row in rows)
+    return "\n".join([*lines, "", f"{good} of {len(rows)} take all steps and survive every push.", ""])
+
+
+def _line(cells: Iterable[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _remarks(row: Row) -> Iterator[str]:
+    if row.gait:
+        yield f"walks with `{' '.join(row.gait)}`"
+    yield from (f"added `{line}`" for line in row.model.added)
+    yield from (f"missed: {reason}" for reason in row.missed)
+    yield from row.why
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="*", type=Path, metavar="FOLDER", help="with models that no package brings")
+    parser.add_argument("--only", action="append", metavar="NAME", help="of the robots this one alone; repeatable")
+    parser.add_argument("--jobs", type=int, default=cores(), help="robots at once")
+    parser.add_argument("--out", type=Path, default=Path("runs/robots"), help="directory of robot files and logs")
+    parser.add_argument("--markdown", type=Path, help="also write the table to this file")
+    given = parser.parse_args()
+    chosen = [model for model in MODELS if not given.only or model.name in given.only]
+    places = {model.name: found(model, given.folders) for model in chosen}
+    for name in (name for name, place in places.items() if place is None):
+        print(f"{name}: in none of the folders")
+    tasks = [(model, place, given.out) for model in chosen if (place := places[model.name]) is not None]
+    if not tasks:
+        raise SystemExit("no robot: install the extra robots, or give folders with models")
+    rows = {}
+    for row in side_by_side(examined, tasks, given.jobs, _lost):
+        rows[row.model.name] = row
+        print(" ".join(cells(row)), *(f"\n  - {told}" for told in _remarks(row)), flush=True)
+    text = table([rows[model.name] for model, *_ in tasks])
+    print(text)
+    if given.markdown is not None:
+        with write_whole(given.markdown, replace=True) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

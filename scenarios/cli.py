@@ -443,7 +443,9 @@ def check(
             refuse_existing(report_file, force)
     chosen = checking.cases(scenarios or (), baselines, set_ or ())
     try:
-        found = checking.check(chosen, out, jobs or cores(), lambda one: report.print_checked(one, console))
+        found = checking.check(
+            chosen, out, jobs or cores(), lambda one: report.print_checked(one, console), update=update
+        )
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
@@ -452,10 +454,7 @@ def check(
     if markdown is not None:
         report.write(markdown, report.markdown(found).encode(), force)
     typer.echo(report.summary(found))
-    if update:
-        for path in checking.update(found):
-            typer.echo(f"written: {path}")
-    raise typer.Exit(checking.exit_code(found, update))
+    raise typer.Exit(checking.exit_code(found))
 
 
 @app.command()

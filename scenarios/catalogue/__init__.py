@@ -27,22 +27,29 @@ class _Other(NamedTuple):
     package: str
 
 
-def _inside(package: str) -> dict[str, Traversable]:
-    """The YAML files of a package by name, sorted."""
-    entries = {entry.name: entry for entry in files(package).iterdir() if entry.name.endswith(_ENDING)}
+def _inside(folder: Traversable) -> dict[str, Traversable]:
+    """The YAML files of a folder by name, sorted."""
+    entries = {entry.name: entry for entry in folder.iterdir() if entry.name.endswith(_ENDING)}
     return {name.removesuffix(_ENDING): entries[name] for name in sorted(entries)}
 
 
-OWN: Mapping[str, Traversable] = _inside(__name__)
-"""Ours; their names always mean them."""
+OWN: Mapping[str, Traversable] = _inside(files(__name__))
+"""Ours that a robot is to do well."""
+
+CONTROLS: Mapping[str, Traversable] = _inside(files(__name__) / "controls")
+"""Ours in which a robot comes to known harm, of the reference robot: a world that is kinder, or a judge that sees less,
+does not meet their criteria."""
+
+OURS: Mapping[str, Traversable] = {**OWN, **CONTROLS}
+"""All of ours; their names always mean them."""
 
 SCENARIOS = Registry("surefoot.scenarios", ModuleType, {})
 """The packages in which the files of others lie, by the name of their entry point."""
 
 
 def names() -> tuple[str, ...]:
-    """Names of all scenarios: ours sorted, then those of other packages sorted."""
-    return (*OWN, *sorted(_others()[0]))
+    """Names of all scenarios: ours, then those of other packages sorted."""
+    return (*OURS, *sorted(_others()[0]))
 
 
 def refusals() -> tuple[str, ...]:
@@ -52,7 +59,7 @@ def refusals() -> tuple[str, ...]:
 
 def package(name: str) -> str:
     """Which package brings a scenario that there is."""
-    return OWN_PACKAGE if name in OWN else _others()[0][name].package
+    return OWN_PACKAGE if name in OURS else _others()[0][name].package
 
 
 def text(name: str) -> tuple[str, str]:
@@ -61,8 +68,8 @@ def text(name: str) -> tuple[str, str]:
     Raises:
         ScenarioError: its file is too large or no UTF-8, or there is none.
     """
-    if name in OWN:
-        place, file = f"catalogue/{name}{_ENDING}", OWN[name]
+    if name in OURS:
+        place, file = f"catalogue/{'controls/' if name in CONTROLS else ''}{name}{_ENDING}", OURS[name]
     elif name in (others := _others()[0]):
         place, file, _ = others[name]
     else:
@@ -97,9 +104,9 @@ def _others() -> tuple[dict[str, _Other], tuple[str, ...]]:
         if not hasattr(module, "__path__"):
             refused.append(f"scenarios '{entry}': {module.__name__} is no package; name one in which YAML files lie")
             continue
-        for name, file in _inside(module.__name__).items():
+        for name, file in _inside(files(module.__name__)).items():
             place = f"{module.__name__}:{file.name}"
-            if name in OWN:
+            if name in OURS:
                 refused.append(f"{place}: '{name}' is a scenario of surefoot's own; give the file another name")
             elif name in found:
                 refused.append(f"{place}: '{name}' is {found[name].place} already; give one of them another name")

@@ -1,6 +1,8 @@
 """``surefoot check``: runs scenarios side by side and holds each against its baseline."""
 
+import os
 import shutil
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,10 +26,23 @@ OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
 
 Status = Literal[
-    "same", "better", "moved", "failed", "without baseline", "unreadable baseline", "other scenario", "could not run"
+    "same",
+    "better",
+    "written",
+    "moved",
+    "failed",
+    "without baseline",
+    "unreadable baseline",
+    "incomplete baseline",
+    "other scenario",
+    "could not run",
+    "could not write",
 ]
 
-PASSING: tuple[Status, ...] = ("same", "better")
+PASSING: tuple[Status, ...] = ("same", "better", "written")
+
+UNTOLD: tuple[Status, ...] = ("could not run", "could not write", "unreadable baseline")
+"""Where the run says nothing for or against the walk."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +78,7 @@ class Checked:
         partings: where the run first is not as its baseline, and where it is farthest from it, if that is elsewhere.
         log: of the run, None when there is none.
         now: what the run would be as a baseline, None when there was no run.
+        took: time on the wall's clock of the run and of its comparison [s].
     """
 
     case: Case
@@ -72,10 +88,11 @@ class Checked:
     partings: tuple[Parting, ...] = ()
     log: Path | None = None
     now: Baseline | None = None
+    took: float = 0.0
 
     @property
     def passed(self) -> bool:
-        """Whether the run met its criteria and is no worse than its baseline."""
+        """Whether the run met its criteria and is no worse than its baseline, or is its baseline now."""
         return self.status in PASSING
 
 
@@ -90,11 +107,11 @@ def cases(references: Sequence[str], folder: Path | None = None, overrides: Sequ
     Raises:
         ScenarioError: one of them cannot be found, read or run, or two have the same name.
     """
-    named = [name for reference in references for name in _unfolded(reference)] or list(catalogue.OWN)
+    named = [name for reference in references for name in _unfolded(reference)] or list(catalogue.OURS)
     found: dict[str, Case] = {}
     for reference in named:
         scenario = load(reference, overrides)
-        own = OWN if reference in catalogue.OWN else Path(reference).parent / "baselines"
+        own = OWN if reference in catalogue.OURS else Path(reference).parent / "baselines"
         case = Case(reference, scenario, (folder or own) / f"{scenario.name}{ENDING}")
         if scenario.name in found:
             first = found[scenario.name].reference
@@ -110,7 +127,7 @@ def _unfolded(reference: str) -> list[str]:
         ScenarioError: the folder holds none.
     """
     folder = Path(reference)
-    if reference in catalogue.OWN or not folder.is_dir():
+    if reference in catalogue.OURS or not folder.is_dir():
         return [reference]
     files = sorted(str(path) for path in folder.glob("*.yaml") if not path.name.endswith(ENDING))
     if not files:
@@ -118,39 +135,64 @@ def _unfolded(reference: str) -> list[str]:
     return files
 
 
+def strays(case: Case) -> tuple[Path, ...]:
+    """Baselines where that of a case would be that are of no scenario file beside it."""
+    names = {_name(path) for path in Path(case.reference).parent.glob("*.yaml")}
+    found = sorted(case.baseline.parent.glob(f"*{ENDING}"))
+    return tuple(path for path in found if path.name.removesuffix(ENDING) not in names)
+
+
+def _name(file: Path) -> str:
+    """Of a scenario; of its file where it cannot be read."""
+    try:
+        return load(str(file)).name
+    except ScenarioError:
+        return file.stem
+
+
 def run_case(case: Case, out: Path) -> Checked:
     """Run a case and compare it with its baseline."""
+    begin = time.perf_counter()
     try:
         result = run_scenario(case.scenario, out)
-        log = read(result.log)
-        now = Baseline.of(case.scenario.name, case.settings, result.verdict.metrics, log)
+        now = Baseline.of(case.scenario.name, case.settings, result.verdict.metrics, read(result.log))
     except (ScenarioError, SetupError, PluginError, LogError) as refusal:
-        return Checked(case, "could not run", (" ".join(str(refusal).split()),))
-    return _held_against_baseline(case, result.verdict, replace(Checked(case, "same"), log=result.log, now=now))
+        return Checked(case, "could not run", (" ".join(str(refusal).split()),), took=time.perf_counter() - begin)
+    found = _held_against_baseline(case, result.verdict, now)
+    return replace(found, log=result.log, took=time.perf_counter() - begin)
 
 
-def _held_against_baseline(case: Case, verdict: Verdict, run: Checked) -> Checked:
+def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Checked:
     """What a run is by its verdict and by its baseline, in this order."""
-    run = replace(run, reasons=verdict.reasons)
-    status: Status
     try:
-        before = read_baseline(case.baseline) if case.baseline.exists() else None
+        before = read_baseline(case.baseline) if os.path.lexists(case.baseline) else None
     except ScenarioError as refusal:
-        status = "unreadable baseline" if verdict.passed else "failed"
-        return replace(run, status=status, reasons=(*run.reasons, " ".join(str(refusal).split())))
-    if before is None:
-        return replace(run, status="without baseline" if verdict.passed else "failed")
-    if others := before.other_settings(case.settings):
-        status = "other scenario" if verdict.passed else "failed"
-        return replace(run, status=status, reasons=(*run.reasons, *others))
-    moves = tuple(before.moves(verdict.metrics, case.scenario.criteria))
-    partings = _first_and_most(before.trace.partings(run.now.trace) if run.now is not None else [])
-    run = replace(run, moves=moves, partings=partings)
-    if not verdict.passed:
-        return replace(run, status="failed")
-    if partings or any(move.direction != "better" for move in moves):
-        return replace(run, status="moved")
-    return replace(run, status="better" if moves else "same")
+        found = Checked(case, "unreadable baseline", (" ".join(str(refusal).split()),))
+    else:
+        found = compared(case, before, now) if before is not None else Checked(case, "without baseline")
+    reasons = (*verdict.reasons, *found.reasons)
+    return replace(found, status=found.status if verdict.passed else "failed", reasons=reasons, now=now)
+
+
+def compared(case: Case, before: Baseline, now: Baseline) -> Checked:
+    """What a run is by its baseline alone.
+
+    Args:
+        case: that was run.
+        before: its baseline.
+        now: what the run would be as one.
+    """
+    if others := before.others(case.scenario.name, case.settings):
+        return Checked(case, "other scenario", tuple(others))
+    gaps, world = before.gaps(now, case.scenario.criteria), before.other_world(now)
+    moves = tuple(before.moves(now.metrics, case.scenario.criteria))
+    partings = _first_and_most(before.trace.partings(now.trace))
+    status: Status = "better" if moves else "same"
+    if world or partings or not all(move.welcome for move in moves):
+        status = "moved"
+    elif gaps:
+        status = "incomplete baseline"
+    return Checked(case, status, (*gaps, *world), moves, partings)
 
 
 def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
@@ -162,7 +204,11 @@ def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
 
 
 def check(
-    chosen: Sequence[Case], out: Path, jobs: int, on_done: Callable[[Checked], None] = lambda _: None
+    chosen: Sequence[Case],
+    out: Path,
+    jobs: int,
+    on_done: Callable[[Checked], None] = lambda _: None,
+    update: bool = False,
 ) -> tuple[Checked, ...]:
     """Run cases side by side; the logs of those that are the same as their baselines are not kept.
 
@@ -171,6 +217,7 @@ def check(
         out: directory of their logs.
         jobs: runs at once.
         on_done: is told each as it is done.
+        update: whether to write the baselines anew of the runs that met their criteria and are not the same.
 
     Returns:
         what became of each, in their order.
@@ -180,6 +227,7 @@ def check(
         if checked.status == "same" and checked.log is not None:
             shutil.rmtree(checked.log.parent)
             checked = replace(checked, log=None)
+        checked = updated(checked) if update else checked
         done[checked.case.scenario.name] = checked
         on_done(checked)
     return tuple(done[case.scenario.name] for case in chosen)
@@ -189,29 +237,18 @@ def _lost(case: Case, out: Path, why: str) -> Checked:
     return Checked(case, "could not run", (why,))
 
 
-def update(checked: Sequence[Checked]) -> tuple[Path, ...]:
-    """Write the baselines of the runs that met their criteria; returns the files that changed.
-
-    Raises:
-        LogError: one cannot be written.
-    """
-    written = []
-    for one in checked:
-        if one.now is None or one.status in ("failed", "could not run") or one.status == "same":
-            continue
-        write_baseline(one.case.baseline, one.now)
-        written.append(one.case.baseline)
-    return tuple(written)
+def updated(checked: Checked) -> Checked:
+    """Write the baseline of a run that met its criteria, if it is not the same; what became of it then."""
+    if checked.now is None or checked.status in ("same", "failed", "could not run"):
+        return checked
+    try:
+        write_baseline(checked.case.baseline, checked.now)
+    except LogError as error:
+        return replace(checked, status="could not write", reasons=(*checked.reasons, str(error)))
+    return replace(checked, status="written", reasons=(f"was: {checked.status}", *checked.reasons))
 
 
-def exit_code(checked: Sequence[Checked], updated: bool) -> int:
-    """0 when all is as it should be, 2 where something could not be run or read, 1 otherwise.
-
-    Args:
-        checked: what became of the cases.
-        updated: whether baselines were written, after which only runs without one are not as they should be.
-    """
+def exit_code(checked: Sequence[Checked]) -> int:
+    """0 when all is as it should be, 2 where something could not be run, read or written, 1 otherwise."""
     statuses = {one.status for one in checked if not one.passed}
-    if updated:
-        statuses &= {"failed", "could not run"}
-    return 2 if statuses & {"could not run", "unreadable baseline"} else int(bool(statuses))
+    return 2 if statuses & set(UNTOLD) else int(bool(statuses))

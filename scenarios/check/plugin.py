@@ -1,8 +1,9 @@
 """The pytest plugin: a file ``*.scenario.yaml`` in a folder of tests is a test.
 
 The scenario is run; the test passes when it meets its criteria and, where ``baselines/<name>.baseline.yaml`` lies
-beside it, is no worse than that. The log of a failure is kept in ``runs/pytest`` below the root of pytest. Nothing of
-Surefoot is imported before such a file is met.
+beside it, is no worse than that. One without a baseline fails where a baseline lies there that is of no scenario, for
+then one of the two has a wrong name. The log of a failure is kept in ``runs/pytest`` below the root of pytest. Nothing
+of Surefoot is imported before such a file is met.
 """
 
 import shutil
@@ -41,14 +42,18 @@ class ScenarioTest(pytest.Item):
         """Run it.
 
         Raises:
-            MissedError: it missed its criteria or is worse than its baseline.
+            MissedError: it missed its criteria, is worse than its baseline, or has one of another name.
         """
-        from surefoot.scenarios.check.check import cases, run_case
+        from surefoot.scenarios.check.check import cases, run_case, strays
         from surefoot.scenarios.check.report import lines_of
 
         out = self.config.rootpath / "runs" / "pytest"
         (case,) = cases([str(self.path)])
         checked = run_case(case, out)
+        astray = strays(case) if checked.status == "without baseline" else ()
+        if astray:
+            what = f"{astray[0]}: is of no scenario beside it; name it {case.baseline.name}, or remove it"
+            raise MissedError("\n".join([checked.status, what]))
         if not checked.passed and checked.status != "without baseline":
             raise MissedError("\n".join([checked.status, *lines_of(checked)]))
         if checked.log is not None:

@@ -7,8 +7,8 @@ from xml.etree import ElementTree as Xml
 
 from rich.console import Console
 
-from surefoot.scenarios.check.baseline import Move
-from surefoot.scenarios.check.check import Checked
+from surefoot.scenarios.check.baseline import FAR, Move
+from surefoot.scenarios.check.check import Checked, Status
 from surefoot.scenarios.check.trace import Parting
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
@@ -16,6 +16,16 @@ from surefoot.scenarios.output import write_whole
 
 _SHOWN_MOVES = 12
 """Moves of a run that are named; the others are counted."""
+
+_REMEDIES: dict[Status, str] = {
+    "other scenario": "{} is of other settings; --update writes it anew",
+    "incomplete baseline": "{} does not hold all that is compared; --update writes it anew",
+    "without baseline": "no baseline at {}; --update writes it",
+    "written": "written: {}",
+}
+"""What is to be said of a baseline, by the status of its run."""
+
+_ERRORS: tuple[Status, ...] = ("could not run", "could not write")
 
 _LEAST_WINDOW = 0.2
 """Least time that a figure is asked to show [s]."""
@@ -30,6 +40,7 @@ def move_text(move: Move) -> str:
     before, now = (value_text(name, value) for value in (move.before, move.now))
     allowed = "" if not move.allowed else f", {value_text(name, move.allowed)} {unit} is allowed".replace("  ", " ")
     direction = "" if move.direction == "other" else f", {move.direction}"
+    direction += f" by more than {FAR:g} tolerances" if move.far else ""
     return f"{move.name}: {before} -> {now} {unit}".rstrip() + direction + allowed
 
 
@@ -41,10 +52,8 @@ def lines_of(checked: Checked) -> list[str]:
     lines = [*checked.reasons, *(f"parts {when}: {one.text}" for when, one in partings), *moves[:_SHOWN_MOVES]]
     if len(moves) > _SHOWN_MOVES:
         lines.append(f"and {len(moves) - _SHOWN_MOVES} metrics more")
-    if checked.status == "other scenario":
-        lines.append(f"{checked.case.baseline} is of other settings; --update writes it anew")
-    if checked.status == "without baseline":
-        lines.append(f"no baseline at {checked.case.baseline}; --update writes it")
+    if checked.status in _REMEDIES:
+        lines.append(_REMEDIES[checked.status].format(checked.case.baseline))
     if checked.log is not None and checked.status in ("failed", "moved", "better"):
         lines += [f"look at: surefoot plot {checked.log}{where}" for where in _figures(checked.partings)]
     return lines
@@ -88,17 +97,17 @@ def markdown(checked: Sequence[Checked]) -> str:
 
 
 def junit(checked: Sequence[Checked]) -> bytes:
-    """JUnit XML: a test case for each scenario."""
-    failures = sum(not one.passed and one.status != "could not run" for one in checked)
-    errors = sum(one.status == "could not run" for one in checked)
+    """JUnit XML: a test case for each scenario, with the time that it took on the wall's clock."""
+    errors = sum(one.status in _ERRORS for one in checked)
+    failures = sum(not one.passed for one in checked) - errors
     numbers = {"tests": str(len(checked)), "failures": str(failures), "errors": str(errors)}
     suite = Xml.Element("testsuite", {"name": "surefoot check", **numbers})
     for one in checked:
-        time = one.now.metrics.get("duration", 0.0) if one.now is not None else 0.0
-        case = Xml.SubElement(suite, "testcase", classname="surefoot", name=one.case.scenario.name, time=f"{time:.3f}")
+        name, time = one.case.scenario.name, f"{one.took:.3f}"
+        case = Xml.SubElement(suite, "testcase", classname="surefoot", name=name, time=time)
         text = "\n".join(lines_of(one))
         if not one.passed:
-            kind = "error" if one.status == "could not run" else "failure"
+            kind = "error" if one.status in _ERRORS else "failure"
             Xml.SubElement(case, kind, message=one.status).text = text
         elif text:
             Xml.SubElement(case, "system-out").text = text

@@ -169,11 +169,24 @@ def _zmp_error(run: RunView, parts: Sequence[Stage]) -> Array:
     return np.array([[np.max(error[one.ticks], initial=0.0, where=np.isfinite(error[one.ticks]))] for one in parts])
 
 
+def _sway(run: RunView, parts: Sequence[Stage]) -> Array:
+    """Greatest distance of the CoM along the ground from the one that the controller was asked for."""
+    off = np.linalg.norm((run.field("/truth", "com") - run.field("/reference", "com"))[:, :2], axis=1)
+    return np.array([[off[one.ticks].max()] for one in parts])
+
+
+def _tilt(run: RunView, parts: Sequence[Stage]) -> Array:
+    """Greatest angle of the torso from the vertical."""
+    tilt = run.field("/truth", "torso_tilt")
+    return np.array([[tilt[one.ticks].max()] for one in parts])
+
+
 def _com(run: RunView, parts: Sequence[Stage]) -> Array:
     return run.field("/truth", "com")[[one.end - 1 for one in parts]]
 
 
 _MM = (1e3, "mm")
+_DEGREES = (180.0 / math.pi, "deg")
 _GRIP = "largest force along the ground over normal force that the controller plans for the {side} foot {stage}"
 
 SIGNS: tuple[Sign, ...] = (
@@ -191,7 +204,7 @@ SIGNS: tuple[Sign, ...] = (
         ("sole_x", "sole_y", "sole_z"), 4, (1e-3, 0.0), _MM, "soles", "{foot} sole at touchdown of {label}", _landings
     ),
     Sign(
-        ("sole_yaw",), 4, (5e-3, 0.0), (180.0 / math.pi, "deg"), "top-view",
+        ("sole_yaw",), 4, (5e-3, 0.0), _DEGREES, "top-view",
         "heading of the {foot} sole at touchdown of {label}", _landing_yaw,
     ),
     Sign(
@@ -205,6 +218,13 @@ SIGNS: tuple[Sign, ...] = (
     ),
     Sign(
         ("zmp",), 4, (5e-3, 0.05), _MM, "balance", "largest distance of the ZMP from its reference {stage}", _zmp_error
+    ),
+    Sign(
+        ("sway",), 5, (2e-4, 0.05), _MM, "balance",
+        "balance: largest distance of the CoM along the ground from where the controller was to hold it {stage}", _sway,
+    ),
+    Sign(
+        ("tilt",), 4, (2e-3, 0.05), _DEGREES, "balance", "largest tilt of the torso {stage}", _tilt, body=True,
     ),
     Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), _MM, "balance", "CoM at the end of {label}", _com),
 )  # fmt: skip

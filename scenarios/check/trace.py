@@ -1,7 +1,7 @@
 """The signs of a run, stage by stage, so that it can be said where it first parts from another one, and in what."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,9 @@ from surefoot.scenarios.log import Log
 
 _LOST = 2.0
 """How far off over what is allowed a value counts that cannot be told any more [-]."""
+
+_LABELS = ["stage", "foot"]
+"""First columns of the table."""
 
 _SIDES = (("ahead of", "behind"), ("to the left of", "to the right of"), ("above", "below"))
 
@@ -91,13 +94,14 @@ class Trace:
     def _apart(self, now: "Trace", sign: Sign, stage: int) -> tuple[float, str]:
         """How far a sign is off over what it may be, and that in words."""
         before, after = (self._at(sign, stage), now._at(sign, stage))
-        if not np.isfinite(before).all():
+        told = np.isfinite(before).all(), np.isfinite(after).all()
+        if not any(told) or not self.values.keys() >= set(sign.columns):
             return 0.0, ""
         label, foot = self.labels[stage], self.feet[stage]
         where = {"first tick": "at the first tick", "stand": "before the first step"}.get(label, f"in {label}")
         what = sign.words.format(stage=where, label=label, foot=foot)
-        if not np.isfinite(after).all():
-            return _LOST, f"{what} cannot be told any more"
+        if not all(told):
+            return _LOST, f"{what} {'cannot be told any more' if told[0] else 'could not be told in the baseline'}"
         yaw = self.values["sole_yaw"][stage] if len(before) == 3 and "sole_yaw" in self.values else 0.0
         if sign.peak:
             before = np.array([np.nanmax(self.values[sign.columns[0]])])
@@ -114,7 +118,7 @@ class Trace:
     def lines(self) -> list[str]:
         """A table in YAML, a row for each stage."""
         digits = {column: sign.digits for sign in SIGNS for column in sign.columns}
-        rows = [["stage", "foot", *self.values]]
+        rows = [[*_LABELS, *self.values]]
         for stage, (label, foot) in enumerate(zip(self.labels, self.feet, strict=True)):
             numbers = ((column, values[stage]) for column, values in self.values.items())
             written = (f"{x:.{digits[column]}f}" if math.isfinite(x) else "~" for column, x in numbers)
@@ -123,23 +127,30 @@ class Trace:
         return [f"[{', '.join(map(str.rjust, row, widths))}]" for row in rows]
 
     @classmethod
-    def from_rows(cls, rows: Sequence[Sequence[Any]]) -> "Trace":
+    def from_rows(cls, rows: Any) -> "Trace":
         """Read such a table back.
 
         Raises:
-            ValueError: it is none.
-            TypeError: likewise.
-            IndexError: likewise.
+            ValueError: it is none; says why.
         """
-        if not isinstance(rows, list):
-            raise TypeError("not a list of rows")
-        head, *stages_ = rows
+        if not isinstance(rows, list) or not rows or not all(isinstance(row, list) for row in rows):
+            raise ValueError("its trace is no table")
+        head, *below = rows
+        if head[:2] != _LABELS or not set(head[2:]) <= set(COLUMNS) or len(set(head)) < len(head):
+            raise ValueError(f"its trace has columns other than {', '.join((*_LABELS, *COLUMNS))}")
+        if any(len(row) != len(head) for row in below):
+            raise ValueError("its trace has rows of other lengths than the first")
+        if any(not (x is None or _is_finite(x)) for row in below for x in row[2:]):
+            raise ValueError("its trace holds what is no finite number")
         columns = {
-            str(name): np.array([math.nan if row[i] is None else float(row[i]) for row in stages_])
-            for i, name in enumerate(head)
-            if name in COLUMNS
+            name: np.array([math.nan if row[i] is None else float(row[i]) for row in below])
+            for i, name in enumerate(head[2:], 2)
         }
-        return cls(tuple(str(row[0]) for row in stages_), tuple(str(row[1]) for row in stages_), columns)
+        return cls(tuple(str(row[0]) for row in below), tuple(str(row[1]) for row in below), columns)
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _place_text(off: Array, yaw: float, sign: Sign) -> str:

@@ -72,19 +72,20 @@ class Source:
         return next(inside, None) or (next(made, None) if key not in self.value_places else None)
 
 
-def decoded(file: IO[bytes], name: str) -> str:
+def decoded(file: IO[bytes], name: str, most_bytes: int = MAX_BYTES) -> str:
     """Text of an open file, whoever it is from.
 
     Args:
         file: opened to read bytes.
         name: what to call it in messages.
+        most_bytes: that it may have.
 
     Raises:
         ScenarioError: it is too large, or no UTF-8.
     """
-    data = file.read(MAX_BYTES + 1)
-    if len(data) > MAX_BYTES:
-        raise ScenarioError([f"{name}:1:1: larger than {MAX_BYTES} bytes; a scenario is a short YAML file"])
+    data = file.read(most_bytes + 1)
+    if len(data) > most_bytes:
+        raise ScenarioError([f"{name}:1:1: larger than {most_bytes} bytes; a scenario is a short YAML file"])
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -93,12 +94,13 @@ def decoded(file: IO[bytes], name: str) -> str:
         raise ScenarioError([f"{name}:{line}:{column}: not UTF-8 text; save the file as UTF-8"]) from None
 
 
-def parse(text: str, name: str) -> Source:
+def parse(text: str, name: str, most_values: int = MAX_VALUES) -> Source:
     """Read YAML text.
 
     Args:
         text: one YAML document.
         name: what to call the text in messages.
+        most_values: that it may hold once aliases are expanded.
 
     Returns:
         its values with their places; keys given twice are listed as problems.
@@ -110,7 +112,7 @@ def parse(text: str, name: str) -> Source:
     try:
         root = _Composer(text).get_single_node()
         if root is not None:
-            source.value = _Reader(source).read(root, ())
+            source.value = _Reader(source, most_values).read(root, ())
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = f"{mark.line + 1}:{mark.column + 1}" if mark else "1:1"
@@ -163,14 +165,14 @@ class _Composer(yaml.SafeLoader):
 class _Reader:
     """Builds values from nodes and remembers the places."""
 
-    def __init__(self, source: Source) -> None:
-        self._source = source
+    def __init__(self, source: Source, most_values: int) -> None:
+        self._source, self._most = source, most_values
         self._count = 0
 
     def read(self, node: yaml.Node, key: Key) -> Any:
         self._count += 1
-        if self._count > MAX_VALUES or len(key) > MAX_DEPTH:
-            reason = f"more than {MAX_VALUES} values or {MAX_DEPTH} levels once aliases are expanded"
+        if self._count > self._most or len(key) > MAX_DEPTH:
+            reason = f"more than {self._most} values or {MAX_DEPTH} levels once aliases are expanded"
             raise yaml.composer.ComposerError(None, None, reason, node.start_mark)
         self._source.value_places[key] = _spot(node)
         if isinstance(node, yaml.MappingNode):

@@ -130,7 +130,7 @@ def written(reference: str) -> Written:
     Raises:
         ScenarioError: it cannot be found or read.
     """
-    if reference in catalogue.OWN:
+    if reference in catalogue.OURS:
         return Written(*catalogue.text(reference), reference)
     path = Path(reference)
     try:

@@ -36,7 +36,7 @@ class Entry:
     """Something that can be run, or that a scenario can name.
 
     Attributes:
-        kind: scenario, campaign, robot, profile, terrain, estimator, task or metric.
+        kind: scenario, control, campaign, robot, profile, terrain, estimator, task or metric.
         name: its name.
         package: what brings it.
         doc: what it is, in one line; empty where nothing says so.
@@ -56,7 +56,8 @@ class Entry:
 def entries() -> Iterator[Entry]:
     """Everything, kind after kind: what is Surefoot's first, then what others bring."""
     for name in catalogue.names():
-        yield Entry("scenario", name, catalogue.package(name), catalogue.summary(name))
+        kind = "control" if name in catalogue.CONTROLS else "scenario"
+        yield Entry(kind, name, catalogue.package(name), catalogue.summary(name))
     for name, path in shipped().items():
         yield Entry("campaign", name, OWN_PACKAGE, path.read_text(encoding="utf-8").split("\n", 1)[0].lstrip("# "))
     for kind, (registry, doc) in _REGISTRIES.items():
@@ -83,7 +84,7 @@ def lines() -> Iterator[str]:
 
 def to_json() -> dict[str, list[dict[str, str]]]:
     """Everything by kind."""
-    found: dict[str, list[dict[str, str]]] = {kind: [] for kind in ("scenario", "campaign", *_REGISTRIES)}
+    found: dict[str, list[dict[str, str]]] = {kind: [] for kind in ("scenario", "control", "campaign", *_REGISTRIES)}
     for entry in entries():
         found[entry.kind].append({"name": entry.name, "package": entry.package, "doc": entry.doc})
     return found

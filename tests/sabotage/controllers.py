@@ -1,4 +1,4 @@
-"""Five whole-body controllers that a careless change could have made, each worse in a way a user would call bad."""
+"""Whole-body controllers that a careless change could have made, each worse in a way a user would call bad."""
 
 from collections import deque
 from dataclasses import replace
@@ -66,6 +66,23 @@ class WideCone(WholeBodyController):
         super().__init__(sole=wide, **rest)
 
 
+class LooseBalance(WholeBodyController):
+    """A DCM gain of 2.4 in place of 3."""
+
+    def __init__(self, *, parameters, **rest):
+        balance = replace(parameters.balance, dcm=0.8 * parameters.balance.dcm)
+        super().__init__(parameters=replace(parameters, balance=balance), **rest)
+
+
+class LooseTrunk(WholeBodyController):
+    """Half the gains of the orientation of pelvis and torso."""
+
+    def __init__(self, *, parameters, **rest):
+        stiffness, damping = parameters.gains.orientation
+        gains = replace(parameters.gains, orientation=(0.5 * stiffness, 0.5 * damping))
+        super().__init__(parameters=replace(parameters, gains=gains), **rest)
+
+
 SABOTAGES = {
     "task gain quartered": SoftSwing,
     "gravity compensation of a leg dropped": HeavyLeg,
@@ -73,3 +90,7 @@ SABOTAGES = {
     "torque 4 ms late": LateTorque,
     "friction cone too wide": WideCone,
 }
+"""Those that walks show."""
+
+CONTROLLERS = {**SABOTAGES, "DCM gain 2.4 in place of 3": LooseBalance, "orientation gains halved": LooseTrunk}
+"""With those that no walk shows, since it is planned anew from where the robot is 50 times a second."""

@@ -1,17 +1,26 @@
-"""The table of docs/scenarios.md that says which criteria catch which worse controller.
+"""The tables of docs/scenarios.md and docs/checking.md: which criteria catch which worse controller, and what
+`surefoot check` says of everything that is broken.
 
-python tests/sabotage/table.py [SCENARIO]...
+python tests/sabotage/table.py [--criteria | --check] [SCENARIO]...
 """
 
+import re
 import sys
 import tempfile
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from controllers import SABOTAGES
+from sabotages import ALL
 
 import surefoot
-from surefoot.scenarios.catalogue import OWN
+from surefoot.scenarios.catalogue import CONTROLS, OURS, OWN
+from surefoot.scenarios.check.baseline import read_baseline
+from surefoot.scenarios.check.check import cases, run_case
+from surefoot.scenarios.check.report import lines_of
+
+MAKEFILE = Path(__file__).parents[2] / "Makefile"
 
 
 def caught_by(name: str, sabotage: str) -> str:
@@ -24,8 +33,8 @@ def caught_by(name: str, sabotage: str) -> str:
     return f"{first}, {len(missed) - 2} more" if len(missed) > 2 else first or "-"
 
 
-def main() -> None:
-    names = sys.argv[1:] or list(OWN)
+def criteria_table(names: Sequence[str]) -> None:
+    """Print which criteria each worse controller misses in each scenario."""
     print("| scenario | " + " | ".join(SABOTAGES) + " |")
     print("|---" * (1 + len(SABOTAGES)) + "|")
     cells = [(name, sabotage) for name in names for sabotage in SABOTAGES]
@@ -33,6 +42,51 @@ def main() -> None:
         found = dict(zip(cells, pool.map(caught_by, *zip(*cells, strict=True)), strict=True))
     for name in names:
         print(f"| `{name}` | " + " | ".join(found[name, sabotage] for sabotage in SABOTAGES) + " |")
+
+
+def of_make_check() -> list[str]:
+    """The scenarios of `make check`."""
+    (line,) = re.findall(r"surefoot check (.*)", MAKEFILE.read_text(encoding="utf-8"))
+    return str(line).split()
+
+
+def short_first(names: Sequence[str]) -> list[str]:
+    """In the order in which they are likely to catch something soon: controls, those of `make check`, the shortest."""
+    order = {name: index for index, name in enumerate((*CONTROLS, *of_make_check()))}
+    length = {case.reference: read_baseline(case.baseline).metrics["duration"] for case in cases(names)}
+    return sorted(names, key=lambda name: (order.get(name, len(order)), length[name]))
+
+
+def first_that_catches(sabotage: str, names: Sequence[str]) -> str:
+    """The first of some scenarios that `surefoot check` does not let pass, with what it says of it; or a dash."""
+    for case in cases(names):
+        with ALL[sabotage].at_work(), tempfile.TemporaryDirectory() as folder:
+            checked = run_case(case, Path(folder))
+            if not checked.passed:
+                said = lines_of(checked)[0].removeprefix("parts first: ").replace("|", "\\|")
+                return f"`{case.reference}` {checked.status}: {said}"
+    return "-"
+
+
+def check_table(names: Sequence[str]) -> None:
+    """Print what `surefoot check` says of everything that is broken."""
+    everything = short_first(names)
+    some = [name for name in everything if name in of_make_check()]
+    print("| broken | caught by the whole | by `make check` |\n|---|---|---|")
+    for sabotage in ALL:
+        by_some = first_that_catches(sabotage, some)
+        by_all = by_some if everything[: len(some)] == some else "-"
+        by_all = first_that_catches(sabotage, everything) if by_all == "-" else by_all
+        print(f"| {sabotage} | {by_all} | {'the same' if by_some == by_all != '-' else by_some} |", flush=True)
+
+
+def main() -> None:
+    chosen = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
+    options = set(sys.argv[1:]) - set(chosen)
+    if options != {"--check"}:
+        criteria_table(chosen or list(OWN))
+    if options != {"--criteria"}:
+        check_table(chosen or list(OURS))
 
 
 if __name__ == "__main__":

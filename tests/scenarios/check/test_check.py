@@ -1,5 +1,6 @@
 """A run against its baseline: the same is the same, what moved is named with its direction."""
 
+import os
 from dataclasses import replace
 from xml.etree import ElementTree as Xml
 
@@ -10,10 +11,10 @@ import yaml
 from surefoot.scenarios.check import check as checking
 from surefoot.scenarios.check import report
 from surefoot.scenarios.check.baseline import Baseline, read_baseline, write_baseline
-from surefoot.scenarios.check.check import cases, exit_code, run_case, update
+from surefoot.scenarios.check.check import cases, compared, exit_code, run_case, updated
 from surefoot.scenarios.check.signs import COLUMNS, SIGNS
 from surefoot.scenarios.check.trace import Trace
-from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.judge.metrics import OWN, known
 from surefoot.scenarios.show.figures.page import FIGURES
@@ -47,7 +48,7 @@ def first(tmp_path_factory):
 def kept(case, first):
     """The case with its baseline written, and what was written."""
     assert first.status == "without baseline"
-    assert update([replace(first, case=case)]) == (case.baseline,)
+    assert updated(replace(first, case=case)).status == "written"
     return case, read_baseline(case.baseline)
 
 
@@ -63,14 +64,15 @@ def test_a_baseline_lies_beside_the_file_and_the_same_run_is_the_same(kept, tmp_
     assert baseline.metrics["zmp_error_rms"][0] > 0.0
     again = run_case(case, tmp_path / "again")
     assert (again.status, again.moves, again.partings) == ("same", (), ())
-    assert update([again]) == ()
+    assert updated(again) is again
 
 
 @pytest.mark.parametrize(
     ("name", "factor", "direction", "status"),
     [
         ("speed_mean", 1.5, "worse", "moved"),
-        ("speed_mean", 0.5, "better", "better"),
+        ("speed_mean", 0.9, "better", "better"),
+        ("speed_mean", 0.4, "better", "moved"),
         ("path_length", 1.5, "other", "moved"),
         ("path_length", 1.01, None, "same"),
     ],
@@ -177,7 +179,7 @@ def test_a_missed_criterion_fails_whatever_the_baseline_says_and_is_no_baseline(
     assert found.status == "failed"
     assert not found.passed
     before = case.baseline.read_text()
-    assert update([found]) == ()
+    assert updated(found) is found
     assert case.baseline.read_text() == before
 
 
@@ -196,21 +198,20 @@ def test_a_baseline_of_other_settings_is_not_compared(kept, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("statuses", "code", "code_after_update"),
+    ("statuses", "code"),
     [
-        (["same", "better"], 0, 0),
-        (["same", "moved"], 1, 0),
-        (["without baseline", "other scenario"], 1, 0),
-        (["failed", "same"], 1, 1),
-        (["unreadable baseline", "moved"], 2, 0),
-        (["could not run", "failed"], 2, 2),
+        (["same", "better", "written"], 0),
+        (["same", "moved"], 1),
+        (["without baseline", "other scenario"], 1),
+        (["incomplete baseline", "same"], 1),
+        (["failed", "written"], 1),
+        (["unreadable baseline", "moved"], 2),
+        (["could not run", "failed"], 2),
+        (["could not write", "failed"], 2),
     ],
 )
-def test_the_exit_code_tells_what_is_worse_from_what_could_not_be_held_against_anything(
-    first, statuses, code, code_after_update
-):
-    found = [replace(first, status=status) for status in statuses]
-    assert (exit_code(found, False), exit_code(found, True)) == (code, code_after_update)
+def test_the_exit_code_tells_what_is_worse_from_what_could_not_be_held_against_anything(first, statuses, code):
+    assert exit_code([replace(first, status=status) for status in statuses]) == code
 
 
 def test_what_cannot_run_and_what_is_no_baseline_is_told(case, tmp_path):
@@ -218,29 +219,143 @@ def test_what_cannot_run_and_what_is_no_baseline_is_told(case, tmp_path):
     case.baseline.write_text("scenario: 5\n")
     found = run_case(case, tmp_path / "again")
     assert found.status == "unreadable baseline"
-    assert "is no baseline; write it anew with `surefoot check --update`" in found.reasons[0]
-    assert update([found]) == (case.baseline,)
+    assert "it has no settings, so it is no baseline; write it anew with `surefoot check" in found.reasons[0]
+    assert updated(found).status == "written"
     assert run_case(case, tmp_path / "third").status == "same"
     assert run_case(case, tmp_path / "stroll.yaml").status == "could not run"
 
 
+def test_what_update_wrote_it_says_it_wrote(case, tmp_path):
+    (found,) = checking.check([case], tmp_path / "runs", 1, update=True)
+    assert (found.status, found.passed) == ("written", True)
+    assert report.lines_of(found) == ["was: without baseline", f"written: {case.baseline}"]
+    assert report.summary([found]) == "1 scenario: 1 written"
+
+
+DEEP = "[" * 100_000
+ALIASES = "".join(f"a{i + 1}: &a{i + 1} [{', '.join([f'*a{i}'] * 10)}]\n" for i in range(8))
+
+
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("old", "new", "why"),
     [
-        ("metrics:\n", "metrics: [1]\nmore:\n"),
-        ("trace:", "trace: {a: 1}\nrest:"),
-        ("speed_mean: ", "speed_mean: fast #"),
-        ("first tick,", ""),
-        ("  gait:", "  gait: {"),
+        ("metrics:\n", "metrics: [1]\nmore:\n", "it has no metrics"),
+        ("trace:", "trace: {a: 1}\nrest:", "it has no trace"),
+        ("speed_mean: ", "speed_mean: fast #", "its speed_mean is not what the metric gives"),
+        ("speed_mean: ", "speed_mean: .inf #", "no finite number"),
+        ("speed_mean: ", "speed_mean: 1e400 #", "no finite number"),
+        ("speed_mean: ", "steps_taken: 2\n  speed_mean: ", "'steps_taken' is given twice"),
+        ("first tick,", "", "its trace has rows of other lengths"),
+        ("com_x", "com_q", "its trace has columns other than"),
+        ("com_x", "com_y", "its trace has columns other than"),
+        ("0.000,", ".inf,", "its trace holds what is no finite number"),
+        ("0.000,", "true,", "its trace holds what is no finite number"),
+        ("  gait:", "  gait: {", "not valid YAML"),
+        ("scenario:", f"deep: {DEEP}\nscenario:", "nested deeper than"),
+        ("settings: |\n", f"settings: |\n  deep: {DEEP}\n", "nested deeper than"),
+        ("metrics:\n", "metrics: &all\n  all: *all\n", "is no baseline"),
+        ("scenario:", f"a0: &a0 [1]\n{ALIASES}scenario:", "more than 200000 values"),
     ],
 )
-def test_a_baseline_that_was_spoilt_is_refused_in_a_sentence(kept, old, new):
+def test_a_baseline_that_was_spoilt_is_refused_in_a_sentence(kept, old, new, why):
     case, _ = kept
     text = case.baseline.read_text()
     assert old in text
     case.baseline.write_text(text.replace(old, new, 1))
-    with pytest.raises(ScenarioError, match="is no baseline; write it anew"):
+    with pytest.raises(ScenarioError) as refused:
         read_baseline(case.baseline)
+    (problem,) = refused.value.problems
+    assert problem.startswith(str(case.baseline))
+    assert why in problem
+    assert problem.endswith("so it is no baseline; write it anew with `surefoot check --update`")
+
+
+def test_a_baseline_is_a_regular_file_of_bounded_size(kept, tmp_path):
+    case, baseline = kept
+    case.baseline.unlink()
+    os.mkfifo(case.baseline)
+    with pytest.raises(ScenarioError, match="it is no regular file, so it is no baseline"):
+        read_baseline(case.baseline)
+    with pytest.raises(LogError, match="is no regular file; remove it"):
+        write_baseline(case.baseline, baseline)
+    case.baseline.unlink()
+    case.baseline.symlink_to("/dev/zero")
+    with pytest.raises(ScenarioError, match="it is no regular file"):
+        read_baseline(case.baseline)
+    case.baseline.unlink()
+    case.baseline.touch()
+    os.truncate(case.baseline, 2**33)
+    with pytest.raises(ScenarioError, match="larger than 2000000 bytes, so it is no baseline"):
+        read_baseline(case.baseline)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        (
+            lambda one: {"metrics": {"fell": False}},
+            "says nothing of fall_time, fall_warning, duration, ",
+        ),
+        (lambda one: {"metrics": without(one.metrics, "zmp_error_rms")}, "says nothing of zmp_error_rms"),
+        (
+            lambda one: {"trace": replace(one.trace, values=without(one.trace.values, "zmp"))},
+            "says nothing of the trace's zmp",
+        ),
+        (lambda one: {"trace": replace(one.trace, values={})}, "says nothing of the trace's time, "),
+    ],
+)
+def test_a_baseline_that_says_nothing_of_something_is_not_the_same(kept, first, changed, said):
+    case, baseline = kept
+    write_baseline(case.baseline, replace(baseline, **changed(baseline)))
+    found = compared(case, read_baseline(case.baseline), first.now)
+    assert (found.status, found.passed) == ("incomplete baseline", False)
+    assert said in found.reasons[0]
+    assert updated(replace(found, now=first.now)).status == "written"
+    assert compared(case, read_baseline(case.baseline), first.now).status == "same"
+
+
+def without(mapping, name):
+    """A mapping with one entry less."""
+    return {key: value for key, value in mapping.items() if key != name}
+
+
+def test_a_metric_that_a_criterion_asks_for_is_not_missing_either(kept):
+    _, baseline = kept
+    own = replace(baseline, metrics=without(baseline.metrics, "speed_mean"))
+    other = replace(baseline, metrics={**baseline.metrics, "com_sway": 0.1})
+    assert own.gaps(baseline, {})
+    assert baseline.gaps(other, {}) == []
+    assert baseline.gaps(other, {"com_sway": Bound(max=1.0)}) == ["the baseline says nothing of com_sway"]
+
+
+def test_what_the_baseline_could_not_tell_and_the_run_can_parts(kept):
+    _, baseline = kept
+    (found,) = moved(baseline.trace, "zmp", 2, np.nan).partings(baseline.trace)
+    assert found.text == "largest distance of the ZMP from its reference in step 1 could not be told in the baseline"
+
+
+def test_a_baseline_of_another_name_is_not_compared(kept, first):
+    case, baseline = kept
+    write_baseline(case.baseline, replace(baseline, scenario="1e5"))
+    assert read_baseline(case.baseline).scenario == "1e5"
+    found = compared(case, read_baseline(case.baseline), first.now)
+    assert (found.status, found.reasons) == ("other scenario", ("the baseline is of '1e5'",))
+
+
+def test_an_option_of_the_world_that_changed_is_named(kept, first):
+    case, baseline = kept
+    world = {"gravity": [0.0, 0.0, -9.81], "disabled": [], "mass": 100.0}
+    known = replace(baseline, world=world)
+    assert known.other_world(replace(known, world={**world, "mass": 100.00001})) == []
+    assert known.other_world(replace(known, world={**world, "gravity": [0.0, 0.0, -9.7], "disabled": ["mjX"]})) == [
+        "the world's gravity is [0.0, 0.0, -9.7], [0.0, 0.0, -9.81] in the baseline",
+        "the world's disabled is [mjX], [] in the baseline",
+    ]
+    (gap,) = baseline.gaps(known, {})
+    assert gap.endswith("says nothing of the world's gravity, the world's disabled, the world's mass")
+    write_baseline(case.baseline, known)
+    assert read_baseline(case.baseline).world == world
+    assert compared(case, known, first.now).status == "moved"
 
 
 def test_a_folder_is_its_scenarios_and_names_are_not_taken_twice(case, tmp_path):
@@ -272,6 +387,12 @@ def test_reports_say_what_moved_and_where_to_look(kept, tmp_path):
     page = report.markdown([bad, good])
     assert "2 scenarios: 1 moved, 1 same" in page
     assert page.count("| stroll |") == 2
+
+
+def test_junit_has_the_time_on_the_walls_clock(first):
+    assert first.took > 0.0
+    suite = Xml.fromstring(report.junit([replace(first, took=0.25)]))
+    assert suite.find("testcase").get("time") == "0.250"
 
 
 def test_scenarios_run_side_by_side_in_the_order_in_which_they_were_named(kept, tmp_path):

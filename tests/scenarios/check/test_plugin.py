@@ -28,3 +28,16 @@ def test_it_passes_fails_with_what_was_missed_and_keeps_the_log_of_the_failure(t
     assert "Traceback" not in done.stdout
     kept = [path.parent.name for path in (tmp_path / "runs" / "pytest").glob("*/log.mcap")]
     assert kept == ["bad.scenario-0"]
+
+
+def test_a_baseline_whose_name_matches_no_scenario_fails_the_one_that_has_none(tmp_path):
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    (tmp_path / "good.scenario.yaml").write_text(GOOD)
+    (tmp_path / "baselines").mkdir()
+    astray = tmp_path / "baselines" / "godo.scenario.baseline.yaml"
+    astray.write_text("scenario: godo.scenario\n")
+    done = pytest_in(tmp_path)
+    assert done.returncode == 1
+    assert f"{astray}: is of no scenario beside it; name it good.scenario.baseline.yaml, or remove it" in done.stdout
+    (tmp_path / "godo.scenario.yaml").write_text(GOOD)
+    assert "1 failed, 1 passed" in pytest_in(tmp_path).stdout

@@ -14,7 +14,7 @@ from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.source import read_source
 from surefoot.models.robot_file.text import Parts, robot_text
 from surefoot.models.robot_file.touch import Hull, find_hulls, joined, kept_apart, limbs, overlapping, shank_spacing
-from surefoot.models.robot_file.upper import find_upper, hanging, swings
+from surefoot.models.robot_file.upper import find_upper, hanging, swings, with_upright
 from surefoot.models.types import Array, JointRoles, RobotDescription, RobotError, fixed, nearest
 from surefoot.similarity import LEG_LENGTH
 
@@ -69,10 +69,11 @@ class _Deriver:
     """Holds what is found while a robot is described."""
 
     def __init__(self, file: RobotFile, reduced: Reduced) -> None:
-        self.file, self.reduced, self.model = file, reduced, reduced.model
+        self.file, self.model = file, reduced.model
         self.lines: list[str] = []
         self.legs = find_legs(reduced, file)
         self.upper = find_upper(reduced, file, self.legs)
+        self.reduced = reduced = with_upright(reduced, self.upper.torso)
         self.hulls = find_hulls(reduced, self.legs, self.upper)
         self.sole = tuple(min(getattr(leg.sole, side) for leg in self.legs) for side in ("length", "width"))
         self.leg_length = self._leg_length()

@@ -21,7 +21,10 @@ def model_files(path: Path) -> tuple[Path, ...]:
     ]
     found = [path]
     for reference in sorted(set(re.findall(r'(?:<mesh\b[^>]*?filename|\bfile)\s*=\s*"([^"]+)"', text))):
-        candidates = (resolve(reference, folder) for folder in folders)
+        try:
+            candidates = [resolve(reference, folder) for folder in folders]
+        except RobotError:  # of a package that is not there, which whoever needs its meshes says
+            continue
         file = next((file for file in candidates if file.is_file() and file not in found), None)
         if file is not None:
             found += model_files(file) if file.suffix in (".xml", ".mjcf") else [file]

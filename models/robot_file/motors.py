@@ -7,7 +7,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.models.robot_file.schema import RobotFile, matched
-from surefoot.models.types import RobotError
+from surefoot.models.types import Array, RobotError
 
 
 def set_limits(model: pin.Model, file: RobotFile, names: tuple[str, ...]) -> None:
@@ -62,22 +62,40 @@ def set_armature(
         notes.append("armature: none known, so joints have no rotors; give armature: {PATTERN: kg m^2} if it has gears")
 
 
-def require_limits(model: pin.Model) -> None:
-    """Refuse joints whose motors nobody knows.
+SPEED = 12.0
+"""No-load speed of joints whose model says none: that of many robots' slower joints [rad/s]."""
+
+
+def require_limits(model: pin.Model, notes: list[str]) -> None:
+    """Refuse joints whose motors nobody knows; those without a speed limit get a usual one, which is told.
 
     Raises:
-        RobotError: a torque or a speed limit is missing.
+        RobotError: a torque limit or a range is missing.
     """
-    for key, what, unit in (("upperEffortLimit", "torque", "N m"), ("upperVelocityLimit", "velocity", "rad/s")):
-        values = getattr(model, key)[6:]
-        unknown = [name for name, value in zip(tuple(model.names)[2:], values, strict=True) if not 0.0 < value < np.inf]
-        if unknown:
-            others, have = (f" and {len(unknown) - 1} more", "have") if len(unknown) > 1 else ("", "has")
-            said = f"joint '{unknown[0]}'{others} of {model.name} {have} no {what} limit"
-            raise RobotError((f"{what}_limit",), said, f"give {what}_limit: {{PATTERN: {unit}}}; '*' means every joint")
+    unknown = _unlimited(model, model.upperEffortLimit)
+    if unknown:
+        others, have = (f" and {len(unknown) - 1} more", "have") if len(unknown) > 1 else ("", "has")
+        said = f"joint '{unknown[0]}'{others} of {model.name} {have} no torque limit"
+        raise RobotError(("torque_limit",), said, "give torque_limit: {PATTERN: N m}; '*' means every joint")
+    unknown = _unlimited(model, model.upperVelocityLimit)
+    if unknown:
+        others = f"joint '{unknown[0]}'" if len(unknown) == 1 else f"{len(unknown)} joints, '{unknown[0]}' first,"
+        notes.append(
+            f"velocity_limit: {SPEED:g} rad/s is taken for {others} without one in the model; give velocity_limit: "
+            "{PATTERN: rad/s} with what their motors can do"
+        )
+        speeds = np.array(model.upperVelocityLimit)
+        speeds[[model.joints[model.getJointId(name)].idx_v for name in unknown]] = SPEED
+        model.upperVelocityLimit, model.lowerVelocityLimit = speeds, -speeds
     pairs = zip(tuple(model.names)[2:], model.lowerPositionLimit[7:], model.upperPositionLimit[7:], strict=True)
     for name, lower, upper in pairs:
         if not -np.inf < lower < upper < np.inf:
             raise RobotError(
                 ("model",), f"joint '{name}' of {model.name} turns from {lower} to {upper} rad", "give limits"
             )
+
+
+def _unlimited(model: pin.Model, limits: Array) -> list[str]:
+    """Joints whose limit is none, the floating base aside."""
+    pairs = zip(tuple(model.names)[2:], limits[6:], strict=True)
+    return [name for name, value in pairs if not 0.0 < value < np.inf]

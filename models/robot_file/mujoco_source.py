@@ -7,13 +7,14 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.models.robot_file.shapes import Shape, box, capsule, cylinder, ellipsoid, placed, solid
+from surefoot.models.robot_file.shapes import Shape, box, capsule, cylinder, ellipsoid, placed, solid, told_missing
 from surefoot.models.robot_file.source import ROOT, Source, physical
 from surefoot.models.types import Array, RobotError
 
-_HINGE, _SLIDE, _FREE = (
-    int(kind) for kind in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_FREE)
-)
+_HINGE, _SLIDE = (int(kind) for kind in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE))
+_LEGS = 8
+"""Joints that two legs have at least."""
+
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
 
 
@@ -23,26 +24,70 @@ def read_mjcf(file: RobotFile, path: Path) -> Source:
     Raises:
         RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
     """
+    notes: list[str] = []
     try:
-        mj = mujoco.MjModel.from_xml_path(str(path))
+        mj = _bare(path, notes).compile()
     except ValueError as error:
         raise RobotError(("model",), f"{path}: {' '.join(str(error).split())[:200]}", "mend it") from None
+    return _Reader(mj, file, path, _robot_of(mj, path, notes), notes).read()
+
+
+def _bare(path: Path, notes: list[str]) -> mujoco.MjSpec:
+    """The file without what is no part of a robot: contacts with a ground, sensors, keyframes, looks that are missing.
+
+    Raises:
+        RobotError: a mesh is missing that the robot touches with, or that says how heavy it is.
+    """
+    spec = mujoco.MjSpec.from_file(str(path))
+    for part in (*spec.pairs, *spec.excludes, *spec.sensors, *spec.keys):
+        spec.delete(part)
+    folder = path.parent / spec.meshdir
+    files = {
+        mesh.name: folder / (Path(mesh.file).name if spec.strippath else mesh.file) for mesh in spec.meshes if mesh.file
+    }
+    missing = {name: file for name, file in files.items() if not file.is_file()}
+    told = []
+    for geom in [geom for geom in spec.geoms if geom.meshname in missing]:
+        body, file = geom.parent, missing[geom.meshname]
+        what = f"body '{body.name}' of {path}: mesh '{geom.meshname}' is not there"
+        if geom.contype or geom.conaffinity or not body.explicitinertial:
+            raise RobotError(("model",), what, f"put it at {file}")
+        told.append(what)
+        spec.delete(geom)
+    for mesh in [mesh for mesh in spec.meshes if mesh.name in missing]:
+        spec.delete(mesh)
+    notes += told_missing("visual", told)
+    return spec
+
+
+def _robot_of(mj: mujoco.MjModel, path: Path, notes: list[str]) -> int:
+    """The body in the world that is a robot: the only one, or the only one with joints enough for two legs.
+
+    Raises:
+        RobotError: none is, or several are.
+    """
     roots = [body for body in range(1, mj.nbody) if mj.body_parentid[body] == 0 and mj.body_subtreemass[body] > 0]
-    if len(roots) != 1:
-        names = ", ".join(f"'{mj.body(body).name}'" for body in roots) or "none"
+    joints = mj.body_rootid[mj.jnt_bodyid]
+    robots = [body for body in roots if (joints == body).sum() >= _LEGS] if len(roots) > 1 else roots
+    if len(robots) != 1:
+        names = ", ".join(f"'{mj.body(body).name}'" for body in robots or roots) or "none"
         raise RobotError(("model",), f"{path}: has the bodies {names} in its world", "give a file with one robot alone")
-    return _Reader(mj, file, path, roots[0]).read()
+    others = [f"'{mj.body(body).name}'" for body in roots if body not in robots]
+    if others:
+        notes.append(f"left out, beside the robot in the world of its model: {', '.join(others)}")
+    return robots[0]
 
 
 class _Reader:
     """Goes through the bodies of a compiled model; welded ones become part of what they are welded to."""
 
-    def __init__(self, mj: mujoco.MjModel, file: RobotFile, path: Path, root: int) -> None:
+    def __init__(self, mj: mujoco.MjModel, file: RobotFile, path: Path, root: int, notes: list[str]) -> None:
         self._mj, self._file, self._path, self._root = mj, file, path, root
         self._model = pin.Model()
         self._model.name = file.name
         self._place: dict[int, tuple[int, pin.SE3]] = {}
-        self._notes: list[str] = []
+        self._added: dict[int, int] = {}
+        self._notes = notes
 
     def read(self) -> Source:
         """The whole robot."""
@@ -63,7 +108,7 @@ class _Reader:
         first, count = int(mj.body_jntadr[body]), int(mj.body_jntnum[body])
         if body == self._root:
             joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), ROOT)
-            offset = pin.SE3.Identity()
+            offset = pin.SE3(_placement(np.zeros(3), mj.body_quat[body]).rotation, np.zeros(3))
         else:
             joint, before = self._place[int(mj.body_parentid[body])]
             offset = before * _placement(mj.body_pos[body], mj.body_quat[body])
@@ -77,7 +122,7 @@ class _Reader:
     def _add_joint(self, index: int, parent: int, offset: pin.SE3, body: str) -> tuple[int, pin.SE3]:
         """Put a joint at its place in the body; returns it and the body seen from it."""
         mj = self._mj
-        name, kind, at = mj.joint(index).name or f"{body}_joint", int(mj.jnt_type[index]), mj.jnt_pos[index]
+        name, kind, at = mj.joint(index).name or f"{body}_joint{index}", int(mj.jnt_type[index]), mj.jnt_pos[index]
         if kind not in (_HINGE, _SLIDE):
             raise RobotError(
                 ("model",), f"{self._path}: joint '{name}' is neither hinge nor slide", "give it as hinges"
@@ -90,6 +135,8 @@ class _Reader:
         lower, upper = mj.jnt_range[index] if mj.jnt_limited[index] else (-2 * np.pi, 2 * np.pi)
         one = np.ones(1)
         added = self._model.addJoint(parent, joint, offset * there, name, one, one, one * lower, one * upper)
+        self._model.addJointFrame(added)
+        self._added[index] = added
         self._model.armature[self._model.joints[added].idx_v] = mj.dof_armature[mj.jnt_dofadr[index]]
         return added, there.inverse()
 
@@ -102,12 +149,10 @@ class _Reader:
 
     def _add_limits(self) -> None:
         """Torques from the motors; of speeds an MJCF knows nothing."""
-        mj, model = self._mj, self._model
+        model = self._model
         effort, speed = np.zeros(model.nv), np.zeros(model.nv)
-        for joint in range(mj.njnt):
-            name = mj.joint(joint).name
-            if mj.jnt_type[joint] != _FREE and model.existJointName(name):
-                effort[model.joints[model.getJointId(name)].idx_v] = self._torque(joint)
+        for joint, added in self._added.items():
+            effort[model.joints[added].idx_v] = self._torque(joint)
         model.upperEffortLimit, model.lowerEffortLimit = effort, -effort
         model.upperVelocityLimit, model.lowerVelocityLimit = speed, -speed
 

@@ -1,6 +1,7 @@
 """A model with the joints that walk: others locked, limits and rotors complete, x of the base ahead."""
 
 import fnmatch
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,10 +14,14 @@ from surefoot.models.robot_file.motors import read_srdf, require_limits, set_arm
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.robot_file.source import Source
+from surefoot.models.robot_file.turning import turn, upward
 from surefoot.models.types import Array, RobotError, nearest
 
 SITES = ("imu", "left_sole", "right_sole")
 """Of every description."""
+
+RESERVED = ("world", "universe")
+"""Names that the engines give to what stands still."""
 
 _LEAST = 1e-10
 """Mass [kg] and moment of inertia [kg m^2] that a body has to have."""
@@ -58,6 +63,8 @@ class Reduced:
         Raises:
             RobotError: there is no such link.
         """
+        if link in self.bodies:
+            return self.bodies.index(link) + 1
         return int(self.model.frames[frame_of(self.model, link, key)].parentJoint)
 
 
@@ -86,8 +93,9 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     rotors, states = read_srdf(srdf, names)
     set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
     feet = file.soles()
-    legs = set(_chain(full, feet.left, "feet.left")) | set(_chain(full, feet.right, "feet.right"))
-    locked = _locked(full, file, source, legs)
+    left, right = (set(_chain(full, getattr(feet, side), f"feet.{side}")) for side in ("left", "right"))
+    above = _above(full, left, right)
+    locked = _locked(full, file, source, (left | right) - above, above)
     for why in dict.fromkeys(reason for reason, _ in locked.values()):
         told = ", ".join(full.names[joint] for joint, (reason, _) in locked.items() if reason == why)
         notes.append(f"locked, {why}: {told}")
@@ -96,15 +104,42 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
         model_joint = full.joints[joint]
         if model_joint.nq == 1:
             q[model_joint.idx_q] = angle
-    model = pin.buildReducedModel(full, list(locked), q)
+    model = _without(full, list(locked), q)
     model.name = file.name
-    require_limits(model)
+    require_limits(model, notes)
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
     turned = _turn(model, frames, file, notes)
-    bodies = tuple(_body(full, full.getJointId(name), names) for name in tuple(model.names)[1:])
+    bodies = _bodies(full, tuple(model.names)[1:])
     _require_inertias(model, bodies, file, notes)
     visual, collision = (_by_joint(model, shapes) for shapes in (source.visual, source.collision))
     return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes)
+
+
+def _above(model: pin.Model, left: set[int], right: set[int]) -> set[int]:
+    """Joints from a trunk that is the root down to where two legs part."""
+    shared = left & right
+    if not shared or left <= right or right <= left:
+        return set()
+    data = model.createData()
+    pin.computeSubtreeMasses(model, data)
+    hips = sum(data.mass[min(leg - shared)] for leg in (left, right))
+    below = data.mass[min(shared)]
+    return shared if below - hips < data.mass[0] - below else set()
+
+
+def _without(full: pin.Model, locked: list[int], q: Array) -> pin.Model:
+    """The model with joints locked; Pinocchio seeks joints among all frames, so links have other names meanwhile."""
+    _rename(full, lambda name: f"link {name}")
+    model = pin.buildReducedModel(full, locked, q)
+    for one in (full, model):
+        _rename(one, lambda name: name.removeprefix("link "))
+    return model
+
+
+def _rename(model: pin.Model, renamed: Callable[[str], str]) -> None:
+    for frame in model.frames:
+        if frame.type == pin.FrameType.BODY:
+            frame.name = renamed(frame.name)
 
 
 def _chain(model: pin.Model, link: str, key: str) -> list[int]:
@@ -113,7 +148,9 @@ def _chain(model: pin.Model, link: str, key: str) -> list[int]:
     return [index for index in model.supports[joint] if index > 1]
 
 
-def _locked(model: pin.Model, file: RobotFile, source: Source, legs: set[int]) -> dict[int, tuple[str, float]]:
+def _locked(
+    model: pin.Model, file: RobotFile, source: Source, legs: set[int], above: set[int]
+) -> dict[int, tuple[str, float]]:
     """Joints that are frozen, each with the reason and its angle [rad].
 
     Raises:
@@ -139,6 +176,8 @@ def _locked(model: pin.Model, file: RobotFile, source: Source, legs: set[int]) -
             why = "not revolute"
         elif name in source.mimics:
             why = "follow others"
+        elif joint in above:
+            why = "above both legs, where the floating base is"
         elif joint in fingers:
             why = "fingers"
         elif joint not in legs and not model.upperEffortLimit[one.idx_v] > 0.0:
@@ -201,10 +240,14 @@ def _require_inertias(model: pin.Model, bodies: tuple[str, ...], file: RobotFile
 
 
 def _turn(model: pin.Model, feet: tuple[int, ...], file: RobotFile, notes: list[str]) -> float:
-    """Turn the frame of the base so that x points ahead; returns the angle about z [rad].
+    """Turn the frame of the base so that z points up and x ahead; returns the angle about z [rad].
 
     Ahead is what has the left foot on its left.
     """
+    axes = upward(model, feet)
+    if axes[2, 2] != 1.0:
+        turn(model, 1, axes)
+        notes.append("the frame of the base is turned, so that its z points from the feet to the hips")
     data = model.createData()
     pin.framesForwardKinematics(model, data, pin.neutral(model))
     left, right = (data.oMf[frame].translation for frame in feet)
@@ -219,21 +262,24 @@ def _turn(model: pin.Model, feet: tuple[int, ...], file: RobotFile, notes: list[
         return 0.0
     notes.append(f"the frame of the base is turned by {90 * quarter} deg about z, so that its x points forward")
     cosine, sine = [(1, 0), (0, 1), (-1, 0), (0, -1)][quarter]
-    back = pin.SE3(np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]]), np.zeros(3))
-    model.inertias[1] = back.act(model.inertias[1])
-    for joint in range(2, model.njoints):
-        if model.parents[joint] == 1:
-            model.jointPlacements[joint] = back * model.jointPlacements[joint]
-    for frame in model.frames:
-        if frame.parentJoint == 1 and frame.type != pin.FrameType.JOINT:
-            frame.placement = back * frame.placement
+    turn(model, 1, np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]))
     return float(quarter * np.pi / 2)
 
 
-def _body(model: pin.Model, joint: int, taken: tuple[str, ...]) -> str:
-    """Name of the link that a joint moves; another where a joint or site has it, since frames are found by name."""
-    name = str(next(f.name for f in model.frames if f.parentJoint == joint and f.type == pin.FrameType.BODY))
-    return f"{name}_link" if name in (*taken, *SITES) else name
+def _bodies(model: pin.Model, joints: tuple[str, ...]) -> tuple[str, ...]:
+    """Names of the links that joints move; others where a joint or site has them, since frames are found by name."""
+    links = [frame for frame in model.frames if frame.type == pin.FrameType.BODY]
+    names = {frame.name for frame in links}
+    taken = {*tuple(model.names)[1:], *SITES, *RESERVED}
+    found = []
+    for joint in joints:
+        moved = model.getJointId(joint)
+        name = str(next(frame.name for frame in links if frame.parentJoint == moved))
+        while name in taken:
+            name = f"{name}_link" if f"{name}_link" not in names else f"{name}_"
+        taken.add(name)
+        found.append(name)
+    return tuple(found)
 
 
 def _by_joint(model: pin.Model, shapes: tuple[Shape, ...]) -> tuple[tuple[Shape, ...], ...]:

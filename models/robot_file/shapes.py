@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -41,7 +42,9 @@ class Shape:
 
 
 def solid(link: str, points: Array, placement: pin.SE3, rgba: Colour = GREY) -> Shape:
-    """The convex hull of points that are given in a frame of their own."""
+    """The convex hull of points that are given in a frame of their own; what has no volume has no faces."""
+    if np.ptp(points, axis=0).min() == 0.0:
+        return Shape(link, placed(points, placement), np.zeros((0, 3), dtype=np.int64), rgba)
     vertices, faces = hull(points, len(points))
     return Shape(link, placed(vertices, placement), faces, rgba)
 
@@ -111,22 +114,28 @@ def _welded(corners: Array) -> tuple[Array, Faces]:
     return keys.view("<f4").reshape(-1, 3).astype(np.float64), places.reshape(-1, 3).astype(np.int64)
 
 
-def urdf_shapes(root: ElementTree.Element, path: Path, kind: str) -> tuple[Shape, ...]:
+def urdf_shapes(
+    root: ElementTree.Element, path: Path, kind: str, notes: list[str], drawn: Collection[str] | None = None
+) -> tuple[Shape, ...]:
     """Shapes of all links.
 
     Args:
         root: of the URDF.
         path: of the URDF.
         kind: visual or collision.
+        notes: is told of links whose meshes are missing and not needed.
+        drawn: links that touch by what is drawn of them if a mesh is missing; None where physics needs no mesh.
 
     Raises:
-        RobotError: a mesh is missing or cannot be read.
+        RobotError: a mesh that physics needs is missing or cannot be read.
     """
     colours = {
         name: rgba for material in root.iter("material") if (name := material.get("name")) and (rgba := _rgba(material))
     }
-    found = []
+    found: list[Shape] = []
+    missing: list[str] = []
     for link in root.findall("link"):
+        name = link.get("name", "")
         for element in link.findall(kind):
             geometry = element.find("geometry")
             if geometry is None or not len(geometry):
@@ -135,8 +144,22 @@ def urdf_shapes(root: ElementTree.Element, path: Path, kind: str) -> tuple[Shape
             rgba = None
             if material is not None:
                 rgba = _rgba(material) or colours.get(material.get("name", ""))
-            found += _urdf_shape(link.get("name", ""), geometry[0], _origin(element), rgba, path)
+            try:
+                found += _urdf_shape(name, geometry[0], _origin(element), rgba, path)
+            except RobotError as error:
+                what = f"link '{name}' of {path}: {error.what}"
+                if drawn is not None and name not in drawn:
+                    raise RobotError(error.key, what, error.right) from None
+                missing.append(what)
+    notes += told_missing(kind, missing)
     return tuple(found)
+
+
+def told_missing(kind: str, missing: Sequence[str]) -> list[str]:
+    """A note on meshes of a kind that are missing, by what the first of them lacks; none where none is."""
+    more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+    instead = "is not drawn" if kind == "visual" else "touches by what is drawn"
+    return [f"{missing[0]}{more}: what has no {kind} mesh {instead}"] if missing else []
 
 
 def _urdf_shape(link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Colour | None, path: Path) -> list[Shape]:
@@ -144,7 +167,7 @@ def _urdf_shape(link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Co
         reference = thing.get("filename", "")
         place = resolve(reference, path.parent, "mesh")
         if not place.is_file():
-            what = f"{path}: mesh {reference} of link '{link}' is not there"
+            what = f"mesh {reference} is not there"
             raise RobotError(("model",), what, f"put it at {place}, or correct the reference")
         vertices, faces = _mesh(place, (place.stat().st_mtime_ns, place.stat().st_size))
         scale = _floats(thing.get("scale"), (1.0, 1.0, 1.0))

@@ -50,15 +50,9 @@ def sole_of(points: Array, upright: Array, link: str, robot: str) -> SolePlate:
     """
     if len(points) < 4:
         raise _no_sole(robot, link, "has no shapes")
-    try:
-        hull = ConvexHull(points)
-    except QhullError:
-        raise _no_sole(robot, link, "is flat") from None
-    normal = _lowest_face(points, hull, upright[:, 2])
-    if normal is None:
-        raise _no_sole(robot, link, "has no face that points down")
+    normal, corners = _bearing(points, upright[:, 2], link, robot)
     R = _frame(upright, normal)
-    local = points[hull.vertices] @ R
+    local = corners @ R
     thick = _THICK * float(np.ptp(local[:, 0]))
     touching = local[local[:, 2] < local[:, 2].min() + thick, :2]
     try:
@@ -68,6 +62,20 @@ def sole_of(points: Array, upright: Array, link: str, robot: str) -> SolePlate:
     (x0, x1), (y0, y1) = largest_rectangle(polygon)
     centre = R @ np.array([(x0 + x1) / 2, (y0 + y1) / 2, local[:, 2].min()])
     return SolePlate(pin.SE3(R, centre), x1 - x0, y1 - y0)
+
+
+def _bearing(points: Array, up: Array, link: str, robot: str) -> tuple[Array, Array]:
+    """Upward normal of the face that bears, and the corners of the foot; level points are a face."""
+    try:
+        hull = ConvexHull(points)
+    except QhullError:
+        if np.ptp(points @ up) < _THICK * float(np.ptp(points, axis=0).max()):
+            return np.array(up), points
+        raise _no_sole(robot, link, "is flat") from None
+    normal = _lowest_face(points, hull, up)
+    if normal is None:
+        raise _no_sole(robot, link, "has no face that points down")
+    return normal, points[hull.vertices]
 
 
 def _no_sole(robot: str, link: str, why: str) -> RobotError:

@@ -14,7 +14,9 @@ from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import Shape, urdf_shapes
 from surefoot.models.types import Array, RobotError
 
-ROOT = "root_joint"
+ROOT = "floating base"
+"""Name of the joint of the floating base, which no XML name is."""
+
 _REPAIR = 1e-4
 """Least second moment of a repaired inertia over their sum [-]."""
 
@@ -65,14 +67,24 @@ def _read_urdf(file: RobotFile, path: Path, text: str) -> Source:
     source_notes: list[str] = []
     mimics = tuple(_mended_joints(root, source_notes))
     _check_inertias(root, file, path, source_notes)
-    flat = ElementTree.tostring(root, encoding="unicode")
+    visual = urdf_shapes(root, path, "visual", source_notes)
+    drawn = {shape.link for shape in visual}
+    collision = urdf_shapes(root, path, "collision", source_notes, drawn)
+    flat = _skeleton(root)
     try:
         model = pin.buildModelFromXML(flat, pin.JointModelFreeFlyer(), ROOT)
     except Exception as error:
         raise RobotError(("model",), f"{path}: {_one_line(error)}", "mend it, so that Pinocchio can read it") from None
     model.name = file.name
-    visual, collision = (urdf_shapes(root, path, kind) for kind in ("visual", "collision"))
     return Source(model, visual, collision, mimics, source_notes)
+
+
+def _skeleton(root: ElementTree.Element) -> str:
+    """Links, joints and inertias alone: what the parser of URDF then says is about them."""
+    for link in root.findall("link"):
+        for shape in (*link.findall("visual"), *link.findall("collision")):
+            link.remove(shape)
+    return ElementTree.tostring(root, encoding="unicode")
 
 
 def _one_line(error: Exception) -> str:

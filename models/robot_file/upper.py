@@ -1,14 +1,16 @@
 """The upper body of a model: torso, waist and arms, and how the arms hang."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
 
 from surefoot.models.joints import world_axis
-from surefoot.models.robot_file.legs import Leg, rest
+from surefoot.models.robot_file.legs import Leg, at, rest
 from surefoot.models.robot_file.reduced import Reduced
 from surefoot.models.robot_file.schema import RobotFile
+from surefoot.models.robot_file.shapes import placed
+from surefoot.models.robot_file.turning import turn
 from surefoot.models.types import Array, RobotError
 
 _ASIDE, _ALIKE = 0.02, 0.1
@@ -16,6 +18,9 @@ _LATERAL = 0.8
 _SHARE = 0.5
 _ROOM = 0.25
 """Angle that relaxed arms stay from the ends of their joints, or a sixth of the range if that is less [rad]."""
+
+_SAME = 1e-5
+"""Angle below which a frame is upright but for the digits of its model [rad]."""
 
 _STEPS, _NEARNESS = 100, 0.02
 
@@ -152,3 +157,24 @@ def _astray(
         errors.append(weight * (unit - target))
         rows.append(weight / length * (moves - np.outer(unit, unit @ moves)))
     return np.concatenate(errors), np.vstack(rows)
+
+
+def with_upright(reduced: Reduced, torso: int) -> Reduced:
+    """The robot with the torso's frame upright where all joints are at zero, or as near as they get, as it is held.
+
+    Args:
+        reduced: its model is altered in place.
+        torso: joint that moves it.
+    """
+    R = np.array(at(reduced.model, rest(reduced.model)).oMi[torso].rotation)
+    angle = float(np.linalg.norm(pin.log3(R)))
+    if torso == 1 or angle < _SAME:
+        return reduced
+    turn(reduced.model, torso, R.T)
+    told = f"the frame of '{reduced.bodies[torso - 1]}' is turned by {np.degrees(angle):.3g} deg"
+    reduced.notes.append(f"{told}, so that it is upright at zero angles")
+    back = pin.SE3(R, np.zeros(3))
+    visual, collision = list(reduced.visual), list(reduced.collision)
+    for shapes in (visual, collision):
+        shapes[torso] = tuple(replace(one, vertices=placed(one.vertices, back)) for one in shapes[torso])
+    return replace(reduced, visual=tuple(visual), collision=tuple(collision))

@@ -23,9 +23,8 @@ from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.setup.legs import leg_inertia
+from surefoot.scenarios.setup.feasible import made_ready
 from surefoot.scenarios.setup.parts import ESTIMATE, TASK, guarded
-from surefoot.scenarios.setup.rehearsal import check_legs
 from surefoot.scenarios.setup.stance import (
     Body,
     body_of,
@@ -33,9 +32,7 @@ from surefoot.scenarios.setup.stance import (
     feet_at,
     frames_of,
     pressed,
-    start_posture,
 )
-from surefoot.scenarios.setup.stances import check_stances
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
@@ -95,11 +92,8 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     """
     parts = parts or Parts()
     body = body_of(walk.robot)
-    posture = start_posture(walk, body)
-    check_stances(walk, body, posture)
+    posture, leg = made_ready(walk, body)
     q = pressed(disturbed(posture, walk, body), walk.size.length)
-    leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)
-    check_legs(walk, feet_at(body, posture), leg)
     world = World(walk.true_robot, walk.true_terrain, walk.rates.physics, walk.pushes, walk.size)
     torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length)
     world.reset(q, torque=torque)

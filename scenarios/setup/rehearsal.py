@@ -12,7 +12,7 @@ from surefoot.planner.plan import PlanSampler
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
 from surefoot.scenarios.setup.stances import SPARE
-from surefoot.scenarios.setup.straight import ankle_pitch, pitch_joints, shank_outline
+from surefoot.scenarios.setup.straight import ankle_pitch, pitch_joints, shank_outline, yaw_joint
 from surefoot.scenarios.setup.walk import Walk
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 STEPS = 3
 """Steps that are gone through: the first, and one of each foot in the rhythm of the walk [-]."""
+
+SWING_PEAK = 1.9
+"""Largest over mean speed of what turns with a foot in single support [-]."""
 
 FAST = 0.35
 """Share of a joint's no-load speed that a leg's mean turn of the hip needs at least to be looked at [-]."""
@@ -81,6 +84,37 @@ def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
         _check_ankles(walk.robot, angles[2], way)
     if walk.terrain.has_edges:
         _check_shanks(walk, way, joints)
+
+
+def check_turns(walk: Walk) -> None:
+    """Refuse a walk that turns faster than the hips do.
+
+    Raises:
+        ParameterError: says which joint is too slow, and the largest turn.
+    """
+    turn, key = _largest_turn(walk)
+    for foot in Foot:
+        name, robot = yaw_joint(walk.robot, foot), walk.robot
+        limit = float(robot.velocity_limit[robot.joint_names.index(name)])
+        speed = SWING_PEAK * turn / walk.gait.single_support
+        if speed > limit:
+            raise ParameterError(
+                key,
+                f"joint '{name}' of robot '{robot.name}' would need {speed:.2g} rad/s to turn by {turn:.2g} rad in a "
+                f"step, its no-load speed is {limit:g} rad/s",
+                f"use a yaw_rate of at most {0.99 * turn / walk.gait.period * limit / speed:.2g} rad/s",
+            )
+
+
+def _largest_turn(walk: Walk) -> tuple[float, tuple[str, ...]]:
+    """Of the trunk in a step [rad], and the key that asks for it; a foot turns by twice that, a hip by as much."""
+    turn = max((abs(stride.turn) for stride in walk.gait.strides), default=0.0)
+    most, told = walk.region.turn, [command.command for command in walk.commands]
+    if any(command.places for command in told):
+        return most, ("gait", "waypoints")
+    rates = [abs(command.twist.yaw_rate) for command in told if command.twist is not None]
+    asked = min(most, max(rates, default=0.0) * walk.gait.period)
+    return (asked, ("commands",)) if asked > turn else (turn, ("gait", "velocity" if walk.gait.bouts else "turn"))
 
 
 def _fast(walk: Walk) -> bool:

@@ -14,8 +14,8 @@ Array = NDArray[np.float64]
 HIP_SHARE = 0.67
 """Share of a hip's torque that swings a leg; the rest is for gravity and for a knee that is bent [-]."""
 
-PITCH, ROLL = 1, 0
-"""Axes of the world about which an upright leg swings forward and sideways."""
+PITCH, ROLL, YAW = 1, 0, 2
+"""Axes of the world about which an upright leg swings forward and sideways, and turns."""
 
 
 def com_height(robot: RobotDescription) -> float:
@@ -66,6 +66,12 @@ def pitch_joints(robot: RobotDescription, foot: int) -> tuple[str, str, str]:
     model, data = _upright(robot)
     axis, at = data.xaxis[model.joint(knee).id], leg.index(knee)
     return _nearest(robot, leg[:at], axis), knee, _nearest(robot, leg[at + 1 :], axis)
+
+
+def yaw_joint(robot: RobotDescription, foot: int) -> str:
+    """The joint of a leg above its knee that turns the foot about the vertical."""
+    leg, knee = (robot.roles.left_leg, robot.roles.right_leg)[foot], robot.roles.knees[foot]
+    return _nearest(robot, leg[: leg.index(knee)], np.eye(3)[YAW])
 
 
 def shank_outline(robot: RobotDescription, foot: int) -> Array:

@@ -88,12 +88,14 @@ def test_a_knee_that_cannot_be_stretched_is_as_straight_as_it_gets(tmp_path) -> 
 @pytest.mark.parametrize(
     ("change", "limits", "sentence"),
     [
-        (("", ""), "torque_limit: {'*_ankle_roll': 40}\n", "no velocity limit; give velocity_limit"),
         (("", ""), "velocity_limit: {'*': 12}\n", "'left_ankle_roll' and 1 more of biped have no torque limit"),
         (
-            ("</worldbody>", "<body name='box'><geom size='1'/></body></worldbody>"),
+            (
+                "</worldbody>",
+                f'<body name="other"><freejoint/><geom size="0.1"/>{leg("l", 1)}{leg("r", -1)}</body></worldbody>',
+            ),
             LIMITS,
-            "'base', 'box' in its world",
+            "'base', 'other' in its world",
         ),
         (('type="plane"', 'type="plain"'), LIMITS, "biped.xml: .*mend it"),
         (('axis="1 0 0"/>', 'axis="1 0 0" ref="0.1"/>'), LIMITS, "joint 'left_roll' has a ref"),

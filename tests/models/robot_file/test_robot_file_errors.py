@@ -11,11 +11,8 @@ pytestmark = pytest.mark.unit
 
 INERTIA = '<inertia ixx="0.00208'
 LEFT_THIGH = '<link name="left_thigh"><inertial>'
-EFFORT, SPEED = 'effort="80"', 'velocity="15"'
-BROKEN_MESH = (
-    '<link name="cap"><visual><geometry><mesh filename="package://biped_meshes/cap.stl"/></geometry></visual></link>'
-)
-MISSING_MESH = '<link name="cap"><visual><geometry><mesh filename="meshes/cap.stl"/></geometry></visual></link>'
+EFFORT = 'effort="80"'
+CAP = '<link name="cap"><{0}><geometry><mesh filename="{1}"/></geometry></{0}></link>'
 FIXED = '<joint name="cap_joint" type="fixed"><parent link="base"/><child link="cap"/></joint>'
 PARENT = '<parent link="{}"/><child link="right_yaw_link"/>'
 SWAPPED = "name: biped\nmodel: biped.urdf\nfeet: {left: right_foot, right: left_foot}\n"
@@ -80,10 +77,6 @@ MODELS = {
         biped.Biped(changes={EFFORT: 'effort="0"'}),
         r"'left_yaw' and 11 more of biped have no torque limit; give torque_limit",
     ),
-    "no speed": (
-        biped.Biped(changes={SPEED: 'velocity="0"'}),
-        r"'left_shoulder' and 15 more of biped have no velocity limit; give vel",
-    ),
     "unphysical": (
         unphysical(biped.Biped().urdf()),
         "link 'left_thigh' has principal moments .* no body has them; .*inertia: repair",
@@ -93,10 +86,17 @@ MODELS = {
         "link 'left_shank' of biped moves with 0 kg.*give it an inertia, lock joint 'left_knee'",
     ),
     "no mesh": (
-        biped.Biped(extra=MISSING_MESH + FIXED),
-        "mesh meshes/cap.stl of link 'cap' is not there; put it at .*meshes/cap.stl",
+        biped.Biped(extra=CAP.format("collision", "meshes/cap.stl") + FIXED),
+        "link 'cap' of .*: mesh meshes/cap.stl is not there; put it at .*meshes/cap.stl",
     ),
-    "mesh of no package": (biped.Biped(extra=BROKEN_MESH + FIXED), "package 'biped_meshes' is not installed"),
+    "mesh of no package": (
+        biped.Biped(extra=CAP.format("collision", "package://biped_meshes/cap.stl") + FIXED),
+        "link 'cap' of .*: mesh package://biped_meshes/cap.stl: package 'biped_meshes' is not installed",
+    ),
+    "mesh that is none": (
+        biped.Biped(extra=CAP.format("collision", "biped.yaml") + FIXED),
+        "link 'cap' of .*: mesh .*biped.yaml: cannot be read",
+    ),
     "no XML": ("<robot name='x'><link", "no XML"),
     "no robot": ("<sdf/>", "neither URDF nor MJCF"),
     "prismatic leg": (

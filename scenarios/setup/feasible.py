@@ -1,0 +1,178 @@
+"""Whether a robot can do a walk, by its stances and first steps; and where it cannot, one of the kind that it can.
+
+What a refusal proposes has been tried: the scenario with it goes through every check that comes before a run.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from surefoot.errors import ParameterError
+from surefoot.scenarios.errors import Key, ScenarioError
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.setup.keys import scenario_key
+from surefoot.scenarios.setup.legs import leg_inertia
+from surefoot.scenarios.setup.rehearsal import check_legs, check_turns
+from surefoot.scenarios.setup.stance import Body, feet_at, start_posture
+from surefoot.scenarios.setup.stances import check_stances
+from surefoot.scenarios.setup.terrain import KINDS
+from surefoot.scenarios.setup.walk import Walk, resolve
+
+if TYPE_CHECKING:
+    from surefoot.planner.parameters import LegInertia
+
+Proposal = dict[str, Any]
+"""Values by dotted key."""
+
+_STRIDE = ("step_length", "lateral_step", "turn")
+_GROUND = ("riser", "angle", "height_noise")
+_UNITS = {"turn": "rad", "angle": "rad", "single_support": "s", "double_support": "s"}
+"""Of keys that are no lengths."""
+
+_STEPS = ("gait", "step_length")
+_TRIES = 8
+_LESS, _LOWER = 0.8, 0.96
+"""Of steps, ground or tempo, and of the CoM height, that is tried after each refusal [-]."""
+
+_DIGITS = 3
+
+
+def made_ready(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia]":
+    """Configuration at the start, shape (nq,), and legs, of a walk that its robot can do.
+
+    Raises:
+        ParameterError: it cannot; says what would be right, which has been tried.
+    """
+    try:
+        return _fit(walk, body)
+    except ParameterError as refusal:
+        if refusal.key[:1] == ("commands",):
+            raise
+        found = proposed(walk, body, refusal.key)
+        right = f"take for example {told(found)}" if found else f"nothing calmer suits '{walk.robot.name}' either"
+        raise ParameterError(refusal.key, refusal.what, right) from None
+
+
+def told(proposal: Proposal) -> str:
+    """A proposal in words."""
+    return " and ".join(f"{key} {_value(key, value)}" for key, value in proposal.items())
+
+
+def _value(key: str, value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:g} {_UNITS.get(key.partition('.')[2], 'm')}"
+    return yaml.safe_dump(value, default_flow_style=True, width=math.inf).strip()
+
+
+def proposed(walk: Walk, body: Body, key: Key) -> Proposal | None:
+    """What to set over a walk that a robot cannot do, of which it can do the result; None if nothing was found.
+
+    Whatever the next refusal is about gives way next.
+
+    Args:
+        walk: that is refused.
+        body: its robot.
+        key: at which it is.
+    """
+    from surefoot.scenarios.setup.load import read_scenario
+
+    keys, calm = read_scenario(walk.text, walk.name, walk.name), _Calm()
+    for _ in range(_TRIES):
+        calm = calm.after(scenario_key(key), climbs=bool(_ground(keys)))
+        proposal = calm.proposal(keys, walk)
+        try:
+            _fit(resolve(read_scenario(walk.text, walk.name, walk.name, proposal), walk.robot, walk.profile), body)
+        except ParameterError as refusal:
+            key = refusal.key
+        except ScenarioError:
+            key = _STEPS
+        else:
+            return proposal
+    return None
+
+
+def _fit(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia]":
+    """See `made_ready`; says what is wrong and not what would be right.
+
+    Raises:
+        ParameterError: the robot cannot do the walk.
+    """
+    posture = start_posture(walk, body)
+    check_stances(walk, body, posture)
+    leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)
+    check_turns(walk)
+    check_legs(walk, feet_at(body, posture), leg)
+    return posture, leg
+
+
+@dataclass(frozen=True, slots=True)
+class _Calm:
+    """How far a walk gives way.
+
+    Attributes:
+        steps: share of its steps [-].
+        ground: share of what makes its ground uneven [-].
+        time: of a single support, over that of the walk [-].
+        posture: 0 for its own, then in turn the robot's usual one and a lower one.
+        refused: how often something else than speed, ground or start was in the way.
+    """
+
+    steps: float = 1.0
+    ground: float = 1.0
+    time: float = 1.0
+    posture: int = 0
+    refused: int = 0
+
+    def after(self, key: Key, climbs: bool) -> "_Calm":
+        """What to try after a refusal at a key, on ground that is uneven or not."""
+        if key == ("gait", "com_height"):
+            return replace(self, posture=self.posture + 1)
+        if key == ("gait", "single_support"):
+            return replace(self, steps=_LESS * self.steps, time=self.time / _LESS)
+        if key[-1:] in (("turn",), ("velocity",)):
+            return replace(self, steps=_LESS * self.steps)
+        if self.refused % 2:
+            return replace(self, posture=self.posture + 1, refused=self.refused + 1)
+        smaller = replace(self, refused=self.refused + 1)
+        return replace(smaller, ground=_LESS * self.ground) if climbs else replace(smaller, steps=_LESS * self.steps)
+
+    def proposal(self, keys: Scenario, walk: Walk) -> Proposal:
+        """In the keys of a scenario; where steps follow from the ground they stay."""
+        ground, robot = _ground(keys), walk.robot
+        found: Proposal = {} if ground or self.steps == 1.0 else _shorter(keys, self.steps)
+        if self.ground < 1.0:
+            found |= _times(keys.terrain, "terrain", ground, self.ground)
+        if self.time > 1.0:
+            found |= _times(keys.gait, "gait", ("single_support",), self.time)
+        if self.posture:
+            height = robot.com_height * (1.0 if self.posture % 2 else _LOWER)
+            found["gait.com_height"] = _rounded(height)
+            found["gait.step_width"] = _rounded(max(robot.hip_width, robot.shank_spacing))
+        return found
+
+
+def _ground(keys: Scenario) -> tuple[str, ...]:
+    """Keys that make the ground of a scenario uneven."""
+    return tuple(name for name in _GROUND if name in KINDS[keys.terrain.kind].keys)
+
+
+def _shorter(keys: Scenario, share: float) -> Proposal:
+    """The walk with steps of a share of their size, or with a share of its velocities."""
+    if not keys.gait.velocity:
+        return _times(keys.gait, "gait", _STRIDE, share)
+    slower = ({name: _rounded(share * value) for name, value in told} for told in keys.gait.velocity)
+    return {"gait.velocity": [{**one, "time": told.time} for one, told in zip(slower, keys.gait.velocity, strict=True)]}
+
+
+def _times(group: Any, name: str, keys: tuple[str, ...], share: float) -> Proposal:
+    """Those of the keys that are not zero, times a share."""
+    given = {f"{name}.{key}": _rounded(share * getattr(group, key)) for key in keys}
+    return {key: value for key, value in given.items() if value}
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")

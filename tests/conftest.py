@@ -1,5 +1,7 @@
 """A robot with meshes for the tests of every folder."""
 
+import signal
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from xml.etree import ElementTree
 
@@ -7,6 +9,21 @@ import numpy as np
 import pytest
 
 from surefoot.models import RobotDescription, RobotOptions, describe
+
+
+def _heeding() -> Iterator[None]:
+    """Signals act, here and in processes that are started, also where the shell of the tests ignores them."""
+    defaults = {
+        signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL, signal.SIGHUP: signal.SIG_DFL
+    }  # fmt: skip
+    before = {number: signal.signal(number, handler) for number, handler in defaults.items()}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+heeding = pytest.fixture(_heeding, name="heeding")
+heeding_throughout = pytest.fixture(_heeding, name="heeding_throughout", scope="module")
 
 
 @dataclass(frozen=True)

@@ -191,10 +191,9 @@ def side_by_side(
 
 
 def _set_up() -> None:
-    """Leave signals to the parent, and end with it: one that is killed cannot say so."""
+    """Leave Ctrl-C and SIGHUP to the parent, and end with it: one that is killed cannot say so."""
     for number in (signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

@@ -18,7 +18,8 @@ from surefoot.scenarios.sweep.capturability import Limits
 from surefoot.scenarios.sweep.figures import Axis, Found, Square
 from surefoot.scenarios.sweep.journal import JOURNAL
 from surefoot.scenarios.sweep.points import Cell, Point, Record, Status
-from surefoot.scenarios.sweep.spreads import Runs, drawn, of_criteria
+from surefoot.scenarios.sweep.repeats import Runs
+from surefoot.scenarios.sweep.spreads import drawn, of_criteria
 from surefoot.scenarios.sweep.table import wilson
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def write_page(swept: "Swept") -> None:
 def page(swept: "Swept") -> str:
     """The whole page as HTML."""
     spec = swept.campaign.spec
-    runs = [run for outcome in swept.outcomes for run in outcome.runs]
+    runs = swept.facts
     axes = [Axis(name, tuple(one.label for one in settings)) for name, settings in swept.campaign.axes.items()]
     parts = [tag("h1", escape(spec.name)), tag("p", escape(spec.about), kind="lead") if spec.about else ""]
     parts += [_tally(swept, runs), _what_was_run(swept)]
@@ -55,12 +56,12 @@ def page(swept: "Swept") -> str:
         parts.append(_thresholds(swept, axes))
     else:
         parts += [_success(swept, runs, axes), _maps(swept, runs, axes)]
-    parts += [_distributions(swept, runs), _failures(swept, runs)]
+    parts += [_distributions(swept, runs), _failures(swept, swept.runs)]
     return document(f"{spec.name}: campaign", "\n".join(part for part in parts if part))
 
 
 def _tally(swept: "Swept", runs: Runs) -> str:
-    boxes = [(str(len(runs)), "runs")]
+    boxes = [(str(len(swept.runs)), "runs")]
     boxes += [(str(swept.count(status)), _WORDS[status]) for status in get_args(Status) if swept.count(status)]
     judged = _judged(runs)
     if swept.campaign.spec.bisect is not None:
@@ -99,6 +100,7 @@ def _what_was_run(swept: "Swept") -> str:
         "section",
         tag("h2", "What was run")
         + tag("p", escape("; ".join(said)) + ".")
+        + "".join(tag("p", f"{escape(note[:1].upper() + note[1:])}.") for note in swept.repeats())
         + tag("details", tag("summary", "Specification") + tag("pre", escape(written)))
         + tag("details", tag("summary", "Versions") + tag("p", escape(versions)))
         + tag("p", "The same as tables: " + ", ".join(_file_link(name) for name in _tables(swept)) + ".", kind="note"),

@@ -9,10 +9,8 @@ from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.sweep.figures import Spread, is_number, text, with_unit
 from surefoot.scenarios.sweep.points import Point, Record
+from surefoot.scenarios.sweep.repeats import Runs
 from surefoot.scenarios.sweep.table import as_float
-
-Runs = Sequence[tuple[Point, Record]]
-"""Runs with what became of each."""
 
 
 def drawn(key: str, choice: bool, judged: Runs) -> Spread:

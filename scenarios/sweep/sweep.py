@@ -16,6 +16,7 @@ from surefoot.scenarios.sweep.campaign import Campaign
 from surefoot.scenarios.sweep.engine import InterruptedRunsError, Outcome, Worker, local_workers, outcome_of, run_cells
 from surefoot.scenarios.sweep.journal import Journal
 from surefoot.scenarios.sweep.points import Record, Status, cells
+from surefoot.scenarios.sweep.repeats import Runs, facts
 from surefoot.scenarios.sweep.table import has_parquet, runs_table, thresholds_table, wilson, write_table
 
 SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", "table", "thresholds"
@@ -69,9 +70,19 @@ class Swept:
     stale: int = 0
 
     @property
+    def runs(self) -> Runs:
+        """Every run with what became of it."""
+        return tuple(run for outcome in self.outcomes for run in outcome.runs)
+
+    @property
+    def facts(self) -> Runs:
+        """Every run but those that only repeat another."""
+        return facts(self.runs)
+
+    @property
     def records(self) -> tuple[Record, ...]:
         """What became of every run."""
-        return tuple(record for outcome in self.outcomes for _, record in outcome.runs)
+        return tuple(record for _, record in self.runs)
 
     def count(self, status: str) -> int:
         """How many runs ended so."""
@@ -93,8 +104,17 @@ class Swept:
         tables = (f"{name}{ending}" for name in (THRESHOLDS_TABLE, RUNS_TABLE) for ending in (".csv", ".parquet"))
         return tuple(path for path in (self.folder / name for name in (PAGE, *tables)) if path.exists())
 
+    def repeats(self) -> Iterator[str]:
+        """What is to be known of runs that only repeat another, a sentence if there are any."""
+        runs, facts = len(self.runs), len(self.facts)
+        if facts < runs:
+            then = "they count once" if self.campaign.spec.bisect is None else "more seeds find no other threshold"
+            alike = f"{runs - facts} of {runs} runs are those of another seed to the digit"
+            yield f"{alike}, since nothing in them is random; {then}"
+
     def notes(self) -> Iterator[str]:
         """What is to be known beside the result, a sentence each."""
+        yield from self.repeats()
         if self.stale:
             others = "of another robot, another code or other versions, or lacked their log"
             yield f"{self.stale} results were {others}, and were not taken over"
@@ -112,7 +132,8 @@ class Swept:
         counts = ", ".join(f"{n} {status}" for status in STATUSES if (n := self.count(status)))
         yield f"{self.campaign.spec.name}: {runs} runs" + (f", {counts}" if counts else "")
         if self.campaign.spec.bisect is None and self.ran:
-            rate = wilson(self.count("pass"), self.count("pass") + self.count("fail"))
+            judged = [record.status for _, record in self.facts if record.status in ("pass", "fail")]
+            rate = wilson(judged.count("pass"), len(judged))
             yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {100 * rate.low:.1f} to {100 * rate.high:.1f} %"
         yield from map(str, reversed(self.files))
 
@@ -121,6 +142,7 @@ class Swept:
         counts: dict[str, Any] = {status: self.count(status) for status in STATUSES}
         files = [path.name for path in self.files]
         name, runs = self.campaign.spec.name, len(self.records)
+        counts["repeated"] = runs - len(self.facts)
         return {"campaign": name, "runs": runs, **counts, "out": str(self.folder), "files": files}
 
 

@@ -18,6 +18,7 @@ from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.sweep.engine import Outcome
 from surefoot.scenarios.sweep.points import Cell
+from surefoot.scenarios.sweep.repeats import facts
 
 Value = bool | int | float | str | None
 _MOST_WHOLE = 2**63 - 1
@@ -94,11 +95,12 @@ def runs_table(outcomes: Iterable[Outcome]) -> Table:
     runs = [run for outcome in outcomes for run in outcome.runs]
     labels = [point.labels for point, _ in runs]
     columns = [_of_key(name, [row.get(name) for row in labels]) for name in _names(labels)]
-    records = [record for _, record in runs]
+    records, first = [record for _, record in runs], {point.id for point, _ in facts(runs)}
     columns += [
         _column("status", [record.status for record in records], "", "pass, fail, refused or broken"),
         _column("reasons", ["; ".join(record.reasons) for record in records], "", "why not"),
         *_metric_columns([record.metrics for record in records]),
+        _column("repeats", [point.id not in first for point, _ in runs], "", "the run of another seed, to the digit"),
         _column("wall_time", [float(record.wall_time) for record in records], "s", "that the run took"),
         _column("log", [record.log or None for record in records], "", "below the campaign's directory"),
         _column("command", [point.command for point, _ in runs], "", "makes the run again"),

@@ -148,6 +148,7 @@ def surefoot_command(*arguments, **named):
     return subprocess.Popen([sys.executable, "-m", "surefoot", *map(str, arguments)], text=True, **named)
 
 
+@pytest.mark.usefixtures("heeding")
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("number", "trials"), [(signal.SIGKILL, 20), (signal.SIGTERM, 34), (signal.SIGHUP, 33), (signal.SIGINT, 33)]

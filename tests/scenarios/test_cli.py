@@ -375,6 +375,7 @@ def test_names_that_are_no_text(surefoot, scenario, tmp_path):
         assert (code, err.count("Traceback")) == (0, 0)
 
 
+@pytest.mark.usefixtures("heeding")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGINT, 130)])
 @pytest.mark.parametrize("moment", ["set-up", "loop", "judging"])
 def test_every_signal_ends_a_run_in_order(surefoot, scenario, tmp_path, motion, monkeypatch, number, code, moment):
@@ -393,13 +394,8 @@ def test_every_signal_ends_a_run_in_order(surefoot, scenario, tmp_path, motion, 
 
     judged = run.judge
     monkeypatch.setattr(run, "judge", judge)
-    before = {one: signal.getsignal(one) for one in interrupts.SIGNALS}
-    try:
-        ended, out, err = surefoot("run", scenario, "--out", tmp_path, loop=loop)
-    finally:
-        for one, handler in before.items():
-            signal.signal(one, handler)
-        interrupts._received.clear()
+    ended, out, err = surefoot("run", scenario, "--out", tmp_path, loop=loop)
+    interrupts._received.clear()
     assert (ended, err.count("Traceback")) == (code, 0)
     log = read(tmp_path / "two-steps-0" / "log.mcap")
     assert not log.truncated

@@ -33,7 +33,9 @@ TORSO = (0.495, 0.3)
 
 
 @pytest.fixture(scope="module")
-def driven(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Browser, subprocess.Popen[str], Path]]:
+def driven(
+    tmp_path_factory: pytest.TempPathFactory, heeding_throughout: None
+) -> Iterator[tuple[Browser, subprocess.Popen[str], Path]]:
     pytest.importorskip("viser")
     client = pytest.importorskip("websockets.sync.client")
     folder = tmp_path_factory.mktemp("drive")

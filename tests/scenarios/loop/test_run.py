@@ -40,6 +40,7 @@ def test_the_same_run_gives_the_same_log(tmp_path, robot, motion, two_steps):
     assert all(first[topic].content() == second[topic].content() for topic in first.topics)
 
 
+@pytest.mark.usefixtures("heeding")
 def test_a_signal_that_a_compiled_part_takes_for_a_wrong_argument_is_a_signal(tmp_path, robot, motion, two_steps):
     whole = motion(duration=0.5)
 

@@ -125,6 +125,7 @@ run_scenario(load("diagonal-walk"), Path(sys.argv[1]), lambda progress: print(pr
 """
 
 
+@pytest.mark.usefixtures("heeding")
 def test_interrupted_by_the_user(tmp_path):
     """Ctrl-C gives a whole log, a verdict beside it and exit code 130."""
     log = tmp_path / "diagonal-walk-0" / "log.mcap"

@@ -24,6 +24,7 @@ from surefoot.scenarios.sweep.engine import (
 from surefoot.scenarios.sweep.journal import CHANGED, JOURNAL, LOGS, SCRATCH, Journal
 from surefoot.scenarios.sweep.made_of import MadeOf
 from surefoot.scenarios.sweep.points import Point, Record
+from surefoot.scenarios.sweep.repeats import facts
 
 pytestmark = pytest.mark.unit
 
@@ -146,6 +147,13 @@ def test_a_run_and_its_log(tmp_path):
     assert failed.reasons[0].startswith("speed_mean")
     assert (tmp_path / failed.log).is_file()
     assert not any((tmp_path / SCRATCH).iterdir())
+
+
+@pytest.mark.parametrize(("noise", "count"), [(0.0, 1), (0.001, 3)])
+def test_runs_are_the_same_whatever_the_seed_where_nothing_is_random(tmp_path, noise, count):
+    points = [point(seed, **{"start.position_noise": noise}) for seed in range(3)]
+    runs = [(one, perform(one, tmp_path / SCRATCH, tmp_path / LOGS, keep_all=False)) for one in points]
+    assert len(facts(runs)) == count
 
 
 @pytest.mark.parametrize("lost", ["nothing", "its end", "all"])

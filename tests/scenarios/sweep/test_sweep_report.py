@@ -209,6 +209,38 @@ def test_no_campaign_is_too_poor_for_a_page(tmp_path, rule, more):
         assert "success rate," not in text
 
 
+SAME = """
+scenario: walk
+set: {fidelity: pendulum}
+grid: {gait.step_length: [0.1, 0.2]}
+seeds: 12
+"""
+
+
+@pytest.mark.parametrize("alike", [True, False])
+def test_runs_of_other_seeds_that_are_the_same_count_once(tmp_path, alike):
+    def rule(one):
+        seed = one.settings["seed"]
+        if one.settings["gait.step_length"] == 0.2 and seed > 9:
+            return Record(one.id, "refused", ("too long",))
+        return passed(one, speed_mean=0.3 if alike else 0.3 + 1e-16 * seed, real_time_factor=1.0 + seed)
+
+    whole = swept(tmp_path, SAME, rule)
+    write(whole)
+    count = 2 if alike else 22
+    rate = wilson(count, count)
+    rows = {tuple(row[:2]): row[2:] for row in Page(report.page(whole)).rows["success"]}
+    assert rows["all runs", ""] == [str(count)] * 2 + ["100.0", f"{100 * rate.low:.1f} to 100.0", "2"]
+    assert rows["gait.step_length [m]", "0.2"][::4] == [str(count // 2 - (not alike)), "2"]
+    assert f"95 % interval {100 * rate.low:.1f} to" in [*whole.lines()][1]
+    assert (whole.to_json()["pass"], whole.to_json()["repeated"]) == (22, 22 - count)
+    said = "20 of 24 runs are those of another seed to the digit, since nothing in them is random; they count once"
+    assert (said in [*whole.notes()]) == alike
+    assert (said in report.page(whole)) == alike
+    table = csv.DictReader(io.StringIO((tmp_path / "table.csv").read_text()))
+    assert [row["repeats"] for row in table].count("true") == 22 - count
+
+
 ALMOST = """
 scenario: walk
 set: {fidelity: pendulum, criteria: {fell: false, speed_mean: {max: 0.5}, steps_taken: 4}}

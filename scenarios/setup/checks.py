@@ -208,7 +208,9 @@ _NO_CONTACT = (
     ("terrain", "friction"),
     ("terrain", "height_noise"),
     ("sensing", "force_estimate"),
+    ("gait", "heel_off"),
     ("start", "angle_noise"),
+    ("rates", "physics"),
     ("errors", "friction"),
     ("errors", "torso_com"),
     ("errors", "ground"),
@@ -253,12 +255,36 @@ def _without_effect(draft: Draft) -> Iterator[str]:
             yield f"{group}.{name} has no effect on a {'pendulum' if point else 'whole body'}"
     if point and keys.wbc is not None:
         yield "wbc has no effect on a pendulum"
+    yield from _without_occasion(draft)
+
+
+_STEPPING = (
+    *("step_length", "lateral_step", "turn", "single_support", "double_support", "swing_height"),
+    *("apex_single", "apex_double", "heel_off"),
+)
+"""Keys of a gait that say how steps are taken."""
+
+
+def _without_occasion(draft: Draft) -> Iterator[str]:
+    """Tell keys that shape what this scenario has not got: steps, climbs, loads."""
+    keys, load = draft.keys, draft.keys.errors.payload
+    if not (keys.gait.steps or draft.commanded or draft.told):
+        for name in _STEPPING:
+            if getattr(keys.gait, name) != default_of(Gait, name, draft.size):
+                yield f"gait.{name} has no effect on a robot that the scenario lets take no step"
+    if keys.planner.rise is not None and keys.terrain.kind == "flat":
+        yield "planner.rise has no effect on level ground"
+    if keys.robot_options.payload_body is not None and keys.robot_options.payload_mass == 0.0:
+        yield "robot_options.payload_body has no effect without robot_options.payload_mass"
+    if load is not None and load.mass == 0.0:
+        yield "errors.payload has no effect without a mass"
 
 
 def _unshaped(draft: Draft) -> Iterator[str]:
     terrain = draft.keys.terrain
     try:
         shaping = ("kind", "friction", *draft.kind.keys)
+        yield from draft.kind.notes(draft)
     except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
         return
     for name in TerrainSettings.model_fields:

@@ -233,7 +233,8 @@ class Experiment:
             return "failed"
         if content(read(run.log)) != self._content:
             return "felt"
-        return "noted" if set(run.verdict.notes) - self._notes else "silent"
+        notes = set(run.verdict.notes)
+        return "noted" if notes - self._notes or any(key in note for note in notes) else "silent"
 
     def trials(self) -> Iterator[tuple[str, Any]]:
         """Every key of the schema that has a place in the base, with each of its values."""

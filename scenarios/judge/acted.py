@@ -1,4 +1,4 @@
-"""Whether what a scenario asks for came to act in its run: its commands, its places, the ground that nobody believes in."""
+"""Whether what a scenario asks for came to act in its run: commands, places to go to, ground not as believed."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -33,7 +33,8 @@ def not_there(metrics: Mapping[str, object], criteria: Mapping[str, Bound], leng
     for name, near, unit in (("place_error", AT_PLACE * length, "m"), ("heading_error", AT_HEADING, "rad")):
         error = metrics.get(name)
         if isinstance(error, float) and name not in criteria and error > near:
-            yield f"the robot is {error:.3g} {unit} from where it was told to go last; it must be within {near:g} {unit}"
+            what = f"the robot is {error:.3g} {unit} from where it was told to go last"
+            yield f"{what}; it must be within {near:g} {unit}"
     missed = metrics.get("waypoints_missed")
     if missed and "waypoints_missed" not in criteria:
         yield f"the robot never came to {missed} of its waypoints, with the heading asked for there"

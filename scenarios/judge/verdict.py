@@ -209,7 +209,7 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     undone = (*idle, *not_there(measured.values, criteria, size.length))
     reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
-    said = (*skipped, *notes(Draft(scenario, size)), *_degraded(measured.values), *measured.notes)
+    said = (*skipped, *notes(Draft(scenario, size), run.has("/command")), *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 

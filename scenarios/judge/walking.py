@@ -111,7 +111,7 @@ def _stands_at(run: RunView, place: tuple[float, float, float]) -> Mask:
     left = 0.5 * np.hypot(*(run.soles[0, 0, :2] - run.soles[0, 1, :2])) * np.array([-np.sin(yaw), np.cos(yaw)])
     stands = np.zeros(run.ticks, dtype=np.bool_)
     for foot, beside in ((0, left), (1, -left)):
-        away = run.sole(foot)[:, :2] - ((x, y) + beside)
+        away = run.sole(foot)[:, :2] - np.add((x, y), beside)
         turned = np.abs(np.angle(np.exp(1j * (run.sole_yaw[:, foot] - yaw))))
         loaded = run.field("/contact", "felt")[:, foot] != 0
         stands |= loaded & (np.hypot(*away.T) < near) & (turned < WAYPOINT_HEADING)

@@ -9,14 +9,14 @@ from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
-from surefoot.scenarios.file.schema import Gait, Sensing, TerrainSettings
+from surefoot.scenarios.file.schema import Gait, Rates, Sensing, TerrainSettings
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.commands import told_problems
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import cut_off, idle_commands, never_act, slight
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
 from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known
-from surefoot.scenarios.setup.sized import default_of
+from surefoot.scenarios.setup.sized import clock, default_of
 from surefoot.scenarios.setup.walk_checks import (
     command_problems,
     commanded_step_problems,
@@ -208,6 +208,7 @@ _NO_CONTACT = (
     ("terrain", "friction"),
     ("terrain", "height_noise"),
     ("sensing", "force_estimate"),
+    ("gait", "heel_off"),
     ("start", "angle_noise"),
     ("errors", "friction"),
     ("errors", "torso_com"),
@@ -220,9 +221,15 @@ _POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
 """Keys of the pendulum alone."""
 
 
-def notes(draft: Draft) -> tuple[str, ...]:
-    """List them, one sentence each."""
-    return (*_unlikely(draft), *_without_effect(draft), *_cut_short(draft))
+def notes(draft: Draft, driven: bool = False) -> tuple[str, ...]:
+    """List them, one sentence each.
+
+    Args:
+        draft: the scenario.
+        driven: whether its robot was told by hand how to walk.
+    """
+    still = () if driven or draft.keys.gait.steps or draft.commanded or draft.told else _without_steps(draft)
+    return (*_unlikely(draft), *_without_effect(draft), *_without_occasion(draft), *still, *_cut_short(draft))
 
 
 _LONG = 60.0
@@ -253,12 +260,41 @@ def _without_effect(draft: Draft) -> Iterator[str]:
             yield f"{group}.{name} has no effect on a {'pendulum' if point else 'whole body'}"
     if point and keys.wbc is not None:
         yield "wbc has no effect on a pendulum"
+    if point and keys.rates.physics not in (Rates().physics, clock(Rates(), draft.size.time).physics):
+        yield "rates.physics has no effect on a pendulum"
+
+
+_STEPPING = ("step_length", "lateral_step", "turn", "swing_height", "apex_single", "apex_double", "heel_off")
+"""Keys of a gait that say how steps are taken."""
+
+_TIMES = ("single_support", "double_support", "initial_stand")
+"""Those that say when, by which a run lasts that has no duration of its own."""
+
+
+def _without_steps(draft: Draft) -> Iterator[str]:
+    """Tell what a robot that takes no step has no use for."""
+    keys = draft.keys
+    for name in (*_STEPPING, *(() if keys.duration is None else _TIMES)):
+        if getattr(keys.gait, name) != default_of(Gait, name, draft.size):
+            yield f"gait.{name} has no effect on a robot that takes no step"
+
+
+def _without_occasion(draft: Draft) -> Iterator[str]:
+    """Tell keys that shape what this scenario has not got: a climb, a load."""
+    keys, load = draft.keys, draft.keys.errors.payload
+    if keys.planner.rise is not None and keys.terrain.kind == "flat":
+        yield "planner.rise has no effect on level ground"
+    if keys.robot_options.payload_body is not None and keys.robot_options.payload_mass == 0.0:
+        yield "robot_options.payload_body has no effect without robot_options.payload_mass"
+    if load is not None and load.mass == 0.0:
+        yield "errors.payload has no effect without a mass"
 
 
 def _unshaped(draft: Draft) -> Iterator[str]:
     terrain = draft.keys.terrain
     try:
         shaping = ("kind", "friction", *draft.kind.keys)
+        yield from draft.kind.notes(draft)
     except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
         return
     for name in TerrainSettings.model_fields:

@@ -116,7 +116,7 @@ def _cut(key: tuple[str | int, ...], stop: float, end: float, right: str) -> Pro
 
 
 def _promised(draft: Draft) -> Iterator[tuple[int, PushSettings]]:
-    """The pushes that are to act, with their numbers; those given by hand in a run of which this is the log need not."""
+    """The pushes that are to act, with their numbers; those that were given by hand need not."""
     return ((index, push) for index, push in enumerate(draft.keys.pushes) if not push.live)
 
 

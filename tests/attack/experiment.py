@@ -1,4 +1,4 @@
-"""What becomes of a scenario key that is set: refused, missed, told in a note, or felt by the run; or nothing at all."""
+"""What becomes of a scenario key that is set: refused, failed, told in a note, felt by the run, or nothing at all."""
 
 import hashlib
 from collections.abc import Iterator
@@ -32,7 +32,10 @@ BASES = {
     + PACE
     + "}\n",
     "waypoints": POINT + f"gait: {{waypoints: [{{x: 0.4, y: 0, yaw: 0.1}}], step_length: 0.2, {PACE}}}\n",
-    "commands": POINT + STAND + "duration: 3\ncommands: [{time: 0.5, v_x: 0.1, single_support: 0.5}, {time: 1.5, v_x: 0}]\n",
+    "commands": POINT
+    + STAND
+    + "duration: 3\n"
+    + "commands: [{time: 0.5, v_x: 0.1, single_support: 0.5}, {time: 1.5, v_x: 0}]\n",
     "place": POINT + STAND + "duration: 5\ncommands: [{time: 0.5, place: {x: 0.3, y: 0, yaw: 0.1}}]\n",
     "pushed": POINT + STEPS + "pushes: [{time: 1.0, force: [20, 5, 0]}]\n",
     "pushed-in-step": POINT + STEPS + "pushes: [{step: 2, phase: single, fraction: 0.5, impulse: 0.05}]\n",
@@ -51,7 +54,8 @@ BODIES = {
     "body-stand": BODY + STAND + "duration: 0.5\n",
     "body-walk": BODY + f"gait: {{steps: 2, step_length: 0.2, {PACE}}}\nduration: 2.0\n",
     "body-pushed": BODY + STAND + "duration: 0.7\npushes: [{time: 0.2, impulse: 0.05}]\n",
-    "body-stairs": BODY + f"terrain: {{kind: stairs, count: 1, riser: 0.05}}\ngait: {{steps: 2, {LOW}}}\nduration: 2.5\n",
+    "body-stairs": BODY
+    + f"terrain: {{kind: stairs, count: 1, riser: 0.05}}\ngait: {{steps: 2, {LOW}}}\nduration: 2.5\n",
     "body-loaded": BODY + STAND + "duration: 0.5\nerrors: {payload: {mass: 3.0}}\nrobot_options: {payload_mass: 2.0}\n",
     "body-ground": BODY
     + f"gait: {{steps: 2, step_length: 0.2, {PACE}}}\nduration: 2.0\n"
@@ -229,7 +233,8 @@ class Experiment:
             return "failed"
         if content(read(run.log)) != self._content:
             return "felt"
-        return "noted" if set(run.verdict.notes) - self._notes else "silent"
+        notes = set(run.verdict.notes)
+        return "noted" if notes - self._notes or any(key in note for note in notes) else "silent"
 
     def trials(self) -> Iterator[tuple[str, Any]]:
         """Every key of the schema that has a place in the base, with each of its values."""

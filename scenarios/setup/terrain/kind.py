@@ -58,6 +58,10 @@ class TerrainKind:
         """List what makes it impossible for a robot and its gait."""
         return []
 
+    def notes(self, draft: "Draft") -> Iterator[str]:
+        """Tell what of it the walk does not come to, a sentence each."""
+        return iter(())
+
 
 def way(draft: "Draft") -> float:
     """Way that the steps go at most [m]."""
@@ -80,12 +84,24 @@ def climb_problems(draft: "Draft", facts: RobotFacts, risers: int = 1) -> Iterat
         yield Problem(("terrain", "riser"), what, f"use at most {most:.3f} m{meant(riser, 'm', most)}")
 
 
-def planned_soles(draft: "Draft", facts: RobotFacts) -> tuple[FootstepPlan, Array]:
-    """The footsteps, and the corners of their soles, start feet first, shape (n + 2, 4, 2) [m]."""
+def laid(draft: "Draft") -> FootstepPlan:
+    """The footsteps on the ground as believed, start feet first."""
     gait = draft.gait
     if not draft.commanded:
         gait = replace(gait, steps=min(gait.steps, MOST_STEPS))
-    plan = plan_footsteps(gait, draft.stance, draft.terrain)
+    return plan_footsteps(gait, draft.stance, draft.terrain)
+
+
+def unreached(plan: FootstepPlan, what: str) -> Iterator[Problem]:
+    """Tell a walk that takes steps and leaves off before the ground is anything but level."""
+    if plan.steps and np.ptp(plan.position[:, 2]) == 0.0 and (plan.normal[:, 2] == 1.0).all():
+        said = f"none of {plan.steps} footsteps comes to the {what}, so that the walk is one on level ground"
+        yield Problem(("terrain", "start"), said, "let it begin nearer, take more steps, or use kind flat")
+
+
+def planned_soles(draft: "Draft", facts: RobotFacts) -> tuple[FootstepPlan, Array]:
+    """The footsteps, and the corners of their soles, start feet first, shape (n + 2, 4, 2) [m]."""
+    plan = laid(draft)
     half_size = 0.5 * np.array([facts.foot_length, facts.foot_width])
     soles = [plan.footstep(row) for row in range(plan.steps + 2)]
     return plan, np.array([sole_corners(sole, half_size) for sole in soles])

@@ -13,7 +13,7 @@ from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.robot import RobotFacts
-from surefoot.scenarios.setup.terrain.kind import PLATFORM, TerrainKind, planned_soles, way
+from surefoot.scenarios.setup.terrain.kind import PLATFORM, TerrainKind, planned_soles, unreached, way
 
 if TYPE_CHECKING:
     from surefoot.scenarios.setup.draft import Draft
@@ -93,7 +93,9 @@ def _edge(draft: "Draft", facts: RobotFacts) -> Iterator[Problem]:
         yield tilted
     elif row is not None:
         what = f"{stander(row)} would stand across the edge of the slope"
-        yield Problem(("terrain", "start"), what, "put the edge between two footsteps, or behind the last one")
+        yield Problem(("terrain", "start"), what, "put the edge between two footsteps")
+    else:
+        yield from unreached(plan, "slope")
 
 
 def _buried(terrain: Terrain, plan: FootstepPlan, corners: Array) -> Array:

@@ -12,7 +12,15 @@ from surefoot.planner.walk.footsteps import FootstepPlan
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.robot import RobotFacts
-from surefoot.scenarios.setup.terrain.kind import PLATFORM, TerrainKind, climb_problems, planned_soles, way
+from surefoot.scenarios.setup.terrain.kind import (
+    PLATFORM,
+    TerrainKind,
+    climb_problems,
+    laid,
+    planned_soles,
+    unreached,
+    way,
+)
 
 if TYPE_CHECKING:
     from surefoot.scenarios.setup.draft import Draft
@@ -49,6 +57,18 @@ class StairsKind(TerrainKind):
             what = "gait.velocity on stairs, whose treads its footsteps would not meet"
             return [Problem(("gait", "velocity"), what, "give equal steps or gait.footsteps")]
         return list(_geometry(draft)) or list(climb_problems(draft, facts)) or list(_edges(draft, facts))
+
+    def notes(self, draft: "Draft") -> Iterator[str]:
+        """See `TerrainKind`."""
+        stairs, taken = draft.keys.terrain, sum(_risers(draft, laid(draft)))
+        there = stairs.count * (2 if stairs.direction == "up_down" else 1)
+        if taken < there:
+            yield f"the footsteps take {taken} of the {there} risers of the stairs"
+
+
+def _risers(draft: "Draft", plan: FootstepPlan) -> list[int]:
+    """How many risers each footstep takes, up or down, in order."""
+    return [int(number) for number in np.round(np.abs(np.diff(plan.position[:, 2])) / draft.keys.terrain.riser)]
 
 
 def stairs_of(draft: "Draft") -> Stairs:
@@ -96,6 +116,7 @@ def _edges(draft: "Draft", facts: RobotFacts) -> Iterator[Problem]:
         yield _over_edge(draft, facts, plan, int(beyond[0]), -float(margins[beyond[0]]))
     else:
         yield from _leaps(draft, plan)
+        yield from unreached(plan, "stairs")
 
 
 def _over_edge(draft: "Draft", facts: RobotFacts, plan: FootstepPlan, row: int, over: float) -> Problem:
@@ -127,10 +148,9 @@ def _beyond_climb(draft: "Draft", plan: FootstepPlan, row: int) -> bool:
 
 def _leaps(draft: "Draft", plan: FootstepPlan) -> Iterator[Problem]:
     """Tell the first step that takes more than one riser."""
-    riser = draft.keys.terrain.riser
-    risers = np.round(np.abs(np.diff(plan.position[:, 2])) / riser)
-    rows = np.flatnonzero(risers > 1.5)
-    if len(rows):
+    riser, risers = draft.keys.terrain.riser, _risers(draft, plan)
+    rows = [row for row, number in enumerate(risers) if number > 1]
+    if rows:
         what = f"footstep {rows[0]} would take {risers[rows[0]]:g} risers of {riser:g} m at once"
         right = f"give gait.step_length the depth of terrain.tread, {draft.keys.terrain.tread:g} m"
         yield Problem(("gait", "footsteps" if draft.commanded else "step_length"), what, right)

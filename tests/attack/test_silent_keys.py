@@ -1,0 +1,144 @@
+"""A key that is set acts, is refused, fails, or is told in a note; none leaves the run as it was without a word."""
+
+import pytest
+from experiment import BASES, BODIES, Experiment, keys
+
+from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.setup.load import load
+
+WITHOUT_OCCASION = {
+    "seed": "nothing is random in the base",
+    "gait.lateral_step": "a place, and 1e-300 m is where 0 is",
+    "gait.turn": "likewise",
+    "start.x": "likewise",
+    "start.y": "likewise",
+    "start.yaw": "likewise",
+    "gait.velocity.0.time": "the walk begins when it may, by whichever command is in force then",
+    "planner.jerk_limit": "a bound, which the motion may stay within",
+    "planner.jerk_rate_limit": "likewise",
+    "planner.step_adaptation": "acts when the robot is pushed",
+    "planner.profile": "two of them agree on a robot that stands at a constant height",
+    "planner.rise": "one of its values is what null means",
+    "planner.filter": "likewise",
+    "sensing.force_estimate": "acts when a force lasts or a weight is not as believed",
+    "terrain.friction": "a bound of the contact forces, which they may stay within",
+    "wbc.friction": "likewise, as it is believed",
+    "errors.friction": "likewise",
+    "errors.link_mass_noise": "0 asks for none",
+    "errors.torso_com": "likewise",
+    "errors.ground_noise": "likewise",
+    "wbc.tasks": "an empty list asks for none",
+    "wbc.second_solver": "acts when the first one fails",
+    "wbc.weights.swing": "acts on a foot that swings",
+    **dict.fromkeys(
+        (f"wbc.schedule.{name}" for name in ("felt_force", "felt_ticks", "early_progress", "early_cap")),
+        "a threshold, which contacts may stay clear of",
+    ),
+    **dict.fromkeys(
+        (f"wbc.schedule.{name}" for name in ("loading_time", "unloading_time", "share_margin")),
+        "acts when feet change their load",
+    ),
+    **dict.fromkeys(
+        (f"wbc.separation.{name}" for name in ("clearance", "attention", "horizon", "slots")),
+        "acts when limbs come near each other",
+    ),
+}
+"""Keys that may do nothing without a word, and why: what they ask for is true of the run as it is."""
+
+
+@pytest.fixture(scope="module")
+def experiments(tmp_path_factory):
+    made: dict[str, Experiment] = {}
+
+    def of(name):
+        if name not in made:
+            made[name] = Experiment({**BASES, **BODIES}[name], tmp_path_factory.mktemp(name))
+        return made[name]
+
+    return of
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize(
+    ("base", "key", "value", "outcome"),
+    [
+        ("walk", "gait.step_length", 0.21, "felt"),
+        ("walk", "gait.heel_off", 0.2, "noted"),
+        ("walk", "rates.physics", 2000, "noted"),
+        ("walk", "planner.rise", "single", "noted"),
+        ("walk", "robot_options.payload_body", "pelvis", "noted"),
+        ("walk", "errors.payload", {"mass": 0.0}, "noted"),
+        ("walk", "errors.com_height", 1e-300, "refused"),
+        ("walk", "pushes", [{"time": 0.5, "force": [1e-300, 0, 0]}], "refused"),
+        ("walk", "commands", [{"time": 2.4, "swing_height": 0.07}], "failed"),
+        ("stand", "gait.swing_height", 0.06, "noted"),
+        ("stand", "gait.single_support", 0.5, "noted"),
+        ("stand", "commands", [{"time": 0.3, "single_support": 0.5}], "failed"),
+    ],
+)
+def test_a_key_that_is_set_is_never_silent(experiments, base, key, value, outcome):
+    assert experiments(base).outcome(key, value) == outcome
+
+
+@pytest.mark.unit
+def test_what_is_excused_is_a_key():
+    assert set(WITHOUT_OCCASION) <= set(keys())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("base", [*BASES, *BODIES])
+def test_no_key_of_the_schema_is_silent(experiments, base):
+    experiment, point = experiments(base), base in BASES
+    silent, seen = [], 0
+    for key, value in experiment.trials():
+        # A pendulum has no controller, which one note says of all of its keys.
+        if key in WITHOUT_OCCASION or (point and key.startswith("wbc.") and key != "wbc.arm_swing"):
+            continue
+        seen += 1
+        if experiment.outcome(key, value) == "silent":
+            silent.append((key, value))
+    assert seen > 20
+    assert silent == []
+
+
+PUSH = "pushes=[{time: 2.9, force: [10, 0, 0], duration: %s}]"
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        (
+            [PUSH % 0.2],
+            "pushes.0 would last until 3.1 s, and the end of the run at 3 s cuts it off; give it at most 0.1 s",
+        ),
+        (["faults=[{kind: planner_freeze, time: 1, duration: 9}]"], "faults.0 would last until 10 s"),
+        (["pushes=[{time: 1, impulse: 1.0e-12}]"], "makes an impulse of 1e-12 N·s/kg"),
+        (["commands=[{time: 2.99, swing_height: 0.06}]"], "no plan comes before the end at 3 s"),
+        (
+            ["commands=[{time: 1.001, v_x: 0.1}, {time: 1.01, v_x: 0.2}]"],
+            "commands.0.v_x never acts: commands.1 supersedes it before the plan at 1.02 s",
+        ),
+        (["gait.waypoints=[{x: 0.001, y: 0}]"], "gait.waypoints.0 is where the robot starts"),
+        (["gait.waypoints=[{x: 1, y: 0}, {x: 1, y: 0}]"], "gait.waypoints.1 is where gait.waypoints.0 is"),
+        (
+            ["terrain.kind=slope", "terrain.angle=0.05", "terrain.start=9.05", "gait.com_height=0.9"],
+            "none of 20 footsteps comes to the slope",
+        ),
+        (["errors.ground=[{x: 1, length: 1, height: 1.0e-12}]"], "errors.ground.0.height 1e-12 is too small"),
+    ],
+)
+def test_what_would_never_act_is_refused(settings, words):
+    with pytest.raises(ScenarioError) as refused:
+        load("walk", ["fidelity=pendulum", "criteria={fell: false}", "duration=3", *settings])
+    assert words in "\n".join(refused.value.problems)
+
+
+@pytest.mark.unit
+def test_what_was_given_by_hand_need_not_act():
+    given = [
+        "pushes=[{time: 2.9, force: [10, 0, 0], duration: 0.2, live: true}]",
+        "commands=[{time: 1.001, v_x: 0.1, live: true}, {time: 1.01, v_x: 0.2, live: true},"
+        " {time: 2.99, v_x: 0, live: true}]",
+    ]
+    load("walk", ["fidelity=pendulum", "criteria={fell: false}", "duration=3", *given])

@@ -27,8 +27,8 @@ class Measurement:
         accelerometer: specific force (acceleration minus gravity) of the IMU in its frame, shape (3,) [m/s^2].
         wrench: force and torque that the ground exerts on the left and the right foot, at the sole centre in the sole
             frame, shape (2, 6) [N, N m].
-        q: true configuration in Pinocchio's convention, shape (7 + nj,).
-        v: true velocity in Pinocchio's convention, shape (6 + nj,).
+        q: true configuration in Pinocchio's convention, shape (7 + nj,) [m, -, rad].
+        v: true velocity in Pinocchio's convention, shape (6 + nj,) [m/s, rad/s].
         external_force: sum of the pushes, mean over the `World.advance` that ended at `time`, world, shape (3,) [N].
         nonfoot_contact: whether anything but the feet touches the terrain.
         self_contact: whether the robot touches itself; a foot's wrench then holds that touch, too.

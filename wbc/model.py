@@ -39,25 +39,37 @@ class RobotTerms:
     that; all else stays the model's.
 
     Attributes:
-        model, data: Pinocchio's, the latter as ``pin.computeAllTerms`` leaves it, but for a load.
-        q, v: the state of the last update, shape (nq,) and (nv,).
+        model: Pinocchio's.
+        data: Pinocchio's, as ``pin.computeAllTerms`` leaves it, but for a load.
+        q: configuration of the last update, shape (nq,) [m, -, rad].
+        v: velocity of the last update, shape (nv,) [m/s, rad/s].
         model_mass: total mass of the model [kg].
         mass: total mass [kg].
         load: what else acts on the robot.
         wrench_unit: of the QP's wrench variables [N, N·m].
-        mass_matrix: M, shape (nv, nv).
-        bias: Coriolis, centrifugal, gravity and load terms h, shape (nv,).
-        com, com_velocity, angular_momentum: centroidal state in the world frame, shape (3,) each.
-        base_rotation, torso_rotation: orientation in the world, shape (3, 3).
-        base_angular_velocity: in the base frame, shape (3,).
-        sole_position: shape (2, 3); sole_rotation: shape (2, 3, 3); sole_pose: x y z qx qy qz qw, shape (2, 7).
-        contact_position: shape (2, 3); contact_rotation: shape (2, 3, 3): those of the soles unless shifted.
-        sole_jacobian: shape (2, 6, nv); contact_jacobian: the same memory, shape (12, nv).
-        sole_velocity, sole_bias: shape (2, 6).
+        mass_matrix: M, shape (nv, nv) [kg, kg·m, kg·m^2].
+        bias: Coriolis, centrifugal, gravity and load terms h, shape (nv,) [N, N·m].
+        com: in the world frame, shape (3,) [m].
+        com_velocity: in the world frame, shape (3,) [m/s].
+        angular_momentum: about the CoM, in the world frame, shape (3,) [kg·m^2/s].
+        base_rotation: orientation of the pelvis in the world, shape (3, 3).
+        torso_rotation: orientation of the torso in the world, shape (3, 3).
+        base_angular_velocity: in the base frame, shape (3,) [rad/s].
+        sole_position: sole centres in the world frame, shape (2, 3) [m].
+        sole_rotation: orientations of the soles in the world, shape (2, 3, 3).
+        sole_pose: x y z qx qy qz qw of the soles in the world, shape (2, 7) [m, -].
+        contact_position: sole_position unless shifted, shape (2, 3) [m].
+        contact_rotation: sole_rotation unless shifted, shape (2, 3, 3).
+        sole_jacobian: from v to the soles' velocities, linear and angular, shape (2, 6, nv).
+        contact_jacobian: the same memory, shape (12, nv).
+        sole_velocity: linear and angular, each in the frame of its sole, shape (2, 6) [m/s, rad/s].
+        sole_bias: accelerations of the soles with v' = 0, shape (2, 6) [m/s^2, rad/s^2].
         sole_wrench_map: from both sole wrenches to their force and moment about the world's origin, shape (6, 12).
-        torso_position: shape (3,).
+        torso_position: in the world frame, shape (3,) [m].
         waist: whether the torso can move against the pelvis.
-        torso_jacobian: angular rows, shape (3, nv); torso_velocity, torso_bias: shape (3,).
+        torso_jacobian: from v to the torso's angular velocity, shape (3, nv).
+        torso_velocity: angular, in its frame, shape (3,) [rad/s].
+        torso_bias: angular acceleration with v' = 0, shape (3,) [rad/s^2].
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, wrench_unit: float = WRENCH_UNIT) -> None:

@@ -35,8 +35,8 @@ class RobotState:
     """State of the floating-base robot.
 
     Attributes:
-        q: configuration, shape (nq,).
-        v: velocity, shape (nv,).
+        q: configuration, shape (nq,) [m, -, rad].
+        v: velocity, shape (nv,) [m/s, rad/s].
     """
 
     q: Array

@@ -46,11 +46,11 @@ class Task(Protocol):
             terms: of the state; ``terms.data`` holds what ``pin.computeAllTerms`` leaves, so that frame placements,
                 velocities, Jacobians and (with q̈ = 0) accelerations can be taken from it.
             reference: what the robot shall do; a task may as well have a target of its own.
-            scale: square root of the weight, shape (size, 1).
+            scale: square root of the weight, shape (size, 1) [1 / unit of a].
             rows: gets scale * J, shape (size, nv + 12); as this task left it a tick before, zero at first.
 
         Returns:
-            a, not scaled, ``size`` numbers.
+            a, not scaled, ``size`` numbers [m/s^2, rad/s^2, as J makes it].
         """
 
 

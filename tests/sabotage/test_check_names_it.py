@@ -7,7 +7,7 @@ from controllers import SABOTAGES
 
 import surefoot
 from surefoot.scenarios.check import check as checking
-from surefoot.scenarios.check.check import cases, run_case, update
+from surefoot.scenarios.check.check import cases, run_case, updated
 from surefoot.scenarios.check.report import lines_of
 
 pytestmark = pytest.mark.physics
@@ -41,7 +41,7 @@ def case(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sound")
     (folder / "short.yaml").write_text(SHORT)
     (found,) = cases([str(folder / "short.yaml")])
-    update([run_case(found, folder / "runs")])
+    updated(run_case(found, folder / "runs"))
     return found
 
 

@@ -61,7 +61,8 @@ def test_list(surefoot):
     assert "robot     humanoid100" in out
     assert "profile   repaired" in out
     assert "metric " not in out, "every verdict shows ours"
-    summaries = [line for line in out.splitlines() if line.startswith("scenario ")]
+    summaries = [line for line in out.splitlines() if line.startswith(("scenario ", "control "))]
+    assert len(summaries) == len(catalogue.OWN) + len(catalogue.CONTROLS)
     assert [line for line in summaries if not line.endswith(".")] == []
 
 
@@ -71,7 +72,9 @@ def test_list_json_has_the_same_and_the_metrics(surefoot):
     assert robots["humanoid100"] == {"package": "surefoot", "doc": ""}
     assert set(robots) == {"humanoid100", *SHIPPED} and "33 kg" in robots["g1"]["doc"]
     assert "speed_mean" in [entry["name"] for entry in found["metric"]]
-    assert all(entry["doc"] for kind in ("scenario", "profile", "terrain", "metric") for entry in found[kind])
+    assert all(
+        entry["doc"] for kind in ("scenario", "control", "profile", "terrain", "metric") for entry in found[kind]
+    )
 
 
 def test_every_command_takes_h_for_help_and_is_told_in_full(surefoot):
@@ -123,7 +126,7 @@ def test_show_prints_a_file_that_runs(surefoot, tmp_path):
     assert "did you mean 'diagonal-walk'" in err
 
 
-@pytest.mark.parametrize("name", catalogue.OWN)
+@pytest.mark.parametrize("name", catalogue.OURS)
 def test_what_show_prints_says_what_the_file_says(name):
     shown, file = starter(name), catalogue.text(name)[0]
     assert yaml.safe_load(shown) == yaml.safe_load(file)

@@ -62,7 +62,7 @@ def pass_time(page: Browser, seconds: float) -> None:
 
 def test_a_browser_without_a_gpu_draws_less(driven: tuple[Browser, subprocess.Popen[str], Path]) -> None:
     page, *_ = driven
-    assert page.run("return [surefoot.software, devicePixelRatio]") == [True, 0.6]
+    assert page.run("return surefoot.software")
     canvas = "document.querySelector('canvas[data-engine]')"
     assert page.run(f"return {canvas}.width / {canvas}.clientWidth") == pytest.approx(0.6, abs=0.01)
     assert page.run(f"return {canvas}.getContext('webgl2').getContextAttributes().antialias") is False

@@ -10,11 +10,11 @@ import json
 import os
 import subprocess
 import sys
-import urllib.request
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from PIL import Image
+from websockets.sync.client import connect
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "scenarios"))
@@ -41,7 +41,8 @@ PUSH, END = 5.4, 7.6
 
 def post(address: str, **given: object) -> None:
     """Send an input as the page does."""
-    urllib.request.urlopen(f"{address}/input", json.dumps(given).encode(), timeout=30).close()
+    with connect(f"{address.replace('http', 'ws')}session") as session:
+        session.send(json.dumps(given))
 
 
 def filmed(page: Browser, address: str) -> list[Image.Image]:

@@ -23,12 +23,19 @@ PATIENCE = 2.0
 
 @dataclass(slots=True, eq=False)
 class _Watcher:
-    """A page that is looked at; all on the loop that serves it, but the number of the news that it has drawn."""
+    """A page, or a program that sends inputs as a page does.
+
+    Attributes:
+        loop: of its socket.
+        news: there is something to tell.
+        drawn: it has drawn what it was told last.
+        number: of the news that it drew last; None as long as it has drawn none.
+    """
 
     loop: asyncio.AbstractEventLoop
     news: asyncio.Event = field(default_factory=asyncio.Event)
     drawn: asyncio.Event = field(default_factory=asyncio.Event)
-    number: int = 0
+    number: int | None = None
 
 
 class Channel:
@@ -46,9 +53,9 @@ class Channel:
 
     @property
     def drawn(self) -> bool:
-        """Whether somebody looks, and every page has drawn what was told last."""
+        """Whether every page has drawn what was told last, and there is one."""
         with self._lock:
-            return bool(self._watchers) and all(watcher.number == self._number for watcher in self._watchers)
+            return {watcher.number for watcher in self._watchers} - {None} == {self._number}
 
     def tell(self, text: str) -> None:
         """Tell all who look at the page; a page that is too slow for it misses some."""
@@ -88,7 +95,8 @@ class Channel:
                 await connection.send(text)
                 with contextlib.suppress(TimeoutError):
                     await asyncio.wait_for(watcher.drawn.wait(), PATIENCE)
-            watcher.number = number
+                if watcher.drawn.is_set() or watcher.number is not None:
+                    watcher.number = number
 
     def _taken(self, given: str | bytes, watcher: _Watcher) -> str:
         """Take what a page has sent; gives why not, if so."""

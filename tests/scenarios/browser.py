@@ -44,7 +44,7 @@ class Browser:
             "args": [*FLAGS, f"--window-size={size[0]},{size[1]}", f"--user-data-dir={profile}"],
             "binary": shutil.which("chromium"),
         }
-        waits = {"script": 180_000, "pageLoad": 180_000}  # in milliseconds; pictures are drawn in software, beside other work
+        waits = {"script": 180_000, "pageLoad": 180_000}  # [ms]; pictures are drawn in software, beside other work
         wanted = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": options, "timeouts": waits}}
         self._session = ""
         try:

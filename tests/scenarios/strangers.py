@@ -66,9 +66,10 @@ def let_in(address: str, *sockets: str) -> list[str]:
     return found
 
 
-def listening() -> list[int]:
-    """Ports that this process listens on."""
-    own = {str(link.readlink()) for link in Path("/proc/self/fd").iterdir() if link.is_symlink()}
-    rows = [line.split() for line in Path("/proc/self/net/tcp").read_text().splitlines()[1:]]
-    rows += [line.split() for line in Path("/proc/self/net/tcp6").read_text().splitlines()[1:]]
-    return [int(row[1].rpartition(":")[2], 16) for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in own]
+def listening(process: int | None = None) -> list[tuple[str, int]]:
+    """Addresses (as the kernel writes them) and ports that a process listens on, this one if None."""
+    folder = Path("/proc") / str(process or "self")
+    own = {str(link.readlink()) for link in (folder / "fd").iterdir() if link.is_symlink()}
+    rows = [line.split() for name in ("tcp", "tcp6") for line in (folder / "net" / name).read_text().splitlines()[1:]]
+    places = [row[1].rpartition(":") for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in own]
+    return [(host, int(port, 16)) for host, _, port in places]

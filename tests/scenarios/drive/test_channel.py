@@ -64,6 +64,7 @@ def test_inputs_are_taken_in_order_and_a_refusal_is_told(served: Served) -> None
         for kind in ("a", "b", "nonsense", "c"):
             sent(page, kind)
         assert json.loads(page.recv(timeout=10)) == {"refused": "that is nonsense"}
+        assert not served.channel.drawn  # it has sent, but drawn nothing
         assert eventually(lambda: served.taken == ["a", "b", "c"])
         assert not served.left.is_set()
     assert served.left.wait(10)
@@ -88,6 +89,11 @@ def test_news_are_told_as_fast_as_a_page_draws_them(served: Served) -> None:
         assert page.recv(timeout=10) == "soon"
         served.channel.tell("in any case")
         assert page.recv(timeout=10) == "in any case"  # a page that says nothing is waited for in vain
+        sent(page, DRAWN)
+        assert eventually(lambda: served.channel.drawn)
+        with served.connected() as program:
+            assert program.recv(timeout=10) == "in any case"
+            assert served.channel.drawn  # it keeps no page waiting
 
 
 @pytest.mark.parametrize(

@@ -62,6 +62,16 @@ def pass_time(page: Browser, seconds: float) -> None:
     page.wait_for(f"{TIME} > {page.run(TIME) + seconds}")
 
 
+def test_a_browser_without_a_gpu_draws_less(driven: tuple[Browser, subprocess.Popen[str], Path]) -> None:
+    page, *_ = driven
+    assert page.run("return surefoot.software")
+    canvas = "document.querySelector('canvas[data-engine]')"
+    assert page.run(f"return {canvas}.width / {canvas}.clientWidth") == pytest.approx(0.6, abs=0.01)
+    assert page.run(f"return {canvas}.getContext('webgl2').getContextAttributes().antialias") is False
+    apart = "const begun = performance.now(); for (let i = 0; i < 10; i++) await new Promise(requestAnimationFrame);"
+    assert page.run(f"return (async () => {{{apart} return performance.now() - begun}})()") > 10 * 45.0  # [ms]
+
+
 def test_a_drive(
     driven: tuple[Browser, subprocess.Popen[str], Path], same_content: Callable[[Path, Path], list[str]]
 ) -> None:

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
+from strangers import listening
 
 from surefoot.scenarios import cli
 from surefoot.scenarios.cli import INTERRUPTED
@@ -251,3 +253,19 @@ def test_a_cluster_gives_the_same_table_though_a_worker_is_killed(tmp_path):
             k: v for k, v in theirs.items() if not any(word in k for word in timed)
         }
         assert not theirs["log"] or (tmp_path / "out" / theirs["log"]).stat().st_size > 1000
+
+
+@pytest.mark.physics
+def test_the_scheduler_of_the_documentation_listens_on_this_machine_alone(tmp_path):
+    pytest.importorskip("distributed")
+    text = (Path(__file__).parents[3] / "docs" / "campaigns.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"^dask scheduler .*(?= &$)", text, re.MULTILINE)
+    words = [*line.replace("127.0.0.1:8787", "127.0.0.1:0").split()[1:], "--port", "0"]
+    with (tmp_path / "said").open("w") as said:
+        scheduler = subprocess.Popen([sys.executable, "-m", "dask", *words], cwd=tmp_path, stderr=said)
+    try:
+        wait_for(lambda: "dashboard at" in (tmp_path / "said").read_text())
+        assert {place for place, _ in listening(scheduler.pid)} == {"0100007F"}
+    finally:
+        scheduler.terminate()
+        scheduler.wait(30)

@@ -119,8 +119,46 @@ FRAMES = (
 )
 
 
-def test_bad_frames_and_noise_leave_the_terminal_alone_and_the_page_open(recwarn, address, capfd):
-    random.seed(20)
+def noise(chance: random.Random, address: str) -> bytes:
+    """Bytes like a request: of a stranger, cut off, or of nothing at all."""
+    path, host = address[address.index("/", 8) :], address.split("/")[2]
+    paths = [
+        path,
+        path[:-1],
+        "/",
+        "//",
+        "*",
+        "http://x/",
+        f"{path}viewer",
+        f"{path}../",
+        "/%2e%2e/",
+        9000 * "a",
+        "/\xff",
+    ]
+    names = ["Host", "Origin", "Upgrade", "Connection", "Content-Length", "Transfer-Encoding", "Sec-WebSocket-Key", ":"]
+    values = [
+        host,
+        "evil.example",
+        "null",
+        "websocket",
+        "Upgrade",
+        "-1",
+        "chunked",
+        "\x00",
+        "[::1",
+        "a@b:c:d",
+        9000 * "b",
+    ]
+    methods, versions = ["GET", "GET", "POST", "PUT", "get", ""], ["1.1", "1.1", "1.0", "9"]
+    lines = [f"{chance.choice(methods)} {chance.choice(paths)} HTTP/{chance.choice(versions)}"]
+    lines += [f"{chance.choice(names)}: {chance.choice(values)}" for _ in range(chance.randrange(6))]
+    text = "\r\n".join([*lines, "", ""]).encode("latin-1") + chance.randbytes(chance.choice([0, 0, 9000]))
+    return chance.choice([text, text[: chance.randrange(len(text))], chance.randbytes(chance.randrange(300))])
+
+
+@pytest.mark.parametrize("requests", [200, pytest.param(20_000, marks=pytest.mark.long)], ids=["slice", "whole"])
+def test_bad_frames_and_noise_leave_the_terminal_alone_and_the_page_open(recwarn, address, capfd, requests):
+    chance = random.Random(28)
     host = ("127.0.0.1", int(address.split(":")[2].split("/")[0]))
     half_open = [socket.create_connection(host) for _ in range(30)]
     for number, connection in enumerate(half_open):
@@ -132,11 +170,10 @@ def test_bad_frames_and_noise_leave_the_terminal_alone_and_the_page_open(recwarn
     old = client.connect(address.replace("http", "ws"))
     with old, pytest.raises(Exception, match="another version of viser"):
         old.recv(timeout=10)
-    for _ in range(200):
+    for _ in range(requests):
         with socket.create_connection(host) as connection:
-            begin = random.choice([b"", b"GET ", b"GET / HTTP/1.1\r\n"])
-            connection.sendall(begin + random.randbytes(random.randrange(300)))
-            if random.random() < 0.5:  # a reset instead of an end
+            connection.sendall(noise(chance, address))
+            if chance.random() < 0.5:  # a reset instead of an end
                 connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
     assert ask(address)[0] == 200
     for connection in half_open:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.errors import ParameterError
+from surefoot.errors import ParameterError, at_least
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import STEEPEST_FALL, HeightProfile, Rise, shortest_support
@@ -95,4 +95,6 @@ def check_durations(gait: GaitParameters, sample_time: float) -> None:
     for name, least in shortest.items():
         value = getattr(gait, name)
         if value < (1.0 - 1e-9) * least:
-            raise ParameterError(("command", name), f"{name} {value:g} s is too short", f"{least:.2g} s is the least")
+            raise ParameterError(
+                ("command", name), f"{name} {value:g} s is too short", f"{at_least(least)} s is the least"
+            )

@@ -1,5 +1,6 @@
 """Errors that every layer raises alike: they carry the name of the value at fault, not a sentence to parse."""
 
+import math
 from collections.abc import Iterable
 
 
@@ -48,3 +49,17 @@ class PartError(PluginError):
     Attributes:
         what: the part with its package, what it did, and the file and line of its author.
     """
+
+
+def at_most(value: float, decimals: int = 3) -> str:
+    """A bound as a message proposes it, never rounded up, so that it is accepted when it is followed."""
+    return f"{math.floor(value * 10**decimals + _DIGITS) / 10**decimals:.{decimals}f}"
+
+
+def at_least(value: float, decimals: int = 3) -> str:
+    """Likewise of a lower bound, never rounded down."""
+    return f"{math.ceil(value * 10**decimals - _DIGITS) / 10**decimals:.{decimals}f}"
+
+
+_DIGITS = 1e-6
+"""By what a number may miss a decimal that it is, for its last binary digits [-]."""

@@ -263,6 +263,11 @@ class _Deriver:
         if self.upper.arms:
             swing = ", ".join(robot.roles.arm_swing or ()) or "none, no joint turns a whole arm about the lateral axis"
             lines.append(f"arm swing: {swing}")
+        if robot.sole_width > robot.sole_length:
+            self.reduced.notes.append(
+                f"soles are wider ({robot.sole_width:.3f} m) than long ({robot.sole_length:.3f} m); check feet and "
+                "forward, or give sole"
+            )
         by = "as given" if "sole" in given else "the largest rectangle in the lowest face of the foot"
         lines.append(f"soles: {robot.sole_length:.3f} x {robot.sole_width:.3f} m, {by}")
         lines.append(

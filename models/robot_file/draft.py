@@ -8,8 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
+import yaml
 
+from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.robot_file.build import Explanation, explain
+from surefoot.models.robot_file.files import text_of
 from surefoot.models.robot_file.paths import resolve
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.source import read_source
@@ -61,8 +64,8 @@ def draft(model: str, folder: Path) -> Draft:
     Raises:
         RobotError: the model cannot be read.
     """
-    name = re.sub(r"[^A-Za-z0-9._-]+", "-", Path(model).stem).lstrip("._-") or "robot"
     path = resolve(model, folder)
+    name = _name(path)
     source = read_source(RobotFile(name=name, model=model, inertia="repair"), path)
     feet = _feet(source.model)
     head = f"name: {name}\nmodel: {model}\n"
@@ -79,8 +82,30 @@ def draft(model: str, folder: Path) -> Draft:
             except RobotError as error:
                 refusal = refusal or str(error)
             else:
-                return Draft(_commented(lines, found), refusal if more else "")
+                why = f"# {refusal}\n" if more else ""
+                return Draft(_commented(f"{lines}{why}{more}", found, _centre(source.model, lines, found)))
     return Draft(_commented(orders[0], None), refusal)
+
+
+def _name(path: Path) -> str:
+    """What the model calls itself; the name of its file where it says nothing of its own."""
+    called = re.search(r"<(?:robot|mujoco)\b[^>]*?\s(?:name|model)\s*=\s*[\"']([^\"']*)", text_of(path))
+    for text in (called[1] if called else "", path.stem):
+        name = re.sub(r"[^A-Za-z0-9._-]+", "-", text).strip("._-")
+        if name:
+            return name
+    return "robot"
+
+
+def _centre(model: pin.Model, lines: str, found: Explanation) -> str:
+    """Centre of the left sole in the frame of its foot's link, as a robot file would say it."""
+    robot, link = found.description, str(yaml.safe_load(lines)["feet"]["left"])
+    built, data = pinocchio_model(robot), model.createData()
+    sole = built.frames[built.getFrameId(robot.sole_sites[0])]
+    pin.framesForwardKinematics(model, data, pin.neutral(model))
+    foot = data.oMi[model.getJointId(built.names[sole.parentJoint])]
+    placed = data.oMf[model.getFrameId(link, pin.FrameType.BODY)].actInv(foot.act(sole.placement.translation))
+    return ", ".join(f"{value:.3f}" for value in placed + 0.0)
 
 
 def _tried(lines: str, model: str, path: Path) -> Explanation:
@@ -92,20 +117,26 @@ def _tried(lines: str, model: str, path: Path) -> Explanation:
 
 
 def _feet(model: pin.Model) -> tuple[str, str] | None:
-    """Links of the two lowest ends of long chains that are beside each other, the one with the greater y first."""
+    """Links of the two lowest ends of long chains that are beside each other, the one with the greater y first.
+
+    Where z has none y is taken for up, and then x.
+    """
     data = model.createData()
     pin.forwardKinematics(model, data, pin.neutral(model))
-    ends = sorted(_ends(model), key=lambda joint: float(data.oMi[joint].translation[2]))
-    if len(ends) < 2:
-        return None
-    first, second = ends[:2]
-    apart = data.oMi[first].translation - data.oMi[second].translation
-    level, aside = abs(float(apart[2])), float(np.hypot(apart[0], apart[1]))
-    if level > 0.1 * aside:
-        return None
-    along = int(np.argmax(np.abs(apart[:2])))
-    left, right = (first, second) if (apart[along] > 0.0) == (along == 1) else (second, first)
-    return _link(model, left), _link(model, right)
+    places = {joint: np.array(data.oMi[joint].translation) for joint in _ends(model)}
+    for up in (2, 1, 0):
+        lowest = sorted(places, key=lambda joint: float(places[joint][up]))[:2]
+        if len(lowest) < 2:
+            return None
+        first, second = lowest
+        apart = places[first] - places[second]
+        level, apart[up] = abs(float(apart[up])), 0.0
+        if level > 0.1 * float(np.linalg.norm(apart)):
+            continue
+        along = int(np.argmax(np.abs(apart)))
+        left, right = (first, second) if (apart[along] > 0.0) == (along == 1) else (second, first)
+        return _link(model, left), _link(model, right)
+    return None
 
 
 def _ends(model: pin.Model) -> list[int]:
@@ -122,20 +153,22 @@ def _link(model: pin.Model, joint: int) -> str:
     return str(next(f.name for f in model.frames if f.parentJoint == joint and f.type == pin.FrameType.BODY))
 
 
-def _commented(lines: str, found: Explanation | None) -> str:
-    """The lines of a file with what else it may say."""
+def _commented(lines: str, found: Explanation | None, centre: str = "0.0, 0.0, 0.0") -> str:
+    """The lines of a file with what is to be known of it, and what else it may say."""
+    notes = found.notes if found is not None else ()
     return "".join(
         (
             "# `surefoot robot check FILE` says what is derived of this robot, and what it can walk.\n",
             lines,
-            "# Look whether these are the links that carry the soles, and whether left is left.\n\n",
-            "# All else follows from the model, unless it is given here:\n",
-            *_others(found),
+            "# Look whether these are the links that carry the soles, and whether left is left.\n",
+            *(f"# Note: {note}\n" for note in notes),
+            "\n# All else follows from the model, unless it is given here:\n",
+            *_others(found, centre),
         )
     )
 
 
-def _others(found: Explanation | None) -> Iterator[str]:
+def _others(found: Explanation | None, centre: str) -> Iterator[str]:
     robot = found.description if found is not None else None
     known = (
         {}
@@ -143,7 +176,7 @@ def _others(found: Explanation | None) -> Iterator[str]:
         else {
             "torso": robot.torso_body,
             "com_height": f"{robot.com_height:.3f}",
-            "sole": f"{{length: {robot.sole_length:.3f}, width: {robot.sole_width:.3f}, centre: [0.0, 0.0, 0.0]}}",
+            "sole": f"{{length: {robot.sole_length:.3f}, width: {robot.sole_width:.3f}, centre: [{centre}]}}",
         }
     )
     examples = {
@@ -157,6 +190,9 @@ def _others(found: Explanation | None) -> Iterator[str]:
         "inertia": "repair",
         "srdf": "robot.srdf",
         "scale": "1.0",
+        "torso": "LINK",
+        "com_height": "0.8",
+        "sole": f"{{length: 0.2, width: 0.1, centre: [{centre}]}}",
     }
     for key in _OPTIONAL:
         value = known.get(key, examples.get(key, "..."))

@@ -110,7 +110,7 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
     turned = _turn(model, frames, file, notes)
     bodies = _bodies(full, tuple(model.names)[1:])
-    _require_inertias(model, bodies, file, notes)
+    _require_inertias(model, bodies, {full.names[joint] for joint in left | right}, file, notes)
     visual, collision = (_by_joint(model, shapes) for shapes in (source.visual, source.collision))
     return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes)
 
@@ -216,12 +216,15 @@ _LIGHT = 0.03
 """Share of the whole mass that all fingers of a hand stay below [-]."""
 
 
-def _require_inertias(model: pin.Model, bodies: tuple[str, ...], file: RobotFile, notes: list[str]) -> None:
-    """Refuse bodies without inertia, or give them that of a small ball.
+def _require_inertias(
+    model: pin.Model, bodies: tuple[str, ...], legs: set[str], file: RobotFile, notes: list[str]
+) -> None:
+    """Refuse bodies without inertia, or give them that of a small ball; joints of legs cannot be locked instead.
 
     Raises:
         RobotError: one has none, and no mass either or is not to be repaired.
     """
+    balls = []
     for joint, body in enumerate(bodies, start=1):
         inertia = model.inertias[joint]
         least = float(np.linalg.eigvalsh(inertia.inertia)[0])
@@ -231,12 +234,17 @@ def _require_inertias(model: pin.Model, bodies: tuple[str, ...], file: RobotFile
             what = (
                 f"link '{body}' of {file.name} moves with {inertia.mass:g} kg and a least moment of {least:.2g} kg m^2"
             )
-            lock = f"lock joint '{model.names[joint]}'" if joint > 1 else "check the model"
-            mass = ", or write 'inertia: repair'" if inertia.mass > _LEAST else ""
-            raise RobotError(("inertia",), what, f"give it an inertia, {lock}{mass}")
+            name = model.names[joint]
+            ways = ["give it an inertia in the model"]
+            ways += [f"write 'lock: [{name}]'"] if joint > 1 and name not in legs and file.lock is None else []
+            ways += ["write 'inertia: repair'"] if inertia.mass > _LEAST else []
+            raise RobotError(("inertia",), what, ", or ".join(ways))
         ball = inertia.mass * _BALL**2
         model.inertias[joint] = pin.Inertia(inertia.mass, inertia.lever, inertia.inertia + ball * np.eye(3))
-        notes.append(f"link '{body}' has no moment of inertia in the model, and that of a ball of {_BALL} m here")
+        balls.append(body)
+    if balls:
+        told = ", ".join(balls)
+        notes.append(f"without a moment of inertia in the model, and with that of a ball of {_BALL} m here: {told}")
 
 
 def _turn(model: pin.Model, feet: tuple[int, ...], file: RobotFile, notes: list[str]) -> float:

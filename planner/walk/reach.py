@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.errors import ParameterError
+from surefoot.errors import ParameterError, at_least, at_most
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.types import Array, Foot, Footstep
@@ -118,7 +118,7 @@ class StepRegion:
             return Fault(f"turns by {place.turn:.3g} rad against its stance foot", f"{self.turn:g} rad is the most")
         if place.beside < near - _ROUNDING:
             what = "crosses" if place.beside < 0.0 else "would touch"
-            return Fault(f"{what} its stance foot, {place.beside:.3f} m beside it", f"{near:.3f} m is the least")
+            return Fault(f"{what} its stance foot, {place.beside:.3f} m beside it", f"{at_least(near)} m is the least")
         if place.beside > far + _ROUNDING:
             return Fault(f"lands {place.beside:.3f} m beside its stance foot", f"{far:g} m is the most")
         if abs(place.ahead) > self.length + _ROUNDING:
@@ -126,7 +126,7 @@ class StepRegion:
         stretch = math.hypot(place.ahead, place.beside - self.hip_width)
         if stretch > self.leg_span + _ROUNDING:
             what = f"lands {stretch:.3f} m from where the legs stand upright"
-            return Fault(what, f"{self.leg_span:.3f} m is the most")
+            return Fault(what, f"{at_most(self.leg_span)} m is the most")
         return None
 
     def fitted(self, stride: Stride) -> Stride:

@@ -1,8 +1,8 @@
 """What a described robot is worth before it walks: engines that agree, legs alike, soles level, torque to spare."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -28,6 +28,9 @@ PARITY = 1e-9
 _ALIKE = 1e-3
 """Relative difference of left and right from which on it is told [-]."""
 
+HEIGHTS = (0.98, 1.02, 0.96, 1.04, 0.94, 0.92, 0.9, 0.87)
+"""CoM heights that are proposed, over the nominal one, the nearest first [-]."""
+
 _STATES = 50
 _LEVEL, _TILT = 1e-4, 1e-3
 
@@ -44,6 +47,8 @@ class Examination:
         sole_tilt: larger angle of a sole's normal from the vertical there, pelvis upright [rad].
         both_feet: static torques of standing with the CoM between the soles at its nominal height.
         one_foot: likewise with the CoM over one sole, which bears all; the worse of both.
+        both_height: CoM height at which the joints could stand on both feet; None where no other is needed or does [m].
+        one_height: likewise on one foot [m].
         longest_step: with flat soles at the nominal CoM height [m].
         touching: bodies that touch each other in that stance, by pairs.
     """
@@ -54,6 +59,8 @@ class Examination:
     sole_tilt: float
     both_feet: TorqueMargin
     one_foot: TorqueMargin
+    both_height: float | None
+    one_height: float | None
     longest_step: float
     touching: tuple[tuple[str, str], ...]
 
@@ -75,16 +82,31 @@ class Examination:
                 f"in the nominal posture a sole is tilted by {math.degrees(self.sole_tilt):.2f} deg; "
                 "give a posture in which both are level"
             )
-        for margin, where in ((self.both_feet, "both feet"), (self.one_foot, "one foot")):
-            if not margin.joint:
-                yield f"it cannot stand on {where} at its nominal CoM height; give another com_height"
-            elif margin.share > 1.0:
+        if not self.both_feet.joint:
+            yield f"it cannot stand on both feet at its nominal CoM height; {self._height(self.both_height)}"
+        for margin, height, where in (
+            (self.both_feet, self.both_height, "both feet"),
+            (self.one_foot, self.one_height, "one foot"),
+        ):
+            if margin.joint and margin.share > 1.0:
+                more = f"give torque_limit: {{{margin.joint}: {math.ceil(margin.needed)}}} if its motor has it"
                 yield (
                     f"joint '{margin.joint}' needs {margin.needed:.0f} N m to stand on {where}, "
-                    f"{margin.share:.0%} of its limit; give it more torque or a higher com_height"
+                    f"{margin.share:.0%} of its limit; {self._height(height) if height else more}"
                 )
         for one, other in self.touching:
             yield f"bodies '{one}' and '{other}' touch in the stance; give a posture that keeps them apart"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be known of it, and keeps it from nothing, one sentence each."""
+        leaning = "it cannot stand still on one foot at its nominal CoM height, which walking need not"
+        wide = () if self.one_foot.joint else (f"{leaning}; {self._height(self.one_height)}",)
+        return (*self.differences, *wide)
+
+    @staticmethod
+    def _height(height: float | None) -> str:
+        return f"com_height: {height:g} would do" if height else "no com_height near it would do"
 
 
 def known(name: str) -> Explanation:
@@ -104,16 +126,26 @@ def examine(robot: RobotDescription) -> Examination:
     body = body_of(robot)
     height, tilt = _soles(body)
     both, q = standing(body, 0.0)
+    one = on_one_foot(body)
     return Examination(
         parity=_parity(robot),
         differences=tuple(_differences(body)),
         sole_height=height,
         sole_tilt=tilt,
         both_feet=both,
-        one_foot=on_one_foot(body),
+        one_foot=one,
+        both_height=_other_height(body, both, lambda other: standing(other, 0.0)[0]),
+        one_height=_other_height(body, one, on_one_foot),
         longest_step=leg_span(robot.com_height, facts_of(robot)),
         touching=_touching(robot, q),
     )
+
+
+def _other_height(body: Body, margin: TorqueMargin, stands: Callable[[Body], TorqueMargin]) -> float | None:
+    """The nearest of some CoM heights at which a robot stands that does not at its own; None where it does [m]."""
+    heights = (float(f"{share * body.robot.com_height:.3g}") for share in HEIGHTS)
+    others = (replace(body, robot=replace(body.robot, com_height=height)) for height in heights)
+    return None if margin.share <= 1.0 else next((b.robot.com_height for b in others if stands(b).share <= 1.0), None)
 
 
 def _parity(robot: RobotDescription) -> float:

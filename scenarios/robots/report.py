@@ -27,7 +27,7 @@ def print_examination(console: Console, explained: Explanation, found: Examinati
     console.print(table)
     for title, lines in (
         ("derived", explained.derived),
-        ("note", (*explained.notes, *found.differences)),
+        ("note", (*explained.notes, *found.notes)),
         ("fault", found.faults),
     ):
         for line in lines:
@@ -127,7 +127,7 @@ def to_json(explained: Explanation, found: Examination, rows: Sequence[Row]) -> 
         "robot": explained.description.name,
         "facts": dict(_facts(explained.description)),
         "derived": list(explained.derived),
-        "notes": [*explained.notes, *found.differences],
+        "notes": [*explained.notes, *found.notes],
         "faults": list(found.faults),
         "measured": _finite(asdict(found)),
         "scenarios": [

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from surefoot.errors import ParameterError
+from surefoot.errors import ParameterError, at_least, at_most
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
@@ -76,12 +76,12 @@ def _rates(draft: Draft) -> Iterator[Problem]:
 def _durations(draft: Draft) -> Iterator[Problem]:
     if swing_too_short(draft):
         what = f"gait.single_support {draft.keys.gait.single_support} s is too short for a swing of the foot"
-        right = f"use at least {FEWEST_SWING_SAMPLES * draft.keys.planner.sample_time:g} s"
+        right = f"use at least {at_least(FEWEST_SWING_SAMPLES * draft.keys.planner.sample_time)} s"
         yield Problem(("gait", "single_support"), what, right)
     double, sample = draft.keys.gait.double_support, draft.keys.planner.sample_time
     if double < (1.0 - 1e-9) * sample:
         what = f"gait.double_support {double} s is shorter than a sample of the planner"
-        yield Problem(("gait", "double_support"), what, f"use at least {sample:g} s")
+        yield Problem(("gait", "double_support"), what, f"use at least {at_least(sample, 5)} s")
 
 
 def _pushes(draft: Draft) -> Iterator[Problem]:
@@ -107,7 +107,7 @@ def _beliefs(draft: Draft) -> Iterator[Problem]:
     height, error = draft.keys.gait.com_height, draft.keys.errors.com_height
     if error > 0.5 * height:
         what = f"errors.com_height {error} m leaves {height - error:.3g} m of gait.com_height {height} m as the truth"
-        yield Problem(("errors", "com_height"), what, f"use at most {0.5 * height:.3g} m")
+        yield Problem(("errors", "com_height"), what, f"use at most {at_most(0.5 * height)} m")
 
 
 def _controller(draft: Draft) -> Iterator[Problem]:
@@ -171,11 +171,11 @@ def _reach(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
         highest = facts.com_above_hip + math.sqrt(facts.leg_length**2 - sideways**2)
         what = f"gait.com_height {gait.com_height} m is out of reach with feet {gait.step_width} m apart"
         yield Problem(
-            ("gait", "com_height"), what, f"use less than {highest:.3f} m{meant(gait.com_height, 'm', highest)}"
+            ("gait", "com_height"), what, f"use less than {at_most(highest)} m{meant(gait.com_height, 'm', highest)}"
         )
     elif gait.steps and not draft.commanded and abs(gait.step_length) > longest:
         what = f"gait.step_length {gait.step_length} m is out of reach at com_height {gait.com_height} m"
-        right = f"use at most {longest:.3f} m, or lower gait.com_height{meant(gait.step_length, 'm', longest)}"
+        right = f"use at most {at_most(longest)} m, or lower gait.com_height{meant(gait.step_length, 'm', longest)}"
         yield Problem(("gait", "step_length"), what, right)
 
 

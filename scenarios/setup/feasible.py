@@ -35,8 +35,11 @@ _UNITS = {"turn": "rad", "angle": "rad", "single_support": "s", "double_support"
 
 _STEPS = ("gait", "step_length")
 _TRIES = 8
-_LESS, _LOWER = 0.8, 0.96
-"""Of steps, ground or tempo, and of the CoM height, that is tried after each refusal [-]."""
+_LESS = 0.8
+"""Share of steps, ground or tempo that is tried after a refusal [-]."""
+
+_HEIGHTS = (1.0, 0.96, 1.03)
+"""CoM heights that are tried in turn, over the robot's usual one [-]."""
 
 _DIGITS = 3
 
@@ -117,7 +120,7 @@ class _Calm:
         steps: share of its steps [-].
         ground: share of what makes its ground uneven [-].
         time: of a single support, over that of the walk [-].
-        posture: 0 for its own, then in turn the robot's usual one and a lower one.
+        posture: 0 for its own, then in turn the robot's usual one, a lower and a higher one.
         refused: how often something else than speed, ground or start was in the way.
     """
 
@@ -149,7 +152,7 @@ class _Calm:
         if self.time > 1.0:
             found |= _times(keys.gait, "gait", ("single_support",), self.time)
         if self.posture:
-            height = robot.com_height * (1.0 if self.posture % 2 else _LOWER)
+            height = robot.com_height * _HEIGHTS[(self.posture - 1) % len(_HEIGHTS)]
             found["gait.com_height"] = _rounded(height)
             found["gait.step_width"] = _rounded(max(robot.hip_width, robot.shank_spacing))
         return found

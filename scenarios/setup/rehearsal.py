@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from surefoot.errors import ParameterError
+from surefoot.errors import ParameterError, at_most
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
@@ -102,7 +102,7 @@ def check_turns(walk: Walk) -> None:
                 key,
                 f"joint '{name}' of robot '{robot.name}' would need {speed:.2g} rad/s to turn by {turn:.2g} rad in a "
                 f"step, its no-load speed is {limit:g} rad/s",
-                f"use a yaw_rate of at most {0.99 * turn / walk.gait.period * limit / speed:.2g} rad/s",
+                f"use a yaw_rate of at most {at_most(turn / walk.gait.period * limit / speed)} rad/s",
             )
 
 

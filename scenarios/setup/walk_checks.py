@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-from surefoot.errors import ParameterError
+from surefoot.errors import ParameterError, at_least, at_most
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.references.com_height import highest_apex
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
@@ -96,7 +96,7 @@ def _footstep_problem(draft: Draft, facts: RobotFacts, number: int, place: Landi
     apart = soles_apart((facts.foot_length, facts.foot_width), place.turn)
     if place.beside < apart:
         what = f"footstep {number} would land {place.beside:.3f} m beside its stance foot and touch it"
-        return Problem(("gait", sideways), what, f"keep the feet {apart:.3f} m apart")
+        return Problem(("gait", sideways), what, f"keep the feet {at_least(apart)} m apart")
     return None
 
 
@@ -107,7 +107,7 @@ def _apexes(gait: Gait) -> Iterator[Problem]:
         highest = highest_apex(duration)
         if apex > highest:
             what = f"gait.apex_{support} {apex} m within {duration} s asks the CoM to fall faster than the feet allow"
-            right = f"use at most {highest:.2g} m, or a longer gait.{support}_support"
+            right = f"use at most {at_most(highest, 4)} m, or a longer gait.{support}_support"
             yield Problem(("gait", f"apex_{support}"), what, right)
 
 

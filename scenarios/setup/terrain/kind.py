@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from surefoot.errors import at_most
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array
@@ -81,7 +82,7 @@ def climb_problems(draft: "Draft", facts: RobotFacts, risers: int = 1) -> Iterat
     if riser > highest:
         what = f"terrain.riser {riser} m is out of reach of legs {facts.leg_length:.3f} m long"
         most = max(highest, 0.0)
-        yield Problem(("terrain", "riser"), what, f"use at most {most:.3f} m{meant(riser, 'm', most)}")
+        yield Problem(("terrain", "riser"), what, f"use at most {at_most(most)} m{meant(riser, 'm', most)}")
 
 
 def laid(draft: "Draft") -> FootstepPlan:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from surefoot.errors import at_least, at_most
 from surefoot.planner.ground.slope import Slope
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array
@@ -56,7 +57,7 @@ def steepness(draft: "Draft") -> Iterator[Problem]:
         yield Problem(key, f"terrain.angle {terrain.angle} rad is too steep", right)
     elif math.tan(tilt) >= terrain.friction:
         what = f"terrain.angle {terrain.angle} rad is steeper than terrain.friction {terrain.friction} holds"
-        yield Problem(key, what, f"use less than {math.atan(terrain.friction):.3f} rad, or more friction")
+        yield Problem(key, what, f"use less than {at_most(math.atan(terrain.friction))} rad, or more friction")
 
 
 def first_sole_off_its_face(draft: "Draft", facts: RobotFacts) -> tuple[FootstepPlan, int | None]:
@@ -71,7 +72,7 @@ def tilted_start(plan: FootstepPlan, facts: RobotFacts) -> Problem | None:
     """A walk that would start on a tilted face."""
     if not np.any(plan.normal[:2, 2] < 1.0):
         return None
-    right = f"use at least {0.5 * facts.foot_length:.3f} m, so that both feet stand level"
+    right = f"use at least {at_least(0.5 * facts.foot_length)} m, so that both feet stand level"
     return Problem(("terrain", "start"), "the walk would start on the slope", right)
 
 

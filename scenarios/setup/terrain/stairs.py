@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from surefoot.errors import at_least
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.walk.footsteps import FootstepPlan
@@ -125,8 +126,8 @@ def _over_edge(draft: "Draft", facts: RobotFacts, plan: FootstepPlan, row: int, 
     if row < 2:
         what, least = f"the feet would start {over:.3f} m over the edge of the first stair", 0.5 * facts.foot_length
         if terrain.start is None:
-            return Problem(("gait", "step_length"), what, f"{fit}, or terrain.start at least {least:.3f} m")
-        return Problem(("terrain", "start"), what, f"use at least {least:.3f} m")
+            return Problem(("gait", "step_length"), what, f"{fit}, or terrain.start at least {at_least(least)} m")
+        return Problem(("terrain", "start"), what, f"use at least {at_least(least)} m")
     what = f"footstep {row - 1} would stand {over:.3f} m over the edge of its tread"
     if _beyond_climb(draft, plan, row) and terrain.landing is not None:
         steps = max(1, math.floor(terrain.landing / terrain.tread))

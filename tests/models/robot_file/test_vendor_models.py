@@ -23,7 +23,8 @@ CHEST = (
     '<limit lower="-1" upper="1" effort="80" velocity="15"/></joint>'
 )
 FINGERS = """<body name="hand" pos="0 0.3 0"><joint name="wrist" axis="0 0 1" actuatorfrcrange="-9 9"/>
-<geom size="0.03"/><body name="finger" pos="0 0.05 0"><joint name="finger" axis="0 0 1"/><geom size="0.01"/></body></body>"""
+<geom size="0.03"/><body name="finger" pos="0 0.05 0"><joint name="finger" axis="0 0 1"/>
+<geom size="0.01"/></body></body>"""
 SPHERE = '<collision><origin xyz="{} {} -0.06"/><geometry><sphere radius="0"/></geometry></collision>'
 
 

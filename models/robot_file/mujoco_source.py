@@ -1,13 +1,17 @@
 """An MJCF as a Pinocchio model: what MuJoCo compiled of it, with all defaults and includes."""
 
+import re
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.robot_file.document import MESH, content
+from surefoot.models.robot_file.mjcf import Assembled
+from surefoot.models.robot_file.paths import is_file
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.models.robot_file.shapes import Shape, box, capsule, cylinder, ellipsoid, placed, solid
+from surefoot.models.robot_file.shapes import Shape, box, capsule, cylinder, ellipsoid, placed, require_moderate, solid
 from surefoot.models.robot_file.source import ROOT, Source, physical
 from surefoot.models.types import Array, RobotError
 
@@ -17,16 +21,21 @@ _HINGE, _SLIDE, _FREE = (
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
 
 
-def read_mjcf(file: RobotFile, path: Path) -> Source:
+def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     """Read a robot's MJCF.
 
     Raises:
         RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
     """
+    files = {name: text.encode() for name, text in document.models.items()}
+    for name, mesh in document.meshes.items():
+        if not is_file(mesh):
+            raise RobotError(("model",), f"{path}: mesh {mesh.name} is not there", f"put it at {mesh}")
+        files[name] = content(mesh, MESH)
     try:
-        mj = mujoco.MjModel.from_xml_path(str(path))
-    except ValueError as error:
-        raise RobotError(("model",), f"{path}: {' '.join(str(error).split())[:200]}", "mend it") from None
+        mj = mujoco.MjModel.from_xml_string(document.text, files)
+    except Exception as error:
+        raise RobotError(("model",), f"{path}: {_placed(str(error), document)}", "mend it") from None
     roots = [body for body in range(1, mj.nbody) if mj.body_parentid[body] == 0 and mj.body_subtreemass[body] > 0]
     if len(roots) != 1:
         names = ", ".join(f"'{mj.body(body).name}'" for body in roots) or "none"
@@ -134,6 +143,7 @@ class _Reader:
             if mj.body_rootid[mj.geom_bodyid[geom]] == self._root:
                 touches = mj.geom_contype[geom] or mj.geom_conaffinity[geom]
                 (collision if touches else visual).extend(self._shape(geom))
+                require_moderate((*visual, *collision))
         source.visual, source.collision = tuple(visual or collision), tuple(collision)
 
     def _shape(self, geom: int) -> list[Shape]:
@@ -158,6 +168,14 @@ class _Reader:
         }
         maker = makers.get(mujoco.mjtGeom(kind).name.removeprefix("mjGEOM_"))
         return [solid(link, maker(), place, rgba)] if maker else []
+
+
+def _placed(said: str, document: Assembled) -> str:
+    """What MuJoCo says in one line, with the place where it stands in the files."""
+    line = re.search(r",? *\bline (\d+)", said)
+    place = document.places[int(line[1]) - 1] if line and 0 < int(line[1]) <= len(document.places) else ""
+    said = " ".join((said.replace(line[0], "") if line else said).split())[:200]
+    return f"{said}, {place}" if place else said
 
 
 def _placement(position: Array, quaternion: Array) -> pin.SE3:

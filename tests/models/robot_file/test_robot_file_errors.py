@@ -113,7 +113,7 @@ MODELS = {
     ),
     "bad link": (
         biped.Biped(changes={'<child link="left_thigh"/>': '<child link="left_tigh"/>'}),
-        "biped.urdf: .*mend it",
+        "biped.urdf:1: child of joint 'left_pitch' is 'left_tigh', which is no link; did you mean 'left_thigh'",
     ),
 }
 

@@ -54,7 +54,8 @@ def _loaded(path: Path, ending: str, data: bytes) -> Triangles:
         try:
             read = coal.MeshLoader(coal.NODE_TYPE.BV_OBB).load(str(copy), np.ones(3))
         except Exception as error:
-            reason = " ".join(str(error).replace(str(copy), path.name).split())[:150]
+            said = str(error).replace(str(copy), path.name).rpartition("message:")[2]
+            reason = " ".join(said.split())[:150]
             raise _unread(path, reason) from None
     corners = (read.tri_indices(k) for k in range(read.num_tris))
     faces = np.array([(corner[0], corner[1], corner[2]) for corner in corners], dtype=np.int64).reshape(-1, 3)

@@ -68,7 +68,7 @@ class _Reader:
 
     def _add_body(self, body: int) -> None:
         mj, model = self._mj, self._model
-        name = mj.body(body).name or f"body{body}"
+        name = self._name(body)
         first, count = int(mj.body_jntadr[body]), int(mj.body_jntnum[body])
         if body == self._root:
             joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), ROOT)
@@ -78,10 +78,16 @@ class _Reader:
             offset = before * _placement(mj.body_pos[body], mj.body_quat[body])
             for index in range(first, first + count):
                 joint, offset = self._add_joint(index, joint, offset, name)
+                if index < first + count - 1:  # what moves between two joints of a body has no name in the file
+                    between = f"{name} behind {model.names[joint]}"
+                    model.addFrame(pin.Frame(between, joint, 0, offset, pin.FrameType.BODY))
         self._place[body] = (joint, offset)
         frame = pin.Frame(name, joint, 0, offset, pin.FrameType.BODY)
         model.addFrame(frame)
         model.appendBodyToJoint(joint, self._inertia(body, name), offset)
+
+    def _name(self, body: int) -> str:
+        return self._mj.body(body).name or f"body{body}"
 
     def _add_joint(self, index: int, parent: int, offset: pin.SE3, body: str) -> tuple[int, pin.SE3]:
         """Put a joint at its place in the body; returns it and the body seen from it."""
@@ -99,6 +105,7 @@ class _Reader:
         lower, upper = mj.jnt_range[index] if mj.jnt_limited[index] else (-2 * np.pi, 2 * np.pi)
         one = np.ones(1)
         added = self._model.addJoint(parent, joint, offset * there, name, one, one, one * lower, one * upper)
+        self._model.addJointFrame(added)
         self._model.armature[self._model.joints[added].idx_v] = mj.dof_armature[mj.jnt_dofadr[index]]
         return added, there.inverse()
 
@@ -152,7 +159,7 @@ class _Reader:
         kind, (a, b, c) = int(mj.geom_type[geom]), mj.geom_size[geom].tolist()
         material = mj.geom_matid[geom]
         red, green, blue, alpha = (mj.mat_rgba[material] if material >= 0 else mj.geom_rgba[geom]).tolist()
-        rgba, link = (red, green, blue, alpha), mj.body(mj.geom_bodyid[geom]).name
+        rgba, link = (red, green, blue, alpha), self._name(int(mj.geom_bodyid[geom]))
         place = _placement(mj.geom_pos[geom], mj.geom_quat[geom])
         if kind == _MESH:
             mesh = mj.mesh(mj.geom_dataid[geom])

@@ -1,7 +1,7 @@
 """What the numbers of a model may be: each finite, and no larger than any walking machine has it."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from surefoot.models.robot_file.document import Node, number, refuse
 
@@ -12,7 +12,8 @@ NONE = 1e17
 """Limits as large stand for none in models that other programs wrote."""
 
 
-class Quantity(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Quantity:
     """What an attribute may hold.
 
     Attributes:
@@ -45,7 +46,7 @@ _LIMIT = Quantity(NONE, "", 1)
 URDF = {
     "origin": {"xyz": Quantity(LENGTH, "m", 3), "rpy": Quantity(1e4, "rad", 3)},
     "axis": {"xyz": Quantity(1e6, "", 3)},
-    "mass": {"value": Quantity(MASS, "kg", 1)},
+    "mass": {"value": Quantity(MASS, "kg", 1, 0.0)},
     "inertia": dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), Quantity(INERTIA, "kg m^2", 1)),
     "limit": dict.fromkeys(("lower", "upper", "effort", "velocity"), _LIMIT),
     "box": {"size": Quantity(LENGTH, "m", 3, 0.0)},
@@ -64,6 +65,7 @@ REQUIRED = {
     "capsule": ("radius", "length"),
     "mesh": ("filename",),
     "mass": ("value",),
+    "axis": ("xyz",),
 }
 """Attributes of a URDF without which an element says nothing."""
 

@@ -8,6 +8,9 @@ from surefoot.models.types import nearest
 
 MOST_LINKS, MOST_SHAPES = 1_000, 2_000
 
+_LEAST = 1e-6
+"""Of the largest part of an axis."""
+
 _JOINTS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
 
@@ -68,7 +71,11 @@ def _check_tree(root: Node, links: dict[str, Node], joints: dict[str, Node]) -> 
         above[child] = parent
         axis = joint.find("axis")
         moves = joint.get("type") in ("revolute", "continuous", "prismatic")
-        if moves and axis is not None and not any(number(token) for token in axis.get("xyz", "1").split()):
+        if (
+            moves
+            and axis is not None
+            and not any(abs(number(token) or 0.0) > _LEAST for token in axis.get("xyz", "1").split())
+        ):
             refuse(joint, f"axis of joint '{name}' has no direction", "give a vector that is not zero")
     roots = [name for name in links if name not in above]
     if len(roots) != 1:

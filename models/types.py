@@ -22,8 +22,21 @@ def fixed(values: ArrayLike) -> Array:
 class RobotError(ParameterError):
     """A robot was asked for in a way that it cannot have, or a description contradicts itself.
 
-    The key is an option's name, or the fields of `RobotDescription` down to the fault.
+    The key is an option's name, or the fields of `RobotDescription` down to the fault. Whatever stood in a file, the
+    sentence is one line.
     """
+
+    def __init__(self, key: Iterable[str | int], what: str, right: str) -> None:
+        super().__init__(key, _one_line(what), _one_line(right))
+
+
+LONGEST = 1000
+"""Characters of half a sentence."""
+
+
+def _one_line(text: str) -> str:
+    shown = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text[: LONGEST + 1])
+    return shown if len(text) <= LONGEST else f"{shown[:LONGEST]}..."
 
 
 def nearest(name: str, valid: tuple[str, ...]) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from surefoot.models.belief import with_load
 from surefoot.models.options import check_foot_size, check_payload, with_soles
 from surefoot.models.robot_file import cache
+from surefoot.models.robot_file.document import signature
 from surefoot.models.robot_file.paths import resolve
 from surefoot.models.robot_file.schema import RobotFile, read
 from surefoot.models.similar import scaled
@@ -84,20 +85,37 @@ def _similar(file: RobotFile, path: Path, options: RobotOptions) -> Explanation:
     return Explanation(_loaded(description, options), (line,), ())
 
 
-def _derived(file: RobotFile, path: Path) -> Explanation:
-    """At the size of the model; from the cache if nothing has changed since."""
-    from surefoot.models.robot_file.files import model_files, srdf_of
+def files_of(path: Path) -> tuple[tuple[str, Path | None], ...]:
+    """All that a robot file is made of: each reference with the file that it means, None where there is none.
+
+    Raises:
+        RobotError: the file or its model cannot be read.
+    """
+    file = read(path)
+    own = (("robot file", path.absolute()),)
+    if _is_name(file.model):
+        from surefoot.models.registry import SHIPPED
+
+        return (*own, *(files_of(SHIPPED[file.model]) if file.model in SHIPPED else ()))
+    from surefoot.models.robot_file.files import read_document, srdf_of
 
     model = resolve(file.model, path.parent)
-    srdf = srdf_of(file, model)
-    files = (path.absolute(), *model_files(model), *((srdf,) if srdf else ()))
-    return _unchanged(path, model, files, tuple((place.stat().st_mtime_ns, place.stat().st_size) for place in files))
+    return (*own, ("model", model), *read_document(model).references, ("srdf", srdf_of(file, model)))
+
+
+def _derived(file: RobotFile, path: Path) -> Explanation:
+    """At the size of the model; from the cache if nothing has changed since."""
+    files = files_of(path)
+    unchanged = tuple(() if place is None else signature(place) for _, place in files)
+    return _unchanged(path, resolve(file.model, path.parent), files, unchanged)
 
 
 @lru_cache(maxsize=16)
-def _unchanged(path: Path, model: Path, files: tuple[Path, ...], _changed: tuple[tuple[int, int], ...]) -> Explanation:
-    """Once per process, as long as no file has another time or size."""
-    key = cache.digest(list(files))
+def _unchanged(
+    path: Path, model: Path, files: tuple[tuple[str, Path | None], ...], _signatures: tuple[tuple[int, ...], ...]
+) -> Explanation:
+    """Once per process, as long as no file has another signature."""
+    key = cache.digest(files)
     kept = cache.load(key)
     if kept is None:
         from surefoot.models.robot_file.derive import derive

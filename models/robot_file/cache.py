@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict, fields
 from functools import lru_cache
@@ -12,20 +13,27 @@ from typing import Any
 
 import numpy as np
 
-from surefoot.models.types import JointRoles, RobotDescription
+from surefoot.models.robot_file.document import MESH, Kind, content
+from surefoot.models.types import JointRoles, RobotDescription, RobotError
 
 _ENGINES = ("pin", "coal", "mujoco", "numpy", "scipy", "fast-simplification")
 _KEPT = 64
 """Descriptions in the folder; older ones go."""
 
+_ENTRY = Kind((), "", MESH.most, "")
 
-def digest(files: list[Path]) -> str:
-    """Of the content of files, of the code that reads them and of the engines' versions."""
+
+def digest(files: Iterable[tuple[str, Path | None]]) -> str:
+    """Of files, each with what refers to it, of the code that reads them and of the engines' versions.
+
+    Raises:
+        RobotError: a file cannot be read.
+    """
     sha = hashlib.sha256(_code())
-    for file in files:
-        content = file.read_bytes()
-        sha.update(f"{file.name} {len(content)} ".encode())
-        sha.update(content)
+    for reference, file in files:
+        data = None if file is None else content(file, MESH)
+        sha.update(repr((reference, str(file), None if data is None else len(data))).encode())
+        sha.update(data or b"")
     return sha.hexdigest()
 
 
@@ -43,30 +51,39 @@ def _code() -> bytes:
 
 
 def load(key: str) -> tuple[RobotDescription, tuple[str, ...], tuple[str, ...]] | None:
-    """A description with what was derived and noted; None if it is not there or cannot be read."""
+    """A description with what was derived and noted; None if it is not there or not as it was stored."""
     try:
-        kept = json.loads((_folder() / f"{key}.json").read_text(encoding="utf-8"))
-        return _description(kept["description"]), tuple(kept["derived"]), tuple(kept["notes"])
-    except (OSError, ValueError, KeyError, TypeError):
+        seal, _, text = content(_entry(key), _ENTRY).partition(b"\n")
+    except RobotError:
         return None
+    if seal != _seal(key, text):
+        return None
+    kept = json.loads(text)
+    return _description(kept["description"]), tuple(kept["derived"]), tuple(kept["notes"])
 
 
 def store(key: str, description: RobotDescription, derived: tuple[str, ...], notes: tuple[str, ...]) -> None:
     """Keep a description; where the folder cannot be written nothing is kept."""
     values = {name: _plain(value) for name, value in asdict(description).items()}
-    text = json.dumps({"description": values, "derived": derived, "notes": notes})
-    folder = _folder()
+    text = json.dumps({"description": values, "derived": derived, "notes": notes}).encode()
+    entry = _entry(key)
     with suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-        unfinished = folder / f"{key}.{os.getpid()}"
-        unfinished.write_text(text, encoding="utf-8")
-        unfinished.replace(folder / f"{key}.json")
-        for old in sorted(folder.glob("*.json"), key=lambda file: file.stat().st_mtime)[:-_KEPT]:
+        entry.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = entry.with_suffix(f".{os.getpid()}")
+        unfinished.write_bytes(_seal(key, text) + b"\n" + text)
+        unfinished.replace(entry)
+        for old in sorted(entry.parent.glob("*.json"), key=lambda file: file.lstat().st_mtime)[:-_KEPT]:
             old.unlink()
 
 
-def _folder() -> Path:
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "surefoot" / "robots"
+def _entry(key: str) -> Path:
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "surefoot" / "robots" / f"{key}.json"
+
+
+def _seal(key: str, text: bytes) -> bytes:
+    """Digest of an entry under its key, by which one that was changed or moved is known."""
+    return hashlib.sha256(f"{key}\n".encode() + text).hexdigest().encode()
 
 
 def _plain(value: Any) -> Any:

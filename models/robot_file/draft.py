@@ -12,7 +12,7 @@ import yaml
 
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.robot_file.build import Explanation, explain
-from surefoot.models.robot_file.files import text_of
+from surefoot.models.robot_file.files import read_document
 from surefoot.models.robot_file.paths import resolve
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.source import read_source
@@ -89,8 +89,8 @@ def draft(model: str, folder: Path) -> Draft:
 
 def _name(path: Path) -> str:
     """What the model calls itself; the name of its file where it says nothing of its own."""
-    called = re.search(r"<(?:robot|mujoco)\b[^>]*?\s(?:name|model)\s*=\s*[\"']([^\"']*)", text_of(path))
-    for text in (called[1] if called else "", path.stem):
+    root = read_document(path).root
+    for text in (root.get("name" if root.tag == "robot" else "model", ""), path.stem):
         name = re.sub(r"[^A-Za-z0-9._-]+", "-", text).strip("._-")
         if name:
             return name

@@ -1,47 +1,66 @@
-"""The files that a model is made of, found in its text without an engine."""
+"""A model with all the files that it is made of, found by the one parser that also gives it to the engines."""
 
-import re
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
-from surefoot.models.robot_file.paths import resolve
+from surefoot.models.robot_file.document import MODEL, SRDF, Node, read_xml, root_of
+from surefoot.models.robot_file.mjcf import Assembled, assembled
+from surefoot.models.robot_file.paths import is_file, resolve
 from surefoot.models.robot_file.schema import RobotFile
+from surefoot.models.robot_file.urdf import check_urdf
 from surefoot.models.types import RobotError
 
 
-def model_files(path: Path) -> tuple[Path, ...]:
-    """The file of a model and all that it refers to, as far as they are there.
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A model as it was read; nothing but its files is ever opened for it.
+
+    Attributes:
+        path: of its main file.
+        root: its elements, with what it includes.
+        mjcf: what MuJoCo reads; None for a URDF.
+        references: what it refers to, with the file that is meant; None where there is none.
+    """
+
+    path: Path
+    root: Node
+    mjcf: Assembled | None
+    references: tuple[tuple[str, Path | None], ...]
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All that are there, the main one first."""
+        return (self.path, *dict.fromkeys(file for _, file in self.references if file is not None))
+
+
+def read_document(path: Path) -> Document:
+    """Read a model, and find what it is made of.
 
     Raises:
-        RobotError: the file is missing.
+        RobotError: it cannot be read, is neither URDF nor MJCF, or has what no robot has.
     """
-    text = text_of(path)
-    folders = [
-        path.parent,
-        *(path.parent / name for name in re.findall(r'(?:mesh|texture|asset)dir\s*=\s*"([^"]*)"', text)),
-    ]
-    found = [path]
-    for reference in sorted(set(re.findall(r'(?:<mesh\b[^>]*?filename|\bfile)\s*=\s*"([^"]+)"', text))):
+    root = read_xml(path, MODEL)
+    if root.tag == "mujoco":
+        mjcf = assembled(root)
+        return Document(path, root, mjcf, mjcf.files)
+    if root.tag != "robot":
+        what = f"{path}: neither URDF nor MJCF"
+        raise RobotError(("model",), what, "give a file with <robot> or <mujoco> at its root")
+    check_urdf(root)
+    return Document(path, root, None, tuple(_meshes(root, path)))
+
+
+def _meshes(root: Node, path: Path) -> Iterator[tuple[str, Path | None]]:
+    """Meshes of links, with the file beside each that may have its colours."""
+    for reference in dict.fromkeys(mesh.get("filename", "") for mesh in root.elements() if mesh.tag == "mesh"):
         try:
-            candidates = [resolve(reference, folder) for folder in folders]
-        except RobotError:  # of a package that is not there, which whoever needs its meshes says
+            place = resolve(reference, path.parent, "mesh")
+        except RobotError:
+            yield reference, None
             continue
-        file = next((file for file in candidates if file.is_file() and file not in found), None)
-        if file is not None:
-            found += model_files(file) if file.suffix in (".xml", ".mjcf") else [file]
-    return tuple(found)
-
-
-def text_of(path: Path) -> str:
-    """Text of a model.
-
-    Raises:
-        RobotError: it cannot be read.
-    """
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
-        raise RobotError(("model",), f"{path}: cannot be read, {reason}", "give the path of a URDF or MJCF") from None
+        colours = (place.with_suffix(".mtl"),) if place.suffix.lower() == ".obj" else ()
+        yield from ((reference, file if is_file(file) else None) for file in (place, *colours))
 
 
 def srdf_of(file: RobotFile, path: Path) -> Path | None:
@@ -52,10 +71,12 @@ def srdf_of(file: RobotFile, path: Path) -> Path | None:
     """
     if file.srdf is not None:
         place = resolve(file.srdf, path.parent, "srdf")
-        if not place.is_file():
+        if not is_file(place):
             raise RobotError(("srdf",), f"srdf {file.srdf} of {file.name} is not there", f"put it at {place}")
         return place
-    of = re.search(r'<robot\b[^>]*\bname\s*=\s*"([^"]*)"', text_of(path))
-    beside = [*path.parent.glob("*.srdf"), *(path.parent.parent / "srdf").glob("*.srdf")]
-    named = [place for place in sorted(beside) if of and f'name="{of[1]}"' in place.read_text(encoding="utf-8")[:2000]]
+    root = root_of(path, MODEL)
+    name = None if root is None or root.tag != "robot" else root.get("name")
+    beside = sorted((*path.parent.glob("*.srdf"), *(path.parent.parent / "srdf").glob("*.srdf")))
+    roots = {place: root_of(place, SRDF) for place in beside} if name else {}
+    named = [place for place, found in roots.items() if found is not None and found.get("name") == name]
     return named[0] if len(named) == 1 else None

@@ -6,9 +6,7 @@ be seen, and takes a fraction of the time. Quadric edge collapse (Garland and He
 one error for all meshes, so that each keeps the triangles that it needs, then down to the number that there may be.
 """
 
-import re
 from collections.abc import Sequence
-from pathlib import Path
 
 import fast_simplification
 import numpy as np
@@ -98,18 +96,6 @@ def merged(part: Triangles, cell: float) -> Triangles:
     _, first, place = np.unique(x | y << _PACKED | z << 2 * _PACKED, return_index=True, return_inverse=True)
     a, b, c = renamed = place[faces].T
     return _used(vertices[first], renamed.T[(a != b) & (b != c) & (c != a)])
-
-
-def colour_in_file(path: Path) -> tuple[float, float, float] | None:
-    """Red, green and blue of the first material of an OBJ or DAE, for shapes to which a URDF gives none."""
-    patterns = {".obj": r"(?m)^\s*Kd\s+([^\n]+)", ".dae": r"<diffuse>\s*<color[^>]*>([^<]+)"}
-    pattern = patterns.get(path.suffix.lower())
-    file = path.with_suffix(".mtl") if path.suffix.lower() == ".obj" else path
-    found = re.search(pattern, file.read_text(errors="replace")) if pattern and file.is_file() else None
-    if found is None:
-        return None
-    red, green, blue = (min(max(float(part), 0.0), 1.0) for part in found[1].split()[:3])
-    return red, green, blue
 
 
 def _outermost(corners: Array, most: int) -> Array:

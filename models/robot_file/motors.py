@@ -1,11 +1,12 @@
 """What the motors of a model give: limits of torque and speed, rotors; and what an SRDF knows of them."""
 
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.robot_file.document import SRDF, read_xml
+from surefoot.models.robot_file.quantities import check_numbers, of_srdf
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.types import Array, RobotError
 
@@ -25,20 +26,24 @@ def set_limits(model: pin.Model, file: RobotFile, names: tuple[str, ...]) -> Non
 
 
 def read_srdf(path: Path | None, names: tuple[str, ...]) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """Rotor inertias at the joints [kg m^2], and postures by name [rad]."""
+    """Rotor inertias at the joints [kg m^2], and postures by name [rad].
+
+    Raises:
+        RobotError: the file cannot be read, is no XML, or has numbers that no robot has.
+    """
     if path is None:
         return {}, {}
-    try:
-        root = ElementTree.parse(path).getroot()
-    except ElementTree.ParseError as error:
-        raise RobotError(("srdf",), f"{path}: no XML, {error}", "mend it") from None
+    root = read_xml(path, SRDF)
+    for group in root.nodes:
+        if group.tag in ("rotor_params", "group_state"):
+            check_numbers(group, of_srdf)
     rotors = {
-        joint.attrib["name"]: float(joint.get("mass", "0")) * float(joint.get("gear_ratio", "1")) ** 2
+        joint.get("name", ""): float(joint.get("mass", "0")) * float(joint.get("gear_ratio", "1")) ** 2
         for joint in root.iterfind("rotor_params/joint")
     }
     states = {
         state.get("name", ""): {
-            joint.attrib["name"]: float(joint.get("value", "0").split()[0])
+            joint.get("name", ""): float(joint.get("value", "0").split()[0])
             for joint in state.iterfind("joint")
             if joint.get("name") in names
         }

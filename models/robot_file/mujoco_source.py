@@ -1,13 +1,27 @@
 """An MJCF as a Pinocchio model: what MuJoCo compiled of it, with all defaults and includes."""
 
+import re
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.robot_file.document import MESH, content
+from surefoot.models.robot_file.mjcf import Assembled
+from surefoot.models.robot_file.paths import is_file
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.models.robot_file.shapes import Shape, box, capsule, cylinder, ellipsoid, placed, solid, told_missing
+from surefoot.models.robot_file.shapes import (
+    Shape,
+    box,
+    capsule,
+    cylinder,
+    ellipsoid,
+    placed,
+    require_moderate,
+    solid,
+    told_missing,
+)
 from surefoot.models.robot_file.source import ROOT, Source, physical
 from surefoot.models.types import Array, RobotError
 
@@ -18,7 +32,7 @@ _LEGS = 8
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
 
 
-def read_mjcf(file: RobotFile, path: Path) -> Source:
+def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     """Read a robot's MJCF.
 
     Raises:
@@ -26,30 +40,31 @@ def read_mjcf(file: RobotFile, path: Path) -> Source:
     """
     notes: list[str] = []
     try:
-        mj = _bare(path, notes).compile()
-    except ValueError as error:
-        raise RobotError(("model",), f"{path}: {' '.join(str(error).split())[:200]}", "mend it") from None
+        mj = _bare(path, document, notes).compile()
+    except RobotError:
+        raise
+    except Exception as error:
+        raise RobotError(("model",), f"{path}: {_placed(str(error), document)}", "mend it") from None
     return _Reader(mj, file, path, _robot_of(mj, path, notes), notes).read()
 
 
-def _bare(path: Path, notes: list[str]) -> mujoco.MjSpec:
-    """The file without what is no part of a robot: contacts with a ground, sensors, keyframes, looks that are missing.
+def _bare(path: Path, document: Assembled, notes: list[str]) -> mujoco.MjSpec:
+    """The document without what is no part of a robot: contacts with a ground, and looks that are missing.
 
     Raises:
         RobotError: a mesh is missing that the robot touches with, or that says how heavy it is.
     """
-    spec = mujoco.MjSpec.from_file(str(path))
-    for part in (*spec.pairs, *spec.excludes, *spec.sensors, *spec.keys):
+    files = {name: text.encode() for name, text in document.models.items()}
+    there = {name: mesh for name, mesh in document.meshes.items() if is_file(mesh)}
+    files |= {name: content(mesh, MESH) for name, mesh in there.items()}
+    spec = mujoco.MjSpec.from_string(document.text, files, files)
+    for part in (*spec.pairs, *spec.excludes):
         spec.delete(part)
-    folder = path.parent / spec.meshdir
-    files = {
-        mesh.name: folder / (Path(mesh.file).name if spec.strippath else mesh.file) for mesh in spec.meshes if mesh.file
-    }
-    missing = {name: file for name, file in files.items() if not file.is_file()}
+    missing = {mesh.name: document.meshes[mesh.file] for mesh in spec.meshes if mesh.file and mesh.file not in there}
     told = []
     for geom in [geom for geom in spec.geoms if geom.meshname in missing]:
         body, file = geom.parent, missing[geom.meshname]
-        what = f"body '{body.name}' of {path}: mesh '{geom.meshname}' is not there"
+        what = f"body '{body.name}' of {path}: mesh {file.name} is not there"
         if geom.contype or geom.conaffinity or not body.explicitinertial:
             raise RobotError(("model",), what, f"put it at {file}")
         told.append(what)
@@ -104,7 +119,7 @@ class _Reader:
 
     def _add_body(self, body: int) -> None:
         mj, model = self._mj, self._model
-        name = mj.body(body).name or f"body{body}"
+        name = self._name(body)
         first, count = int(mj.body_jntadr[body]), int(mj.body_jntnum[body])
         if body == self._root:
             joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), ROOT)
@@ -114,10 +129,16 @@ class _Reader:
             offset = before * _placement(mj.body_pos[body], mj.body_quat[body])
             for index in range(first, first + count):
                 joint, offset = self._add_joint(index, joint, offset, name)
+                if index < first + count - 1:  # what moves between two joints of a body has no name in the file
+                    between = f"{name} behind {model.names[joint]}"
+                    model.addFrame(pin.Frame(between, joint, 0, offset, pin.FrameType.BODY))
         self._place[body] = (joint, offset)
         frame = pin.Frame(name, joint, 0, offset, pin.FrameType.BODY)
         model.addFrame(frame)
         model.appendBodyToJoint(joint, self._inertia(body, name), offset)
+
+    def _name(self, body: int) -> str:
+        return self._mj.body(body).name or f"body{body}"
 
     def _add_joint(self, index: int, parent: int, offset: pin.SE3, body: str) -> tuple[int, pin.SE3]:
         """Put a joint at its place in the body; returns it and the body seen from it."""
@@ -179,6 +200,7 @@ class _Reader:
             if mj.body_rootid[mj.geom_bodyid[geom]] == self._root:
                 touches = mj.geom_contype[geom] or mj.geom_conaffinity[geom]
                 (collision if touches else visual).extend(self._shape(geom))
+                require_moderate((*visual, *collision))
         source.visual, source.collision = tuple(visual or collision), tuple(collision)
 
     def _shape(self, geom: int) -> list[Shape]:
@@ -187,7 +209,7 @@ class _Reader:
         kind, (a, b, c) = int(mj.geom_type[geom]), mj.geom_size[geom].tolist()
         material = mj.geom_matid[geom]
         red, green, blue, alpha = (mj.mat_rgba[material] if material >= 0 else mj.geom_rgba[geom]).tolist()
-        rgba, link = (red, green, blue, alpha), mj.body(mj.geom_bodyid[geom]).name
+        rgba, link = (red, green, blue, alpha), self._name(int(mj.geom_bodyid[geom]))
         place = _placement(mj.geom_pos[geom], mj.geom_quat[geom])
         if kind == _MESH:
             mesh = mj.mesh(mj.geom_dataid[geom])
@@ -203,6 +225,14 @@ class _Reader:
         }
         maker = makers.get(mujoco.mjtGeom(kind).name.removeprefix("mjGEOM_"))
         return [solid(link, maker(), place, rgba)] if maker else []
+
+
+def _placed(said: str, document: Assembled) -> str:
+    """What MuJoCo says in one line, with the place where it stands in the files."""
+    line = re.search(r",? *\bline (\d+)", said)
+    place = document.places[int(line[1]) - 1] if line and 0 < int(line[1]) <= len(document.places) else ""
+    said = " ".join((said.replace(line[0], "") if line else said).split())[:200]
+    return f"{said}, {place}" if place else said
 
 
 def _placement(position: Array, quaternion: Array) -> pin.SE3:

@@ -1,6 +1,7 @@
 """Where the files of a model are: beside it, or in a package that is installed."""
 
 import os
+import re
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -11,8 +12,19 @@ SCHEME = "package://"
 _EXTRA = ("jvrc_description", "fourier_robot_descriptions")
 """Packages of the extra that brings more robots."""
 
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9._-]{0,99}")
+"""Of a package: it is a folder's name, and none above it."""
+
 _SHARES = ("cmeel.prefix/share", "share")
 """Folders of an environment in which packages put their data, from those of ``sys.path``."""
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a file; never an error, however the path is spelt."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def resolve(reference: str, beside: Path, key: str = "model") -> Path:
@@ -24,14 +36,18 @@ def resolve(reference: str, beside: Path, key: str = "model") -> Path:
         key: of the robot file, for messages.
 
     Raises:
-        RobotError: it is in a package that is not installed.
+        RobotError: it is in a package that is not installed, or leaves the package.
     """
     if not reference.startswith(SCHEME):
         return Path(os.path.normpath(beside / reference.removeprefix("file://")))
-    name, _, rest = reference.removeprefix(SCHEME).partition("/")
+    name, _, rest = reference.removeprefix(SCHEME).lstrip("/").partition("/")
+    rest = os.path.normpath(rest.lstrip("/"))
+    if not _NAME.fullmatch(name) or rest.partition("/")[0] == os.pardir:
+        what = f"{key} {reference} {'leads out of its' if _NAME.fullmatch(name) else 'names no'} package"
+        raise RobotError((key,), what, f"write {SCHEME}NAME/PATH, with a path inside of the package")
     roots = [root for root in _roots(name, beside) if root.is_dir()]
     for root in roots:
-        if (root / rest).is_file():
+        if is_file(root / rest):
             return root / rest
     if roots:
         return roots[0] / rest

@@ -8,13 +8,19 @@ from typing import Annotated, Any, Literal
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from surefoot.models.robot_file.document import ROBOT_FILE, text_of
 from surefoot.models.types import RobotError, nearest
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0.0, le=1e9, allow_inf_nan=False)]
+Length = Annotated[float, Field(gt=0.0, le=1e3, allow_inf_nan=False)]
+Finite = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
+Scale = Annotated[float, Field(ge=0.01, le=100.0, allow_inf_nan=False)]
 Patterns = dict[str, Positive]
-LARGEST = 1_000_000
-"""Characters that a robot file may have."""
+_SHOWN = 60
+"""Characters of a wrong value that are shown."""
+
+DEEPEST = 10
+"""Groups inside each other."""
 
 
 class _Group(BaseModel):
@@ -31,8 +37,8 @@ class Feet(_Group):
 class Sole(_Group):
     """The contact rectangle of both feet, where the shapes of the feet do not say it."""
 
-    length: Positive = Field(description="forward [m]")
-    width: Positive = Field(description="sideways [m]")
+    length: Length = Field(description="forward [m]")
+    width: Length = Field(description="sideways [m]")
     centre: tuple[Finite, Finite, Finite] = Field(
         description="of the bottom face in the frame of the left foot's link [m]; the right one mirrors y"
     )
@@ -45,7 +51,7 @@ class RobotFile(_Group):
     Patterns are names of joints with `*` for anything; where several match, the last one counts.
     """
 
-    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", description="of the robot")
+    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100, description="of the robot")
     model: str = Field(
         description="URDF or MJCF: a path from here, package://NAME/..., or the name of a robot to scale"
     )
@@ -63,10 +69,10 @@ class RobotFile(_Group):
     armature: Patterns = Field(default={}, description="rotor inertia at the joint [kg m^2]")
     torque_limit: Patterns = Field(default={}, description="[N m]")
     velocity_limit: Patterns = Field(default={}, description="[rad/s]")
-    com_height: Positive | None = Field(default=None, description="of the CoM above the soles in walking [m]")
+    com_height: Length | None = Field(default=None, description="of the CoM above the soles in walking [m]")
     keep_apart: list[tuple[str, str]] | None = Field(default=None, description="pairs of links that shall not meet")
     inertia: Literal["refuse", "repair"] = Field(default="refuse", description="what to do with unphysical inertias")
-    scale: Positive = Field(default=1.0, description="size of the similar robot over this one")
+    scale: Scale = Field(default=1.0, description="size of the similar robot over this one")
     licence: str | None = Field(default=None, description="of the model")
     source: str | None = Field(default=None, description="where the model is from")
 
@@ -89,15 +95,16 @@ def read(path: Path) -> RobotFile:
     Raises:
         RobotError: it cannot be read, or a key is unknown, missing or wrong; says the line.
     """
-    text = _text(path)
+    text = text_of(path, ROBOT_FILE)
     try:
-        values, lines = yaml.safe_load(text), _lines(yaml.compose(text, Loader=yaml.SafeLoader))
+        node = _Composer(text).get_single_node()
+        values, lines = yaml.SafeLoader("").construct_document(node) if node else None, _lines(node)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f"{path}:{mark.line + 1}" if mark else str(path)
         raise RobotError((), f"{place}: no YAML, {getattr(error, 'problem', None) or error}", "mend it") from None
-    except RecursionError:
-        raise RobotError((), f"{path}: nested too deeply", "give name, model and feet") from None
+    except (ValueError, TypeError, AttributeError) as error:  # dates and the like that are none
+        raise RobotError((), f"{path}: no YAML, {error}", "give words and numbers") from None
     if not isinstance(values, dict):
         raise RobotError((), f"{path}: no robot file", "give name, model and feet, a line each")
     try:
@@ -107,15 +114,21 @@ def read(path: Path) -> RobotFile:
         raise _refusal(path, first, lines) from None
 
 
-def _text(path: Path) -> str:
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
-        raise RobotError((), f"{path}: cannot be read, {reason}", "give a readable robot file") from None
-    if len(text) > LARGEST:
-        raise RobotError((), f"{path}: has {len(text)} characters", f"give a robot file of at most {LARGEST}")
-    return text
+class _Composer(yaml.SafeLoader):
+    """Composes nodes, and stops at what is deep or would have to be expanded."""
+
+    depth = 0
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        self.depth += 1
+        event = self.peek_event()  # type: ignore[no-untyped-call]
+        if self.depth > DEEPEST:
+            raise yaml.composer.ComposerError(None, None, f"nested deeper than {DEEPEST} levels", event.start_mark)
+        if getattr(event, "value", None) == "<<":
+            raise yaml.composer.ComposerError(None, None, "'<<' merges no groups here", event.start_mark)
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
 
 
 def _lines(node: yaml.Node | None, key: tuple[str, ...] = ()) -> dict[tuple[str, ...], int]:
@@ -141,7 +154,8 @@ def _refusal(path: Path, fault: Any, lines: Mapping[tuple[str, ...], int]) -> Ro
     if fault["type"] == "missing":
         return RobotError(key, f"{place}: lacks {'.'.join(key)}", f"give {_example(key)}")
     rule = fault["msg"][0].lower() + fault["msg"][1:]
-    return RobotError(key, f"{place}: {dotted} is {fault['input']!r}", rule)
+    shown = repr(fault["input"])
+    return RobotError(key, f"{place}: {dotted} is {shown if len(shown) <= _SHOWN else f'{shown[:_SHOWN]}...'}", rule)
 
 
 def _example(key: tuple[str, ...]) -> str:

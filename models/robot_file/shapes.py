@@ -4,22 +4,24 @@ import itertools
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.models.robot_file.meshes import Faces, colour_in_file, hull
-from surefoot.models.robot_file.paths import resolve
+from surefoot.models.robot_file.mesh_file import colour_in_file, read_mesh
+from surefoot.models.robot_file.meshes import Faces, hull
+from surefoot.models.robot_file.paths import is_file, resolve
+from surefoot.models.robot_file.quantities import LENGTH
 from surefoot.models.types import Array, RobotError
 
 Colour = tuple[float, float, float, float]
 
+MOST_TRIANGLES = 5_000_000
+"""Of all shapes of a robot."""
+
 GREY: Colour = (0.7, 0.7, 0.72, 1.0)
-_STL_HEAD = 84
-_STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
 _AROUND = np.arange(24) * (math.tau / 24)
 
@@ -39,6 +41,23 @@ class Shape:
     vertices: Array
     faces: Faces
     rgba: Colour = GREY
+
+    def __post_init__(self) -> None:
+        """Refuse what no engine can hold."""
+        if not np.abs(self.vertices).max(initial=0.0) <= LENGTH:
+            what = f"a shape of link '{self.link}' reaches beyond {LENGTH:g} m"
+            raise RobotError(("model",), what, "give its lengths in metres, or a scale")
+
+
+def require_moderate(shapes: Sequence[Shape]) -> None:
+    """Refuse more triangles than memory should hold.
+
+    Raises:
+        RobotError: there are too many.
+    """
+    if sum(len(shape.faces) for shape in shapes) > MOST_TRIANGLES:
+        what = f"the meshes up to link '{shapes[-1].link}' have more than {MOST_TRIANGLES} triangles"
+        raise RobotError(("model",), what, "give coarser ones")
 
 
 def solid(link: str, points: Array, placement: pin.SE3, rgba: Colour = GREY) -> Shape:
@@ -83,37 +102,6 @@ def _ring(radius: float, height: float) -> Array:
     return np.column_stack((radius * np.cos(_AROUND), radius * np.sin(_AROUND), flat))
 
 
-@lru_cache(maxsize=256)
-def _mesh(path: Path, _changed: tuple[int, int]) -> tuple[Array, Faces]:
-    """Vertices and faces of a mesh file, as written, once for as long as it has the same time and size.
-
-    Raises:
-        RobotError: it cannot be read.
-    """
-    if path.suffix.lower() == ".stl":
-        data = path.read_bytes()
-        count = int.from_bytes(data[80:_STL_HEAD], "little")
-        if len(data) == _STL_HEAD + count * _STL.itemsize:
-            return _welded(np.frombuffer(data, _STL, count, _STL_HEAD)["corners"].reshape(-1, 3))
-    import coal
-
-    try:
-        read = coal.MeshLoader(coal.NODE_TYPE.BV_OBB).load(str(path), np.ones(3))
-    except Exception as error:
-        reason = " ".join(str(error).split())[:150]
-        raise RobotError(("model",), f"mesh {path}: cannot be read, {reason}", "give STL, DAE or OBJ") from None
-    corners = (read.tri_indices(k) for k in range(read.num_tris))
-    faces = np.array([(corner[0], corner[1], corner[2]) for corner in corners], dtype=np.int64)
-    return np.array(read.vertices()), faces.reshape(-1, 3)
-
-
-def _welded(corners: Array) -> tuple[Array, Faces]:
-    """Corners of separate triangles, those at the same place made one."""
-    rows = np.ascontiguousarray(corners, dtype="<f4") + np.float32(0.0)  # minus zero is zero
-    keys, places = np.unique(rows.view(np.dtype((np.void, 12))).ravel(), return_inverse=True)
-    return keys.view("<f4").reshape(-1, 3).astype(np.float64), places.reshape(-1, 3).astype(np.int64)
-
-
 def urdf_shapes(
     root: ElementTree.Element, path: Path, kind: str, notes: list[str], drawn: Collection[str] | None = None
 ) -> tuple[Shape, ...]:
@@ -151,6 +139,7 @@ def urdf_shapes(
                 if drawn is not None and name not in drawn:
                     raise RobotError(error.key, what, error.right) from None
                 missing.append(what)
+            require_moderate(found)
     notes += told_missing(kind, missing)
     return tuple(found)
 
@@ -166,10 +155,10 @@ def _urdf_shape(link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Co
     if thing.tag == "mesh":
         reference = thing.get("filename", "")
         place = resolve(reference, path.parent, "mesh")
-        if not place.is_file():
+        if not is_file(place):
             what = f"mesh {reference} is not there"
             raise RobotError(("model",), what, f"put it at {place}, or correct the reference")
-        vertices, faces = _mesh(place, (place.stat().st_mtime_ns, place.stat().st_size))
+        vertices, faces = read_mesh(place)
         scale = _floats(thing.get("scale"), (1.0, 1.0, 1.0))
         faces = faces if np.prod(scale) > 0 else faces[:, ::-1]
         colour = colour_in_file(place) if rgba is None else None

@@ -1,6 +1,5 @@
 """A URDF or MJCF as a Pinocchio model with a floating base, its shapes, and the files that it is made of."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,9 +8,11 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
-from surefoot.models.robot_file.files import text_of
+from surefoot.models.robot_file.files import Document, read_document
+from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import Shape, urdf_shapes
+from surefoot.models.robot_file.urdf import kinematics
 from surefoot.models.types import Array, RobotError
 
 ROOT = "floating base"
@@ -46,45 +47,52 @@ def read_source(file: RobotFile, path: Path) -> Source:
     Raises:
         RobotError: it is missing, none that can be read, or physically impossible.
     """
-    text = text_of(path)
-    kind = re.search(r"<(robot|mujoco|sdf)\b", text)
-    if kind is None or kind[1] == "sdf":
-        raise RobotError(
-            ("model",), f"{path}: neither URDF nor MJCF", "give a file with <robot> or <mujoco> at its root"
-        )
-    if kind[1] == "mujoco":
+    document = read_document(path)
+    if document.mjcf is None:
+        source = _read_urdf(file, document)
+    else:
         from surefoot.models.robot_file.mujoco_source import read_mjcf
 
-        return read_mjcf(file, path)
-    return _read_urdf(file, path, text)
+        source = read_mjcf(file, path, document.mjcf)
+    _check_parts(source.model, path)
+    return source
 
 
-def _read_urdf(file: RobotFile, path: Path, text: str) -> Source:
-    try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise RobotError(("model",), f"{path}: no XML, {error}", "mend it; xacro files have to be expanded") from None
-    source_notes: list[str] = []
+def _read_urdf(file: RobotFile, document: Document) -> Source:
+    root, path, source_notes = document.root, document.path, list[str]()
     mimics = tuple(_mended_joints(root, source_notes))
     _check_inertias(root, file, path, source_notes)
     visual = urdf_shapes(root, path, "visual", source_notes)
     drawn = {shape.link for shape in visual}
     collision = urdf_shapes(root, path, "collision", source_notes, drawn)
-    flat = _skeleton(root)
     try:
-        model = pin.buildModelFromXML(flat, pin.JointModelFreeFlyer(), ROOT)
+        model = pin.buildModelFromXML(kinematics(root), pin.JointModelFreeFlyer(), ROOT)
     except Exception as error:
         raise RobotError(("model",), f"{path}: {_one_line(error)}", "mend it, so that Pinocchio can read it") from None
     model.name = file.name
     return Source(model, visual, collision, mimics, source_notes)
 
 
-def _skeleton(root: ElementTree.Element) -> str:
-    """Links, joints and inertias alone: what the parser of URDF then says is about them."""
-    for link in root.findall("link"):
-        for shape in (*link.findall("visual"), *link.findall("collision")):
-            link.remove(shape)
-    return ElementTree.tostring(root, encoding="unicode")
+def _check_parts(model: pin.Model, path: Path) -> None:
+    """Refuse bodies that no robot has, however an engine came to them.
+
+    Raises:
+        RobotError: a mass, a moment of inertia or a length is out of range.
+    """
+    links = {frame.parentJoint: frame.name for frame in reversed(model.frames) if frame.type == pin.FrameType.BODY}
+    for joint in range(1, model.njoints):
+        inertia, name = model.inertias[joint], links.get(joint, model.names[joint])
+        bounds = {
+            "mass": (inertia.mass, MASS, "kg"),
+            "moment of inertia": (np.abs(inertia.inertia).max(), INERTIA, "kg m^2"),
+            "centre of mass": (np.abs(inertia.lever).max(), LENGTH, "m"),
+            "place": (np.abs(model.jointPlacements[joint].homogeneous).max(), LENGTH, "m"),
+            "armature": (float(np.abs(model.armature).max()), INERTIA, "kg m^2"),
+        }
+        for what, (value, most, unit) in bounds.items():
+            if not value <= most:
+                said = f"{path}: the {what} of link '{name}' is {value:g} {unit}"
+                raise RobotError(("model",), said, f"give at most {most:g} {unit}")
 
 
 def _one_line(error: Exception) -> str:

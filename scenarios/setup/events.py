@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from surefoot.errors import ParameterError
 from surefoot.planner.walk.commands import velocity_bouts
-from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.errors import Key, Problem
 from surefoot.scenarios.file.schema import Fault, PushSettings, Rates, VelocitySettings
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.draft import Draft
@@ -147,6 +147,7 @@ _SIZES = (
 def slight(draft: Draft) -> Iterator[Problem]:
     """List sizes that are not zero and so small that nothing follows from them but rounding."""
     keys, errors = draft.keys, draft.keys.errors
+    sizes: list[tuple[Key, float]]
     sizes = [((group, name), getattr(getattr(keys, group), name)) for group, names in _SIZES for name in names]
     sizes += [(("errors", "torso_com"), math.hypot(*(errors.torso_com or (0.0,))))]
     sizes += [(("errors", "payload", "mass"), errors.payload.mass)] if errors.payload is not None else []

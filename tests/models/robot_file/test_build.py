@@ -138,9 +138,9 @@ def test_a_folder_that_cannot_be_written_keeps_nothing(tmp_path, derived, monkey
 def test_the_code_is_part_of_the_key(tmp_path, monkeypatch) -> None:
     file = tmp_path / "a"
     file.write_text("same")
-    one = cache.digest([file])
+    one = cache.digest([("model", file)])
     monkeypatch.setattr(cache, "_code", lambda: b"another importer")
-    assert cache.digest([file]) != one
+    assert cache.digest([("model", file)]) != one
 
 
 CHEST = (

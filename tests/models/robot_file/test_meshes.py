@@ -5,7 +5,8 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from surefoot.models import RobotError
-from surefoot.models.robot_file.meshes import colour_in_file, decimated, hull, merged
+from surefoot.models.robot_file.mesh_file import colour_in_file
+from surefoot.models.robot_file.meshes import decimated, hull, merged
 
 pytestmark = pytest.mark.unit
 

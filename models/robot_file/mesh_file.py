@@ -1,0 +1,122 @@
+"""Mesh files as triangles: an engine's reader gets a copy of the file alone, beside which there is nothing to open."""
+
+import re
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+from xml.parsers import expat
+
+import numpy as np
+
+from surefoot.models.robot_file.document import DEEPEST, MESH, content, signature
+from surefoot.models.robot_file.meshes import Triangles
+from surefoot.models.robot_file.paths import is_file
+from surefoot.models.types import Array, RobotError
+
+_STL_HEAD = 84
+_STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_ENDINGS = (".stl", ".obj", ".dae")
+
+
+def read_mesh(path: Path) -> Triangles:
+    """Vertices and faces of a mesh file, as written.
+
+    Raises:
+        RobotError: it cannot be read.
+    """
+    return _read(path, signature(path))
+
+
+@lru_cache(maxsize=64)
+def _read(path: Path, _unchanged: tuple[int, ...]) -> Triangles:
+    ending, data = path.suffix.lower(), content(path, MESH)
+    if ending not in _ENDINGS:
+        raise _unread(path, f"it ends in '{path.suffix}'")
+    count = int.from_bytes(data[80:_STL_HEAD], "little")
+    if ending == ".stl" and len(data) == _STL_HEAD + count * _STL.itemsize:
+        return _welded(np.frombuffer(data, _STL, count, _STL_HEAD)["corners"].reshape(-1, 3))
+    return _loaded(path, ending, data)
+
+
+def _unread(path: Path, reason: str) -> RobotError:
+    return RobotError(MESH.key, f"mesh {path}: cannot be read, {reason}", MESH.right)
+
+
+def _loaded(path: Path, ending: str, data: bytes) -> Triangles:
+    """The triangles that Coal finds, without materials, which stand in other files."""
+    import coal
+
+    if ending == ".dae":
+        _Collada(path, data)
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / f"mesh{ending}"
+        copy.write_bytes(re.sub(rb"(?m)^[ \t]*mtllib[^\n]*", b"", data) if ending == ".obj" else data)
+        try:
+            read = coal.MeshLoader(coal.NODE_TYPE.BV_OBB).load(str(copy), np.ones(3))
+        except Exception as error:
+            said = str(error).replace(str(copy), path.name).rpartition("message:")[2]
+            reason = " ".join(said.split())[:150]
+            raise _unread(path, reason) from None
+    corners = (read.tri_indices(k) for k in range(read.num_tris))
+    faces = np.array([(corner[0], corner[1], corner[2]) for corner in corners], dtype=np.int64).reshape(-1, 3)
+    vertices: Array = np.array(read.vertices()).reshape(-1, 3)
+    if faces.size and faces.max() >= len(vertices):
+        raise _unread(path, "a triangle has a vertex that is not there")
+    return vertices, faces
+
+
+_INDICES = ("p", "ph", "h", "v", "vcount")
+"""Elements of Collada that list indices; the reader comes to no end of a list in which there is something else."""
+
+
+class _Collada:
+    """Refuses what no reader of XML should meet, lists without end and arrays longer than their file."""
+
+    def __init__(self, path: Path, data: bytes) -> None:
+        self._path, self._size = path, len(data)
+        self._open: list[str] = []
+        parser = expat.ParserCreate()
+        parser.buffer_text = True
+        parser.StartElementHandler, parser.EndElementHandler = self._start, lambda _tag: self._open.pop()
+        parser.CharacterDataHandler, parser.EntityDeclHandler = self._text, self._entity
+        try:
+            parser.Parse(data, True)
+        except expat.ExpatError as error:
+            reason = f"line {error.lineno} is no XML, {expat.errors.messages[error.code]}"
+            raise _unread(path, reason) from None
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        self._open.append(tag)
+        if len(self._open) > DEEPEST:
+            raise _unread(self._path, f"it nests more than {DEEPEST} elements")
+        for name in ("count", "stride", "offset"):
+            value = attributes.get(name, "0")
+            if not re.fullmatch("[0-9]{1,9}", value) or int(value) > self._size:
+                raise _unread(self._path, f"{name} of {tag} is '{value[:20]}'")
+
+    def _text(self, text: str) -> None:
+        if self._open[-1] in _INDICES and (found := re.search(r"[^0-9\s]", text)):
+            raise _unread(self._path, f"{self._open[-1]} has '{found[0]}' among its indices")
+
+    def _entity(self, *_: object) -> None:
+        raise _unread(self._path, "it has entities of its own")
+
+
+def _welded(corners: Array) -> Triangles:
+    """Corners of separate triangles, those at the same place made one."""
+    rows = np.ascontiguousarray(corners, dtype="<f4") + np.float32(0.0)  # minus zero is zero
+    keys, places = np.unique(rows.view(np.dtype((np.void, 12))).ravel(), return_inverse=True)
+    return keys.view("<f4").reshape(-1, 3).astype(np.float64), places.reshape(-1, 3).astype(np.int64)
+
+
+def colour_in_file(path: Path) -> tuple[float, float, float] | None:
+    """Red, green and blue of the first material of an OBJ or DAE, for shapes to which a URDF gives none."""
+    patterns = {".obj": rb"(?m)^[ \t]*Kd\s+([^\n]+)", ".dae": rb"<diffuse>\s*<color[^>]*>([^<]+)"}
+    pattern = patterns.get(path.suffix.lower())
+    file = path.with_suffix(".mtl") if path.suffix.lower() == ".obj" else path
+    found = re.search(pattern, content(file, MESH)) if pattern and is_file(file) else None
+    try:
+        red, green, blue = (min(max(float(part), 0.0), 1.0) for part in (found[1] if found else b"").split()[:3])
+    except ValueError:
+        return None
+    return red, green, blue

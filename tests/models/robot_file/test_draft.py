@@ -2,12 +2,16 @@
 
 from pathlib import Path
 
+import biped
 import pytest
+import typer
 import yaml
 
+from surefoot.models import RobotOptions, describe
 from surefoot.models.robot_file.draft import draft
 from surefoot.models.robot_file.schema import RobotFile, read
 from surefoot.models.types import RobotError
+from surefoot.scenarios.robots.command import new
 
 pytestmark = pytest.mark.unit
 
@@ -42,10 +46,59 @@ def test_what_is_made_is_a_robot_file_and_so_is_each_comment(tmp_path: Path) -> 
     assert read(file).torso == "torso_link"
 
 
-def test_a_model_that_cannot_be_used_as_it_is_gives_a_file_and_says_why(tmp_path: Path) -> None:
+def test_a_model_with_an_inertia_of_no_body_gives_a_file_that_repairs_it_and_says_why(tmp_path: Path) -> None:
     made = draft(f"{DATA}/icub_description/robots/icub_reduced.urdf", tmp_path)
-    assert "inertia: repair" in made.refusal
-    assert yaml.safe_load(made.text)["name"] == "icub_reduced"
+    assert made.refusal == ""
+    assert yaml.safe_load(made.text)["inertia"] == "repair"
+    assert "# link 'r_hip_1' of" in made.text
+
+
+@pytest.mark.parametrize(
+    ("head", "name"),
+    [
+        ('<robot name="my biped">', "my-biped"),
+        ("<robot version='1.0' name='biped_v2'>", "biped_v2"),
+        ('<robot name="">', "mine"),
+    ],
+)
+def test_the_name_is_that_of_the_model(tmp_path: Path, head: str, name: str) -> None:
+    (tmp_path / "mine.urdf").write_text(biped.Biped(changes={'<robot name="biped">': head}).urdf())
+    assert yaml.safe_load(draft("mine.urdf", tmp_path).text)["name"] == name
+
+
+def test_the_sole_that_is_told_is_the_one_that_was_derived(tmp_path: Path) -> None:
+    """Its centre too: a file that says it describes the same robot."""
+    (tmp_path / "mine.urdf").write_text(biped.Biped().urdf())
+    text = draft("mine.urdf", tmp_path).text
+    told = next(line[2:] for line in text.splitlines() if line.startswith("# sole:"))
+    assert yaml.safe_load(told)["sole"]["centre"] == pytest.approx([biped.AHEAD, 0.0, -biped.ANKLE])
+    robots = []
+    for number, lines in enumerate((text, f"{text}{told}\n")):
+        (tmp_path / f"{number}.yaml").write_text(lines)
+        robots.append(describe(str(tmp_path / f"{number}.yaml"), RobotOptions()))
+    assert robots[0].com_height == pytest.approx(robots[1].com_height, abs=1e-3)
+
+
+def test_soles_that_are_wider_than_long_are_remarked(tmp_path: Path) -> None:
+    x, y, z = biped.FOOT
+    wide = biped.Biped(changes={f'<box size="{x} {y} {z}"/>': f'<box size="{y} {x} {z}"/>'}).urdf()
+    (tmp_path / "mine.urdf").write_text(wide)
+    assert "# Note: soles are wider (0.180 m) than long (0.080 m)" in draft("mine.urdf", tmp_path).text
+
+
+@pytest.mark.parametrize(("feet", "code"), [(True, 0), (False, 1)])
+def test_the_exit_code_says_whether_the_file_can_be_used(
+    tmp_path: Path, monkeypatch, capsys, feet: bool, code: int
+) -> None:
+    (tmp_path / "mine.urdf").write_text(biped.Biped(feet=feet).urdf())
+    monkeypatch.chdir(tmp_path)
+    try:
+        new("mine.urdf")
+    except typer.Exit as end:
+        assert end.exit_code == code
+    else:
+        assert code == 0
+    assert yaml.safe_load(capsys.readouterr().out)["feet"] == {"left": "left_foot", "right": "right_foot"}
 
 
 def test_an_arm_has_no_feet_to_stand_on(tmp_path: Path) -> None:

@@ -83,7 +83,7 @@ MODELS = {
     ),
     "no inertia": (
         massless(biped.Biped().urdf()),
-        "link 'left_shank' of biped moves with 0 kg.*give it an inertia, lock joint 'left_knee'",
+        "link 'left_shank' of biped moves with 0 kg.*; give it an inertia in the model$",
     ),
     "no mesh": (
         biped.Biped(extra=CAP.format("collision", "meshes/cap.stl") + FIXED),

@@ -90,7 +90,7 @@ def test_the_scenario_as_run_is_in_si(robots):
             "terrain.angle 5.0 rad is too steep; use at most 0.35 rad; for 5 deg write '5",
         ),
         ("gait: {turn: -15}", "gait.turn is -15; it must be at least -6.3 rad; for -15 deg write '-15 deg'"),
-        ("gait: {step_length: 25}", "use at most 0.496 m, or lower gait.com_height; for 25 cm write '25 cm'"),
+        ("gait: {step_length: 25}", "use at most 0.495 m, or lower gait.com_height; for 25 cm write '25 cm'"),
         (
             "gait: {step_width: 25}",
             "gait.step_width 25.0 m is out of reach of the legs; use for example 0.200 m; for 25 cm",

@@ -43,7 +43,7 @@ REFUSED = {
     FOOTSTEPS % "{foot: left, x: 0, y: -0.03}": "footstep 1 would touch its stance foot, 0.070 m beside it; 0.110 m",
     FOOTSTEPS
     % "{foot: left, x: 0.1, y: 0.1}, {foot: right, x: 0.6, y: -0.1}": "footstep 2 lands 0.500 m from where the"
-    " legs stand upright; 0.496 m is the most",
+    " legs stand upright; 0.495 m is the most",
     FOOTSTEPS
     % "{foot: right, x: 0.1, y: -0.1, yaw: -0.6}": "footstep 1 turns by -0.6 rad against its stance foot; 0.5",
     FOOTSTEPS % "{foot: middle, x: 0, y: 0}": "gait.footsteps.0.foot is 'middle'; it must be 'left' or 'right'",

@@ -35,6 +35,10 @@ class Hull:
     faces: Faces
 
 
+_LEAST_VOLUME = 1e-12
+"""Of a contact shape, below which an engine takes it for flat [m^3]."""
+
+
 def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[int, Hull]:
     """Hulls by joint: of trunk, arms, thighs and shanks; feet touch with their soles."""
     model = reduced.model
@@ -51,7 +55,9 @@ def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[in
     for joint in sorted(wanted):
         points = points_of(reduced.collision[joint] or reduced.visual[joint])
         with suppress(RobotError):  # what is flat or has no shape touches nothing
-            found[joint] = Hull(joint, *hull(points, MOST_POINTS))
+            vertices, faces = hull(points, MOST_POINTS)
+            if abs(np.linalg.det(vertices[faces]).sum()) / 6.0 > _LEAST_VOLUME:
+                found[joint] = Hull(joint, vertices, faces)
     return found
 
 

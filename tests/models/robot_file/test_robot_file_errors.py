@@ -63,7 +63,7 @@ FILES = {
     "torso in a leg": (biped.FILE + "torso: left_thigh\n", "which is part of a leg; name a link above"),
     "apart": (biped.FILE + "keep_apart: [[left_shank, left_foot]]\n", "names 'left_foot', which has no contact shape"),
     "no srdf": (biped.FILE + "srdf: biped.srdf\n", "srdf biped.srdf of biped is not there; put it at"),
-    "negative": (biped.FILE + "scale: -1\n", "biped.yaml:4: scale is -1; input should be greater than or equal to 0.01"),
+    "negative": (biped.FILE + "scale: -1\n", "biped.yaml:4: scale is -1; input should be .* equal to 0.01"),
     "base robot": ("name: half\nmodel: humanoid1000\nscale: 0.5\n", "did you mean 'humanoid100'"),
     "base robot's feet": (
         "name: half\nmodel: humanoid100\ncom_height: 0.5\n",

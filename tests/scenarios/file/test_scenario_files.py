@@ -22,8 +22,8 @@ def problems(robots, text, *overrides):
 
 
 @pytest.mark.parametrize("name", catalogue.names())
-def test_catalogue_loads_and_is_named_as_its_file(robots, name):
-    assert load_scenario(name, (), robots).name == name
+def test_catalogue_loads_and_is_named_as_its_file(name):
+    assert load_scenario(name).name == name
     assert catalogue.summary(name)
 
 

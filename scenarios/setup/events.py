@@ -110,7 +110,7 @@ def cut_off(draft: Draft) -> Iterator[Problem]:
             yield _cut(("faults", index, "duration"), window.end / rates.control, end, right)
 
 
-def _cut(key: tuple[str | int, ...], stop: float, end: float, right: str) -> Problem:
+def _cut(key: Key, stop: float, end: float, right: str) -> Problem:
     what = f"{key[0]}.{key[1]} would last until {stop:.6g} s, and the end of the run at {end:.6g} s cuts it off"
     return Problem(key, what, f"give it {right}")
 
@@ -120,7 +120,7 @@ def _promised(draft: Draft) -> Iterator[tuple[int, PushSettings]]:
     return ((index, push) for index, push in enumerate(draft.keys.pushes) if not push.live)
 
 
-def _weak(key: tuple[str | int, ...], push: PushSettings) -> Iterator[Problem]:
+def _weak(key: Key, push: PushSettings) -> Iterator[Problem]:
     """Tell a push that moves nothing; of a force given in newtons the mass does not matter, as that of any robot."""
     given = "force" if push.impulse is None else "impulse"
     name = f"{key[0]}.{key[1]}.{given}"
@@ -147,8 +147,9 @@ _SIZES = (
 def slight(draft: Draft) -> Iterator[Problem]:
     """List sizes that are not zero and so small that nothing follows from them but rounding."""
     keys, errors = draft.keys, draft.keys.errors
-    sizes: list[tuple[Key, float]]
-    sizes = [((group, name), getattr(getattr(keys, group), name)) for group, names in _SIZES for name in names]
+    sizes: list[tuple[Key, float]] = [
+        ((group, name), getattr(getattr(keys, group), name) or 0.0) for group, names in _SIZES for name in names
+    ]
     sizes += [(("errors", "torso_com"), math.hypot(*(errors.torso_com or (0.0,))))]
     sizes += [(("errors", "payload", "mass"), errors.payload.mass)] if errors.payload is not None else []
     sizes += [(("errors", "ground", index, "height"), box.height) for index, box in enumerate(errors.ground or ())]
@@ -158,7 +159,7 @@ def slight(draft: Draft) -> Iterator[Problem]:
             yield Problem(key, what, f"use {'0, or ' if key[-1] != 'height' else ''}at least {LEAST:g}")
 
 
-def _too_late(key: tuple[str | int, ...], what: str, time: float, end: float) -> Problem:
+def _too_late(key: Key, what: str, time: float, end: float) -> Problem:
     return Problem(key, f"{what} {time:.6g} s and never acts: the run ends at {end:.6g} s", "let it begin before")
 
 

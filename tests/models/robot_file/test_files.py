@@ -258,9 +258,12 @@ def test_what_is_no_regular_file_or_too_large_is_not_opened(tmp_path, way, name)
         with file.open("wb") as made:
             made.write(b"\xff\0" * 50)
             made.truncate(1 << 40 if way == "sparse" else 100)
-    with pytest.raises(RobotError) as refused:
+    why = "no regular file|bytes, more than|no UTF-8|not there|cannot be read"
+    if name == "cap.stl" and way != "sparse":  # what is only drawn may be missing, and is told
+        assert any(re.search(why, note) and "is not drawn" in note for note in explain(str(path)).notes)
+        return
+    with pytest.raises(RobotError, match=why):
         describe(str(path), RobotOptions())
-    assert re.search("no regular file|bytes, more than|no UTF-8|not there|cannot be read", str(refused.value))
 
 
 def test_srdfs_beside_the_model_that_nobody_can_read(tmp_path) -> None:

@@ -200,5 +200,5 @@ def test_an_mjcf_reads_as_it_is_delivered(tmp_path, case) -> None:
 def test_a_mesh_that_an_mjcf_touches_with_is_missed_by_name(tmp_path) -> None:
     model = mjcf.TEXT.replace("<worldbody>", '<asset><mesh name="no" file="no.stl"/></asset><worldbody>', 1)
     model = model.replace('<geom type="box" size="0.08 0.1 0.08"/>', '<geom type="mesh" mesh="no"/>', 1)
-    with pytest.raises(RobotError, match=r"body 'base' of .*biped.xml: mesh 'no' is not there; put it at .*no.stl"):
+    with pytest.raises(RobotError, match=r"body 'base' of .*biped.xml: mesh no.stl is not there; put it at .*no.stl"):
         mjcf.described(tmp_path, model)

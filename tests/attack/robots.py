@@ -98,7 +98,7 @@ def bases() -> list[dict[str, bytes]]:
     """Files of each sound robot by name; robot.yaml is the robot file."""
     sys.path.insert(0, str(Path(__file__).parents[1] / "models" / "robot_file"))
     import biped
-    import test_mjcf_source as mjcf
+    import mjcf_biped as mjcf
 
     shared = {"cap.stl": mesh(), "robot.srdf": SRDF.encode()}
     urdf = biped.Biped(extra=CAP).urdf()

@@ -6,8 +6,8 @@ import struct
 from pathlib import Path
 
 import biped
+import mjcf_biped as mjcf
 import pytest
-import test_mjcf_source as mjcf
 
 from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.robot_file import build

@@ -3,10 +3,10 @@
 import re
 
 import biped
+import mjcf_biped as mjcf
 import numpy as np
 import pinocchio as pin
 import pytest
-import test_mjcf_source as mjcf
 
 from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.consistency import EnginePair

@@ -46,7 +46,7 @@ def inertias(robot):
 
 def test_a_link_and_a_joint_may_share_a_name(tmp_path) -> None:
     one = explained(tmp_path, biped.Biped(), "lock: [left_elbow]\n").description
-    shared = biped.Biped().urdf().replace("left_arm", "left_shoulder").replace("left_foot", "left_ankle_roll")
+    shared = biped.Biped().urdf().replace("left_shank", "left_knee").replace("left_foot", "left_ankle_roll")
     file = biped.FILE.replace("left_foot", "left_ankle_roll") + "lock: [left_elbow]\n"
     other = describe(str(biped.write(tmp_path, shared, file)), RobotOptions())
     assert other.joint_names == one.joint_names

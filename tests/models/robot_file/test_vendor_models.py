@@ -24,7 +24,8 @@ CHEST = (
 )
 FINGERS = """<body name="hand" pos="0 0.3 0"><joint name="wrist" axis="0 0 1" actuatorfrcrange="-9 9"/>
 <geom size="0.03"/><body name="finger" pos="0 0.05 0"><joint name="finger" axis="0 0 1"/>
-<geom size="0.01"/></body></body>"""
+<geom size="0.01"/><body name="tip" pos="0 0.03 0"><joint name="tip" axis="0 0 1"/><geom size="0.01"/></body></body>
+</body>"""
 SPHERE = '<collision><origin xyz="{} {} -0.06"/><geometry><sphere radius="0"/></geometry></collision>'
 
 
@@ -45,7 +46,7 @@ def inertias(robot):
 
 def test_a_link_and_a_joint_may_share_a_name(tmp_path) -> None:
     one = explained(tmp_path, biped.Biped(), "lock: [left_elbow]\n").description
-    shared = biped.Biped().urdf().replace("left_forearm", "left_elbow").replace("left_foot", "left_ankle_roll")
+    shared = biped.Biped().urdf().replace("left_shank", "left_knee").replace("left_foot", "left_ankle_roll")
     file = biped.FILE.replace("left_foot", "left_ankle_roll") + "lock: [left_elbow]\n"
     other = describe(str(biped.write(tmp_path, shared, file)), RobotOptions())
     assert other.joint_names == one.joint_names

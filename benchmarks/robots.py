@@ -9,8 +9,9 @@ had to add are counted. Then it stands, walks, turns, and is pushed in the middl
 """
 
 import argparse
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import yaml
@@ -38,6 +39,11 @@ DATA = "package://example-robot-data/robots"
 FOURIER = "package://fourier_robot_descriptions/assets/urdf"
 
 
+_PROPOSAL = re.compile(r"take for example ([^;(]+)")
+_SETTING = re.compile(r"(\w+\.\w+) (-?[\d.]+)")
+"""What a refusal proposes, and a key and its value in that."""
+
+
 @dataclass(frozen=True, slots=True)
 class Model:
     """A model of a humanoid.
@@ -60,7 +66,7 @@ MODELS = (
     Model("G1", f"{DATA}/g1_description/urdf/g1_29dof_rev_1_0.urdf", "example-robot-data"),
     Model("Alexander", f"{DATA}/alexander_description/urdf/alexander_v1.lowerBodyOnly.urdf", "example-robot-data"),
     Model("Romeo", f"{DATA}/romeo_description/urdf/romeo.urdf", "example-robot-data"),
-    Model("iCub", f"{DATA}/icub_description/robots/icub.urdf", "example-robot-data", ("inertia: repair",)),
+    Model("iCub", f"{DATA}/icub_description/robots/icub.urdf", "example-robot-data"),
     Model(
         "simple humanoid",
         f"{DATA}/simple_humanoid_description/urdf/simple_humanoid.urdf",
@@ -163,22 +169,18 @@ def with_lines(text: str, added: Iterable[str]) -> str:
 
 
 def _moved(row: Row, robot: Mapping[str, str], out: Path) -> Row:
-    """The row with what it did; `walk` first, since its refusal may propose a gait that all others take, too."""
+    """The row with what it did; where `walk` is refused, all is done with the gait that the refusal proposes."""
     stood = _run("stand", robot, out)
-    walked = _run("walk", robot, out)
-    if walked.refused and walked.proposed:
-        row = replace(row, gait=tuple(f"{key}={value}" for key, value in walked.proposed.items()))
-        robot = {**robot, **walked.proposed}
-        walked = _run("walk", robot, out)
-    row = replace(row, stands=stood.stayed, walks=walked.stayed, missed=walked.missed, why=(*row.why, *walked.refused))
+    walked, gait = _followed("walk", robot, out)
+    told = tuple(f"{key}={value}" for key, value in gait.items())
+    row = replace(row, stands=stood.stayed, walks=walked.stayed, gait=told, missed=walked.missed)
     if not walked.stayed:
-        return replace(row, why=(*row.why, *stood.refused))
-    turned = _run("walk-turn", robot, out)
+        return replace(row, why=(*row.why, *stood.refused, *walked.refused))
+    turned, _ = _followed("walk-turn", robot, out)
     survived, why = 0, [*row.why, *turned.refused]
     for side in SIDES:
         push = f"[{{step: 5, phase: single, fraction: 0.5, impulse: {IMPULSE}, direction: {side} deg}}]"
-        settings = {**robot, **PUSHED, "pushes": push}
-        pushed = _run("walk", settings, out)
+        pushed = _run("walk", {**robot, **gait, **PUSHED, "pushes": push}, out)
         survived += pushed.stayed
         why += pushed.refused
     return replace(row, turns=turned.stayed, pushed=survived, why=tuple(dict.fromkeys(why)))
@@ -192,13 +194,22 @@ class _Walked:
         stayed: whether it took all its steps and did not fall.
         missed: criteria that were missed.
         refused: why there was no run, one sentence each.
-        proposed: settings that the refusal proposes.
     """
 
     stayed: bool = False
     missed: tuple[str, ...] = ()
     refused: tuple[str, ...] = ()
-    proposed: Mapping[str, str] = field(default_factory=dict)
+
+
+def _followed(name: str, robot: Mapping[str, str], out: Path) -> tuple[_Walked, dict[str, str]]:
+    """A run, or if it is refused that with what the refusals propose, and these settings."""
+    settings: dict[str, str] = {}
+    while True:
+        walked = _run(name, {**robot, **settings}, out)
+        proposed = dict(_SETTING.findall(" ".join(_PROPOSAL.findall(" ".join(walked.refused)))))
+        if not proposed.keys() - settings.keys():
+            return walked, settings
+        settings |= proposed
 
 
 def _run(name: str, settings: Mapping[str, str], out: Path) -> _Walked:

@@ -1,0 +1,94 @@
+"""The table of public humanoids: what is counted, what is followed, where models are looked for."""
+
+import importlib.util
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+pytestmark = pytest.mark.unit
+
+SCRIPT = Path(__file__).parents[2] / "benchmarks" / "robots.py"
+
+
+@pytest.fixture(scope="module")
+def robots() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("robots_table", SCRIPT)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_there_are_twenty_and_each_has_a_name_of_its_own(robots) -> None:
+    assert len({model.name for model in robots.MODELS}) == len(robots.MODELS) >= 20
+    assert all(len(model.added) <= 2 for model in robots.MODELS)
+
+
+def test_a_model_is_found_by_the_end_of_its_path(robots, tmp_path) -> None:
+    for folder in ("one/urdf", "other/urdf"):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "robot.urdf").touch()
+    model = robots.Model("robot", "other/urdf/robot.urdf", "somewhere")
+    assert robots.found(model, [tmp_path]) == str(tmp_path / "other/urdf/robot.urdf")
+    assert robots.found(replace(model, place="third/robot.urdf"), [tmp_path]) is None
+
+
+def test_lines_that_are_added_replace_those_of_the_same_key(robots) -> None:
+    text = robots.with_lines("name: a\ninertia: repair\n# sole: {}\n", ("inertia: refuse",))
+    assert text == "name: a\n# sole: {}\ninertia: refuse\n"
+
+
+def test_what_a_refusal_proposes_is_followed_until_it_is_accepted(robots, monkeypatch, tmp_path) -> None:
+    told = [
+        "x.yaml:3:1: fast; take for example gait.step_length 0.138 m and gait.single_support 0.66 s (0.5 in x.yaml)",
+        "x.yaml:3:1: too low; take for example gait.com_height 0.7 m",
+    ]
+    given = []
+
+    def run(name, settings, out):
+        given.append(dict(settings))
+        refused = told[len(given) - 1 : len(given)]
+        return robots._Walked(stayed=not refused, refused=tuple(refused))
+
+    monkeypatch.setattr(robots, "_run", run)
+    walked, gait = robots._followed("walk", {"robot": "r"}, tmp_path)
+    assert walked.stayed
+    assert gait == {"gait.step_length": "0.138", "gait.single_support": "0.66", "gait.com_height": "0.7"}
+    assert given[-1] == {"robot": "r", **gait}
+
+
+def test_a_list_that_is_proposed_is_followed_too(robots) -> None:
+    told = "too slow; take for example gait.velocity [{time: 0.0, yaw_rate: 0.118}, {time: 12.1}] (0.5 in x.yaml)"
+    proposed = " ".join(robots._PROPOSAL.findall(told))
+    assert robots._SETTING.findall(proposed) == [("gait.velocity", "[{time: 0.0, yaw_rate: 0.118}, {time: 12.1}]")]
+
+
+def test_a_refusal_without_a_proposal_or_with_the_same_ends_it(robots, monkeypatch, tmp_path) -> None:
+    refusal = robots._Walked(refused=("too weak; take for example gait.com_height 0.7 m",))
+    monkeypatch.setattr(robots, "_run", lambda *given: refusal)
+    assert robots._followed("walk", {}, tmp_path) == (refusal, {"gait.com_height": "0.7"})
+
+
+def test_good_is_who_walks_and_survives_every_push_with_two_lines_at_most(robots) -> None:
+    model = robots.Model("robot", "robot.urdf", "somewhere", ("a: 1", "b: 2"))
+    row = robots.Row(
+        model, reads=True, derives=True, stands=True, walks=True, turns=True, pushed=4, mass=30.0, joints=20
+    )
+    bad = [
+        replace(row, walks=False),
+        replace(row, pushed=3),
+        replace(row, pushed=None),
+        replace(row, model=replace(model, added=("a: 1", "b: 2", "c: 3"))),
+    ]
+    assert row.good and not any(other.good for other in bad)
+    assert "1 of 5 take all steps and survive every push." in robots.table([row, *bad])
+
+
+def test_what_cannot_be_read_is_a_row_with_its_reason(robots, tmp_path) -> None:
+    path = tmp_path / "biped.urdf"
+    path.write_text("<robot name='biped'/>", encoding="utf-8")
+    row = robots.examined(robots.Model("biped", "biped.urdf", "somewhere"), str(path), tmp_path / "out")
+    assert not row.good and row.walks is None
+    assert row.why and "Traceback" not in row.why[0]

@@ -271,8 +271,10 @@ def test_every_campaign_has_its_page_whatever_was_measured(tmp_path, values):
     whole = swept(tmp_path, ALMOST, lambda one: passed(one, **dict.fromkeys(names, values[one.settings["seed"] % 2])))
     write(whole)
     rows = Page((tmp_path / PAGE).read_text()).rows["success"]
-    assert rows[1][:4] == ["all runs", "", "12", "12"]
-    assert len(list(csv.DictReader(io.StringIO((tmp_path / "table.csv").read_text())))) == 12
+    runs = list(csv.DictReader(io.StringIO((tmp_path / "table.csv").read_text())))
+    facts = sum(run["repeats"] == "false" for run in runs)  # values that differ by rounding are drawn more than once
+    assert len(runs) == 12 and 2 < facts <= 12
+    assert rows[1][:4] == ["all runs", "", str(facts), str(facts)]
 
 
 @pytest.mark.parametrize("seeds", [1, 2])

@@ -189,7 +189,8 @@ class Walk:
         Raises:
             ParameterError: it cannot plan this gait.
         """
-        parameters = replace(self.parameters, leg=leg, cop_room=self._cop_room(leg))
+        authority = math.inf, 0.0 if self.robot.roles.feet_lean else math.inf
+        parameters = replace(self.parameters, leg=leg, cop_room=self._cop_room(leg), cop_authority=authority)
         given = (self.gait, feet, *self.sole, self.terrain, parameters, self.heights)
         if self.profile.planner is not None:
             return self.profile.planner(*given, self.profile)

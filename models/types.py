@@ -62,6 +62,10 @@ class RobotOptions:
     payload_body: str | None = None
 
 
+WITHOUT_ROLL = 5
+"""Joints of a leg that can put its foot anywhere, but for how it rolls."""
+
+
 @dataclass(frozen=True, slots=True)
 class JointRoles:
     """What the joints are for, by name, so that nobody guesses it from how they are called.
@@ -83,6 +87,11 @@ class JointRoles:
     arm_swing: tuple[str, str] | None = None
     knee_bend: tuple[float, float] = (1.0, 1.0)
     arm_back: tuple[float, float] = (1.0, 1.0)
+
+    @property
+    def feet_lean(self) -> bool:
+        """Whether no joint rolls the feet, which then lean sideways with the shanks."""
+        return len(self.left_leg) == WITHOUT_ROLL
 
     @property
     def legs(self) -> tuple[str, ...]:

@@ -118,6 +118,8 @@ class PlannerParameters:
         terminal_slack: quadratic and linear cost of leaving the terminal DCM bound [-, m].
         foot_margin: share of the foot in which the ZMP must stay (the paper's 90 %) [-].
         cop_room: how far from the sole's centre, forward and sideways, the ankles' torques let the CoP go [m].
+        cop_authority: how far the CoP of one foot can be moved against a disturbance, forward and sideways; feet that
+            stand on an edge have none sideways, and a step catches what other feet would hold [m].
         terminal_margin: share of the box's half size that bounds the terminal DCM [-].
         leg: inertia of the legs; the default is the paper's point mass without any.
         step_adaptation: what a disturbance may change about the footsteps.
@@ -151,6 +153,7 @@ class PlannerParameters:
     terminal_slack: tuple[float, float] = quantity((1e3, 10.0), "-, m")
     foot_margin: float = quantity(0.9, "-")
     cop_room: tuple[float, float] = quantity((math.inf, math.inf), "m")
+    cop_authority: tuple[float, float] = quantity((math.inf, math.inf), "m")
     terminal_margin: float = quantity(0.8, "-")
     leg: LegInertia = LegInertia()
     step_adaptation: StepAdaptation = StepAdaptation.CROSSING

@@ -232,7 +232,9 @@ class WalkingPlanner:
         error, falls = self._recovery.topples(local[:, 0] + local[:, 1] / window.omega[0], window)
         if not falls:
             # Once it is at rest the robot brings its feet side by side again.
-            calm = np.abs(error).max() < CALM * length and stepper.astride > ASTRIDE * length
+            # Feet without a CoP of their own would end in a wide step, since there is no time to shift the weight.
+            calm = self.parameters.cop_authority[1] > 0.0 and np.abs(error).max() < CALM * length
+            calm = calm and stepper.astride > ASTRIDE * length
             if calm:
                 stepper.go_on(at_once=False)
             return bool(calm)

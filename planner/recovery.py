@@ -143,6 +143,10 @@ box but this, if that is more [m]."""
 _MARGIN = 0.02
 """DCM error at landing that the CoP cannot hold from which on a step is adapted [m]."""
 
+_UNHELD = 0.5
+"""The same where the CoP cannot be moved at will, of the ZMP box, so that each step makes good what the last one left
+over [-]."""
+
 _HELD = 0.85
 """Share of the ZMP box of a stand that holds the body without a step [-]."""
 
@@ -196,7 +200,7 @@ class Recovery:
         self.legs, self.timing = legs, timing
         self._sample_time = parameters.sample_time
         self.haste = Haste(legs, parameters.touchdown_lead, parameters.sample_time)
-        self._size = parameters.size
+        self._size, self._authority = parameters.size, np.array(parameters.cop_authority)
         self._weights = self._size.times((_PLACE, _STRETCH, _SECOND, _UNREACHED), "1/m^2")
 
     def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
@@ -229,11 +233,13 @@ class Recovery:
         # Between the feet on which it stood the CoP has more room than on one.
         more = bounded[0, 3:]
         fade = float(decays(now.stiffness[: land + 1], now.omega[: land + 1], t)[-1])
-        held = (1.0 - fade) * box + more + fade * _MARGIN * self._size.length
+        own = np.minimum(box, self._authority)
+        missed = np.where(own < box, fade * _UNHELD * box, fade * _MARGIN * self._size.length)
+        held = (1.0 - fade) * own + more + missed
         fine = bool((np.abs(now.dcm - nominal[0]) <= held).all())
         if fine and not now.adapted:
             return None
-        times, half = self._times(now, fine), _AUTHORITY * box
+        times, half = self._times(now, fine), _AUTHORITY * own
         left, com = _landing(now, times, nominal[[0, lift]], landed, (half, _AUTHORITY * more))
         return self._cheapest(now, times, now.nominal + left / gain, com, (gain, half))
 

@@ -3,7 +3,7 @@
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
@@ -34,7 +34,7 @@ ACCEPTED_VIOLATION = 1e-3
 """A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""
 
 TOE_DEPTH = 0.003
-"""Half length of the strip that stands for a toe edge in its wrench cone [m].
+"""Half length of the strip that stands for a toe edge in its wrench cone, and half width of that for a side edge [m].
 
 Constants here are the reference robot's; see `surefoot.similarity`."""
 
@@ -134,6 +134,9 @@ class WholeBodyController:
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
         stops = AnkleStops(model, frames, limits), HipStops(model, frames, limits)
+        leaning = frames.leaning is not None
+        if leaning:
+            sole = replace(sole, half_width=TOE_DEPTH * size.length)
         cones = _cones(sole, size)
         self._hard = HardConstraints(self.qp, self.layout, cones, limits, parameters.contact, stops[0].columns)
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
@@ -141,7 +144,9 @@ class WholeBodyController:
         arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and parameters.arm_swing else None
         weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
         balance, waist = parameters.balance, self.terms.waist
-        default = default_tasks(weights, gains, balance, self._region, toe, size.length, *stops, waist=waist)
+        default = default_tasks(
+            weights, gains, balance, self._region, toe, size.length, *stops, waist=waist, leaning=leaning
+        )
         diagonal = (
             Regularisation(weights, size.length),
             Posture(weights, gains, posture, leg_joints, arms),
@@ -153,7 +158,7 @@ class WholeBodyController:
         self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
         self._limits, self._toe = limits, toe
         self._fading = control_period / (FADE * size.time), FADE_DAMPING * size.time
-        self._edge: tuple[int, Array] | None = None
+        self._seen: list[tuple[int, Array]] = []
         self._torque_rows, self._wrench_flat = self.qp.A[self.layout.torque_rows], np.zeros(12)
         wrench, error = self._wrench_flat.reshape(2, 6), np.zeros_like(self.tasks.target)
         self._answer = WbcAnswer(np.zeros(self.layout.joints), np.zeros(self.layout.nv), wrench, error)
@@ -205,11 +210,13 @@ class WholeBodyController:
     def build(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> QpData:
         """The QP of a state, a reference and contacts, written over the last one.
 
-        A rolling foot's terms are seen from its toe edge from here on (see ``RobotTerms.shift_foot``).
+        The terms of a rolling foot are seen from its toe edge from here on, those of a leaning one from its line (see
+        ``RobotTerms.shift_foot``).
         """
         self._shift(terms, reference, contacts)
         holding = (contacts.active, contacts.rolling)
-        if holding != self._region_contacts and np.isfinite(terms.sole_position).all():
+        # The line on which a leaning foot stands moves over its sole.
+        if (terms.leaning is not None or holding != self._region_contacts) and np.isfinite(terms.sole_position).all():
             self._region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
             self._region_contacts = holding
         self.tasks.write(terms, reference)
@@ -243,19 +250,21 @@ class WholeBodyController:
         self._clip(answer.torque)
         answer.acceleration[:] = x[:nv]
         np.multiply(x[nv:], terms.wrench_unit, out=self._wrench_flat)
-        if self._edge is not None:
-            foot, to_sole = self._edge
+        for foot, to_sole in self._seen:
             answer.wrench[foot] = to_sole @ answer.wrench[foot]
         answer.task_error[:] = self.tasks.residual(x)
         return answer
 
     def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
-        """See a rolling foot from its toe edge, the others from their soles."""
-        rolling, self._edge = reference.rolling_foot, None
-        terms.unshift(0)
-        terms.unshift(1)
-        if rolling >= 0 and (rolling == contacts.rolling or not contacts.active[rolling]):
-            self._edge = rolling, terms.shift_foot(rolling, self._toe, reference.roll[0])
+        """See a rolling foot from its toe edge, a leaning one from its line, others from their soles."""
+        rolling, self._seen = reference.rolling_foot, []
+        for foot in (0, 1):
+            if foot == rolling and (rolling == contacts.rolling or not contacts.active[rolling]):
+                self._seen.append((foot, terms.shift_foot(foot, self._toe, reference.roll[0])))
+            elif terms.leaning is not None:
+                self._seen.append((foot, terms.shift_foot(foot, 0.0, 0.0)))
+            else:
+                terms.unshift(foot)
 
     def _clip(self, torque: Array) -> None:
         np.minimum(torque, self._limits.torque, out=torque)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.wbc.contacts import ContactState
+from surefoot.wbc.leaning import FREE
 from surefoot.wbc.limits import AccelerationBounds, JointLimits
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.qp import FOOT_ROWS, QpData, QpLayout
@@ -34,7 +35,7 @@ class HardConstraints:
     """Writes all rows and bounds of the QP.
 
     Active contact: J q̈ + J' v = -d J v + levelling; inactive contact: w = 0. Six rows each, so that the QP keeps its
-    shape.
+    shape. A leaning foot (see `surefoot.wbc.leaning`) is free to turn about its line, where its moment is zero.
     Floating base: M_b q̈ + h_b = Σ J_bᵀ w (first six rows of the equations of motion).
     Torque: τ = M_a q̈ + h_a - Σ J_aᵀ w within the limits, with the torque itself eliminated.
     Joints: within their limits, where a foot that is held counts as at rest. What it turns is a ripple of its contact,
@@ -133,6 +134,8 @@ class HardConstraints:
             self._roll(contacts.rolling)
         if contacts.rolling >= 0:
             target[contacts.rolling, 4] += self._gains.damping * roll[0] + roll[1]
+        if terms.leaning is not None:
+            target[:, FREE] = 0.0
         self._follow(0, terms, contacts.active[0])
         self._follow(1, terms, contacts.active[1])
         self._active = contacts.active
@@ -146,6 +149,9 @@ class HardConstraints:
             if not self._active[k]:
                 self._no_wrench_rows[k][:] = 0.0
             self._contact_rows[k][:] = terms.sole_jacobian[k]
+            if terms.leaning is not None:
+                self._contact_rows[k][FREE] = 0.0
+                self._no_wrench_rows[k][FREE, FREE] = 1.0
             return
         if self._active[k]:
             self._release(k)

@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 import qpsolvers
 
+from surefoot.wbc.leaning import FREE, line_frame
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames
 from surefoot.wbc.types import Array
@@ -16,7 +17,7 @@ class PostureTarget:
     """What the posture shall fulfil; world frame.
 
     Attributes:
-        sole_position: sole centres, shape (2, 3) [m].
+        sole_position: sole centres, or centres of the lines on which leaning soles stand, shape (2, 3) [m].
         sole_yaw: headings of the soles, shape (2,) [rad].
         com: CoM, shape (3,) [m]; None leaves it free.
         heading: yaw of the upright pelvis and torso [rad]; None leaves both free.
@@ -91,6 +92,7 @@ class PostureIk:
         self._soles = tuple(model.getFrameId(name) for name in frames.soles)
         self._torso = model.getFrameId(frames.torso)
         self._limits, self._posture = limits, posture
+        self._leaning = frames.leaning
 
     def solve(
         self, target: PostureTarget, q: Array, tolerance: float = 1e-7, max_iterations: int = 60, nearness: float = 1e-9
@@ -151,15 +153,27 @@ class PostureIk:
         jacobians: list[Array] = []
         errors: list[Array] = []
         for k, frame in enumerate(self._soles):
-            desired = pin.SE3(target.sole_rotation(k), target.sole_position[k])
-            errors.append(pin.log6(data.oMf[frame].actInv(desired)).vector)
-            jacobians.append(pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL))
+            J, error = self._sole(k, frame, target)
+            errors.append(error)
+            jacobians.append(J)
         if target.heading is not None:
             self._append_trunk(jacobians, errors, target.heading, 1 if target.rolling else 0)
         if target.com is not None:
             jacobians.append(pin.jacobianCenterOfMass(model, data, q))
             errors.append(target.com - data.com[0])
         return np.vstack(jacobians), np.concatenate(errors)
+
+    def _sole(self, k: int, frame: int, target: PostureTarget) -> tuple[Array, Array]:
+        """J, shape (6, nv), and e, shape (6,), of a sole; nothing about the line on which a leaning one stands."""
+        placement = self._data.oMf[frame]
+        J: Array = pin.getFrameJacobian(self._model, self._data, frame, pin.ReferenceFrame.LOCAL)
+        desired = pin.SE3(target.sole_rotation(k), target.sole_position[k])
+        if self._leaning is None:
+            return J, pin.log6(placement.actInv(desired)).vector
+        line = line_frame(k, placement.rotation, self._leaning)
+        J, error = line.toActionMatrixInverse() @ J, pin.log6((placement * line).actInv(desired)).vector
+        J[FREE], error[FREE] = 0.0, 0.0
+        return J, error
 
     def _append_trunk(self, jacobians: list[Array], errors: list[Array], heading: float, first: int) -> None:
         """The pelvis, upright about its axes from the first of roll, pitch and yaw on, and the torso about all."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from surefoot.wbc.leaning import line_centre, line_frame
 from surefoot.wbc.qp import WRENCH_UNIT
 from surefoot.wbc.types import GRAVITY, NO_LOAD, Array, ExternalLoad
 
@@ -18,10 +19,13 @@ class BodyFrames:
     Attributes:
         soles: frames at the centres of the soles, (left, right), x forward and z up.
         torso: frame of the torso.
+        leaning: half width of soles that lean with their shanks (see `surefoot.wbc.leaning`); None for soles that the
+            legs can turn as they like [m].
     """
 
     soles: tuple[str, str]
     torso: str
+    leaning: float | None = None
 
 
 class RobotTerms:
@@ -66,6 +70,7 @@ class RobotTerms:
         sole_bias: accelerations of the soles with v' = 0, shape (2, 6) [m/s^2, rad/s^2].
         sole_wrench_map: from both sole wrenches to their force and moment about the world's origin, shape (6, 12).
         torso_position: in the world frame, shape (3,) [m].
+        leaning: half width of soles that lean (see `BodyFrames`); None for others [m].
         waist: whether the torso can move against the pelvis.
         torso_jacobian: from v to the torso's angular velocity, shape (3, nv).
         torso_velocity: angular, in its frame, shape (3,) [rad/s].
@@ -88,6 +93,7 @@ class RobotTerms:
         self.v: Array = np.zeros(model.nv)
         self._soles = tuple(_frame_id(model, name) for name in frames.soles)
         self._torso = _frame_id(model, frames.torso)
+        self.leaning = frames.leaning
         self.waist = model.frames[self._torso].parentJoint != 1
         self.mass = self.model_mass = float(sum(inertia.mass for inertia in model.inertias))
         self.load, self.wrench_unit = NO_LOAD, wrench_unit
@@ -165,16 +171,22 @@ class RobotTerms:
     def level_soles(self, toe: float) -> Array:
         """Where the soles' centres would be if each foot turned level about its toe edge, shape (2, 3) [m].
 
+        Of leaning soles, the centres of the lines on which they stand.
+
         Args:
             toe: toe edge from the sole's centre [m].
         """
-        ahead = self.sole_rotation[:, :, 0]
+        ahead, position = self.sole_rotation[:, :, 0], self.sole_position
+        if self.leaning is not None:
+            position = np.array([line_centre(k, position[k], self.sole_rotation[k], self.leaning) for k in (0, 1)])
         level = ahead * np.array([1.0, 1.0, 0.0])
         level /= np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-9)
-        return np.asarray(self.sole_position + toe * (ahead - level))
+        return np.asarray(position + toe * (ahead - level))
 
     def shift_foot(self, k: int, forward: float, pitch: float) -> Array:
         """See foot k from a frame at a point ahead of its sole's centre, turned back by a pitch, until it is unshifted.
+
+        Of a leaning sole, ahead of the centre of the line on which it stands, and turned back to level with it.
 
         Args:
             k: foot.
@@ -187,6 +199,8 @@ class RobotTerms:
         self.unshift(k)
         self._shifted[k] = True
         turned = pin.SE3(pin.utils.rotate("y", -pitch), np.array([forward, 0.0, 0.0]))
+        if self.leaning is not None:
+            turned = line_frame(k, self.sole_rotation[k], self.leaning) * turned
         action = turned.toActionMatrixInverse()
         spin = self.sole_velocity[k, 3:]
         centripetal = np.cross(spin, np.cross(spin, turned.translation))

@@ -3,6 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
+from surefoot.wbc.leaning import FREE, line_frame
 from surefoot.wbc.model import BodyFrames
 from surefoot.wbc.types import Array
 
@@ -14,6 +15,8 @@ def standing_torque(
     model: pin.Model, frames: BodyFrames, q: Array, lever: float = LEVER, foot: int | None = None
 ) -> Array:
     """Joint torques, shape (nj,) [N·m], of static equilibrium at configuration q, shape (nq,).
+
+    A leaning sole (see `surefoot.wbc.leaning`) has no moment about its line.
 
     The base rows of g(q) = S τ + Σ J_kᵀ w_k leave the two sole wrenches w_k free in six directions; the smallest ones
     are taken.
@@ -29,12 +32,17 @@ def standing_torque(
     gravity = pin.computeGeneralizedGravity(model, data, q)
     pin.computeJointJacobians(model, data, q)
     pin.updateFramePlacements(model, data)
-    jacobians = [
-        pin.getFrameJacobian(model, data, model.getFrameId(name), pin.ReferenceFrame.LOCAL)
-        for name in (frames.soles if foot is None else (frames.soles[foot],))
-    ]
+    jacobians = []
+    for k in (0, 1) if foot is None else (foot,):
+        frame = model.getFrameId(frames.soles[k])
+        J = pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL)
+        if frames.leaning is not None:
+            J = line_frame(k, data.oMf[frame].rotation, frames.leaning).toActionMatrixInverse() @ J
+        jacobians.append(J)
     transposed = np.vstack(jacobians).T
     scale = np.tile([1.0, 1.0, 1.0, lever, lever, lever], len(jacobians))
+    if frames.leaning is not None:
+        scale[FREE::6] = 0.0
     wrenches = scale * np.linalg.lstsq(transposed[:6] * scale, gravity[:6], rcond=None)[0]
     torque: Array = gravity[6:] - transposed[6:] @ wrenches
     return torque

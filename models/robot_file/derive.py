@@ -270,6 +270,8 @@ class _Deriver:
             )
         by = "as given" if "sole" in given else "the largest rectangle in the lowest face of the foot"
         lines.append(f"soles: {robot.sole_length:.3f} x {robot.sole_width:.3f} m, {by}")
+        if robot.roles.feet_lean:
+            lines.append("feet: no joint rolls them, so they lean with the shanks and stand on a side edge")
         lines.append(
             f"leg length: {robot.leg_length:.3f} m from hip centre to sole; hips {robot.hip_width:.3f} m apart"
         )

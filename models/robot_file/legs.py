@@ -9,14 +9,17 @@ from surefoot.models.joints import meeting_point, world_axis
 from surefoot.models.robot_file.reduced import Reduced, points_of
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.soles import SolePlate, sole_of
-from surefoot.models.types import Array, RobotError
+from surefoot.models.types import WITHOUT_ROLL, Array, RobotError
 
 SIDES = ("left", "right")
-FEWEST, MOST = 5, 7
+FEWEST, MOST = WITHOUT_ROLL, 7
 _LATERAL = 0.7
 _STEPS, _DAMPING = 60, 1e-6
 _ENDS = 0.02
 """How far solved angles stay from the ends of a joint [rad]."""
+
+_BENT, _MADE = 0.65, 0.02
+"""Bend of a knee with which it is seen what a leg can do [rad], and least share of a twist that it has to make [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +42,11 @@ class Leg:
     sole: SolePlate
     hip: Array
 
+    @property
+    def leans(self) -> bool:
+        """Whether no joint is left to roll the foot, which leans sideways with its shank."""
+        return len(self.joints) == WITHOUT_ROLL
+
 
 def find_legs(reduced: Reduced, file: RobotFile) -> tuple[Leg, Leg]:
     """Both legs.
@@ -56,9 +64,11 @@ def find_legs(reduced: Reduced, file: RobotFile) -> tuple[Leg, Leg]:
     for side, chain in zip(SIDES, chains, strict=True):
         if not FEWEST <= len(chain) <= MOST:
             what = f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has {len(chain)} joints"
-            raise RobotError(("feet", side), what, f"legs need {FEWEST} to {MOST}, so that a sole can be put anywhere")
+            right = f"legs need {FEWEST} to {MOST}, so that a sole can be put anywhere, with {FEWEST} but for its roll"
+            raise RobotError(("feet", side), what, right)
     legs = [_leg(reduced, file, side, chain) for side, chain in enumerate(chains)]
     _check_sides(reduced, file, legs)
+    _check_rolls(reduced, file, legs)
     return legs[0], legs[1]
 
 
@@ -150,9 +160,56 @@ def _check_sides(reduced: Reduced, file: RobotFile, legs: list[Leg]) -> None:
     raise RobotError(("feet",), what, f"write feet: {{left: {feet.right}, right: {feet.left}}}, or give forward")
 
 
+def _check_rolls(reduced: Reduced, file: RobotFile, legs: list[Leg]) -> None:
+    """Refuse legs of five joints that lack something else than the roll of the foot, or that have unlike feet.
+
+    The twist of a sole that five joints cannot make is known up to its size; without the row of the roll they must make
+    the other five, and not only just.
+
+    Raises:
+        RobotError: says what no joint does.
+    """
+    feet = file.soles()
+    if legs[0].leans != legs[1].leans:
+        lacking = SIDES[0 if legs[0].leans else 1]
+        what = f"no joint rolls the {lacking} foot of {file.name}, but one rolls the other"
+        raise RobotError(("feet", lacking), what, "both legs must have such a joint, or neither")
+    for side, leg in zip(SIDES, legs, strict=True):
+        resting, level = _made(reduced.model, leg)
+        if leg.leans and min(resting["rolls"], level["rolls"]) < _MADE:
+            lacks = max(("pitches", "yaws"), key=resting.__getitem__)
+            what = (
+                f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has {len(leg.joints)} joints, "
+                f"none of which {lacks} the foot"
+            )
+            raise RobotError(("feet", side), what, "a leg of five joints can do without the roll of its foot only")
+
+
+def _made(model: pin.Model, leg: Leg) -> list[dict[str, float]]:
+    """Least share of a twist of the sole that the joints make if it need not roll, pitch or yaw, knee bent [-].
+
+    With all other joints at rest, and with the sole level: either may hide what a leg lacks.
+    """
+    resting = rest(model)
+    resting[leg.joints[leg.knee] - 2] = leg.straight + leg.bend * _BENT
+    columns, made = [model.joints[joint].idx_v for joint in leg.joints], []
+    for angles in (resting, solved(model, leg, rest(model), _BENT)):
+        data, q = model.createData(), pin.neutral(model)
+        q[7:] = angles
+        pin.computeJointJacobians(model, data, q)
+        foot = data.oMi[leg.joints[-1]]
+        J = pin.getJointJacobian(model, data, leg.joints[-1], pin.ReferenceFrame.LOCAL)[:, columns]
+        J = pin.SE3(foot.rotation.T, leg.sole.placement.translation).toActionMatrixInverse() @ J
+        J[:3] /= np.linalg.norm(leg.hip - foot.translation)
+        kept = {name: np.delete(J, 3 + row, axis=0) for row, name in enumerate(("rolls", "pitches", "yaws"))}
+        made.append({name: float(np.linalg.svd(rows, compute_uv=False)[-1]) for name, rows in kept.items()})
+    return made
+
+
 def solved(model: pin.Model, leg: Leg, angles: Array, bend: float) -> Array:
     """Angles with the knee bent, the ankle right below the hip, the sole level and pointing ahead, shape (nj,) [rad].
 
+    A sole that leans is level as well, since its shank is upright; its ankle need not be right below the hip, then.
     Damped Gauss-Newton; what the leg's joints and limits do not allow stays as near as it gets.
     """
     found = angles.copy()
@@ -179,8 +236,12 @@ def solved(model: pin.Model, leg: Leg, angles: Array, bend: float) -> Array:
 
 
 def _misplaced(model: pin.Model, leg: Leg, angles: Array) -> Array:
-    """Directions that should be zero, shape (5,): ankle aside of the hip, sole off the level, toes off ahead."""
+    """Directions that should be zero, shape (5,): ankle aside of the hip, sole off the level, toes off ahead.
+
+    Of a leaning foot four: its ankle may be beside the hip.
+    """
     data = at(model, angles)
     down = meeting_point(model, data, leg.joints[leg.knee + 1 :]) - leg.hip
     R = (data.oMi[leg.joints[-1]] * leg.sole.placement).rotation
-    return np.concatenate((down[:2] / np.linalg.norm(down), R[:2, 2], R[1:2, 0]))
+    aside = down[:1] if leg.leans else down[:2]
+    return np.concatenate((aside / np.linalg.norm(down), R[:2, 2], R[1:2, 0]))

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.scenarios.judge.body import feet_lean
 from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
 from surefoot.scenarios.judge.metric import SHARE, metric, reduction
 
@@ -56,11 +57,15 @@ def zmp_excursion_max(run: RunView) -> float | None:
 
 
 def cop_ratios(run: RunView) -> Array:
-    """Centre of pressure of the stance foot over its half size in single support, the worse axis, shape (k,)."""
+    """Centre of pressure of the stance foot over its half size in single support, the worse axis, shape (k,).
+
+    Of a foot that leans, the axis ahead: sideways it stands on an edge.
+    """
     size = np.array([run.constants.foot_length, run.constants.foot_width]) / 2
     stance = run.field("/reference", "stance")
     cops = np.where((stance == 0)[:, None], run.field("/contact", "cop_left"), run.field("/contact", "cop_right"))
-    ratios = np.max(np.abs(cops[run.single_support & (stance >= 0)]) / size, axis=1)
+    axes = slice(0, 1 if feet_lean(run.constants.roles) else 2)
+    ratios = np.max(np.abs(cops[run.single_support & (stance >= 0), axes]) / size[axes], axis=1)
     return np.asarray(ratios[np.isfinite(ratios)])
 
 

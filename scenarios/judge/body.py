@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.models.types import WITHOUT_ROLL
+
 Array = NDArray[np.float64]
 
 _SIGNS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
@@ -87,6 +89,11 @@ def leg(names: Sequence[str], roles: Roles, side: str) -> list[int]:
 def side_of(name: str) -> str:
     """The side that a joint's name tells: left, right or none."""
     return next((side for side in ("left", "right") if side in name), "")
+
+
+def feet_lean(roles: Roles) -> bool:
+    """Whether no joint rolls the feet, which then stand on side edges (see `surefoot.wbc.leaning`)."""
+    return len(roles.get("left_leg", ())) == WITHOUT_ROLL
 
 
 def torso(roles: Roles) -> str:

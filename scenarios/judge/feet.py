@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.types import GRAVITY, Foot, Footstep
-from surefoot.scenarios.judge.body import corners, headings, rotations
+from surefoot.scenarios.judge.body import corners, feet_lean, headings, rotations
 from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
 from surefoot.scenarios.judge.metric import metric
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
+from surefoot.wbc.leaning import line_centre
 
 Rows = NDArray[np.intp]
 
@@ -23,7 +24,7 @@ _CLEARANCE_TICKS = 5
 def landed(run: RunView) -> Array:
     """Where each footstep's sole truly was when it was booked, x y z yaw, shape (k, 4) [m, rad].
 
-    Not ``/footstep.actual``, which is where the controller believed it.
+    Not ``/footstep.actual``, which is where the controller believed it. Of a leaning sole, the line on which it stands.
     """
     steps = run.log["/footstep"]
     ticks, left = (
@@ -31,7 +32,11 @@ def landed(run: RunView) -> Array:
         np.asarray(steps.field("foot")) == 0,
     )
     poses = np.where(left[:, None], run.sole(0)[ticks], run.sole(1)[ticks])
-    return np.column_stack((poses[:, :3], headings(poses[:, 3:])))
+    places, half_width = poses[:, :3], 0.5 * run.constants.foot_width
+    if feet_lean(run.constants.roles):
+        turned = zip(np.where(left, 0, 1), places, rotations(poses[:, 3:]), strict=True)
+        places = np.array([line_centre(int(foot), place, R, half_width) for foot, place, R in turned])
+    return np.column_stack((places, headings(poses[:, 3:])))
 
 
 @metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("planned", "foot")}, body=True, least=0.0)
@@ -190,13 +195,18 @@ def stance_twist_max(run: RunView) -> float | None:
     unit="rad", shown=(180.0 / math.pi, "deg"), reads={**_STANCE_READS, "/reference": ("roll",)}, body=True, least=0.0
 )
 def stance_tilt_max(run: RunView) -> float | None:
-    """Largest angle of a loaded stance sole to the ground under it; only sideways while it is planned to roll [rad]."""
+    """Largest angle of a loaded stance sole to the ground under it [rad].
+
+    Only sideways while it is planned to roll; only ahead of a foot that no joint rolls, which leans as its leg does.
+    """
+    leaning = feet_lean(run.constants.roles)
     rolling, terrain = run.field("/reference", "roll") != 0.0, _terrain(run)
     largest = []
     for stance in stances(run):
         poses = run.sole(stance.foot)[stance.ticks]
         axes = np.einsum("nij,ni->nj", rotations(poses[:, 3:]), terrain.normals(poses[:, :2]))
         axes[rolling[stance.ticks, stance.foot], 0] = 0.0
+        axes[:, 1] *= not leaning
         largest.append(float(np.arcsin(np.minimum(np.hypot(axes[:, 0], axes[:, 1]), 1.0)).max()))
     return max(largest, default=None)
 

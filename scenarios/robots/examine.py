@@ -186,7 +186,9 @@ def _soles(body: Body) -> tuple[float, float]:
     data = body.model.createData()
     pin.framesForwardKinematics(body.model, data, q)
     left, right = (data.oMf[body.model.getFrameId(name)] for name in body.frames.soles)
-    tilt = max(math.acos(min(1.0, float(sole.rotation[2, 2]))) for sole in (left, right))
+    # How a foot leans that no joint rolls is its leg's.
+    rows = slice(0, 1 if body.robot.roles.feet_lean else 2)
+    tilt = max(math.atan2(np.linalg.norm(sole.rotation[2, rows]), sole.rotation[2, 2]) for sole in (left, right))
     return float(right.translation[2] - left.translation[2]), tilt
 
 

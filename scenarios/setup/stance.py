@@ -13,6 +13,7 @@ from surefoot.models.types import RobotDescription
 from surefoot.planner.types import FeetState
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.wbc.ik import PostureIk, PostureTarget
+from surefoot.wbc.leaning import line_centre
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames
 
@@ -73,7 +74,8 @@ def _limits(robot: RobotDescription) -> JointLimits:
 
 def frames_of(robot: RobotDescription) -> BodyFrames:
     """The frames of a described robot that the controller steers."""
-    return BodyFrames(soles=robot.sole_sites, torso=robot.torso_body)
+    leaning = 0.5 * robot.sole_width if robot.roles.feet_lean else None
+    return BodyFrames(soles=robot.sole_sites, torso=robot.torso_body, leaning=leaning)
 
 
 def start_posture(walk: Walk, body: Body) -> Array:
@@ -139,8 +141,11 @@ def pressed(q: Array, length: float = 1.0) -> Array:
 
 
 def feet_at(body: Body, q: Array) -> FeetState:
-    """Soles of a standing configuration, shape (nq,)."""
+    """Soles of a standing configuration, shape (nq,), or the lines on which leaning ones stand."""
     position, rotation = _sole_placements(body, q)
+    if body.frames.leaning is not None:
+        lines = (line_centre(k, position[k], rotation[k], body.frames.leaning) for k in (0, 1))
+        position = np.array(list(lines))
     return FeetState(position, np.arctan2(rotation[:, 1, 0], rotation[:, 0, 0]), (True, True))
 
 

@@ -201,7 +201,8 @@ class Walk:
             ParameterError: it cannot plan this gait.
             PartError: the profile, of others, fails to make it.
         """
-        parameters = replace(self.parameters, leg=leg, cop_room=self._cop_room(leg))
+        authority = math.inf, 0.0 if self.robot.roles.feet_lean else math.inf
+        parameters = replace(self.parameters, leg=leg, cop_room=self._cop_room(leg), cop_authority=authority)
         given = (self.gait, feet, *self.sole, self.terrain, parameters, self.heights)
         profile = guarded_law(self.profile, self.guard)
         if profile.planner is not None:

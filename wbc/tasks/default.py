@@ -18,6 +18,7 @@ def default_tasks(
     ankles: AnkleStops | None = None,
     hips: HipStops | None = None,
     waist: bool = True,
+    leaning: bool = False,
 ) -> tuple[Task, ...]:
     """The tasks in the order of their rows.
 
@@ -32,13 +33,14 @@ def default_tasks(
         hips: where they end; None for nowhere.
         waist: whether the torso can move against the pelvis. Without, they are one body, which the pelvis's task holds:
             twice the weight would throw the CoM up for a friction about the vertical that its yaw is not worth.
+        leaning: whether feet roll as their legs do (see `surefoot.wbc.leaning`).
     """
     trunk = (Pelvis(weights, gains, hips), Torso(weights, gains))
     return (
         CentreOfMass(weights, balance, region),
         AngularMomentum(weights, gains),
         *(trunk if waist else trunk[:1]),
-        SwingFoot(weights, gains, toe, length, ankles),
+        SwingFoot(weights, gains, toe, length, ankles, leaning),
     )
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
+from surefoot.wbc.leaning import FREE
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms, cross
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
@@ -32,14 +33,15 @@ class AnkleStops:
 
     Attributes:
         ankles: from the centres of the soles, in their frames: forward and up, shape (2, 3) [m].
-        columns: of the generalised velocity, those of both joints of each ankle.
+        columns: of the generalised velocity, those of the joints of each ankle.
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
         soles = [model.frames[model.getFrameId(name)] for name in frames.soles]
         supports = (model.supports[sole.parentJoint] for sole in soles)
         self.ankles = np.array([sole.placement.inverse().translation for sole in soles]) * (1.0, 0.0, 1.0)
-        self.columns = tuple(tuple(model.joints[joint].idx_v for joint in list(chain)[-2:]) for chain in supports)
+        joints = 2 if frames.leaning is None else 1
+        self.columns = tuple(tuple(model.joints[j].idx_v for j in list(chain)[-joints:]) for chain in supports)
         self._lower, self._upper, self._ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
 
     def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[Array, float]]:
@@ -79,7 +81,13 @@ class SwingFoot:
     name, size = "swing foot", 6
 
     def __init__(
-        self, weights: TaskWeights, gains: TaskGains, toe: float, length: float, stops: AnkleStops | None = None
+        self,
+        weights: TaskWeights,
+        gains: TaskGains,
+        toe: float,
+        length: float,
+        stops: AnkleStops | None = None,
+        leaning: bool = False,
     ) -> None:
         """Set up the task.
 
@@ -89,9 +97,12 @@ class SwingFoot:
             toe: toe edge from the sole's centre [m].
             length: size of the robot, by which rotations count [-].
             stops: where the ankles end; None for nowhere.
+            leaning: whether the foot rolls as its leg does (see `surefoot.wbc.leaning`).
         """
         self._stops, self._turned = stops, -1
         self.weight = weights.swing * np.repeat([1.0, length**2], 3)
+        if leaning:
+            self.weight[FREE] = 0.0
         self._gains, self._toe, self._lifted = gains.swing, toe, _LIFTED * length
 
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> tuple[float, ...]:

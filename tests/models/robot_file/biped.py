@@ -20,6 +20,7 @@ class Biped:
         turned: whether x of the base points backward.
         feet: whether the feet have shapes.
         arms: whether it has arms.
+        beside: how far outside the axis of its roll joint a leg is.
         extra: more links and joints.
         changes: text that is put in the place of other text at the end.
     """
@@ -29,6 +30,7 @@ class Biped:
     turned: bool = False
     feet: bool = True
     arms: bool = True
+    beside: float = 0.0
     extra: str = ""
     changes: dict[str, str] = field(default_factory=dict)
 
@@ -56,7 +58,7 @@ class Biped:
             _link(f"{side}_yaw_link", 0.5, (0.05, 0.05, 0.05), shape=False),
             _joint(f"{side}_roll", f"{side}_yaw_link", f"{side}_roll_link", (0, 0, 0), "x"),
             _link(f"{side}_roll_link", 0.5, (0.05, 0.05, 0.05), shape=False),
-            _joint(f"{side}_pitch", f"{side}_roll_link", f"{side}_thigh", (0, 0, 0), "y"),
+            _joint(f"{side}_pitch", f"{side}_roll_link", f"{side}_thigh", (0, self.beside * sign, 0), "y"),
             _link(f"{side}_thigh", 2.0, (0.06, 0.06, 0.2), (0, 0, -THIGH / 2)),
             _joint(f"{side}_knee", f"{side}_thigh", f"{side}_shank", (0, 0, -THIGH), self.knee, knee),
             _link(f"{side}_shank", 1.5, (0.05, 0.05, 0.2), (0, 0, -SHANK / 2)),
@@ -97,6 +99,9 @@ def _joint(name, parent, child, at, axis, limits=(-1.2, 1.2), rpy="0 0 0") -> st
 def _text(values) -> str:
     return " ".join(map(str, values))
 
+
+NARROW = "sole: {length: 0.18, width: 0.03, centre: [0.03, 0.0, -0.06]}\n"
+"""A sole that stands on its side edges rather than flat."""
 
 FILE = "name: biped\nmodel: biped.urdf\nfeet: {left: left_foot, right: right_foot}\n"
 

@@ -45,6 +45,7 @@ class Walk:
         self.footstep = [0.3, -0.1, 0.0, 0.0]
         self.boxes = ()
         self.velocity_limit = (10.0, 20.0)
+        self.roles = {}
 
     @property
     def view(self):
@@ -58,7 +59,7 @@ class Walk:
         }  # fmt: skip
         constants = SimpleNamespace(
             mass=100.0, foot_length=LENGTH, foot_width=WIDTH, control_rate=RATE, boxes=self.boxes, plane=0.0,
-            similarity=REFERENCE_SIZE,
+            similarity=REFERENCE_SIZE, roles=self.roles,
             velocity_limit=self.velocity_limit, fidelity="full", com_height=0.9,
         )  # fmt: skip
         footstep = _Channel({"foot": [1], "planned": np.array([self.footstep])}, [350])
@@ -122,6 +123,20 @@ def test_a_planned_roll_is_no_tilt_but_what_goes_sideways_is(walk):
     assert measured(walk)[2] == pytest.approx(np.arcsin(np.cos(0.4) * np.sin(0.1)))
     walk.roll[:] = walk.roll[:, ::-1]
     assert measured(walk)[2] > 0.4
+
+
+def test_a_foot_that_no_joint_rolls_tilts_ahead_only_and_lands_where_its_edge_does(walk):
+    walk.roles = {"left_leg": ("yaw", "roll", "pitch", "knee", "ankle")}
+    walk.left[100:200, 3:] = quaternion(yaw=0.7, roll=-0.2)
+    assert measured(walk)[2] == pytest.approx(0.0, abs=1e-9)
+    walk.left[100:200, 3:] = quaternion(yaw=0.7, pitch=0.05, roll=-0.2)
+    assert measured(walk)[2] == pytest.approx(0.05)
+    # The right foot lands leaning outward, on the edge to its right.
+    walk.right[:, 3:] = quaternion(roll=0.2)
+    walk.right[:, 1:3] += WIDTH / 2 * np.array([np.cos(0.2), np.sin(0.2)])
+    assert feet.footstep_error_max(walk.view) == pytest.approx(0.0, abs=1e-9)
+    walk.roles = {}
+    assert feet.footstep_error_max(walk.view) == pytest.approx(WIDTH / 2)
 
 
 def test_a_sole_flat_on_sloping_ground_is_not_tilted(walk):

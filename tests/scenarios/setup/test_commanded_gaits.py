@@ -71,7 +71,14 @@ def test_what_is_just_within_reach_is_accepted_and_reads_back_as_itself(robots, 
     scenario = read(robots, FAST + VELOCITY % twist)
     assert Draft(scenario).gait.steps == 8
     assert read(robots, scenario_yaml(scenario)) == scenario
-    robot = SimpleNamespace(sole_length=0.22, sole_width=0.11, mass=100.0, shank_spacing=0.11, leg_length=0.94)
+    robot = SimpleNamespace(
+        sole_length=0.22,
+        sole_width=0.11,
+        mass=100.0,
+        shank_spacing=0.11,
+        leg_length=0.94,
+        roles=SimpleNamespace(feet_lean=False),
+    )
     monkeypatch.setattr("surefoot.scenarios.setup.walk.facts_of", lambda _: robots.facts("", scenario.robot_options))
     walk = resolve(scenario, robot)
     planner = walk.planner(walk.stance, LegInertia())

@@ -12,7 +12,8 @@ from surefoot.scenarios.loop.run import run_scenario
 pytestmark = pytest.mark.unit
 
 NAMES = (
-    "fell fall_time fall_warning duration steps_planned place_error heading_error steps_taken touchdowns_missed "
+    "fell fall_time fall_warning duration steps_planned place_error heading_error "
+    "waypoints_missed steps_taken touchdowns_missed "
     "standing_time_final standing_time_between zmp_inside_fraction "
     "zmp_excursion_max cop_ratio_p99 cop_ratio_max zmp_error_rms zmp_error_max com_error_rms dcm_error_rms "
     "capture_margin_min step_shift step_timing "
@@ -41,6 +42,7 @@ def test_all_names_of_the_contract_are_there(metrics, motion):
         "fall_warning",
         "place_error",
         "heading_error",
+        "waypoints_missed",
         "stair_edge_margin_min",
         "memory_growth",
     ]

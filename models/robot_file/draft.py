@@ -1,5 +1,6 @@
 """A first robot file for a model: its feet found by shape, and in comments what else may be given."""
 
+import math
 import re
 import tempfile
 from collections.abc import Iterator
@@ -68,12 +69,12 @@ def draft(model: str, folder: Path) -> Draft:
     name = _name(path)
     source = read_source(RobotFile(name=name, model=model, inertia="repair"), path)
     feet = _feet(source.model)
-    head = f"name: {name}\nmodel: {model}\n"
+    head = f"name: {_scalar(name)}\nmodel: {_scalar(model)}\n"
     if feet is None:
         ends = ", ".join(_link(source.model, joint) for joint in _ends(source.model)) or "none"
         text = f"{head}feet: {{left: LINK, right: LINK}}  # two of the links at the ends of chains: {ends}\n"
         return Draft(_commented(text, None), f"the feet of {model} cannot be told by shape; name their links in feet")
-    orders = [f"{head}feet: {{left: {left}, right: {right}}}\n" for left, right in (feet, feet[::-1])]
+    orders = [f"{head}feet: {{left: {_scalar(left)}, right: {_scalar(right)}}}\n" for left, right in (feet, feet[::-1])]
     refusal = ""
     for more in ("", "inertia: repair\n"):  # an inertia that no body can have is refused before feet are looked at
         for lines in orders:
@@ -97,6 +98,11 @@ def _name(path: Path) -> str:
     return "robot"
 
 
+def _scalar(text: str) -> str:
+    """A text as YAML has it within a list, in quotes where it would be something else without."""
+    return str(yaml.safe_dump([text], default_flow_style=True, allow_unicode=True, width=math.inf))[1:-2]
+
+
 def _centre(model: pin.Model, lines: str, found: Explanation) -> str:
     """Centre of the left sole in the frame of its foot's link, as a robot file would say it."""
     robot, link = found.description, str(yaml.safe_load(lines)["feet"]["left"])
@@ -112,7 +118,8 @@ def _tried(lines: str, model: str, path: Path) -> Explanation:
     """What is derived from the lines of a file, wherever it will be."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "robot.yaml"
-        file.write_text(lines.replace(f"model: {model}\n", f"model: {path.absolute()}\n"), encoding="utf-8")
+        there = lines.replace(f"model: {_scalar(model)}\n", f"model: {_scalar(str(path.absolute()))}\n")
+        file.write_text(there, encoding="utf-8")
         return explain(file)
 
 
@@ -174,7 +181,7 @@ def _others(found: Explanation | None, centre: str) -> Iterator[str]:
         {}
         if robot is None
         else {
-            "torso": robot.torso_body,
+            "torso": _scalar(robot.torso_body),
             "com_height": f"{robot.com_height:.3f}",
             "sole": f"{{length: {robot.sole_length:.3f}, width: {robot.sole_width:.3f}, centre: [{centre}]}}",
         }

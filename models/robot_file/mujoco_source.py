@@ -100,6 +100,9 @@ class _Reader:
         self._mj, self._file, self._path, self._root = mj, file, path, root
         self._model = pin.Model()
         self._model.name = file.name
+        self._links = {mj.body(body).name for body in range(mj.nbody)}
+        self._joints = {mj.joint(joint).name for joint in range(mj.njnt)}
+        self._names = [mj.body(body).name or _free(f"body{body}", self._links) for body in range(mj.nbody)]
         self._place: dict[int, tuple[int, pin.SE3]] = {}
         self._added: dict[int, int] = {}
         self._notes = notes
@@ -130,7 +133,7 @@ class _Reader:
             for index in range(first, first + count):
                 joint, offset = self._add_joint(index, joint, offset, name)
                 if index < first + count - 1:  # what moves between two joints of a body has no name in the file
-                    between = f"{name} behind {model.names[joint]}"
+                    between = _free(f"{name} behind {model.names[joint]}", self._links)
                     model.addFrame(pin.Frame(between, joint, 0, offset, pin.FrameType.BODY))
         self._place[body] = (joint, offset)
         frame = pin.Frame(name, joint, 0, offset, pin.FrameType.BODY)
@@ -138,12 +141,13 @@ class _Reader:
         model.appendBodyToJoint(joint, self._inertia(body, name), offset)
 
     def _name(self, body: int) -> str:
-        return self._mj.body(body).name or f"body{body}"
+        return self._names[body]
 
     def _add_joint(self, index: int, parent: int, offset: pin.SE3, body: str) -> tuple[int, pin.SE3]:
         """Put a joint at its place in the body; returns it and the body seen from it."""
         mj = self._mj
-        name, kind, at = mj.joint(index).name or f"{body}_joint{index}", int(mj.jnt_type[index]), mj.jnt_pos[index]
+        name = mj.joint(index).name or _free(f"{body}_joint{index}", self._joints)
+        kind, at = int(mj.jnt_type[index]), mj.jnt_pos[index]
         if kind not in (_HINGE, _SLIDE):
             raise RobotError(
                 ("model",), f"{self._path}: joint '{name}' is neither hinge nor slide", "give it as hinges"
@@ -225,6 +229,14 @@ class _Reader:
         }
         maker = makers.get(mujoco.mjtGeom(kind).name.removeprefix("mjGEOM_"))
         return [solid(link, maker(), place, rgba)] if maker else []
+
+
+def _free(name: str, taken: set[str]) -> str:
+    """A name for what has none in the model, other than all that are taken; it is taken then."""
+    while name in taken:
+        name += "_"
+    taken.add(name)
+    return name
 
 
 def _placed(said: str, document: Assembled) -> str:

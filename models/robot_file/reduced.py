@@ -1,7 +1,6 @@
 """A model with the joints that walk: others locked, limits and rotors complete, x of the base ahead."""
 
 import fnmatch
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,15 +12,9 @@ from surefoot.models.robot_file.files import srdf_of
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
-from surefoot.models.robot_file.source import Source
+from surefoot.models.robot_file.source import RESERVED, SITES, Source
 from surefoot.models.robot_file.turning import turn, upward
 from surefoot.models.types import Array, RobotError, nearest
-
-SITES = ("imu", "left_sole", "right_sole")
-"""Of every description."""
-
-RESERVED = ("world", "universe")
-"""Names that the engines give to what stands still."""
 
 _LEAST = 1e-10
 """Mass [kg] and moment of inertia [kg m^2] that a body has to have."""
@@ -128,18 +121,17 @@ def _above(model: pin.Model, left: set[int], right: set[int]) -> set[int]:
 
 
 def _without(full: pin.Model, locked: list[int], q: Array) -> pin.Model:
-    """The model with joints locked; Pinocchio seeks joints among all frames, so links have other names meanwhile."""
-    _rename(full, lambda name: f"link {name}")
+    """The model with joints locked; Pinocchio seeks joints among all frames, so others have other names meanwhile.
+
+    Names of a model can be printed: with lines before them, a link's and a fixed joint's are those of nothing else.
+    """
+    for frame in list(full.frames)[1:]:
+        before = {pin.FrameType.JOINT: "", pin.FrameType.BODY: "\n"}.get(frame.type, "\n\n")
+        frame.name = f"{before}{frame.name}"
     model = pin.buildReducedModel(full, locked, q)
-    for one in (full, model):
-        _rename(one, lambda name: name.removeprefix("link "))
+    for frame in (*full.frames, *model.frames):
+        frame.name = frame.name.lstrip("\n")
     return model
-
-
-def _rename(model: pin.Model, renamed: Callable[[str], str]) -> None:
-    for frame in model.frames:
-        if frame.type == pin.FrameType.BODY:
-            frame.name = renamed(frame.name)
 
 
 def _chain(model: pin.Model, link: str, key: str) -> list[int]:

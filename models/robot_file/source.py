@@ -15,8 +15,14 @@ from surefoot.models.robot_file.shapes import Shape, urdf_shapes
 from surefoot.models.robot_file.urdf import kinematics
 from surefoot.models.types import Array, RobotError
 
-ROOT = "floating base"
-"""Name of the joint of the floating base, which no XML name is."""
+ROOT = "floating base\n"
+"""Name of the joint of the floating base, which no name of a model is, since those can be printed."""
+
+SITES = ("imu", "left_sole", "right_sole")
+"""Of every description."""
+
+RESERVED = ("world", "universe")
+"""Names that the engines give to what stands still."""
 
 _REPAIR = 1e-4
 """Least second moment of a repaired inertia over their sum [-]."""
@@ -74,11 +80,15 @@ def _read_urdf(file: RobotFile, document: Document) -> Source:
 
 
 def _check_parts(model: pin.Model, path: Path) -> None:
-    """Refuse bodies that no robot has, however an engine came to them.
+    """Refuse bodies that no robot has, however an engine came to them, and joints that could not be found by name.
 
     Raises:
-        RobotError: a mass, a moment of inertia or a length is out of range.
+        RobotError: a mass, a moment of inertia or a length is out of range, or a joint has a name of something else.
     """
+    for name in (*SITES, "universe"):
+        if name in tuple(model.names)[1:]:
+            what = f"{path}: a joint has the name '{name}', which means something else in every robot"
+            raise RobotError(("model",), what, "give it another")
     links = {frame.parentJoint: frame.name for frame in reversed(model.frames) if frame.type == pin.FrameType.BODY}
     for joint in range(1, model.njoints):
         inertia, name = model.inertias[joint], links.get(joint, model.names[joint])

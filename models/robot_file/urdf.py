@@ -11,6 +11,9 @@ MOST_LINKS, MOST_SHAPES = 1_000, 2_000
 _LEAST = 1e-6
 """Of the largest part of an axis."""
 
+_PARTS = ("inertial", "visual", "collision", "origin", "axis", "limit", "color")
+"""Of links, joints and materials, what is read of numbers; others are for other programs."""
+
 _JOINTS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
 
@@ -22,8 +25,9 @@ def check_urdf(root: Node) -> None:
     """
     for part in root.nodes:
         if part.tag in ("link", "joint", "material"):
-            check_numbers(part, of_urdf)
-            _require(part)
+            for element in (node for node in part.nodes if node.tag in _PARTS):
+                check_numbers(element, of_urdf, f" of {part.tag} '{part.get('name', '')}'")
+                _require(part, element)
     links, joints = _named(root, "link"), _named(root, "joint")
     for tag, found, most in (("links", list(links.values()), MOST_LINKS), ("shapes", _shapes(root), MOST_SHAPES)):
         if len(found) > most:
@@ -31,8 +35,8 @@ def check_urdf(root: Node) -> None:
     _check_tree(root, links, joints)
 
 
-def _require(part: Node) -> None:
-    for element in part.elements():
+def _require(part: Node, within: Node) -> None:
+    for element in within.elements():
         for attribute in REQUIRED.get(element.tag, ()):
             if attribute not in element.attrib:
                 what = f"{element.tag} of {part.tag} '{part.get('name', '')}' lacks {attribute}"

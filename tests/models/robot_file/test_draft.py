@@ -108,3 +108,17 @@ def test_an_arm_has_no_feet_to_stand_on(tmp_path: Path) -> None:
 def test_no_model_is_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(RobotError, match=r"nothing\.urdf"):
         draft("nothing.urdf", tmp_path)
+
+
+@pytest.mark.parametrize(
+    "name", ["null", "12", "no", "1_000", "2001-01-01", "a: b", "a, b", "a #b", "'q", "*s", "%", "\u00e9"]
+)
+def test_names_that_yaml_would_read_as_something_else_are_quoted(tmp_path: Path, name: str) -> None:
+    text = biped.Biped().urdf().replace('<robot name="biped"', f'<robot name="{name}"')
+    (tmp_path / f"{name}.urdf").write_text(text.replace('"left_foot"', f'"{name}"'))
+    made = draft(f"{name}.urdf", tmp_path)
+    assert made.refusal == ""
+    (tmp_path / "mine.yaml").write_text(made.text)
+    file = read(tmp_path / "mine.yaml")
+    assert (file.model, file.soles().left) == (f"{name}.urdf", name)
+    assert describe(str(tmp_path / "mine.yaml"), RobotOptions()).name == file.name

@@ -54,6 +54,55 @@ def test_a_link_and_a_joint_may_share_a_name(tmp_path) -> None:
     np.testing.assert_array_equal(inertias(other), inertias(one))
 
 
+MORE = '<link name="more"/><joint name="{}" type="fixed"><parent link="base"/><child link="more"/></joint>'
+
+
+@pytest.mark.parametrize("name", ["universe", "floating base", "base", "link base", "left_sole"])
+def test_a_fixed_joint_may_have_any_name(tmp_path, name) -> None:
+    """Whatever the engines and this package call things of their own."""
+    robot = explained(tmp_path, biped.Biped(extra=MORE.format(name)).urdf(), "lock: [left_elbow]\n").description
+    plain = explained(tmp_path, biped.Biped().urdf(), "lock: [left_elbow]\n").description
+    np.testing.assert_array_equal(inertias(robot), inertias(plain))
+
+
+@pytest.mark.parametrize("name", ["floating base", "link base", "world"])
+def test_a_joint_may_have_a_name_that_the_base_has_here(tmp_path, name) -> None:
+    model = biped.Biped().urdf().replace('"left_knee"', f'"{name}"')
+    assert name in explained(tmp_path, model, "lock: [left_elbow]\n").description.joint_names
+
+
+@pytest.mark.parametrize("name", ["universe", "imu", "left_sole"])
+@pytest.mark.parametrize("joint", ["left_knee", "left_elbow"])
+def test_a_joint_with_the_name_of_a_site_or_of_the_world_is_refused(tmp_path, name, joint) -> None:
+    model = biped.Biped().urdf().replace(f'"{joint}"', f'"{name}"')
+    with pytest.raises(RobotError, match=f"a joint has the name '{name}', .*; give it another"):
+        explained(tmp_path, model)
+
+
+def test_a_body_without_a_name_gets_none_that_another_has(tmp_path) -> None:
+    """Its shapes and mass went to the other one."""
+    model = mjcf.TEXT.replace('<body name="left_pad"', "<body")
+    plain = mjcf.described(tmp_path, model)
+    for number in range(1, 16):
+        other = mjcf.described(tmp_path, model.replace('"right_ankle"', f'"body{number}"'))
+        np.testing.assert_array_equal(inertias(other), inertias(plain))
+
+
+def test_what_is_between_two_joints_gets_no_name_that_a_body_has(tmp_path) -> None:
+    two = '<joint name="left_roll" axis="1 0 0"/><joint name="left_more" axis="0 0 1" actuatorfrcrange="-9 9"/>'
+    model = mjcf.TEXT.replace('<joint name="left_roll" axis="1 0 0"/>', two)
+    model = model.replace('"right_ankle"', '"left_roll_link behind left_roll"')
+    with pytest.raises(RobotError, match="link 'left_roll_link behind left_roll_' of biped moves with 0 kg"):
+        mjcf.described(tmp_path, model)
+
+
+def test_elements_of_other_programs_in_a_link_are_not_looked_at(tmp_path) -> None:
+    others = '<collision_checking><capsule name="leg"/></collision_checking><sensor><origin xyz="a"/></sensor></link>'
+    model = biped.Biped().urdf()
+    plain = explained(tmp_path, model).description
+    assert explained(tmp_path, model.replace("</link>", others)).description.mjcf == plain.mjcf
+
+
 def test_a_torso_is_named_as_the_description_names_it(tmp_path) -> None:
     """What `robot new` proposes for a link that has the name of a joint can be written into the file."""
     model = biped.Biped(extra=CHEST.format(at="0 0 0.2", rpy="0 0 0", axis="0 0 1")).urdf().replace("chest", "waist")

@@ -86,6 +86,9 @@ def say_for(source: Source, overrides: Overrides, robots: Robots) -> tuple[str, 
         return None
     soles = _soles(source.value)
     before, after = _facts(origin, soles, robots), _facts(robot, RobotSettings(), robots)
+    if before is None and is_known(origin, robots) and _facts(origin, RobotSettings(), robots) is None:
+        what = f"{_KEY} '{origin}' is a robot that cannot be read"
+        source.problems.append(Problem((_KEY,), what, "mend its file, or name another robot"))
     if before is None or after is None:
         return None
     effort = _effort(source.value, (str(origin), soles), (str(robot), RobotSettings()), robots)

@@ -158,6 +158,11 @@ def test_a_robot_that_nobody_knows_is_refused():
         load("walk", {"robot": "smal"})
 
 
+def test_a_file_for_a_robot_that_cannot_be_read_is_refused(tmp_path):
+    with pytest.raises(ScenarioError, match=r"sized_for '.*none.yaml' is a robot that cannot be read"):
+        read(f"sized_for: {tmp_path}/none.yaml")
+
+
 def test_legs_are_bent_as_much_and_feet_no_nearer():
     robots = RegisteredRobots()
     full, other = robots.facts("humanoid100", RobotSettings()), robots.facts("small", RobotSettings())

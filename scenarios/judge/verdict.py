@@ -31,6 +31,9 @@ from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import never_act
 from surefoot.similarity import Similarity
 
+_SAME_TIME = 1e-8
+"""Times of ticks are sums and carry rounding [s]."""
+
 FIRST_METRICS = (
     "steps_taken",
     "zmp_inside_fraction",
@@ -284,7 +287,10 @@ def _unfinished(log: Log) -> list[str]:
 
 def _unacted(log: Log, scenario: Scenario, size: Similarity) -> list[str]:
     """Say what was to happen after the run had ended."""
+    broke_off = log.metadata.get(END_RECORD, {}).get("kind") not in _ACCEPTED_ENDS
     end = log.time_range()[1] + 1.0 / scenario.rates.control
+    if broke_off:  # in the tick after the last of its log, in which a fault may have acted
+        end += _SAME_TIME
     try:
         return [problem.what for problem in never_act(Draft(scenario, size), end)]
     except ParameterError as fault:

@@ -73,7 +73,7 @@ def attached_scenario(path: str) -> tuple[str, str]:
         text = _as_run(decoded(BytesIO(log.attachments[SCENARIO_FILE]), f"{path}/{SCENARIO_FILE}"), log.metadata)
     except LogError as error:
         raise ScenarioError([str(error)]) from None
-    except (KeyError, TypeError, ValueError, RecursionError):
+    except (AttributeError, KeyError, TypeError, ValueError, RecursionError):
         what = f"{path}: carries no readable {SCENARIO_FILE}, so it cannot be run again"
         raise ScenarioError([f"{what}; give a log that `surefoot run` has written"]) from None
     if PARTS_RECORD in log.metadata:

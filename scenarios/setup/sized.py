@@ -10,7 +10,7 @@ import copy
 import math
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel
@@ -86,6 +86,9 @@ def say_for(source: Source, overrides: Overrides, robots: Robots) -> tuple[str, 
         return None
     soles = _soles(source.value)
     before, after = _facts(origin, soles, robots), _facts(robot, RobotSettings(), robots)
+    if before is None and is_known(origin, robots) and _facts(origin, RobotSettings(), robots) is None:
+        what = f"{_KEY} '{origin}' is a robot that cannot be read"
+        source.problems.append(Problem((_KEY,), what, "mend its file, or name another robot"))
     if before is None or after is None:
         return None
     effort = _effort(source.value, (str(origin), soles), (str(robot), RobotSettings()), robots)
@@ -182,10 +185,10 @@ class _Translation:
 
     def _controller(self, parameters: Any, values: Any, key: Key) -> None:
         for entry in fields(parameters) if isinstance(values, dict) else ():
-            value, at = values.get(entry.name), (*key, entry.name)
-            if isinstance(value, dict):
-                self._controller(getattr(parameters, entry.name), value, at)
-            elif "unit" in entry.metadata and _is_number(value):
+            value, at, own = values.get(entry.name), (*key, entry.name), getattr(parameters, entry.name)
+            if is_dataclass(own):
+                self._controller(own, value, at)
+            elif "unit" in entry.metadata and entry.name in values:
                 units = entry.metadata["unit"].split(", ")
                 factors = [_against(self.after.size, self.before.size, unit) for unit in units]
                 self._put(values, entry.name, at, _times(value, factors[0] if len(factors) == 1 else factors))
@@ -201,7 +204,9 @@ class _Translation:
             self._put(criteria, name, key, self._limit(metric, bound))
 
     def _limit(self, metric: Metric[Any], limit: Any) -> Any:
-        """Side of a bound on a metric for the other robot."""
+        """Side of a bound on a metric for the other robot, or of one for each of its elements."""
+        if isinstance(limit, list):
+            return [self._limit(metric, part) for part in limit]
         if metric.name != _TORQUE:
             return _times(limit, _against(self.after.size, self.before.size, metric.unit))
         scaled = _times(limit, self.effort)
@@ -315,8 +320,7 @@ def _groups(annotation: Any) -> Iterator[type[BaseModel]]:
 
 
 def _is_number(value: Any) -> bool:
-    several = value if isinstance(value, list) and value else [value]
-    return all(isinstance(part, int | float) and not isinstance(part, bool) for part in several)
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _times(value: Any, factor: float | list[float]) -> Any:
@@ -326,5 +330,5 @@ def _times(value: Any, factor: float | list[float]) -> Any:
         return type(value)(_times(part, one) for part, one in zip(value, factors, strict=False))
     if isinstance(factor, list):
         return value
-    plain = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    plain = _is_number(value) and math.isfinite(value)
     return value * factor if plain and factor != 1.0 else value

@@ -141,6 +141,8 @@ def _text(reference: str) -> tuple[str, str]:
     if not path.is_file() and reference in own:
         return own[reference].read_text(encoding="utf-8"), f"campaigns/{reference}{ENDING}"
     try:
+        if path.exists() and not path.is_file() and not path.is_dir():
+            raise ValueError("a pipe or a device is no regular file")
         with path.open("rb") as file:
             return decoded(file, reference), reference
     except FileNotFoundError:

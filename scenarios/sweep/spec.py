@@ -123,7 +123,7 @@ class Spec(Group):
     def _records_in_the_grid(self) -> Self:
         for record in self.records:
             for name, label in record.at.items():
-                if label not in self.grid.get(name, ()):
+                if not any(label == known for known in self.grid.get(name, ())):
                     known = self.grid.get(name, self.grid)
                     raise ValueError(
                         f"a record is at {name}: {label}, not in the grid; {nearest(str(label), map(str, known))}"

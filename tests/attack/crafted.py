@@ -13,6 +13,7 @@ from mcap.records import Attachment, Channel, Chunk, ChunkIndex, Header, Message
 
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, encoded
+from surefoot.scenarios.record.provenance import STOPPED
 
 MB = 1 << 20
 Edit = Callable[["Draft"], None]
@@ -115,6 +116,14 @@ def _scenarios() -> Iterator[tuple[str, Edit]]:
     for name, text in texts.items():
         yield f"scenario {name}", lambda log, text=text: log.attachments.update({"scenario.yaml": text})
     yield "no scenario", lambda log: log.attachments.pop("scenario.yaml")
+    for text in ("[1, 2]", "pushes: [1]", "pushes: [{time: x}]", "faults: {a: 1}", "commands: 3"):
+        yield f"stopped in {text}", lambda log, text=text: _stopped(log, text.encode())
+
+
+def _stopped(log: Draft, scenario: bytes) -> None:
+    """As a run that was ended by hand, of which only what had begun is run again."""
+    log.attachments["scenario.yaml"] = scenario
+    log.metadata["end"] = {"kind": "completed", "time": "1", "reason": STOPPED}
 
 
 def _layouts() -> Iterator[tuple[str, Edit]]:

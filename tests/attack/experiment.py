@@ -42,7 +42,7 @@ BASES = {
     "frozen": POINT + STEPS + "faults: [{kind: planner_freeze, time: 0.5, duration: 0.1}]\n",
     "stairs": POINT + f"terrain: {{kind: stairs, count: 2, riser: 0.05}}\ngait: {{steps: 4, {LOW}}}\n",
     "blocks": POINT + f"terrain: {{kind: blocks, riser: 0.02}}\ngait: {{steps: 4, step_length: 0.3, {LOW}}}\n",
-    "slope": POINT + f"terrain: {{kind: slope, angle: 0.05}}\ngait: {{steps: 4, {LOW}}}\n",
+    "slope": POINT + f"terrain: {{kind: slope, angle: 0.05}}\ngait: {{steps: 4, step_length: 0.25, {LOW}}}\n",
     **{
         profile: POINT + STEPS + f"planner: {{profile: {profile}}}\n"
         for profile in ("paper", "repaired", "lti", "preview", "dcm")
@@ -56,7 +56,9 @@ BODIES = {
     "body-pushed": BODY + STAND + "duration: 0.7\npushes: [{time: 0.2, impulse: 0.05}]\n",
     "body-stairs": BODY
     + f"terrain: {{kind: stairs, count: 1, riser: 0.05}}\ngait: {{steps: 2, {LOW}}}\nduration: 2.5\n",
-    "body-loaded": BODY + STAND + "duration: 0.5\nerrors: {payload: {mass: 3.0}}\nrobot_options: {payload_mass: 2.0}\n",
+    "body-loaded": BODY.replace("0.11}", "0.11, payload_mass: 2.0}")
+    + STAND
+    + "duration: 0.5\nerrors: {payload: {mass: 3.0}}\n",
     "body-ground": BODY
     + f"gait: {{steps: 2, step_length: 0.2, {PACE}}}\nduration: 2.0\n"
     + "errors: {ground: [{x: 0.35, length: 0.3, height: 0.005}]}\n",

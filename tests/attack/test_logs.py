@@ -18,10 +18,11 @@ import pytest
 from crafted import draft, recipes
 
 import surefoot
-from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.recover import recover
+from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.show.compare.divergence import WALL_CLOCK
 
 TRIALS = int(os.environ.get("SUREFOOT_TRIALS", "2000"))
@@ -139,6 +140,8 @@ def test_crafted_logs(logs, tmp_path, name):
     path.write_bytes(made.bytes())
     with suppress(LogError):
         recover(path, saved)
+    with suppress(ScenarioError):
+        load(path)
     for one in (path, saved):
         assert not (one.exists() and passes(one)) or content(read(one)) == content(read(logs[0]))
 

@@ -4,7 +4,7 @@ import pytest
 from experiment import BASES, BODIES, Experiment, keys
 
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.load import load, read_scenario
 
 WITHOUT_OCCASION = {
     "seed": "nothing is random in the base",
@@ -83,6 +83,11 @@ def test_a_key_that_is_set_is_never_silent(experiments, base, key, value, outcom
 @pytest.mark.unit
 def test_what_is_excused_is_a_key():
     assert set(WITHOUT_OCCASION) <= set(keys())
+
+
+@pytest.mark.unit
+def test_each_base_is_accepted():
+    assert all(read_scenario(text, "f.yaml", name).criteria for name, text in {**BASES, **BODIES}.items())
 
 
 @pytest.mark.long

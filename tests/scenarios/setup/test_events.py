@@ -96,3 +96,10 @@ def test_a_push_after_a_fall_is_no_pass(tmp_path):
     assert reason.startswith("pushes.1 begins at 6 s and never acts: the run ends at")
     alone = both.model_copy(update={"pushes": both.pushes[:1]})
     assert run_scenario(alone, tmp_path).verdict.passed
+
+
+def test_a_fault_that_ends_the_run_at_once_has_acted(tmp_path):
+    faults = "faults=[{kind: state_nan, time: 0.1}, {kind: planner_freeze, time: 0.2}]"
+    verdict = run_scenario(load("stand", ["fidelity=pendulum", "duration=0.5", faults]), tmp_path).verdict
+    unacted = [reason for reason in verdict.reasons if "never acts" in reason]
+    assert unacted == ["faults.1 acts first at 0.2 s and never acts: the run ends at 0.1 s"]

@@ -113,6 +113,10 @@ def test_gains_and_rates_that_a_file_gives_are_translated_too():
             "sized_for: humanoid100\nwbc: {gains: {swing: [1, 2, 3]}, arm_swing: x}",
             "wbc.arm_swing is 'x'; give a number",
         ),
+        ("sized_for: humanoid100\nwbc: {friction: {a: 1}}", "wbc.friction"),
+        ("sized_for: humanoid100\nwbc: {weights: {swing: {a: {}}}}", "wbc.weights.swing"),
+        ("sized_for: humanoid100\ngait: {step_width: [0.2]}", "([0.2] in the file, for humanoid100)"),
+        ("sized_for: humanoid100\ngait: {com_height: [1.0]}", "([1.0] in the file, for humanoid100)"),
     ],
 )
 def test_what_makes_no_sense_is_told_as_for_any_robot(text, told):
@@ -152,6 +156,11 @@ def test_a_robot_that_nobody_knows_is_refused():
         read("sized_for: humanoid10", "robot=small")
     with pytest.raises(ScenarioError, match="unknown robot 'smal'; did you mean 'small'"):
         load("walk", {"robot": "smal"})
+
+
+def test_a_file_for_a_robot_that_cannot_be_read_is_refused(tmp_path):
+    with pytest.raises(ScenarioError, match=r"sized_for '.*none.yaml' is a robot that cannot be read"):
+        read(f"sized_for: {tmp_path}/none.yaml")
 
 
 def test_legs_are_bent_as_much_and_feet_no_nearer():
@@ -252,6 +261,15 @@ def test_a_weaker_robot_may_take_so_many_times_what_standing_on_one_foot_takes(s
 def test_no_bound_on_torque_gets_stricter():
     text = "sized_for: humanoid100\nrobot: small\ncriteria: {torque_ratio_max: {max: 0.98}}"
     assert read_scenario(text, "f.yaml", "f", (), Motors(0.6)).criteria["torque_ratio_max"].max == 0.98
+
+
+@pytest.mark.parametrize("name", ["torque_ratio_max", "foot_slip_max"])
+def test_a_bound_in_a_list_of_one_is_that_bound(name):
+    plain, listed = (
+        read(f"sized_for: humanoid100\ncriteria: {{{name}: {{max: {limit}}}}}", "robot=small").criteria[name].max
+        for limit in ("0.5", "[0.5]")
+    )
+    assert listed == (plain,)
 
 
 def test_a_similar_robot_stands_with_the_same_share_of_its_torque():

@@ -1,5 +1,6 @@
 """A specification is checked whole before anything is run: every fault with its place."""
 
+import os
 from itertools import islice
 
 import pytest
@@ -133,6 +134,20 @@ def test_published_values_belong_to_the_grid(campaign, refused):
     )
     assert "a record is at pace: 5" in refused(SEARCHED + "[{name: X, value: 1, source: Y, at: {pace: 5}}]")[0]
     assert "give bisect" in refused("scenario: walk\nrecords: [{name: X, value: 1, source: Y}]")[0]
+
+
+@pytest.mark.parametrize("label", ["[a]", "{a: 1}"])
+def test_a_published_value_at_no_label_of_a_named_axis(refused, label):
+    named = SEARCHED.replace("{gait.steps: [3, 4]}", "{pace: {slow: {gait.steps: 3}}}")
+    (told,) = refused(named + f"[{{name: X, value: 1, source: Y, at: {{pace: {label}}}}}]")
+    assert "a record is at pace: " in told
+
+
+def test_a_pipe_or_a_device_is_no_specification(tmp_path):
+    os.mkfifo(tmp_path / "pipe.yaml")
+    for place in (str(tmp_path / "pipe.yaml"), "/dev/zero"):
+        with pytest.raises(ScenarioError, match="no regular file; give a specification"):
+            read_campaign(place)
 
 
 def test_a_scenario_beside_the_specification(tmp_path, campaign):

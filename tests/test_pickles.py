@@ -28,12 +28,13 @@ def again(thing):
 
 
 def errors():
-    """Every exception class of the package, in the order of its modules."""
+    """Every exception class of the package that leaves its module, in the order of the modules."""
     for found in pkgutil.walk_packages(surefoot.__path__, "surefoot."):
         if found.name.endswith("__main__"):
             continue
         for thing in vars(importlib.import_module(found.name)).values():
-            if inspect.isclass(thing) and issubclass(thing, BaseException) and thing.__module__ == found.name:
+            own = inspect.isclass(thing) and issubclass(thing, BaseException) and thing.__module__ == found.name
+            if own and not thing.__name__.startswith("_"):
                 yield thing
 
 

@@ -62,14 +62,14 @@ TEXTS = {
         errors: {com_height: 0.01, mass_scale: 1.02, link_mass_noise: 0.02, torso_com: [0.01, 0, 0],
                  payload: {mass: 1, body: torso}, friction: 0.1, ground_noise: 0.005,
                  ground: [{x: 0.6, y: 0.05, length: 0.2, width: 1, height: 0.01}]}
-        pushes: [{time: 0.02, duration: 0.02, force: [10, 0, 0], body: pelvis}]
+        pushes: [{time: 0.02, duration: 0.02, force: [10, 0, 0], body: pelvis, live: true}]
         faults: [{kind: qp_failure, time: 0.04, duration: 0.01}]
         """,
     "commands": """
         duration: 0.3
         commands:
           - {time: 0.1, v_x: 0.1, v_y: 0.02, yaw_rate: 0.1, single_support: 1, double_support: 0.4, swing_height: 0.04}
-          - {time: 0.2, place: {x: 0.4, y: 0.1, yaw: 0.2}}
+          - {time: 0.2, place: {x: 0.4, y: 0.1, yaw: 0.2}, live: true}
         gait: {initial_stand: 0.2}
         fidelity: pendulum
         """,

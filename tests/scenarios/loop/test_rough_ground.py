@@ -23,7 +23,7 @@ REFUSED = {
     SLOPE % ", start: 0.3": "footstep 1 would stand across the edge of the slope; put the edge between two footsteps",
     SLOPE % ", start: 0.05": "a start foot would stand across the edge of the slope",
     SLOPE % ", start: -0.2": "the walk would start on the slope; use at least 0.110 m",
-    SLOPE % ", friction: 0.1": "terrain.angle 0.17 rad is steeper than terrain.friction 0.1 holds; use less than 0.099 rad",
+    SLOPE % ", friction: 0.1": "terrain.angle 0.17 rad is steeper than terrain.friction 0.1 holds; use less than 0.099",
     SLOPE % ", height_noise: 0.01": "terrain.height_noise on a slope, which has one face only; use 0",
     "terrain: {kind: slope}": "terrain.angle 0 makes no slope; use more or less than 0 rad, or kind flat",
     "terrain: {kind: slope, angle: 0.6}": "terrain.angle 0.6 rad is too steep; use at most 0.35 rad",

@@ -10,8 +10,8 @@ import pinocchio as pin
 from surefoot.models.joints import axis_of
 from surefoot.models.mjcf import Role, add_defaults, numbers
 from surefoot.models.robot_file.legs import SIDES, Leg
-from surefoot.models.robot_file.source import SITES
 from surefoot.models.robot_file.shapes import Shape
+from surefoot.models.robot_file.source import SITES
 from surefoot.models.robot_file.touch import Hull, shape_name
 
 SOLE_THICKNESS = 0.02

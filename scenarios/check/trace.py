@@ -122,7 +122,7 @@ class Trace:
         return float(np.linalg.norm(off)) / allowed, f"{what}: {text}"
 
     def _over_peak(self, now: "Trace", sign: Sign, stage: int, peak: float) -> Array:
-        """How far a value is over the greatest of all stages; where that one is, how far the run is below it, if far."""
+        """How far a value is over the greatest of all stages; where that one is, how far the run is below, if far."""
         (column,), tolerance = sign.columns, sign.tolerance[0] + sign.tolerance[1] * abs(peak)
         below = peak - float(np.nanmax(now.values[column]))
         if self.values[column][stage] == peak and below > FAR * tolerance:

@@ -8,10 +8,10 @@ import pinocchio as pin
 
 from surefoot.models.robot_file.legs import at, find_legs, rest, solved
 from surefoot.models.robot_file.meshes import decimated
-from surefoot.models.robot_file.reduced import SITES, Reduced, reduced
+from surefoot.models.robot_file.reduced import Reduced, reduced
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape
-from surefoot.models.robot_file.source import read_source
+from surefoot.models.robot_file.source import SITES, read_source
 from surefoot.models.robot_file.text import Parts, robot_text
 from surefoot.models.robot_file.touch import Hull, find_hulls, joined, kept_apart, limbs, overlapping, shank_spacing
 from surefoot.models.robot_file.upper import find_upper, hanging, swings, with_upright

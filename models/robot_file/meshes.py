@@ -25,6 +25,9 @@ MOST_FACES = 25_000
 GRID = 0.1
 """Side of the cells in which vertices become one, over the edge of the triangles to be [-]."""
 
+MOST_COLLAPSED = 600_000
+"""Triangles of a whole robot whose edges are collapsed, up to 40 us each; of more, the grid makes one so far."""
+
 PRECISION = 0.08
 """Unit of length for the thresholds of the collapse, over the root of the robot's area: smaller is finer [-]."""
 
@@ -49,7 +52,11 @@ def decimated(parts: Sequence[Triangles], most_faces: int = MOST_FACES) -> tuple
     if not areas.sum() > 0.0:
         return tuple(parts)
     size = float(np.sqrt(areas.sum()))
-    coarse = [merged(part, GRID * size * np.sqrt(2.0 / most_faces)) for part in parts]
+    cell = GRID * size * np.sqrt(2.0 / most_faces)
+    coarse = [merged(part, cell) for part in parts]
+    while sum(len(faces) for _, faces in coarse) > MOST_COLLAPSED:
+        cell *= 1.5
+        coarse = [_distinct(merged(part, cell)) for part in coarse]
     plain = [_collapsed(part, 0, size * PRECISION, _CAREFUL) for part in coarse]
     share = most_faces / max(sum(len(faces) for _, faces in plain), most_faces)
     return tuple(_collapsed(part, round(share * len(part[1])), size, _WILLING) for part in plain)
@@ -96,6 +103,13 @@ def merged(part: Triangles, cell: float) -> Triangles:
     _, first, place = np.unique(x | y << _PACKED | z << 2 * _PACKED, return_index=True, return_inverse=True)
     a, b, c = renamed = place[faces].T
     return _used(vertices[first], renamed.T[(a != b) & (b != c) & (c != a)])
+
+
+def _distinct(part: Triangles) -> Triangles:
+    """A mesh with each triangle once, whichever way it is turned: collapsing takes long where many lie in one place."""
+    vertices, faces = part
+    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
+    return vertices, faces[np.sort(first)]
 
 
 def _outermost(corners: Array, most: int) -> Array:

@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import yaml
 
-from surefoot.scenarios.check.trace import Trace
+from surefoot.scenarios.check.trace import FAR, Trace
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.source import decoded, parse, plain_scalar
@@ -24,10 +24,6 @@ ENDING = ".baseline.yaml"
 
 MOST_BYTES, MOST_VALUES = 2_000_000, 200_000
 """Of a baseline; each step has a row of the trace."""
-
-FAR = 10.0
-"""Tolerances by which a metric may be better than its baseline: one that is farther off says that something else than
-the walk has changed, its judge for instance [-]."""
 
 SAME_OPTION = 1e-5
 """Share by which an option of the world may differ, which is written with six digits [-]."""
@@ -191,7 +187,7 @@ def _of_values(data: Any, path: Path) -> Baseline:
     """
     groups = {"scenario": object, "settings": str, "metrics": dict, "trace": list}
     values = data if isinstance(data, dict) else {}
-    if wrong := [name for name, kind in groups.items() if not isinstance(values.get(name, ...), kind)]:
+    if wrong := [name for name, kind in groups.items() if name not in values or not isinstance(values[name], kind)]:
         raise ValueError(f"it has no {wrong[0]}")
     scenario, settings, metrics = str(values["scenario"]), values["settings"], values["metrics"]
     world = values.get("world", {})

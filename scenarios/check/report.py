@@ -7,9 +7,9 @@ from xml.etree import ElementTree as Xml
 
 from rich.console import Console
 
-from surefoot.scenarios.check.baseline import FAR, Move
+from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked, Status
-from surefoot.scenarios.check.trace import Parting
+from surefoot.scenarios.check.trace import FAR, Parting
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
 from surefoot.scenarios.output import write_whole

@@ -11,6 +11,10 @@ from surefoot.scenarios.check.signs import COLUMNS, FEET, SIGNS, Sign, stages
 from surefoot.scenarios.judge.digest import Array, RunView
 from surefoot.scenarios.log import Log
 
+FAR = 10.0
+"""Tolerances by which a run may be better than its baseline: one that is farther off says that something else than the
+walk has changed, its judge for instance [-]."""
+
 _LOST = 2.0
 """How far off over what is allowed a value counts that cannot be told any more [-]."""
 
@@ -94,23 +98,36 @@ class Trace:
     def _apart(self, now: "Trace", sign: Sign, stage: int) -> tuple[float, str]:
         """How far a sign is off over what it may be, and that in words."""
         before, after = (self._at(sign, stage), now._at(sign, stage))
-        told = np.isfinite(before).all(), np.isfinite(after).all()
-        if not any(told) or not self.values.keys() >= set(sign.columns):
+        told = np.isfinite(before), np.isfinite(after)
+        if not np.any(told) or not self.values.keys() >= set(sign.columns):
             return 0.0, ""
         label, foot = self.labels[stage], self.feet[stage]
         where = {"first tick": "at the first tick", "stand": "before the first step"}.get(label, f"in {label}")
         what = sign.words.format(stage=where, label=label, foot=foot)
-        if not all(told):
-            return _LOST, f"{what} {'cannot be told any more' if told[0] else 'could not be told in the baseline'}"
+        if not np.all(told):
+            return (
+                _LOST,
+                f"{what} {'cannot be told any more' if told[0].all() else 'could not be told in the baseline'}",
+            )
         yaw = self.values["sole_yaw"][stage] if len(before) == 3 and "sole_yaw" in self.values else 0.0
         if sign.peak:
             before = np.array([np.nanmax(self.values[sign.columns[0]])])
-        off = np.maximum(after - before, 0.0) if sign.peak else after - before
+            off = self._over_peak(now, sign, stage, float(before[0]))
+        else:
+            off = after - before
         if sign.shown[1] == "deg":
             off = np.remainder(off + math.pi, 2.0 * math.pi) - math.pi
         allowed = sign.tolerance[0] + sign.tolerance[1] * float(np.abs(before).max())
         text = _place_text(off, yaw, sign) if len(off) == 3 else _number_text(after, before, sign)
         return float(np.linalg.norm(off)) / allowed, f"{what}: {text}"
+
+    def _over_peak(self, now: "Trace", sign: Sign, stage: int, peak: float) -> Array:
+        """How far a value is over the greatest of all stages; where that one is, how far the run is below, if far."""
+        (column,), tolerance = sign.columns, sign.tolerance[0] + sign.tolerance[1] * abs(peak)
+        below = peak - float(np.nanmax(now.values[column]))
+        if self.values[column][stage] == peak and below > FAR * tolerance:
+            return np.array([-below])
+        return np.maximum(now.values[column][[stage]] - peak, 0.0)
 
     def _at(self, sign: Sign, stage: int) -> Array:
         return np.array([self.values[name][stage] if name in self.values else math.nan for name in sign.columns])

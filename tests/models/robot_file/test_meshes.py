@@ -1,12 +1,14 @@
 """Meshes of links: the right place, size and side out, few triangles, and hulls that hold nearly all."""
 
+import time
+
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
 from surefoot.models import RobotError
 from surefoot.models.robot_file.mesh_file import colour_in_file
-from surefoot.models.robot_file.meshes import decimated, hull, merged
+from surefoot.models.robot_file.meshes import MOST_FACES, decimated, hull, merged
 
 pytestmark = pytest.mark.unit
 
@@ -95,3 +97,12 @@ def test_a_hull_is_closed_faces_out_and_holds_nearly_all(tmp_path) -> None:
 def test_a_flat_mesh_has_no_hull() -> None:
     with pytest.raises(RobotError, match="no volume"):
         hull(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0.5, 0.2, 0]]), 10)
+
+
+def test_many_triangles_between_few_places_take_seconds() -> None:
+    """Each vertex had a hundred thousand triangles, of which collapsing came to no end."""
+    corners = np.random.default_rng(0).uniform(-0.1, 0.1, (2_100_000, 3))
+    begin = time.process_time()
+    (part,) = decimated([(corners, np.arange(len(corners)).reshape(-1, 3))])
+    assert time.process_time() - begin < 10.0
+    assert 0 < len(part[1]) <= MOST_FACES

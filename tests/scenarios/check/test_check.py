@@ -236,11 +236,37 @@ DEEP = "[" * 100_000
 ALIASES = "".join(f"a{i + 1}: &a{i + 1} [{', '.join([f'*a{i}'] * 10)}]\n" for i in range(8))
 
 
+def trace_of(**columns):
+    """A trace of two stages."""
+    return Trace(("stand", "step 1"), ("both", "left"), {name: np.array(both) for name, both in columns.items()})
+
+
+def test_a_place_of_which_the_baseline_tells_a_part_is_not_the_same():
+    nan = np.nan
+    none = trace_of(sole_x=[nan, 1.0], sole_y=[nan, 1.0], sole_z=[nan, 1.0])
+    part = trace_of(sole_x=[nan, 1.0], sole_y=[nan, 1.0], sole_z=[10.0, 1.0])
+    for before, now in ((part, none), (none, part)):
+        (parting,) = before.partings(now)
+        assert "could not be told in the baseline" in parting.text
+    assert not none.partings(none)
+
+
+@pytest.mark.parametrize("column", [sign.columns[0] for sign in SIGNS if sign.peak])
+def test_a_peak_that_the_run_stays_far_below_is_not_the_same(column):
+    """Else a baseline with a peak without measure would allow anything."""
+    now = trace_of(**{column: [0.1, 0.5]})
+    (parting,) = trace_of(**{column: [0.1, 2.5]}).partings(now)
+    assert parting.excess > 1.0
+    assert "at most 2.5 in the baseline" in parting.text
+    assert not trace_of(**{column: [0.1, 0.9]}).partings(now)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "why"),
     [
         ("metrics:\n", "metrics: [1]\nmore:\n", "it has no metrics"),
         ("trace:", "trace: {a: 1}\nrest:", "it has no trace"),
+        ("scenario:", "scenarios:", "it has no scenario"),
         ("speed_mean: ", "speed_mean: fast #", "its speed_mean is not what the metric gives"),
         ("speed_mean: ", "speed_mean: .inf #", "no finite number"),
         ("speed_mean: ", "speed_mean: 1e400 #", "no finite number"),

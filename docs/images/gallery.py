@@ -1,8 +1,8 @@
-"""Draw the robots that come along in docs/images, each from six steps of the scenario `walk`.
+"""Draw robots in docs/images, each from six steps of the scenario `walk`.
 
-    python docs/images/gallery.py [NAME]...
+    python docs/images/gallery.py [ROBOT]...
 
-Names are those of the robots, by default all; they need off-screen OpenGL and take about a minute each.
+By default those that come along; else their names, or robot files. It needs off-screen OpenGL and a minute for each.
 """
 
 import argparse
@@ -43,7 +43,7 @@ def draw(name: str, log: Log) -> Path:
     """Draw a robot in colours of its own."""
     images, period = pictures(log, shot(log, describe(name, RobotOptions()).leg_length))
     sample = Image.fromarray(np.concatenate([np.asarray(image) for image in images[::5]]))
-    path = FOLDER / f"robot-{name}.gif"
+    path = FOLDER / f"robot-{Path(name).stem.lower()}.gif"
     save(path, images, period, sample.quantize(COLORS))
     return path
 
@@ -51,7 +51,7 @@ def draw(name: str, log: Log) -> Path:
 def main() -> None:
     """Draw those that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(ROBOTS))
+    parser.add_argument("names", nargs="*", metavar="ROBOT", help=", ".join(ROBOTS))
     for name in parser.parse_args().names or ROBOTS:
         with tempfile.TemporaryDirectory() as folder:
             result = run_scenario(load("walk", (f"robot={name}", "gait.steps=6")), Path(folder))

@@ -107,7 +107,7 @@ OF_CAMPAIGNS = (
     "courses.png",
     "drive.gif",
     *(f"recovery-{name}.gif" for name in ("forward", "crossing", "standing", "sideways", "stairs", "lasting")),
-    *(f"robot-{name}.gif" for name in ("talos", "g1", "alexander", "jvrc1", "gr3")),
+    *(f"robot-{name}.gif" for name in ("talos", "g1", "alexander", "jvrc1", "gr3", "h1")),
 )
 """Pictures that others draw: `campaigns.py` those of campaigns that take hours, one as it drew it before, `courses.py`,
 `drive.py`, `recoveries.py` and `gallery.py`."""

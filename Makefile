@@ -4,7 +4,7 @@ PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test unit physics check long gate format bench clean
+.PHONY: walk test unit physics check long gate format coverage mutants bench clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
@@ -19,8 +19,9 @@ gate: $(VENV)/.installed-dev
 	$(BIN)/deptry planner wbc sim models scenarios surefoot
 	$(BIN)/deptry tests benchmarks docs $(wildcard examples) --exclude runs --ignore DEP002,DEP004
 
+# make unit AREA=planner runs the unit tests of one folder, make unit those of all.
 unit: $(VENV)/.installed-dev
-	$(BIN)/pytest -m unit -n auto --dist loadscope
+	$(BIN)/pytest -m "unit and not long" -n auto --dist loadscope tests/$(AREA)
 
 physics: $(VENV)/.installed-dev
 	$(BIN)/pytest -m physics -n auto --dist loadscope
@@ -30,6 +31,14 @@ check: $(VENV)/.installed-dev
 
 long: $(VENV)/.installed-dev
 	$(BIN)/pytest -m long
+
+# The plug-in of pytest is imported before the measurement begins, and all that it imports with it.
+coverage: $(VENV)/.installed-dev
+	$(BIN)/pytest -m "unit and not long" -n auto --dist loadscope -p no:surefoot --cov --cov-report=term tests/$(AREA)
+
+# make mutants MODULE=planner/laws/qp.py [TESTS=tests/planner/laws] [LIMIT=40]
+mutants: $(VENV)/.installed-dev
+	$(BIN)/python tests/sabotage/mutants.py $(MODULE) $(addprefix --tests ,$(TESTS)) $(addprefix --limit ,$(LIMIT))
 
 format: $(VENV)/.installed-dev
 	$(BIN)/ruff check --fix .

@@ -13,11 +13,11 @@ from threadpoolctl import threadpool_limits
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.loop.run import closed_loop
-from surefoot.scenarios.loop.skeleton import ClosedLoop
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.walk import WalkRecorder
+from surefoot.scenarios.run.run import closed_loop
+from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.world import World

@@ -13,7 +13,7 @@ import numpy as np
 from bare_walk import BareWalk
 
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 
 CHANNEL_PARTS = ("state", "wbc_build", "wbc_solve", "planner", "log", "physics", "tick")

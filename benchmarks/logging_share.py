@@ -12,8 +12,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from surefoot.scenarios.log import LogWriter, NoLog
-from surefoot.scenarios.loop.run import closed_loop
-from surefoot.scenarios.loop.skeleton import ClosedLoop
+from surefoot.scenarios.run.run import closed_loop
+from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import resolve
 

@@ -17,8 +17,8 @@ import surefoot
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import CentroidalState, FeetState
-from surefoot.planner.walk.gait import GaitParameters
 from surefoot.scenarios.record.walk import resident_memory
 
 STANCE = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))

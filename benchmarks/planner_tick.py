@@ -17,10 +17,10 @@ from surefoot.planner.model.step_response import cached_response, literal_respon
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import walk_pendulum
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import FeetState
-from surefoot.planner.walk.gait import GaitParameters
 from surefoot.scenarios.log import NoLog
-from surefoot.scenarios.loop.run import closed_loop
+from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import resolve
 
@@ -62,7 +62,7 @@ def print_margins(steps: int) -> None:
     gait, legs = GaitParameters(steps=steps, step_length=0.2), resolve(load_scenario("walk")).legs
     feet = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
     planner, spent = WalkingPlanner(gait, feet, 0.22, 0.11, legs=legs), []
-    margins = planner._margins
+    margins = planner._recovery._margins
 
     def timed(*given):
         start = time.perf_counter()
@@ -70,7 +70,7 @@ def print_margins(steps: int) -> None:
         spent.append(time.perf_counter() - start)
         return found
 
-    planner._margins = timed
+    planner._recovery._margins = timed
     walk_pendulum(planner, feet, gait.duration, com=np.array([0.0, 0.0, 1.0]), substeps=2)
     median, p90, p99 = np.percentile(spent, (50, 90, 99)) * 1e6
     print(f"{'capturability margin, of a tick':<42} {median:>10.0f} {p90:>10.0f} {p99:>10.0f}")

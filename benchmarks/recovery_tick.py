@@ -17,10 +17,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.recovery import Recovery
+from surefoot.planner.recovery.step_adjustment import StepAdjustment
 from surefoot.planner.types import PhaseKind
 from surefoot.scenarios.log import NoLog
-from surefoot.scenarios.loop.run import closed_loop
+from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import resolve
 
@@ -56,7 +56,7 @@ class Walk:
 
     Attributes:
         loop: the closed loop.
-        rows: of each tick of the planner on steps its time, that in `Recovery.catch` [s], and whether one was adapted.
+        rows: of each tick of the planner on steps its time, that in `solve` [s], and whether one was adapted.
     """
 
     def __init__(self, settings: Sequence[str]) -> None:
@@ -66,7 +66,7 @@ class Walk:
     def step(self) -> None:
         """Go through one control tick."""
         spent, caught, adapts, steps = 0.0, 0.0, False, False
-        update, catch = WalkingPlanner.update, Recovery.catch
+        update, catch = WalkingPlanner.update, StepAdjustment.solve
 
         def timed_update(self: WalkingPlanner, *given: Any) -> Any:
             nonlocal spent, steps
@@ -75,14 +75,14 @@ class Walk:
             spent, steps = time.thread_time() - start, plan.phase.kind is not PhaseKind.STAND
             return plan
 
-        def timed_catch(self: Recovery, now: Any) -> Any:
+        def timed_catch(self: StepAdjustment, *given: Any) -> Any:
             nonlocal caught, adapts
             start = time.thread_time()
-            found = catch(self, now)
+            found = catch(self, *given)
             caught, adapts = caught + time.thread_time() - start, found is not None
             return found
 
-        with patch.object(WalkingPlanner, "update", timed_update), patch.object(Recovery, "catch", timed_catch):
+        with patch.object(WalkingPlanner, "update", timed_update), patch.object(StepAdjustment, "solve", timed_catch):
             self.loop.step()
         if steps:
             self.rows.append((spent, caught, float(adapts)))
@@ -114,7 +114,7 @@ def main() -> None:
     best = {name: np.min([one[name] for one in tries], axis=0) for name in VARIANTS}
     median = float(np.median(best["without"][:, 0])) * 1e6
     print(f"{'planner tick':<24} {'ticks':>6} {'median us':>10} {'p99 us':>8} {'to without':>9} ", end="")
-    print(f"{'p99 / median':>12} {'mean in catch':>14}")
+    print(f"{'p99 / median':>12} {'mean in solve':>14}")
     for name, values in best.items():
         print(row(name, values, median))
     adapted = best["with, pushed"][:, 2] > 0.0

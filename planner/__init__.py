@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
     from surefoot.planner.planner import WalkingPlanner
     from surefoot.planner.plants import IdealFeet, Pendulum, PointPush, walk_pendulum
-    from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, LastingForce, PhaseKind
-    from surefoot.planner.walk.commands import (
+    from surefoot.planner.steps.commands import (
         Command,
         Pose,
         Twist,
@@ -34,7 +33,8 @@ if TYPE_CHECKING:
         velocity_bouts,
         walk_of,
     )
-    from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
+    from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
+    from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, LastingForce, PhaseKind
 
 __all__ = [
     "PROFILES",
@@ -93,7 +93,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "planner": ("WalkingPlanner",),
             "plants": ("IdealFeet", "Pendulum", "PointPush", "walk_pendulum"),
             "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "LastingForce", "PhaseKind"),
-            "walk.commands": (
+            "steps.commands": (
                 "Command",
                 "Pose",
                 "Twist",
@@ -102,6 +102,6 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
                 "velocity_bouts",
                 "walk_of",
             ),
-            "walk.gait": ("Bout", "GaitParameters", "Stride"),
+            "steps.gait": ("Bout", "GaitParameters", "Stride"),
         },
     )

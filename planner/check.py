@@ -8,18 +8,19 @@ from surefoot.errors import ParameterError, at_least
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import STEEPEST_FALL, HeightProfile, Rise, shortest_support
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.phases import PhaseSamples
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.planner.types import Array, FeetState
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.phases import Flow, PhaseSamples
-from surefoot.planner.walk.queue import StepQueue
-from surefoot.planner.walk.step import Ground
 
 _AT_ONCE = 2000
-"""Samples of a walk that are checked together."""
+"""Samples of a walk that are checked together, so that a long one takes no more memory [-]."""
 
 _DISTINCT = 6
-"""Equal steps on bare ground after which all that follow are as those before: the first, one of each foot, the last."""
+"""Equal steps on bare ground after which all that follow are as those before: the first, one of each foot,
+the last [-]."""
 
 
 def check_walk(
@@ -38,15 +39,15 @@ def check_walk(
     """
     if not gait.bouts and not terrain.has_edges:
         gait = replace(gait, steps=min(gait.steps, _DISTINCT))
-    queue = StepQueue(gait, feet, Ground(terrain, 0.5 * np.array([foot_length, foot_width]), parameters))
+    schedule = Schedule.start(gait, feet, Ground(terrain, 0.5 * np.array([foot_length, foot_width]), parameters))
     clock, last = 0, 0.0
     while clock <= last:
-        queue.extend(clock + _AT_ONCE)
-        samples = queue.samples(Flow(np.arange(clock, clock + _AT_ONCE, dtype=np.float64)))
-        check_height(height_profile, gait, samples, queue.support_heights)
+        schedule = schedule.extended(clock + _AT_ONCE)
+        samples = schedule.samples(np.arange(clock, clock + _AT_ONCE, dtype=np.float64))
+        check_height(height_profile, gait, samples, schedule.support_points[:, 2])
         clock += _AT_ONCE - 2
-        last = queue.phases[-1].start
-        queue.enter(clock)
+        last = schedule.phases[-1].start
+        schedule = schedule.forgotten(clock)
 
 
 def check_height(profile: HeightProfile, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> None:

@@ -4,11 +4,22 @@ import math
 from dataclasses import dataclass, field, fields
 from enum import Enum
 
+import numpy as np
+
 from surefoot.errors import ParameterError
-from surefoot.planner.laws.qp import SOLVERS
 from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.model.leg_chain import LegChain
 from surefoot.similarity import REFERENCE_SIZE, Similarity, quantity
+
+SOLVERS = ("daqp", "piqp")
+"""The solvers of qpsolvers that are tried, in this order.
+
+DAQP, a dual active-set method, is exact and the fastest. What it calls infeasible is asked of a second one of another
+kind, which must agree and lose no time: profile `paper` has such ticks in thousands. PIQP, a proximal interior-point
+method (BSD-2), said so in all 245 of them that were recorded, in 0.5 ms at most, missed no optimum, and with the
+tolerances of `planner.laws.qp` meets DAQP's cost to 1e-10 (its jerk to 4e-4 m/s^3 where the cost is flat, else to
+1e-5). ProxQP missed 12 of 170 optima; Clarabel takes ten times as long.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +108,90 @@ class LegInertia:
             raise ParameterError(("parameters", "leg", "mass_ratio"), what, "it must be within 0 to 0.5")
 
 
+_TIME_CHANGES = (*np.arange(-0.6, -0.2, 0.1), *np.arange(-0.24, 0.0, 0.04), -0.02, 0.02, *np.arange(0.04, 0.21, 0.04))
+"""Changes of a phase, fine where they are small since a swing's reach grows fast there [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecoveryParameters:
+    """Every number of step adjustment, leg reach, capture margin and height transition, for the reference robot.
+
+    They are no keys of a scenario. Those with a unit beside their default follow the robot's size. What each number
+    moves when it is halved or doubled is measured by `benchmarks/recovery_numbers.py` and told in docs/recovery.md.
+
+    Attributes:
+        second_weight: cost of a squared shift of the second step; the other weights count against it [1/m^2].
+        shift_weight: cost of a squared shift of the next footstep; small, since that step is the means [1/m^2].
+        time_weight: cost of a squared change of the times left, as shares of a step; small changes are cheap [-].
+        stretch_weight: cost of the squared way by which the stance hip is out of its leg's reach at landing [1/m^2].
+        swing_weight: cost of a squared way that the hips cannot swing the foot in time; nearly a constraint [1/m^2].
+        cross_factor: factor of the second shift where that step has to cross: legs cross less than they spread [-].
+        least_saving: cost that other times must save; between equal ones the plan would go to and fro [-].
+        cop_share: share of the ZMP box on which an adjusted step counts; the rest corrects what comes later [-].
+        landing_share: DCM error at landing, as a share of the CoP's box, that an adjusted step may leave [-].
+        landing_spare: the same for long boxes: all of the box but this [m].
+        tolerance: DCM error at landing beyond what the CoP holds at which a step is adjusted [m].
+        unheld_share: the same of feet whose CoP cannot be moved at will, as a share of the ZMP box [-].
+        stand_share: share of the ZMP box of a stand that holds a DCM error without any step [-].
+        least_gain: least gain of a step; a window that ends with the landing would make it zero [-].
+        time_changes: changes of the present phase that are tried, close where a swing's reach grows fast [s].
+        least_double: time that a double support is not cut below; the load has to go over [s].
+        least_single: time that a single support is not cut below; a foot has to lift and land [s].
+        aside: DCM error sideways from which on the foot on that side carries, and the other one steps [m].
+        apart: distance of a foot from its place beside the other at which it is brought back there [m].
+        calm: DCM error below which a standing robot brings it back; a step at more would be a second push [m].
+        margin_times: shares between the shortest and longest single support at which the margin is evaluated [-].
+        longer: by how much the margin lets a single support last longer [s].
+        most_steps: steps that the margin counts with; the sum over more of them has converged [-].
+        fall_margin: how far outside the capture margin the DCM is of a robot that will fall [m].
+        fall_ticks: plans on end for which it is; one alone may be noise of the measurement [-].
+        sole_gap: least distance of soles side by side [m].
+        across: how far beyond its stance foot a foot may land, with the thighs apart [m].
+        clear: gap of soles one ahead of the other from which on the foot may cross [m].
+        spanned: share of what both legs span at a height that a step makes use of: the body is not midway [-].
+        parallel: angle up to which the room of a footstep is the same in another frame [rad].
+        lifting: vertical acceleration of the CoM in a height transition; like gravity the same for all sizes [m/s^2].
+        same_height: change of the wanted lowering that begins no height transition [m].
+        offset_ticks: plans for which an offset of the legs serves; making it costs more than the rest of one [-].
+        same_swing: shift of a footstep for which it serves: it moves the DCM by less than a millimetre [m].
+    """
+
+    second_weight: float = quantity(1.0, "1/m^2")
+    shift_weight: float = quantity(0.02, "1/m^2")
+    time_weight: float = quantity(0.38, "-")
+    stretch_weight: float = quantity(1.0, "1/m^2")
+    swing_weight: float = quantity(10.0, "1/m^2")
+    cross_factor: float = quantity(3.0, "-")
+    least_saving: float = quantity(0.001, "-")
+    cop_share: float = quantity(0.8, "-")
+    landing_share: float = quantity(0.5, "-")
+    landing_spare: float = quantity(0.03, "m")
+    tolerance: float = quantity(0.02, "m")
+    unheld_share: float = quantity(0.5, "-")
+    stand_share: float = quantity(0.85, "-")
+    least_gain: float = quantity(0.05, "-")
+    time_changes: tuple[float, ...] = quantity(tuple(map(float, _TIME_CHANGES)), "s")
+    least_double: float = quantity(0.06, "s")
+    least_single: float = quantity(0.16, "s")
+    aside: float = quantity(0.02, "m")
+    apart: float = quantity(0.03, "m")
+    calm: float = quantity(0.005, "m")
+    margin_times: tuple[float, ...] = quantity((0.0, 0.1, 0.2, 0.3, 0.45, 0.65, 1.0), "-")
+    longer: float = quantity(0.2, "s")
+    most_steps: int = 5
+    fall_margin: float = quantity(0.02, "m")
+    fall_ticks: int = 5
+    sole_gap: float = quantity(0.01, "m")
+    across: float = quantity(0.12, "m")
+    clear: float = quantity(0.02, "m")
+    spanned: float = quantity(0.75, "-")
+    parallel: float = quantity(0.02, "-")
+    lifting: float = 5.0
+    same_height: float = quantity(0.005, "m")
+    offset_ticks: int = 5
+    same_swing: float = quantity(0.005, "m")
+
+
 @dataclass(frozen=True, slots=True)
 class PlannerParameters:
     """Parameters of the walking planner; the defaults are the measured robust formulation, for the reference robot.
@@ -133,6 +228,7 @@ class PlannerParameters:
             the leg is stretched furthest, shortly before touchdown [-].
         touchdown_lead: the swing ends this long before single support does, so that the foot is felt in time [s].
         search: speed of the swing foot at the planned touchdown, and how it goes on while it feels no ground.
+        recovery: numbers of step adjustment, capture margin and what belongs to them.
         solvers: QP solvers of qpsolvers, in the order in which they are tried (see `planner.laws.law` for the choice).
         size: of the robot, for what is no parameter: the planner's constants are the reference robot's.
 
@@ -166,6 +262,7 @@ class PlannerParameters:
     apex_share: float = quantity(0.5, "-")
     touchdown_lead: float = quantity(0.02, "s")
     search: GroundSearch = field(default_factory=GroundSearch)
+    recovery: RecoveryParameters = RecoveryParameters()
     solvers: tuple[str, str] = SOLVERS
     size: Similarity = REFERENCE_SIZE
 

@@ -243,4 +243,6 @@ class PlanSampler:
 
 
 _COLUMNS = 34
+"""Of a table: 7 linear functions, 9 polynomials and their two derivatives, as `_enter` fills them [-]."""
+
 _DERIVATIVE = np.arange(1.0, 6.0)[:, None]

@@ -7,38 +7,34 @@ import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations, check_height
-from surefoot.planner.geometry import signed_distance
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.planner.laws.constraints import StepContext
 from surefoot.planner.laws.law import Motion, MotionProblem
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.planner.margin import MOST_STEPS, Alarm, Amends, Reserve, planned_margin
 from surefoot.planner.model.jerk import block_moves, predict, trajectory
-from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery import ASIDE, ASTRIDE, CALM, Catch, Recovery, Situation
+from surefoot.planner.recovery.recovery import Recovery
+from surefoot.planner.recovery.step_adjustment import AdjustedStep, NextStep
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
-from surefoot.planner.references.window import Outlook, Window
+from surefoot.planner.references.window import ReferencePreview, Window
 from surefoot.planner.references.zmp_reference import Support
+from surefoot.planner.steps.commands import Command, Orders, Twist
+from surefoot.planner.steps.execution import Execution
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.steps.source import CommandSource
+from surefoot.planner.swing.course import Ground
+from surefoot.planner.swing.leg_reach import LegReach, StepRegion
 from surefoot.planner.types import (
     Array,
     Balance,
     CentroidalState,
     FeetState,
-    Foot,
-    PhaseKind,
     PlannedFootstep,
     PlanStatus,
     SolverStatus,
 )
-from surefoot.planner.walk.commands import Command, Orders, Twist
-from surefoot.planner.walk.footsteps import FootstepPlan
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.queue import StepQueue
-from surefoot.planner.walk.reach import GAP, Legs, StepRegion
-from surefoot.planner.walk.source import CommandSource
-from surefoot.planner.walk.step import Ground
-from surefoot.planner.walk.stepper import Stepper
 
 
 class WalkingPlanner:
@@ -82,7 +78,7 @@ class WalkingPlanner:
         height_profile: HeightProfile | None = None,
         profile: Profile = PROFILES["default"],
         region: StepRegion | None = None,
-        legs: Legs | None = None,
+        legs: LegReach | None = None,
     ) -> None:
         self.gait = gait
         self.parameters = parameters or profile.parameters
@@ -93,33 +89,31 @@ class WalkingPlanner:
                 raise ParameterError((name,), f"{name} is {size:g}", "it must be a finite number greater than 0")
         half_size = 0.5 * np.array([foot_length, foot_width])
         heights = height_profile or profile.height or SmoothHeight()
-        self._outlook = Outlook(gait, heights, p, half_size)
-        queue, adaptation = StepQueue(gait, feet, Ground(terrain, half_size, p)), p.step_adaptation
-        legs = legs.adapting(adaptation) if legs is not None and profile.catches else None
-        timing = adaptation is not StepAdaptation.LOCATION
-        self._recovery = None if legs is None else Recovery(legs, p, timing)
-        self._reserve = None if self._recovery is None else Reserve(self._recovery, p, half_size)
-        self._amends, self._alarm = Amends(), Alarm(p.size.length)
-        self._stepper = Stepper(queue, self._outlook.reach + 1, legs)
-        check_height(heights, gait, self._stepper.samples(self._outlook.reach), queue.support_heights)
+        self._preview = ReferencePreview(gait, heights, p, half_size)
+        schedule = Schedule.start(gait, feet, Ground(terrain, half_size, p))
+        legs = legs.adapting(p) if legs is not None and profile.catches else None
+        self._execution = Execution(schedule, self._preview.reach + 1, legs)
+        self._recovery = Recovery(self._execution, half_size)
+        heights_ahead = self._execution.schedule.support_points[:, 2]
+        check_height(heights, gait, self._execution.samples(self._preview.reach), heights_ahead)
         self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
         self._law = profile.law(p, heights.standing(gait))
         self._plan: WalkPlan | None = None
-        region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width), GAP * p.size.length)
+        region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width), p.recovery.sole_gap)
         self._region, self._bare = region, not terrain.has_edges
         self._source: CommandSource | None = None
-        self._told: tuple[GaitParameters, CommandSource | None] = (gait, None)
+        self._told: tuple[GaitParameters, CommandSource | None] | None = None
         self.motion: Motion | None = None
 
     @property
-    def footsteps(self) -> FootstepPlan:
-        """Footholds in sight: landed ones as measured, the others as nominally planned from them."""
-        return self._stepper.footsteps
+    def schedule(self) -> Schedule:
+        """The steps in sight: landed ones as measured, the others as nominally planned from them."""
+        return self._execution.schedule
 
     @property
     def orders(self) -> Orders:
         """What the walk does of what it has been told."""
-        source, gait = self._source, self._stepper.queue.gait
+        source, gait = self._source, self._execution.schedule.gait
         durations = gait.single_support, gait.double_support
         if source is None:
             return Orders(None, None, None, *durations, gait.swing_height)
@@ -144,10 +138,11 @@ class WalkingPlanner:
             what = "a command on ground with edges, for which footsteps and swings were laid"
             raise ParameterError(("command",), what, "command a walk on bare ground")
         changed = {name: getattr(command, name) for name in ("single_support", "double_support", "swing_height")}
-        gait = replace(self._told[0], **{name: value for name, value in changed.items() if value is not None})
+        gait, told = self._told or (self._execution.schedule.gait, None)
+        gait = replace(gait, **{name: value for name, value in changed.items() if value is not None})
         check_durations(gait, self.parameters.sample_time)
         # Steps of a source that is kept are asked for anew, too: their strides follow from the durations.
-        source = self._told[1] or self._source
+        source = told or self._source
         if command.twist is not None or command.places is not None:
             size, twist = self.parameters.size, command.twist or Twist()
             source = CommandSource(self.gait, self._region, twist, command.places or (), size)
@@ -155,9 +150,10 @@ class WalkingPlanner:
 
     def _obey(self, time: float) -> None:
         """Do what has been commanded since the last plan."""
-        gait, source = self._told
-        self._stepper.change(gait, source, time)
-        self._told, self._source = (gait, None), source or self._source
+        if self._told is not None:
+            gait, source = self._told
+            self._execution.change(gait, source, time)
+            self._told, self._source = None, source or self._source
 
     def update(self, state: CentroidalState, feet: FeetState) -> WalkPlan:
         """Plan from a measurement; call it once per sample time.
@@ -171,123 +167,45 @@ class WalkingPlanner:
         """
         if not math.isfinite(float(state.com.sum() + state.com_velocity.sum() + feet.position.sum() + feet.yaw.sum())):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
-        stepper = self._stepper
-        stepper.advance(feet)
-        self._amends = self._amends.since(stepper.landed)
-        self._obey(state.time)
-        stepper.fix_imminent(state.time)
+        execution, time = self._execution, state.time
+        execution.advance(feet)
+        self._obey(time)
+        execution.fix_imminent(time)
         support, local, window = self._sight(state)
-        if self._steps_out(local, window):
+        if self._recovery.steps_out(local, window):
             support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
-        situation = Situation.of(state.time, stepper, local, feet, support, window)
-        margins = self._margins(situation, local, support, window)
-        # Steps that a law moves of its own accord may save more than the margin says.
-        if self._reserve is not None or not stepper.adapts:
-            self._alarm.update(margins[1])
-        catch = self._catch(situation)
-        if catch is not None and catch.more and self._adds_steps(margins[0]):
+        step = NextStep.of(time, execution, feet, support)
+        balance = self._recovery.balance(step, local, support, window, self._plan)
+        adjusted = self._recovery.adjusted(step, local, window)
+        if adjusted is not None and adjusted.more and self._recovery.adds_steps(balance.planned):
             support, local, window = self._sight(state)
-            catch = self._catch(Situation.of(state.time, stepper, local, feet, support, window))
-        left = stepper.time_left
-        if catch is not None and stepper.end_in(catch.left, state.time):
+            adjusted = self._recovery.adjusted(NextStep.of(time, execution, feet, support), local, window)
+        left = execution.time_left
+        if adjusted is not None and execution.end_in(adjusted.left, time):
             window = self._window(state, support, local)
-            self._amends.delay += stepper.time_left - left
-        problem = self._problem(local, feet, support, window, catch)
+            balance = replace(balance, delay=balance.delay + (execution.time_left - left))
+        problem = self._problem(local, feet, support, window, adjusted)
         # TVMPC, or the law that stands in its place.
         motion = self.motion = self._law.plan(problem)
         shifts = motion.shifts @ support.rotation.T
-        footsteps = stepper.upcoming(state.time, shifts)
-        if stepper.free[0]:
-            self._amends.shift = shifts[0]
-        if stepper.swing_foot is not None:
-            held = motion.solver is SolverStatus.HELD
-            stepper.swing_to(footsteps[0].footstep, state.time, feet, held)
-        balance = Balance(*margins, self._amends.shift, self._amends.delay)
-        self._plan = self._world_plan(state.time, support, window, local, motion, footsteps, balance)
+        footsteps = execution.upcoming(time, shifts)
+        if execution.free[0]:
+            balance = replace(balance, shift=shifts[0])
+        if execution.phase.swing_foot is not None:
+            execution.swing_to(footsteps[0].footstep, time, feet, motion.solver is SolverStatus.HELD)
+        self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
         return self._plan
 
     def _sight(self, state: CentroidalState) -> tuple[Support, Array, Window]:
         """What carries the robot now, its CoM in that plan frame, and the references from now on."""
-        support = self._outlook.support(self._stepper)
+        support = self._preview.support(self._execution)
         local = self._local_state(state, support)
         return support, local, self._window(state, support, local)
 
     def _window(self, state: CentroidalState, support: Support, local: Array) -> Window:
         """References from now on, as the clock goes."""
-        stepper, outlook = self._stepper, self._outlook
-        # ZMP planner: the ZMP that the footsteps define, from what carries the robot now.
-        samples = stepper.samples(outlook.reach)
-        reference = outlook.zmp(samples, support)
-        # Vertical motion planner of the CoM, with it the varying dynamics.
-        height = outlook.com_height(stepper, samples, support, reference)
-        return outlook.window(stepper, samples, support, reference, height, local[:, 0], state.time, state.lasting)
-
-    def _steps_out(self, local: Array, window: Window) -> bool:
-        """Order a step of a robot that stands and would fall, or stands astride; says whether."""
-        stepper = self._stepper
-        if self._recovery is None or not stepper.stands:
-            return False
-        length = self.parameters.size.length
-        error, falls = self._recovery.topples(local[:, 0] + local[:, 1] / window.omega[0], window)
-        if not falls:
-            # Once it is at rest the robot brings its feet side by side again.
-            # Feet without a CoP of their own would end in a wide step, since there is no time to shift the weight.
-            calm = self.parameters.cop_authority[1] > 0.0 and np.abs(error).max() < CALM * length
-            calm = calm and stepper.astride > ASTRIDE * length
-            if calm:
-                stepper.go_on(at_once=False)
-            return bool(calm)
-        # The foot that carries stays, and the other one is brought to it.
-        stance = None
-        if stepper.phase.kind is PhaseKind.STAND and abs(error[1]) > ASIDE * length:
-            stance = Foot.LEFT if error[1] > 0.0 else Foot.RIGHT
-        stepper.go_on(None if stance is None else stance.other)
-        return True
-
-    def _adds_steps(self, margin: float) -> bool:
-        """Add steps before those to come where the next one leaves something to catch; says whether.
-
-        A robot that would stand makes one on the spot. On faces that footsteps were chosen for, one step of each foot
-        where it stands is sooner made than one that climbs.
-
-        Args:
-            margin: of the DCM inside what the CoP captures with steps as planned [m].
-        """
-        stepper = self._stepper
-        if stepper.stops:
-            stepper.go_on()
-        elif margin < 0.0 and stepper.climbs_next:
-            stepper.step_again()
-        else:
-            return False
-        return True
-
-    def _margins(
-        self, situation: Situation | None, local: Array, support: Support, window: Window
-    ) -> tuple[float, float]:
-        """How far the DCM is inside what the CoP alone captures, and with steps moved [m]."""
-        stepper, p, dcm = self._stepper, self.parameters, local[:, 0] + local[:, 1] / window.omega[0]
-        planned = planned_margin(dcm, window, p.sample_time, p.foot_margin)
-        if situation is None:
-            return (max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm)),) * 2
-        if self._reserve is None or not stepper.adapts:
-            return planned, planned
-        # Where any ground will do, steps are added when there are no more.
-        steps = MOST_STEPS if stepper.wide else min(stepper.remaining, MOST_STEPS)
-        moved = self._reserve.margins(situation, steps, fixed=not stepper.free[0])
-        return planned, max(planned, float(moved[-1]))
-
-    def _catch(self, situation: Situation | None) -> Catch | None:
-        """What is made of the next step where the CoP alone does not hold the body."""
-        stepper = self._stepper
-        if self._recovery is None or situation is None or not stepper.free[0]:
-            return None
-        if stepper.swing_foot is not None and stepper.swing is None:
-            return None
-        catch = self._recovery.catch(situation)
-        stepper.adapted |= catch is not None
-        return catch
+        return self._preview.window(self._execution, support, local[:, 0], state.time, state.lasting)
 
     def _world_plan(
         self,
@@ -300,7 +218,7 @@ class WalkingPlanner:
         balance: Balance,
     ) -> WalkPlan:
         """What a tick has decided, in the world frame."""
-        stepper, reference, to_world = self._stepper, window.reference, support.rotation.T
+        execution, reference, to_world = self._execution, window.reference, support.rotation.T
         count = self.parameters.horizon + 1
         moving = trajectory(self._prediction, local, window.stiffness[:count], motion.jerk)
         com = np.empty((3, count, 3))
@@ -310,7 +228,7 @@ class WalkingPlanner:
         point = reference.point[:count] + reference.gain[:count] @ motion.shifts
         return WalkPlan(
             time=time,
-            sample_time=stepper.sample_time,
+            sample_time=self.parameters.sample_time,
             com=com[0],
             com_velocity=com[1],
             com_acceleration=com[2],
@@ -320,21 +238,21 @@ class WalkingPlanner:
             zmp_reference=point @ to_world + support.origin,
             stiffness=window.stiffness[:count],
             omega=window.omega[:count],
-            phase=stepper.info,
+            phase=execution.info,
             contacts=window.contacts[:count],
             load_left=window.load_left[:count],
             support_polygon=support.outer,
             inner_polygon=support.inner,
             footholds=support.footholds,
             footsteps=footsteps,
-            swing=stepper.swing,
-            roll=stepper.roll(time),
-            status=self._status(motion),
+            swing=execution.swing,
+            roll=execution.roll(time),
+            status=self._status(motion, balance),
             balance=balance,
         )
 
     def _problem(
-        self, local: Array, feet: FeetState, support: Support, window: Window, catch: Catch | None
+        self, local: Array, feet: FeetState, support: Support, window: Window, adjusted: AdjustedStep | None
     ) -> MotionProblem:
         jerk = np.zeros((self.parameters.horizon + 1, 2))
         if self._plan is not None:
@@ -344,35 +262,23 @@ class WalkingPlanner:
             stiffness=window.stiffness,
             omega=window.omega,
             reference=window.driving,
-            steps=self._step_context(support, feet, catch),
+            steps=self._step_context(support, feet, adjusted),
             last_jerk=jerk[0],
             fallback=jerk[1:],
             rotation=support.rotation,
         )
 
-    def _step_context(self, support: Support, feet: FeetState, catch: Catch | None) -> StepContext:
-        stepper, steps = self._stepper, self._stepper.footsteps
-        row, swing = stepper.row, stepper.swing_foot
-        increment = np.zeros((2, 2))
-        ahead = np.diff(steps.position[row : row + 3, :2], axis=0) @ support.rotation
+    def _step_context(self, support: Support, feet: FeetState, adjusted: AdjustedStep | None) -> StepContext:
+        execution, schedule, phase = self._execution, self._execution.schedule, self._execution.phase
+        landed, swing, increment = execution.landed, phase.swing_foot, np.zeros((2, 2))
+        ahead = np.diff(schedule.positions[schedule.index(landed) :][:3, :2], axis=0) @ support.rotation
         increment[: len(ahead)] = ahead
-        side = 1.0 if steps.feet[row] is Foot.RIGHT else -1.0
+        side, left, transfer = schedule.step(landed).place.foot.other.side, 0.0, 0.0
         here = None if swing is None else (feet.position[swing, :2] - support.origin) @ support.rotation
-        left = 0.0 if swing is None else stepper.time_left
-        context = StepContext(increment, (side, -side), stepper.free, here, left, stepper.transfer_time)
-        if self._recovery is None:
-            return context
-        if not stepper.adapted:
-            return replace(context, reach=(increment, increment))
-        legs = [self._recovery.legs.turned(stepper.turn(ahead)) for ahead in (0, 1)]
-        boxes = [legs[0].beside(increment[0], side), legs[1].beside(increment[1], -side)]
-        low, high = np.array(boxes).swapaxes(0, 1)
-        rooms = np.zeros((2, 2, 2))
-        rooms[: len(ahead)] = [stepper.room(number) for number in range(len(ahead))]
-        low, high = np.maximum(low, increment + rooms[:, 0]), np.minimum(high, increment + rooms[:, 1])
-        if catch is not None:
-            low[0], high[0] = catch.low, catch.high
-        return replace(context, reach=(low, high))
+        if swing is not None:
+            left, transfer = execution.time_left, schedule.step(phase.step).double * self.parameters.sample_time
+        bounds = self._recovery.bounds(increment, here, left, adjusted)
+        return StepContext(increment, (side, -side), execution.free, here, left, transfer, bounds)
 
     def _local_state(self, state: CentroidalState, support: Support) -> Array:
         """Position and velocity as measured, acceleration as the last plan had it for now."""
@@ -382,8 +288,8 @@ class WalkingPlanner:
         local[2] = self._plan.com_acceleration[1, :2] if self._plan is not None else 0.0
         return np.ascontiguousarray((local @ support.rotation).T)
 
-    def _status(self, motion: Motion) -> PlanStatus:
-        age = 0
+    def _status(self, motion: Motion, balance: Balance) -> PlanStatus:
+        age, warned = 0, self._plan is not None and self._plan.status.falling
         if motion.solver is SolverStatus.HELD:
             age = (self._plan.status.age if self._plan is not None else 0) + 1
         return PlanStatus(
@@ -392,7 +298,7 @@ class WalkingPlanner:
             terminal_slack=motion.terminal_slack,
             infeasible=motion.infeasible,
             age=age,
-            late_touchdown=self._stepper.waited,
-            early_touchdown=self._stepper.early,
-            falling=self._alarm.given,
+            late_touchdown=self._execution.waited,
+            early_touchdown=self._execution.early,
+            falling=warned or balance.outside >= self.parameters.recovery.fall_ticks,
         )

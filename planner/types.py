@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 GRAVITY = 9.81
-"""Gravitational acceleration [m/s^2], the value of the simulated world."""
+"""Gravitational acceleration, as in the simulated world [m/s^2]."""
 
 
 class Foot(IntEnum):
@@ -57,6 +57,35 @@ class Footstep:
     position: Array
     yaw: float
     normal: Array = field(default_factory=_upwards)
+
+
+@dataclass(frozen=True, slots=True)
+class FootstepPlan:
+    """Footholds of a whole walk as they are nominally planned, in the world frame.
+
+    Row 0 is the start foothold of the foot that moves first, row 1 that of the other foot (the stance foot of step 1),
+    row i + 1 is footstep i.
+
+    Attributes:
+        feet: which foot each row belongs to, length n.
+        position: sole centres, shape (n, 3) [m].
+        yaw: headings, unwrapped, shape (n,) [rad].
+        normal: unit normals of the ground, shape (n, 3) [-].
+    """
+
+    feet: tuple[Foot, ...]
+    position: Array
+    yaw: Array
+    normal: Array
+
+    @property
+    def steps(self) -> int:
+        """Number of steps of the walk."""
+        return len(self.feet) - 2
+
+    def footstep(self, row: int) -> Footstep:
+        """The foothold of a row."""
+        return Footstep(self.feet[row], self.position[row], float(self.yaw[row]), self.normal[row])
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,12 +179,14 @@ class Balance:
         movable: the same where the steps to come may be moved as far as legs, and what may be adapted, let them [m].
         shift: by how much the next landing is moved from where it nominally is, world frame, shape (2,) [m].
         delay: how much later than nominally it is made to come [s].
+        outside: plans on end in which the DCM has been farther outside `movable` than a robot that can be saved.
     """
 
     planned: float = math.nan
     movable: float = math.nan
     shift: Array = field(default_factory=lambda: np.full(2, math.nan))
     delay: float = math.nan
+    outside: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,6 +210,11 @@ class PhaseInfo:
     duration: float
     leads_to: int
     left: float
+
+    @property
+    def landed(self) -> int:
+        """Number of the step that landed last, 0 before the first."""
+        return self.step - (self.kind is PhaseKind.SINGLE)
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from surefoot.scenarios.file.schema import Scenario
     from surefoot.scenarios.judge.verdict import Verdict, judge
     from surefoot.scenarios.log.reader import Log, read
-    from surefoot.scenarios.loop.full import Parts
-    from surefoot.scenarios.loop.planning import RunFault
-    from surefoot.scenarios.loop.run import Result, run
+    from surefoot.scenarios.run.full import Parts
+    from surefoot.scenarios.run.planning import RunFault
+    from surefoot.scenarios.run.run import Result, run
+    from surefoot.scenarios.run.simulation import Simulation, Tick
     from surefoot.scenarios.setup.load import load
     from surefoot.scenarios.setup.walk import Walk
-    from surefoot.scenarios.simulation import Simulation, Tick
     from surefoot.version import __version__
 
 __all__ = [
@@ -63,12 +63,12 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "scenarios.file.schema": ("Scenario",),
             "scenarios.judge.verdict": ("Verdict", "judge"),
             "scenarios.log.reader": ("Log", "read"),
-            "scenarios.loop.planning": ("RunFault",),
-            "scenarios.loop.full": ("Parts",),
-            "scenarios.loop.run": ("Result", "run"),
+            "scenarios.run.planning": ("RunFault",),
+            "scenarios.run.full": ("Parts",),
+            "scenarios.run.run": ("Result", "run"),
             "scenarios.setup.load": ("load",),
             "scenarios.setup.walk": ("Walk",),
-            "scenarios.simulation": ("Simulation", "Tick"),
+            "scenarios.run.simulation": ("Simulation", "Tick"),
             "version": ("__version__",),
         },
     )

@@ -7,8 +7,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from skips import pytest_sessionfinish, pytest_terminal_summary
 
 from surefoot.models import RobotDescription, RobotOptions, describe
+
+__all__ = ["pytest_sessionfinish", "pytest_terminal_summary"]
 
 
 def _heeding() -> Iterator[None]:

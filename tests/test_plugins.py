@@ -12,7 +12,7 @@ from surefoot.planner.laws.profiles import PROFILES
 from surefoot.plugins import PluginError, Registry
 from surefoot.scenarios.catalogue import SCENARIOS
 from surefoot.scenarios.judge.metrics import METRICS
-from surefoot.scenarios.loop.sensing import ESTIMATORS
+from surefoot.scenarios.run.sensing import ESTIMATORS
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.wbc.tasks import TASKS
 

@@ -11,7 +11,8 @@ from PIL import Image
 
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.palette import COM, FEET, FOOTSTEP
-from surefoot.scenarios.show.replay.extract import Window, extract
+from surefoot.scenarios.show.replay.content import ReplayWindow
+from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.video import CAMERA, QUALITY, marks_of, stand
 from surefoot.sim.render import Camera, render_frames
 
@@ -45,14 +46,14 @@ class Shot:
         marked: with the marks of a replay, or the robot alone.
     """
 
-    window: Window
+    window: ReplayWindow
     size: tuple[int, int]
     camera: Camera = CAMERA
     lower: float = 0.0
     marked: bool = True
 
 
-WALK = Shot(Window(4.8, 9.5), (480, 270))
+WALK = Shot(ReplayWindow(4.8, 9.5), (480, 270))
 
 
 def pictures(log: Log, shot: Shot) -> tuple[list[Image.Image], int]:

@@ -19,14 +19,14 @@ from typing import Any
 import yaml
 from PIL import Image
 
-from surefoot.scenarios.show.figures.style import save
-from surefoot.scenarios.sweep.bars import Limit, bars
-from surefoot.scenarios.sweep.campaign import read_campaign
-from surefoot.scenarios.sweep.capturability import Limits
-from surefoot.scenarios.sweep.figures import WIDTH as PAGE_WIDTH
-from surefoot.scenarios.sweep.figures import Axis, Found, Spread, distributions, text, with_unit
-from surefoot.scenarios.sweep.points import Threshold
-from surefoot.scenarios.sweep.table import wilson
+from surefoot.scenarios.show.kit.figures import PAGE_WIDTH, save
+from surefoot.scenarios.study.campaigns.axes import Axis, text, with_unit
+from surefoot.scenarios.study.campaigns.campaign import read_campaign
+from surefoot.scenarios.study.campaigns.capturability import Limits
+from surefoot.scenarios.study.campaigns.points import Threshold
+from surefoot.scenarios.study.campaigns.success import Histogram, distributions
+from surefoot.scenarios.study.campaigns.table import wilson
+from surefoot.scenarios.study.campaigns.thresholds import Found, LimitOf, bars
 
 FOLDER = Path(__file__).parent
 WIDTH = 1300
@@ -70,19 +70,19 @@ def push_map(folder: Path, name: str) -> None:
         found.append(Found(labels, Threshold(value, row["side"]), ranges[str(labels)]))
         logs += [(labels, folder / row["log"])] if row["log"] else []
     limits = Limits(search.key, logs, "")
-    for line in table(found, axes, lambda labels: limits.at(labels, None)):
+    for line in table(found, axes, limits.at):
         print(line)
-    _save(bars(found, axes, search.key, lambda labels: limits.at(labels, None), campaign.spec.records), name)
+    _save(bars(found, axes, search.key, limits.at, campaign.spec.records), name)
 
 
-def table(found: Sequence[Found], axes: Sequence[Axis], limit: Limit) -> Iterator[str]:
+def table(found: Sequence[Found], axes: Sequence[Axis], limit: LimitOf) -> Iterator[str]:
     """Thresholds of all shades of a group in one cell, and the limit of the last shade, in the style of the page."""
     *others, columns, shades, groups = axes
     cells: dict[str, dict[Any, dict[Any, str]]] = {}
     for one in found:
         row = ", ".join(text(one.labels[axis.name]) for axis in (*others, groups) if len(axis.values) > 1)
         shown = f"{'< ' if one.threshold.side == 'below' else ''}{one.shown:.2f}"
-        most = limit(one.labels) if one.labels[shades.name] == shades.values[-1] else None
+        most = limit(one.labels, None) if one.labels[shades.name] == shades.values[-1] else None
         cell = cells.setdefault(row, {}).setdefault(one.labels[columns.name], {})
         cell[one.labels[shades.name]] = shown if most is None else f"{shown} ({most:.2f})"
     yield "| N·s/kg | " + " | ".join(map(text, columns.values)) + " |"
@@ -100,7 +100,7 @@ def robustness(folder: Path, name: str) -> None:
     runs = [row for row in rows(folder / "table.csv") if row["status"] in ("pass", "fail")]
     passed, failed = ([row for row in runs if row["status"] == status] for status in ("pass", "fail"))
     spreads = [
-        Spread(with_unit(key), [row[key] for row in passed], [row[key] for row in failed]) for key in spec["sample"]
+        Histogram(with_unit(key), [row[key] for row in passed], [row[key] for row in failed]) for key in spec["sample"]
     ]
     for combination in sorted({tuple(str(row[name]) for name in spec.get("grid", {})) for row in runs}):
         of_it = [row for row in runs if tuple(str(row[name]) for name in spec.get("grid", {})) == combination]

@@ -15,9 +15,9 @@ from PIL import Image
 
 from surefoot.models import RobotOptions, describe
 from surefoot.scenarios.log import Log, read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.show.replay.extract import Window
+from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.sim.render import Camera
 
 FOLDER = Path(__file__).parent
@@ -36,7 +36,7 @@ def shot(log: Log, leg: float) -> Shot:
     """Two strides of a robot with a leg of this length [m], from half ahead."""
     begin, end = log["/footstep"].time[list(STRIDES)].tolist()
     camera = Camera(DISTANCE * leg, azimuth=130.0, elevation=-8.0)
-    return Shot(Window(begin, end), SIZE, camera, lower=LOWER * leg, marked=False)
+    return Shot(ReplayWindow(begin, end), SIZE, camera, lower=LOWER * leg, marked=False)
 
 
 def draw(name: str, log: Log) -> Path:

@@ -27,7 +27,10 @@ PALETTE = "scenarios/palette.py"
 SOURCES: dict[str, tuple[str, ...]] = {
     "walk.png": (PALETTE, "docs/images/poses.py"),
     "walk.gif": (PALETTE, "docs/images/animate.py"),
-    "figures.png": (PALETTE, *(f"scenarios/show/figures/{name}.py" for name in ("motion", "page", "shading", "style"))),
+    "figures.png": (
+        PALETTE,
+        *(f"scenarios/show/{name}.py" for name in ("figures/motion", "figures/page", "kit/shading", "kit/figures")),
+    ),
 }
 """What a picture looks like by; the map's looks are its own, and its content changes with every part of the stack."""
 
@@ -83,8 +86,8 @@ def gait_map(_: Path) -> None:
     """Where the robot walks, by a campaign of some minutes."""
     from gait_map import main as draw_map
 
-    from surefoot.scenarios.sweep.campaign import read_campaign
-    from surefoot.scenarios.sweep.sweep import cores, sweep
+    from surefoot.scenarios.study.campaigns.campaign import read_campaign
+    from surefoot.scenarios.study.campaigns.sweep import cores, sweep
 
     with tempfile.TemporaryDirectory() as folder:
         swept = sweep(read_campaign("gait-map"), Path(folder) / "gait-map", cores())
@@ -100,6 +103,7 @@ PICTURES: dict[str, tuple[str, Callable[[Path], None]]] = {
 """The scenario that a picture shows, if it is one, and what draws it from its log."""
 
 OF_CAMPAIGNS = (
+    "front.webp",
     "push-map.png",
     "push-map-pendulum.png",
     "push-map-as-it-was.png",
@@ -110,7 +114,7 @@ OF_CAMPAIGNS = (
     *(f"robot-{name}.gif" for name in ("talos", "g1", "alexander", "jvrc1", "gr3", "h1")),
 )
 """Pictures that others draw: `campaigns.py` those of campaigns that take hours, one as it drew it before, `courses.py`,
-`drive.py`, `recoveries.py` and `gallery.py`."""
+`drive.py`, `recoveries.py`, `gallery.py` and `front.py`."""
 
 
 def main() -> None:

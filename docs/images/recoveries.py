@@ -14,9 +14,9 @@ from pathlib import Path
 from animate import Shot, palette, pictures, save
 
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.show.replay.extract import Window
+from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.sim.render import Camera
 
 FOLDER = Path(__file__).parent
@@ -51,7 +51,7 @@ class Recovery:
     scenario: str
     keys: tuple[str, ...]
     push: str
-    window: Window
+    window: ReplayWindow
     camera: Camera
 
 
@@ -65,22 +65,24 @@ RECOVERIES = {
         "walk",
         (*WALK, "duration=6.0"),
         _push(0.785, 0, "step: 3, phase: single, fraction: 0.5"),
-        Window(2.4, 5.2),
+        ReplayWindow(2.4, 5.2),
         SIDE,
     ),
-    "recovery-crossing.gif": Recovery("walk", WALK, _push(0.27, -90, SWING), Window(2.2, 5.0), FRONT),
+    "recovery-crossing.gif": Recovery("walk", WALK, _push(0.27, -90, SWING), ReplayWindow(2.2, 5.0), FRONT),
     "recovery-standing.gif": Recovery(
-        "stand", (*NATURAL, "duration=4.0"), _push(0.5, 0, "time: 0.5"), Window(0.3, 3.0), SIDE
+        "stand", (*NATURAL, "duration=4.0"), _push(0.5, 0, "time: 0.5"), ReplayWindow(0.3, 3.0), SIDE
     ),
     "recovery-sideways.gif": Recovery(
-        "stand", (*NATURAL, "duration=4.5"), _push(0.5, 90, "time: 0.5"), Window(0.3, 3.6), FRONT
+        "stand", (*NATURAL, "duration=4.5"), _push(0.5, 90, "time: 0.5"), ReplayWindow(0.3, 3.6), FRONT
     ),
-    "recovery-stairs.gif": Recovery("stairs-down", ("duration=17.0",), _push(0.2, -90, SWING), Window(4.0, 7.6), FRONT),
+    "recovery-stairs.gif": Recovery(
+        "stairs-down", ("duration=17.0",), _push(0.2, -90, SWING), ReplayWindow(4.0, 7.6), FRONT
+    ),
     "recovery-lasting.gif": Recovery(
         "walk",
         WALK,
         "{step: 3, phase: single, fraction: 0.5, duration: 2.0, impulse: 0.8, direction: 1.5708}",
-        Window(2.4, 5.4),
+        ReplayWindow(2.4, 5.4),
         FRONT,
     ),
 }

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from surefoot.models.robot_file.document import MESH, Kind, content
+from surefoot.models.robot_file.document import MESH, Kind, content, signature
 from surefoot.models.types import JointRoles, RobotDescription, RobotError
 
 _ENGINES = ("pin", "coal", "mujoco", "numpy", "scipy", "fast-simplification")
@@ -29,11 +29,12 @@ def digest(files: Iterable[tuple[str, Path | None]]) -> str:
     Raises:
         RobotError: a file cannot be read.
     """
-    sha = hashlib.sha256(_code())
+    sha, read = hashlib.sha256(_code()), dict[tuple[int, ...], str]()
     for reference, file in files:
-        data = None if file is None else content(file, MESH)
-        sha.update(repr((reference, str(file), None if data is None else len(data))).encode())
-        sha.update(data or b"")
+        key = () if file is None else signature(file)
+        if file is not None and key not in read:
+            read[key] = hashlib.sha256(content(file, MESH)).hexdigest()
+        sha.update(repr((reference, str(file), read.get(key))).encode())
     return sha.hexdigest()
 
 

@@ -42,6 +42,7 @@ ROBOT_FILE = Kind((), "", 100_000, "give a readable robot file")
 MODEL = Kind(("model",), "", 16 << 20, "give the path of a URDF or MJCF")
 SRDF = Kind(("srdf",), "", 4 << 20, "give the path of an SRDF")
 MESH = Kind(("model",), "mesh ", 64 << 20, "give STL, DAE or OBJ")
+MESH_TEXT = Kind(("model",), "mesh ", 32 << 20, "give at most 32 MiB of DAE or OBJ, or binary STL")
 
 
 def content(path: Path, kind: Kind) -> bytes:

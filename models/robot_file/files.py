@@ -1,15 +1,21 @@
 """A model with all the files that it is made of, found by the one parser that also gives it to the engines."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from surefoot.models.robot_file.document import MODEL, SRDF, Node, read_xml, root_of
+from surefoot.models.robot_file.document import MODEL, SRDF, Node, read_xml, root_of, signature
 from surefoot.models.robot_file.mjcf import Assembled, assembled
 from surefoot.models.robot_file.paths import is_file, resolve
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.urdf import check_urdf
 from surefoot.models.types import RobotError
+
+MOST_TEXT = 48 << 20
+"""Bytes of all OBJ and DAE of a URDF, 0.15 us each."""
+
+MOST_COMPILED = 48 << 20
+"""Bytes of all mesh files of an MJCF, each read before dense ones become coarser."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +49,28 @@ def read_document(path: Path) -> Document:
     root = read_xml(path, MODEL)
     if root.tag == "mujoco":
         mjcf = assembled(root)
+        _require_small(mjcf.meshes.values(), MOST_COMPILED, path, "meshes", "coarser ones")
         return Document(path, root, mjcf, mjcf.files)
     if root.tag != "robot":
         what = f"{path}: neither URDF nor MJCF"
         raise RobotError(("model",), what, "give a file with <robot> or <mujoco> at its root")
     check_urdf(root)
-    return Document(path, root, None, tuple(_meshes(root, path)))
+    references = tuple(_meshes(root, path))
+    texts = [file for _, file in references if file is not None and file.suffix.lower() in (".obj", ".dae")]
+    _require_small(texts, MOST_TEXT, path, "OBJ and DAE", "binary STL")
+    return Document(path, root, None, references)
+
+
+def _require_small(files: Iterable[Path], most: int, path: Path, what: str, instead: str) -> None:
+    """Refuse more bytes than an engine should read.
+
+    Raises:
+        RobotError: all files together have more than `most`.
+    """
+    size = sum((*signature(file), 0, 0, 0)[2] for file in set(files))
+    if size > most:
+        right = f"give at most {most}, or {instead}"
+        raise RobotError(("model",), f"{path}: its {what} have {size} bytes together", right)
 
 
 def _meshes(root: Node, path: Path) -> Iterator[tuple[str, Path | None]]:

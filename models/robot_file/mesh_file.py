@@ -8,13 +8,16 @@ from xml.parsers import expat
 
 import numpy as np
 
-from surefoot.models.robot_file.document import DEEPEST, MESH, content, signature
+from surefoot.models.robot_file.document import DEEPEST, MESH, MESH_TEXT, content, signature
 from surefoot.models.robot_file.meshes import Triangles
 from surefoot.models.robot_file.paths import is_file
 from surefoot.models.types import Array, RobotError
 
 _STL_HEAD = 84
 _STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+MOST_WORDS = 8_000_000
+"""Spaces and ends of lines of a mesh that is text: what a reader needs grows with its words more than its bytes."""
+
 _ENDINGS = (".stl", ".obj", ".dae")
 
 
@@ -29,13 +32,52 @@ def read_mesh(path: Path) -> Triangles:
 
 @lru_cache(maxsize=64)
 def _read(path: Path, _unchanged: tuple[int, ...]) -> Triangles:
-    ending, data = path.suffix.lower(), content(path, MESH)
+    ending = path.suffix.lower()
+    return triangles(path, ending, mesh_content(path, ending))
+
+
+def mesh_content(path: Path, ending: str) -> bytes:
+    """What is in a mesh file, of text less than of bytes.
+
+    Raises:
+        RobotError: it is too long, or cannot be read.
+    """
+    return content(path, MESH_TEXT if ending in (".obj", ".dae") else MESH)
+
+
+def triangles(path: Path, ending: str, data: bytes) -> Triangles:
+    """Vertices and faces of what is in a mesh file.
+
+    Args:
+        path: of the file, for messages.
+        ending: of its kind, in small letters.
+        data: what is in it.
+
+    Raises:
+        RobotError: it cannot be read.
+    """
     if ending not in _ENDINGS:
         raise _unread(path, f"it ends in '{path.suffix}'")
     count = int.from_bytes(data[80:_STL_HEAD], "little")
     if ending == ".stl" and len(data) == _STL_HEAD + count * _STL.itemsize:
         return _welded(np.frombuffer(data, _STL, count, _STL_HEAD)["corners"].reshape(-1, 3))
     return _loaded(path, ending, data)
+
+
+def burden(ending: str, data: bytes) -> int:
+    """What compiling a mesh costs: its triangles, vertices, or triangles of an STL as long, whichever are most."""
+    counts = {"f": 0, "v": 0}
+    for line in re.finditer(rb"^[ \t]*([fv])[ \t][^\n]*", data, re.MULTILINE) if ending == ".obj" else ():
+        counts[line[1].decode()] += len(line[0].split()) - 3
+    return max(*counts.values(), (len(data) - _STL_HEAD) // _STL.itemsize)
+
+
+def binary_stl(mesh: Triangles) -> bytes:
+    """The bytes of a mesh file of these triangles."""
+    vertices, faces = mesh
+    rows = np.zeros(len(faces), _STL)
+    rows["corners"] = vertices[faces]
+    return bytes(_STL_HEAD - 4) + len(faces).to_bytes(4, "little") + rows.tobytes()
 
 
 def _unread(path: Path, reason: str) -> RobotError:
@@ -46,6 +88,9 @@ def _loaded(path: Path, ending: str, data: bytes) -> Triangles:
     """The triangles that Coal finds, without materials, which stand in other files."""
     import coal
 
+    words = int(np.count_nonzero(np.frombuffer(data, np.uint8) <= ord(" ")))
+    if words > MOST_WORDS:
+        raise _unread(path, f"it has {words} spaces and ends of lines, more than {MOST_WORDS}")
     if ending == ".dae":
         _Collada(path, data)
     with tempfile.TemporaryDirectory() as folder:
@@ -57,8 +102,8 @@ def _loaded(path: Path, ending: str, data: bytes) -> Triangles:
             said = str(error).replace(str(copy), path.name).rpartition("message:")[2]
             reason = " ".join(said.split())[:150]
             raise _unread(path, reason) from None
-    corners = (read.tri_indices(k) for k in range(read.num_tris))
-    faces = np.array([(corner[0], corner[1], corner[2]) for corner in corners], dtype=np.int64).reshape(-1, 3)
+    corners = (corner[at] for corner in map(read.tri_indices, range(read.num_tris)) for at in range(3))
+    faces = np.fromiter(corners, np.int64, 3 * read.num_tris).reshape(-1, 3)
     vertices: Array = np.array(read.vertices()).reshape(-1, 3)
     if faces.size and faces.max() >= len(vertices):
         raise _unread(path, "a triangle has a vertex that is not there")

@@ -1,13 +1,14 @@
 """An MJCF as a Pinocchio model: what MuJoCo compiled of it, with all defaults and includes."""
 
 import re
-from pathlib import Path
+from pathlib import Path, PurePath
 
 import mujoco
 import numpy as np
 import pinocchio as pin
 
-from surefoot.models.robot_file.document import MESH, content
+from surefoot.models.robot_file.mesh_file import binary_stl, burden, mesh_content, triangles
+from surefoot.models.robot_file.meshes import thinned
 from surefoot.models.robot_file.mjcf import Assembled
 from surefoot.models.robot_file.paths import is_file
 from surefoot.models.robot_file.schema import RobotFile
@@ -30,6 +31,14 @@ _LEGS = 8
 """Joints that two legs have at least."""
 
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
+
+MOST_COMPILED = 400_000
+"""Triangles of all meshes that MuJoCo compiles, 1.3 kB and 6 us each; dense meshes of more become coarser."""
+
+_MOST_OF_STL = 200_000
+"""Triangles that MuJoCo takes of one STL."""
+
+_INFERRED = 'inertiafromgeom="true"'
 
 
 def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
@@ -56,7 +65,6 @@ def _bare(path: Path, document: Assembled, notes: list[str]) -> mujoco.MjSpec:
     """
     files = {name: text.encode() for name, text in document.models.items()}
     there = {name: mesh for name, mesh in document.meshes.items() if is_file(mesh)}
-    files |= {name: content(mesh, MESH) for name, mesh in there.items()}
     spec = mujoco.MjSpec.from_string(document.text, files, files)
     for part in (*spec.pairs, *spec.excludes):
         spec.delete(part)
@@ -72,7 +80,64 @@ def _bare(path: Path, document: Assembled, notes: list[str]) -> mujoco.MjSpec:
     for mesh in [mesh for mesh in spec.meshes if mesh.name in missing]:
         spec.delete(mesh)
     notes += told_missing("visual", told)
+    spec.assets = files | _moderate(spec, path, document, there, notes)
     return spec
+
+
+def _moderate(
+    spec: mujoco.MjSpec, path: Path, document: Assembled, there: dict[str, Path], notes: list[str]
+) -> dict[str, bytes]:
+    """What is in the mesh files of a document, dense ones made coarser where they say nothing of inertia or size.
+
+    Raises:
+        RobotError: a mesh cannot be read, or those that cannot be made coarser have too many triangles.
+    """
+    sources = {name: (mesh, PurePath(name).suffix) for name, mesh in there.items()}
+    contents = {source: mesh_content(*source) for source in dict.fromkeys(sources.values())}
+    costs = {source: burden(source[1], data) for source, data in contents.items()}
+    burdens = {name: costs[source] for name, source in sources.items()}
+    found = {name: contents[source] for name, source in sources.items()}
+    exact, meshes = _exact(spec, document), [mesh for mesh in spec.meshes if mesh.file in there]
+    free = [mesh for mesh in meshes if mesh.name not in exact and not mesh.file.endswith(".msh")]
+    fixed = sum(burdens[mesh.file] for mesh in meshes) - sum(burdens[mesh.file] for mesh in free)
+    if fixed > MOST_COMPILED:
+        what = f"{path}: it has {fixed} triangles in MSH and in meshes by which bodies have inertia or size"
+        raise RobotError(("model",), what, f"give STL and bodies with an inertial, or at most {MOST_COMPILED}")
+    level = _level(sorted(burdens[mesh.file] for mesh in free), max(MOST_COMPILED - fixed, MOST_COMPILED // 4))
+    most, thin = min(level, _MOST_OF_STL), dict[tuple[Path, str], bytes]()
+    for mesh in [mesh for mesh in free if burdens[mesh.file] > most]:
+        source = sources[mesh.file]
+        if source not in thin:
+            thin[source] = binary_stl(thinned(triangles(*source, contents[source]), most))
+        mesh.file = f"thin {PurePath(mesh.file).stem}.stl"
+        mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL  # says nothing here, and a volume may be missing
+        found[mesh.file] = thin[source]
+    if thin:
+        names = ", ".join(sorted({file.name for file, _ in thin}))
+        notes.append(f"meshes are dense and made coarser, with at most {most} triangles each: {names}")
+    used = {mesh.file for mesh in spec.meshes}
+    return {name: data for name, data in found.items() if name in used}
+
+
+def _exact(spec: mujoco.MjSpec, document: Assembled) -> set[str]:
+    """Names of meshes by which a body has its inertia, or a geom of another shape its size."""
+    inferred = any(_INFERRED in text for text in (document.text, *document.models.values()))
+    found = set()
+    for geom in spec.geoms:
+        weightless = geom.mass == 0.0 or (np.isnan(geom.mass) and geom.density == 0.0)
+        weighs = not weightless and (inferred or not geom.parent.explicitinertial)
+        if geom.meshname and (weighs or geom.type != mujoco.mjtGeom.mjGEOM_MESH):
+            found.add(geom.meshname)
+    return found
+
+
+def _level(counts: list[int], most: int) -> int:
+    """Up to what each of some ascending counts may go so that together they are at most `most`."""
+    for at, count in enumerate(counts):
+        if count * (len(counts) - at) > most:
+            return most // (len(counts) - at)
+        most -= count
+    return most + max(counts, default=0)
 
 
 def _robot_of(mj: mujoco.MjModel, path: Path, notes: list[str]) -> int:

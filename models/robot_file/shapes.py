@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -18,8 +18,8 @@ from surefoot.models.types import Array, RobotError
 
 Colour = tuple[float, float, float, float]
 
-MOST_TRIANGLES = 5_000_000
-"""Of all shapes of a robot."""
+MOST_TRIANGLES = 2_500_000
+"""Of all shapes of a robot, what is drawn and what touches."""
 
 GREY: Colour = (0.7, 0.7, 0.72, 1.0)
 _CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
@@ -103,7 +103,7 @@ def _ring(radius: float, height: float) -> Array:
 
 
 def urdf_shapes(
-    root: ElementTree.Element, path: Path, kind: str, notes: list[str], drawn: Collection[str] | None = None
+    root: ElementTree.Element, path: Path, kind: str, notes: list[str], drawn: Sequence[Shape] | None = None
 ) -> tuple[Shape, ...]:
     """Shapes of all links.
 
@@ -112,7 +112,7 @@ def urdf_shapes(
         path: of the URDF.
         kind: visual or collision.
         notes: is told of links whose meshes are missing and not needed.
-        drawn: links that touch by what is drawn of them if a mesh is missing; None where physics needs no mesh.
+        drawn: by which links touch where a mesh is missing; None where physics needs no mesh.
 
     Raises:
         RobotError: a mesh that physics needs is missing or cannot be read.
@@ -121,6 +121,7 @@ def urdf_shapes(
         name: rgba for material in root.iter("material") if (name := material.get("name")) and (rgba := _rgba(material))
     }
     found: list[Shape] = []
+    instead = None if drawn is None else {shape.link for shape in drawn}
     missing: list[str] = []
     for link in root.findall("link"):
         name = link.get("name", "")
@@ -136,10 +137,10 @@ def urdf_shapes(
                 found += _urdf_shape(name, geometry[0], _origin(element), rgba, path)
             except RobotError as error:
                 what = f"link '{name}' of {path}: {error.what}"
-                if drawn is not None and name not in drawn:
+                if instead is not None and name not in instead:
                     raise RobotError(error.key, what, error.right) from None
                 missing.append(what)
-            require_moderate(found)
+            require_moderate((*(drawn or ()), *found))
     notes += told_missing(kind, missing)
     return tuple(found)
 

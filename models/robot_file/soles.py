@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 from scipy.spatial import ConvexHull, QhullError
 
+from surefoot.models.robot_file.meshes import outer
 from surefoot.models.types import Array, RobotError
 
 _DOWN = 0.8
@@ -50,7 +51,7 @@ def sole_of(points: Array, upright: Array, link: str, robot: str) -> SolePlate:
     """
     if len(points) < 4:
         raise _no_sole(robot, link, "has no shapes")
-    normal, corners = _bearing(points, upright[:, 2], link, robot)
+    normal, corners = _bearing(outer(points), upright[:, 2], link, robot)
     R = _frame(upright, normal)
     local = corners @ R
     thick = _THICK * float(np.ptp(local[:, 0]))

@@ -69,8 +69,7 @@ def _read_urdf(file: RobotFile, document: Document) -> Source:
     mimics = tuple(_mended_joints(root, source_notes))
     _check_inertias(root, file, path, source_notes)
     visual = urdf_shapes(root, path, "visual", source_notes)
-    drawn = {shape.link for shape in visual}
-    collision = urdf_shapes(root, path, "collision", source_notes, drawn)
+    collision = urdf_shapes(root, path, "collision", source_notes, visual)
     try:
         model = pin.buildModelFromXML(kinematics(root), pin.JointModelFreeFlyer(), ROOT)
     except Exception as error:

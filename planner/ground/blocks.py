@@ -10,7 +10,7 @@ from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
 from surefoot.planner.types import Array
 
 LEVEL_STEPS = 2
-"""Footsteps at the end of a block field that land on level blocks, as the start feet stand on such."""
+"""Footsteps at the end of a block field that land on level blocks, as the start feet stand on such [-]."""
 
 
 @dataclass(frozen=True, slots=True)

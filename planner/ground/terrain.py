@@ -2,16 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation
-
-if TYPE_CHECKING:
-    from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.types import FootstepPlan
 
 HALF_WIDTH = 1.0
 """Half of the lateral extent of stairs and slopes [m]."""
@@ -131,7 +129,7 @@ class Terrain:
             margins[carrying] = corner_inside.min(axis=1)[carrying]
         return margins
 
-    def room(
+    def free_area(
         self, position: NDArray[np.float64], yaw: float, half_size: NDArray[np.float64], length: float = 1.0
     ) -> NDArray[np.float64]:
         """How far a sole may be moved on the face that carries it, ahead and to the left of where it was to land.
@@ -177,7 +175,7 @@ def flat(friction: float = 0.8) -> Terrain:
     return Terrain(boxes=(), friction=friction)
 
 
-def _unknown() -> "FootstepPlan":
+def _unknown() -> FootstepPlan:
     raise ParameterError(("terrain", "footsteps"), "this ground is laid under footsteps", "give its site the footsteps")
 
 
@@ -196,7 +194,7 @@ class Site:
     origin: NDArray[np.float64]
     yaw: float
     friction: float
-    footsteps: Callable[[], "FootstepPlan"] = _unknown
+    footsteps: Callable[[], FootstepPlan] = _unknown
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))
 
 

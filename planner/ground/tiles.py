@@ -19,10 +19,10 @@ AROUND = 2
 
 _WINDOW = np.array(list(product(range(-AROUND, AROUND + 1), repeat=2)))
 _STREAM = 4
-"""Random numbers of the tiles, apart from those of other things with the same seed."""
+"""Stream of random numbers of the tiles: others with the same seed have their own [-]."""
 
 _MIDDLE = 2**31
-"""Number of the tile at the origin, since streams of random numbers have no negative ones."""
+"""Number of the tile at the origin, since streams of random numbers have no negative ones [-]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,11 +12,10 @@ from surefoot.planner.model.dcm import NominalMotion, jerk_range, no_motion, nom
 from surefoot.planner.model.jerk import Prediction, block_moves, predict, zmp_response
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.leg_offset import softening
-from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import GRAVITY, Array, SolverStatus
 
 _EXTRA = 4
-"""Variables after the moves: two footstep shifts, ZMP slack, terminal slack."""
+"""Variables after the moves: two footstep shifts, ZMP slack, terminal slack [-]."""
 
 _UNSHIFTED = np.zeros((2, 2))
 
@@ -24,11 +23,8 @@ _UNSHIFTED = np.zeros((2, 2))
 def build_problem(
     parameters: PlannerParameters,
     prediction: Prediction,
-    state: Array,
-    stiffness: Array,
-    reference: ZmpReference,
+    problem: MotionProblem,
     constraints: Constraints,
-    last_jerk: Array,
     move_range: tuple[Array, Array] | None = None,
 ) -> tuple[Qp, Qp]:
     """The QPs of the plan frame's x and y axis; they share P and G.
@@ -45,19 +41,16 @@ def build_problem(
     Args:
         parameters: planner parameters.
         prediction: cached prediction matrices.
-        state: CoM position, velocity, acceleration per axis, shape (2, 3).
-        stiffness: λ at samples 0..N, shape (N + 1,).
-        reference: ZMP reference, at least N + 1 samples.
+        problem: this tick; its last jerk enters only with a finite rate limit.
         constraints: bounds of this tick.
-        last_jerk: jerk applied now, shape (2,) [m/s^3]; enters only with a finite rate limit.
         move_range: bounds of the moves, shape (axis, m) each [m/s^3]; the jerk limit on both sides by default.
     """
-    errors = _linear_errors(prediction, state, stiffness, reference, constraints)
+    errors = _linear_errors(prediction, problem, constraints)
     m = prediction.basis.shape[1]
     P, q = _cost(parameters, errors, m)
     G, h = _inequalities(constraints, errors, m)
     if np.isfinite(parameters.jerk_rate_limit):
-        G, h = _with_rate_limit(G, h, m, parameters.jerk_rate_limit, last_jerk)
+        G, h = _with_rate_limit(G, h, m, parameters.jerk_rate_limit, problem.last_jerk)
     lower, upper = _bounds(constraints, m, move_range or (-parameters.jerk_limit, parameters.jerk_limit))
     x, y = (Qp(P, q[i], G, h[i], lower[i], upper[i]) for i in range(2))
     return x, y
@@ -73,12 +66,11 @@ class _Errors:
     end: Array
 
 
-def _linear_errors(
-    prediction: Prediction, state: Array, stiffness: Array, reference: ZmpReference, constraints: Constraints
-) -> _Errors:
-    n = prediction.basis.shape[0]
-    moves = zmp_response(prediction.moves[:, 1:], stiffness[1:])
-    free = zmp_response(prediction.state[:, 1:] @ state.T, stiffness[1:])
+def _linear_errors(prediction: Prediction, problem: MotionProblem, constraints: Constraints) -> _Errors:
+    n, state, reference = prediction.basis.shape[0], problem.state, problem.reference
+    stiffness = problem.stiffness[1 : n + 1]
+    moves = zmp_response(prediction.moves[:, 1:], stiffness)
+    free = zmp_response(prediction.state[:, 1:] @ state.T, stiffness)
     end_state = prediction.state[0, n] + prediction.state[1, n] / constraints.terminal_omega
     end_moves = prediction.moves[0, n] + prediction.moves[1, n] / constraints.terminal_omega
     return _Errors(
@@ -128,7 +120,7 @@ def _diagonal_cost(parameters: PlannerParameters, m: int) -> Array:
 def _bounds(constraints: Constraints, m: int, moves: tuple[Array, Array] | tuple[float, float]) -> tuple[Array, Array]:
     lower, upper = np.zeros((2, m + _EXTRA)), np.full((2, m + _EXTRA), np.inf)
     lower[:, :m], upper[:, :m] = moves
-    lower[:, m : m + 2], upper[:, m : m + 2] = constraints.step_lower.T, constraints.step_upper.T
+    lower[:, m : m + 2], upper[:, m : m + 2] = constraints.steps.lower.T, constraints.steps.upper.T
     return lower, upper
 
 
@@ -169,16 +161,9 @@ class FootstepTvmpc:
         nominal = self._nominal(problem)
         rest = replace(problem.reference, point=problem.reference.point - nominal.zmp)
         constraints = generate_constraints(p, rest, problem.stiffness, problem.omega, problem.steps)
-        axes = build_problem(
-            p,
-            self._prediction,
-            problem.state - nominal.com[:, 0].T,
-            problem.stiffness[: p.horizon + 1],
-            rest,
-            constraints,
-            problem.last_jerk,
-            jerk_range(nominal.jerk[: p.horizon], p.moves, p.jerk_limit),
-        )
+        beside = replace(problem, state=problem.state - nominal.com[:, 0].T, reference=rest)
+        moves = jerk_range(nominal.jerk[: p.horizon], p.moves, p.jerk_limit)
+        axes = build_problem(p, self._prediction, beside, constraints, moves)
         return BuiltQps(axes, nominal.jerk[: p.horizon], _UNSHIFTED)
 
     def solve(self, built: BuiltQps) -> tuple[QpSolution, QpSolution]:

@@ -27,7 +27,7 @@ class Profile:
         moves: whether it optimises moves of the jerk, whose number may be chosen.
         height: vertical CoM motion that belongs to it; None for what the user chooses.
         catches: whether its law moves footsteps as it needs to, so that place and time of a step may be adapted to all
-            that the legs can do (see `planner.recovery`).
+            that the legs can do (see `planner.recovery.step_adjustment`).
         planner: makes a planner that takes the place of `planner.planner.WalkingPlanner`, from the same arguments; None
             for that one.
     """

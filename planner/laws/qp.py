@@ -7,17 +7,8 @@ import daqp
 import numpy as np
 import qpsolvers
 
+from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.types import Array
-
-SOLVERS = ("daqp", "piqp")
-"""The solvers of qpsolvers that are tried, in this order.
-
-DAQP, a dual active-set method, is exact and the fastest. What it calls infeasible is asked of a second one of another
-kind, which must agree and lose no time: profile `paper` has such ticks in thousands. PIQP, a proximal interior-point
-method (BSD-2), said so in all 245 of them that were recorded, in 0.5 ms at most, missed no optimum, and with the
-tolerances below meets DAQP's cost to 1e-10 (its jerk to 4e-4 m/s^3 where the cost is flat, else to 1e-5). ProxQP missed
-12 of 170 optima; Clarabel takes ten times as long.
-"""
 
 OPTIONS: dict[str, dict[str, Any]] = {
     "daqp": {"primal_tol": 1e-9, "dual_tol": 1e-12},
@@ -26,6 +17,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
 """Tolerances that make the solvers exact to the last digits that matter, by name."""
 
 _UNBOUNDED = 1e30
+"""A bound that DAQP takes for none, as its manual says [-]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,15 +13,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.laws.constraints import step_bounds
 from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem
 from surefoot.planner.laws.qp import Qp, QpSolution, solve
 from surefoot.planner.model.dcm import dcm, decays, nominal_dcm, viability_weights
 from surefoot.planner.model.jerk import block_moves
 from surefoot.planner.model.step_response import CachedResponse, cached_response
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.leg_reach import reach_box
 from surefoot.planner.types import Array, SolverStatus
-from surefoot.planner.walk.reach import reach_box
 
 
 def paper_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:
@@ -63,7 +62,7 @@ def corrected_shift(problem: MotionProblem, parameters: PlannerParameters) -> Ar
 
     Args:
         problem: the tick.
-        parameters: give sample time, reach, swing speed and freeze time.
+        parameters: give sample time and freeze time.
 
     Returns:
         Shift of the next footstep from its nominal increment, shape (2,) [m].
@@ -79,8 +78,7 @@ def corrected_shift(problem: MotionProblem, parameters: PlannerParameters) -> Ar
     authority = problem.reference.half_size[0] * (growth - 1.0)
     residual = np.sign(error) * np.maximum(np.abs(error) * growth - authority, 0.0)
     gain = viability_weights(problem.stiffness[k:], problem.omega[k:], t) @ problem.reference.gain[k:, 0]
-    lower, upper = step_bounds(parameters, steps)
-    return np.asarray(np.clip(residual / gain, lower[0], upper[0]))
+    return np.asarray(np.clip(residual / gain, steps.bounds.lower[0], steps.bounds.upper[0]))
 
 
 def build_hard_problem(

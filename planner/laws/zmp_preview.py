@@ -13,7 +13,7 @@ from surefoot.planner.references.leg_offset import softening
 from surefoot.planner.types import GRAVITY, Array
 
 _PREVIEW = 80
-"""Samples of the reference that the law looks ahead, N_l: 1.6 s."""
+"""Samples of the reference that the law looks ahead, N_l: 1.6 s [-]."""
 
 _JERK_WEIGHT = 1e-6
 """Cost R of a squared jerk against Q_e = 1 for a squared ZMP error, of the reference robot [s^6]."""

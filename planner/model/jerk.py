@@ -8,7 +8,7 @@ from surefoot.errors import ParameterError
 from surefoot.planner.types import Array
 
 BLOCK_STARTS = (0, 1, 2, 4, 7, 11, 16, 22, 29, 37)
-"""Ten blocks over fifty samples, short at first: the repaired parametrisation (the paper's own is (0, 1), N_c = 2)."""
+"""Ten blocks over fifty samples, short at first: the repaired parametrisation (the paper's is (0, 1), N_c = 2) [-]."""
 
 
 def jerk_model(sample_time: float) -> tuple[Array, Array]:

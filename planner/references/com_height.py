@@ -14,10 +14,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import quintic
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.types import GRAVITY, Array, PhaseKind
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.phases import CLOCK_ROUNDING, PhaseSamples
 
 _FALL_LIMIT = 0.8
 """Downward CoM acceleration that a plan may ask for, as a share of gravity: beyond it the feet hardly press [-]."""
@@ -31,21 +30,12 @@ _IMPULSE_LIMIT = 0.95
 _LEAST_HEIGHT = 0.1
 """Height over the ZMP that the reference robot's pendulum never goes below [m]."""
 
-LIFTING = 5.0
-"""Vertical CoM acceleration, up or down, with which a body may be brought to another height in a hurry [m/s^2]."""
-
-_ROUNDING = 1e-9
-"""Accelerations are compared with this tolerance [m/s^2]."""
-
-_LOOKED_AT = np.linspace(0.0, 1.0, 21)
-"""Shares of a bridge at which its acceleration is looked at [-]."""
-
 _CLIMB_SHARE, _DESCENT_SHARE = 0.8, 1.0
 """Shares of single support in which the level rises and sinks: the knee is bent most, and can lift least, at the begin
 of a climb and at the end of a descent [-]."""
 
 BENT_KNEES = 0.08
-"""How much lower than stretched knees carry it bent ones carry the reference robot's CoM [m]."""
+"""How much lower than stretched knees carry it bent ones carry the reference robot's CoM, as crouched gaits do [m]."""
 
 
 class Rise(Enum):
@@ -267,63 +257,6 @@ class HeightPreview:
         return HeightPreview(self.height[:, :count], self.stiffness[:count])
 
 
-@dataclass(frozen=True, slots=True)
-class Bridge:
-    """The height from where it was at a tick to its law some time later.
-
-    A law of phases has a rise in each of them, however short a push makes it: hurried through in 0.2 s it asks for
-    more than free fall, and the swing leg's momentum over what is left of the weight for any ZMP. When a step that is
-    adapted changes how the clock goes the body leaves its law, therefore, and comes to it smoothly at the end of the
-    phase, or as much later as it takes not to be accelerated by more than `LIFTING`, or more than it is already.
-
-    Attributes:
-        start: tick at which it begins.
-        samples: after which the law goes on.
-        coefficients: of the height by time, shape (6, 1) [m, m/s, ...].
-        sample_time: length of a sample [s].
-    """
-
-    start: int
-    samples: int
-    coefficients: Array
-    sample_time: float
-
-    @classmethod
-    def onto(cls, height: Array, state: Array, start: int, left: float, sample_time: float) -> "Bridge":
-        """That from a state onto a law.
-
-        Args:
-            height: z, z', z'' of the law at the samples from now on, shape (3, n) [m, m/s, m/s^2].
-            state: z, z', z'' now, shape (3,).
-            start: tick.
-            left: until the phase ends [samples].
-            sample_time: length of a sample [s].
-        """
-        bound, least = max(LIFTING, abs(float(state[2]))), math.inf
-        soonest, last = max(math.ceil(left - CLOCK_ROUNDING), 1), height.shape[1] - 1
-        for samples in range(min(soonest, last), last + 1):
-            end = height[:, samples : samples + 1]
-            bridge = cls(start, samples, quintic(state[:, None], end, samples * sample_time), sample_time)
-            hardest = float(np.abs(bridge._at(samples * _LOOKED_AT)[2]).max())
-            if hardest < least:
-                least, best = hardest, bridge
-            if hardest <= bound + _ROUNDING:
-                break
-        return best
-
-    def _at(self, samples: Array) -> Array:
-        """z, z', z'' so many samples after the start, shape (3, n)."""
-        powers, order = (samples * self.sample_time)[:, None] ** np.arange(6), np.arange(1.0, 6.0)
-        first = self.coefficients[1:, 0] * order
-        ways = (self.coefficients[:, 0], first, first[1:] * order[:-1])
-        return np.stack([powers[:, : len(way)] @ way for way in ways])
-
-    def over(self, height: Array, tick: int) -> Array:
-        """The law at the samples from a tick on with what is left of the bridge over it, shape (3, n)."""
-        ahead = np.arange(tick - self.start, self.samples)[: height.shape[1]]
-        return np.concatenate((self._at(ahead.astype(np.float64)), height[:, len(ahead) :]), axis=1)
-
-
 def preview_height(
     profile: HeightProfile,
     gait: GaitParameters,
@@ -331,7 +264,7 @@ def preview_height(
     support_height: Array,
     zmp_height: Array,
     length: float = 1.0,
-    bridged: Callable[[Array], Array] | None = None,
+    transition: Callable[[Array], Array] | None = None,
 ) -> HeightPreview:
     """CoM height and pendulum stiffness of a window, but for the first and the last of its samples.
 
@@ -345,11 +278,11 @@ def preview_height(
         support_height: heights of the support points in sight, shape (m,) [m].
         zmp_height: height of the ground under the ZMP reference, shape (n,) [m].
         length: size of the robot (see `surefoot.similarity`) [-].
-        bridged: what is made of the law's height; nothing by default.
+        transition: what is made of the law's height; nothing by default.
     """
     height = profile.height(gait, samples, support_height)[:, 1:-1]
-    if bridged is not None:
-        height = bridged(height)
+    if transition is not None:
+        height = transition(height)
     limit = _IMPULSE_LIMIT if profile.impulsive else _FALL_LIMIT
     pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
     return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT * length))

@@ -23,15 +23,15 @@ import numpy as np
 
 from surefoot.planner.model.dcm import NominalMotion
 from surefoot.planner.model.leg_chain import LegChain
+from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
+from surefoot.planner.steps.phases import Phase, PhaseSamples
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.steps.step import unit_swing
 from surefoot.planner.swing.heel_off import bump
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
-from surefoot.planner.walk.phases import CLOCK_ROUNDING, Phase, PhaseSamples
-from surefoot.planner.walk.queue import StepQueue
-from surefoot.planner.walk.step import unit_swing
-from surefoot.planner.walk.stepper import Deviation
 
 
 def softening(leg: LegInertia) -> float:
@@ -58,77 +58,78 @@ class Feet:
 
 def nominal_feet(
     samples: PhaseSamples,
-    queue: StepQueue,
+    schedule: Schedule,
     frame: tuple[Array, Array],
     toe: float,
-    deviation: Deviation | None = None,
+    flown: tuple[SwingTrajectory, float] | None = None,
 ) -> Feet:
     """Nominal feet in the plan frame, but for a swing that does not go as its step was laid.
 
     Args:
         samples: the phases over a window.
-        queue: the steps in sight.
+        schedule: the steps in sight, landing where they are aimed at.
         frame: the plan frame's rotation to the world, shape (2, 2), and origin, shape (2,) [m].
         toe: toe edge from the sole's centre [m].
-        deviation: that swing.
+        flown: that swing, and the time now [s].
     """
-    (rotation, origin), footsteps = frame, queue.footsteps if deviation is None else deviation.footsteps
-    points = np.column_stack(((footsteps.position[:, :2] - origin) @ rotation, footsteps.position[:, 2], footsteps.yaw))
-    row = np.array([phase.row for phase in samples.phases])[samples.which] - footsteps.first
-    progress, height, rolled = _swings(samples, queue)
+    (rotation, origin), position = frame, schedule.positions
+    points = np.column_stack(((position[:, :2] - origin) @ rotation, position[:, 2], schedule.yaws))
+    row = np.array([schedule.index(phase.leaves - 1) for phase in samples.phases])[samples.which]
+    progress, height, rolled = _swings(samples, schedule)
     before, after = points[row - 1], points[np.minimum(row + 1, len(points) - 1)]
     stance, swing = points[row], before + progress[:, None] * (after - before)
     swing[:, 2] = before[:, 2] + height
-    if deviation is not None:
+    if flown is not None:
+        trajectory, time = flown
         now = np.flatnonzero(samples.which == samples.which[1])
         now = now[now > 0]
-        times = np.asarray(deviation.time + samples.sample_time * (now - 1.0), dtype=np.float64)
-        way = deviation.swing.positions(times)
+        times = np.asarray(time + samples.sample_time * (now - 1.0), dtype=np.float64)
+        way = trajectory.positions(times)
         swing[now, :2] = (way[:, :2] - origin) @ rotation
-        swing[now, 2] = np.maximum(way[:, 2], deviation.swing.target[2])
+        swing[now, 2] = np.maximum(way[:, 2], trajectory.target[2])
         # Before now it was where it accelerates as it does now: its own past may be on another trajectory.
         swing[0] = 2.0 * swing[1] - swing[2] if len(now) > 1 else swing[1]
-        if deviation.time < deviation.swing.touchdown_time:
-            bend = deviation.swing.evaluate(deviation.time)[2, :3] * samples.sample_time**2
+        if time < trajectory.touchdown_time:
+            bend = trajectory.evaluate(time)[2, :3] * samples.sample_time**2
             swing[0, :3] += np.append(bend[:2] @ rotation, bend[2])
-    left = np.array([foot is Foot.LEFT for foot in footsteps.feet])[row]
+    left = np.array([step.place.foot is Foot.LEFT for step in schedule.steps])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
     pitch = rolled * np.stack((~left, left))
     return Feet(soles[..., :3], pitch, soles[..., 3] - np.arctan2(rotation[1, 0], rotation[0, 0]), toe)
 
 
-def _swings(samples: PhaseSamples, queue: StepQueue) -> tuple[Array, Array, Array]:
+def _swings(samples: PhaseSamples, schedule: Schedule) -> tuple[Array, Array, Array]:
     """Progress of the swing foot [-], height of its sole above lift-off [m] and its pitch [rad], shape (n,) each."""
     progress, height, pitch = np.zeros((3, len(samples.which)))
     for number in np.unique(samples.which).tolist():
         phase, here = samples.phases[number], samples.which == number
         if phase.kind is PhaseKind.SINGLE:
-            swing, late = _swing(phase, queue, float(samples.elapsed[here][0]))
+            swing, late = _swing(phase, schedule, float(samples.elapsed[here][0]))
             # A foot that searches for the ground is expected to find it at once.
             times = np.minimum((samples.elapsed[here] - late) * samples.sample_time, swing.touchdown_time - TOUCHING)
             way = swing.positions(times)
             progress[here], height[here] = way[:, 0], way[:, 2]
         if phase.roll is not None:
             start, end, angle = phase.roll
-            share = (samples.flow.clock[here] - start) / (end - start)
+            share = (samples.clock[here] - start) / (end - start)
             pitch[here] = [angle * bump(s)[0] for s in share.tolist()]
     return progress, height, pitch
 
 
-def _swing(phase: Phase, queue: StepQueue, elapsed: float) -> tuple[SwingTrajectory, float]:
+def _swing(phase: Phase, schedule: Schedule, elapsed: float) -> tuple[SwingTrajectory, float]:
     """The swing of a single support, and how long after the phase it begins [samples].
 
     A foot is lifted by a plan. Of a phase that begins between two of them it has the rest, and swings the faster.
 
     Args:
         phase: the single support.
-        queue: the steps in sight.
+        schedule: the steps in sight.
         elapsed: how long it has lasted at one of the samples [samples].
     """
-    step, late = queue.steps[phase.step], elapsed % 1.0
+    step, late = schedule.step(phase.step), elapsed % 1.0
     if min(late, 1.0 - late) <= CLOCK_ROUNDING:
         return step.swing, 0.0
-    return unit_swing(phase.samples - late, step.climb, step.course, queue.ground.parameters), late
+    return unit_swing(phase.samples - late, step.climb, step.course, schedule.ground.parameters), late
 
 
 def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: HeightPreview, softened: Array) -> Array:

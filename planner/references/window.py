@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from surefoot.planner.model.dcm import natural_frequency, nominal_motion
 from surefoot.planner.model.leg_chain import LegChain
+from surefoot.planner.model.time_scaling import Course, TimeScaling
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.references.com_height import Bridge, HeightPreview, HeightProfile, preview_height
+from surefoot.planner.references.com_height import HeightPreview, HeightProfile, preview_height
+from surefoot.planner.references.height_transition import HeightTransition
 from surefoot.planner.references.leg_offset import Feet, nominal_feet, softening, zmp_offset
 from surefoot.planner.references.zmp_reference import (
     Support,
@@ -19,20 +21,10 @@ from surefoot.planner.references.zmp_reference import (
     present_support,
     zmp_reference,
 )
+from surefoot.planner.steps.execution import Execution
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.types import GRAVITY, Array, LastingForce
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.phases import PhaseSamples
-from surefoot.planner.walk.stepper import Stepper
-
-_TICKS = 5
-"""Ticks for which an offset of the legs serves; making it costs more than the rest of a plan."""
-
-_SAME_HEIGHT = 0.005
-"""Difference of what the reference robot's CoM is to be lower by that changes nothing [m]."""
-
-_SAME_SWING = 0.005
-"""By how far its footstep may have been moved for which one still serves, of the reference robot: it moves the DCM by
-less than a millimetre, and the ZMP for that time by one or, in the fastest of swings, six [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,26 +32,29 @@ class OffsetTable:
     """What the swing leg adds to the ZMP over a window and some samples more: planner state that outlives a tick.
 
     It was made for the CoM of its first tick; the offset hardly depends on it (see `planner.references.leg_offset`). So
-    a plan depends on the ticks before it not only by the jerk and the swing that go on, but by at most `_TICKS` - 1 of
+    a plan depends on the ticks before it not only by the jerk and the swing that go on, but by at most `ticks` - 1 of
     them in this as well.
 
     Attributes:
         start: tick of the clock that it was made at.
         key: of the support then, whose plan frame is that of the values.
-        pace: how often the clock had been told to go otherwise.
+        course: of the clock's last time scaling.
         aim: where a swing goes that deviated from its step then, shape (3,) [m].
         values: shape (m, 2) [m].
+        ticks: for which it serves.
     """
 
     start: int
     key: SupportKey
-    pace: int
+    course: Course
     aim: Array | None
     values: Array
+    ticks: int
 
-    def holds(self, ticks: int, key: SupportKey, pace: int, aim: Array | None, apart: float) -> bool:
-        """Whether it still serves: the same support, footholds and pace, aims so far apart, and few ticks later."""
-        if self.key != key or self.pace != pace or not self.start < ticks < self.start + _TICKS:
+    def holds(self, clock: TimeScaling, key: SupportKey, aim: Array | None, apart: float) -> bool:
+        """Whether it still serves: the same support, footholds and clock, aims so far apart, and few ticks later."""
+        ticks = clock.ticks
+        if self.key != key or self.course != clock.course or not self.start < ticks < self.start + self.ticks:
             return False
         if aim is None or self.aim is None:
             return aim is self.aim
@@ -125,7 +120,7 @@ def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array
     return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
 
 
-class Outlook:
+class ReferencePreview:
     """Looks ahead along a walk.
 
     Args:
@@ -142,98 +137,49 @@ class Outlook:
         self._leg, self._margin, self._sample_time = parameters.leg, parameters.foot_margin, parameters.sample_time
         self._count, self._length = parameters.horizon + parameters.preview + 1, parameters.size.length
         self._room = parameters.cop_room
-        self._same_swing = _SAME_SWING * self._length
+        self._numbers = parameters.recovery
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
-        # The bridge, and of the last plan its tick, how often the clock had been told to go otherwise, the height, and
-        # how much lower than by its law that is.
-        self._bridge: Bridge | None = None
-        self._before: tuple[int, int, Array, float] | None = None
+        # Of the last plan its tick, the course of the clock, the height, and how much lower than by its law that is.
+        self._transition: HeightTransition | None = None
+        self._before: tuple[int, Course, Array, float] | None = None
 
     @property
     def reach(self) -> int:
         """Samples that are looked at: offsets serve for some ticks, at the last of which they are to cover a window."""
-        return self._count + _TICKS - 1
+        return self._count + self._numbers.offset_ticks - 1
 
-    def support(self, stepper: Stepper) -> Support:
+    def support(self, execution: Execution) -> Support:
         """What carries the robot now."""
-        self._support = present_support(self._support, stepper, self._half_size, self._margin, self._room)
+        self._support = present_support(self._support, execution, self._half_size, self._margin, self._room)
         return self._support
-
-    def zmp(self, samples: PhaseSamples, support: Support) -> ZmpReference:
-        """The ZMP that the footsteps define: the paper's ZMP planner.
-
-        Args:
-            samples: the phases from the sample before now to the one after the last of interest.
-            support: what carries the robot now, with the plan frame.
-        """
-        return zmp_reference(samples, support.table).part(slice(1, -1))
-
-    def com_height(
-        self, stepper: Stepper, samples: PhaseSamples, support: Support, reference: ZmpReference
-    ) -> HeightPreview:
-        """CoM height and stiffness over the samples of a reference: the paper's vertical motion planner.
-
-        Args:
-            stepper: the clock and the steps in sight.
-            samples: the phases from the sample before now to the one after the last of interest.
-            support: what carries the robot now, with the plan frame.
-            reference: ZMP.
-        """
-        clock = stepper.clock
-
-        def bridged(height: Array) -> Array:
-            """The height where a step that is adapted has changed how the clock goes, or is too long for it."""
-            lower, hurried = stepper.lowering, False
-            if self._before is not None:
-                tick, taken, before, low = self._before
-                hurried = taken != clock.taken and (stepper.adapted or self._bridge is not None)
-                hurried |= abs(lower - low) > _SAME_HEIGHT * self._length or (low > 0.0) is not (lower > 0.0)
-                lower = lower if hurried else low
-            height[0] -= lower
-            if hurried:
-                state = before[:, min(clock.ticks - tick, 1)]
-                self._bridge = Bridge.onto(height, state, clock.ticks, stepper.left, self._sample_time)
-            if self._bridge is not None:
-                if clock.ticks >= self._bridge.start + self._bridge.samples:
-                    self._bridge = None
-                else:
-                    height = self._bridge.over(height, clock.ticks)
-            self._before = clock.ticks, clock.taken, height[:, :2].copy(), lower
-            return height
-
-        profile, gait = self._profile, self._gait
-        return preview_height(profile, gait, samples, support.heights, reference.height, self._length, bridged)
 
     def window(
         self,
-        stepper: Stepper,
-        samples: PhaseSamples,
+        execution: Execution,
         support: Support,
-        reference: ZmpReference,
-        height: HeightPreview,
         position: Array,
         time: float,
         lasting: LastingForce | None = None,
     ) -> Window:
-        """The window that begins now.
+        """The window that begins now, as the clock goes.
 
         Args:
-            stepper: the clock and the steps in sight.
-            samples: the phases.
+            execution: the clock and the steps in sight.
             support: what carries the robot now, with the plan frame.
-            reference: ZMP.
-            height: CoM height.
             position: CoM now in the plan frame, shape (2,) [m].
             time: now [s].
             lasting: force that goes on acting on the body.
         """
-        count = self._count
+        count, samples = self._count, execution.samples(self.reach)
+        # The paper's ZMP planner, and its vertical motion planner with the varying dynamics.
+        reference = zmp_reference(samples, support.table).part(slice(1, -1))
+        height = self._com_height(execution, samples, support, reference)
         stiffness = softening(self._leg) * height.stiffness
         seen = reference.part(slice(count))
         leant = np.zeros((self.reach, 2)) if lasting is None else lean(lasting, support.rotation, height)
-        point = reference.point - leant
-        offset = self._offset(stepper, samples, support, point, height, position, time) + leant[:count]
+        offset = self._offset(execution, samples, support, reference.point - leant, height, position, time)
+        offset = offset + leant[:count]
         return Window(
             reference=seen,
             driving=replace(seen, point=seen.point - offset),
@@ -245,9 +191,39 @@ class Outlook:
             contacts=samples.contacts[1 : count + 1],
         )
 
+    def _com_height(
+        self, execution: Execution, samples: PhaseSamples, support: Support, reference: ZmpReference
+    ) -> HeightPreview:
+        """CoM height and stiffness over the samples of a reference; arguments as of `window`."""
+        clock = execution.clock
+
+        def in_transition(height: Array) -> Array:
+            """The height where a step that is adapted has changed how the clock goes, or is too long for it."""
+            lower, leaves = execution.lowering, False
+            if self._before is not None:
+                tick, course, before, low = self._before
+                leaves = course != clock.course and (execution.adapted or self._transition is not None)
+                leaves |= abs(lower - low) > self._numbers.same_height or (low > 0.0) is not (lower > 0.0)
+                lower = lower if leaves else low
+            height[0] -= lower
+            if leaves:
+                state = before[:, min(clock.ticks - tick, 1)]
+                left, lifting = execution.left, self._numbers.lifting
+                self._transition = HeightTransition.onto(height, state, clock.ticks, left, self._sample_time, lifting)
+            if self._transition is not None:
+                if clock.ticks >= self._transition.start + self._transition.samples:
+                    self._transition = None
+                else:
+                    height = self._transition.over(height, clock.ticks)
+            self._before = clock.ticks, clock.course, height[:, :2].copy(), lower
+            return height
+
+        profile, gait = self._profile, self._gait
+        return preview_height(profile, gait, samples, support.heights, reference.height, self._length, in_transition)
+
     def _offset(
         self,
-        stepper: Stepper,
+        execution: Execution,
         samples: PhaseSamples,
         support: Support,
         point: Array,
@@ -256,26 +232,27 @@ class Outlook:
         time: float,
     ) -> Array:
         """What the legs add to the ZMP, shape (n, 2) [m]; arguments as of `window`."""
-        chain, count, clock = self._leg.chain, self._count, stepper.clock
+        chain, count, clock = self._leg.chain, self._count, execution.clock
         if chain is None:
             return np.zeros((count, 2))
-        last, table, ticks, key, aim = samples.phases[-1], self._offsets, clock.ticks, support.key, stepper.aim
+        last, table, key, aim = samples.phases[-1], self._offsets, support.key, execution.aim
         # In the final standing, where the walk's clock does not matter, none serves: its values go on with time.
         left = last.start - clock.now if math.isinf(last.samples) else math.inf
-        # A swing that a command hurries is laid anew at every tick, by what the clock shows then.
-        serves = left > 0.0 and (clock.steady or stepper.adapted)
-        if table is None or not serves or not table.holds(ticks, key, clock.taken, aim, self._same_swing):
+        # A swing that a command retimes is laid anew at every tick, by what the clock shows then.
+        serves = left > 0.0 and (clock.steady or execution.adapted)
+        if table is None or not serves or not table.holds(clock, key, aim, self._numbers.same_swing):
             # No longer than until the robot stands will they serve.
-            count += int(min(_TICKS - 1, max(left, 0.0) + 1))
-            frame = support.rotation, support.origin
-            feet = nominal_feet(samples, stepper.queue, frame, float(self._half_size[0]), stepper.deviation(time))
+            count += int(min(self._numbers.offset_ticks - 1, max(left, 0.0) + 1))
+            frame, toe = (support.rotation, support.origin), float(self._half_size[0])
+            flown = None if execution.swing is None or aim is None else (execution.swing, time)
+            feet = nominal_feet(samples, execution.aimed, frame, toe, flown)
             # While a step is adapted it is made from the last one.
             guess = None
             if table is not None and (aim is not None or not clock.steady):
-                guess = table.guess(ticks, key, count)
+                guess = table.guess(clock.ticks, key, count)
             values = self._made_offset(chain, feet, point[:count], height.part(count), position, guess)
-            table = self._offsets = OffsetTable(ticks, key, clock.taken, aim, values)
-        return table.since(ticks, self._count)
+            table = self._offsets = OffsetTable(clock.ticks, key, clock.course, aim, values, self._numbers.offset_ticks)
+        return table.since(clock.ticks, self._count)
 
     def _made_offset(
         self,

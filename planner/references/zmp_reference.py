@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from surefoot.planner.geometry import convex_hull, frame_rotation, sole_corners
+from surefoot.planner.steps.execution import Execution
+from surefoot.planner.steps.phases import PhaseSamples
+from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
-from surefoot.planner.walk.footsteps import FootstepPlan
-from surefoot.planner.walk.phases import PhaseSamples
-from surefoot.planner.walk.stepper import Stepper
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +50,9 @@ class ZmpReference:
 
 
 def support_table(
-    plan: FootstepPlan, stance_row: int, free: tuple[bool, bool], half_size: Array, stay: bool = False
+    schedule: Schedule, landed: int, free: tuple[bool, bool], half_size: Array, stay: bool = False
 ) -> SupportTable:
-    """Tabulate the support points in the plan frame (origin and planned heading of the stance row).
+    """Tabulate the support points in the plan frame (origin and planned heading of the stance foot).
 
     The box of a point is the largest axis-aligned one, of the foot's proportions, inscribed in the foot turned by its
     heading in the plan frame; without turning it is the foot itself. Between two feet it is as much wider as both
@@ -60,24 +60,24 @@ def support_table(
     with the reference is legal throughout double support.
 
     Args:
-        plan: footsteps.
-        stance_row: row of the stance foot, or of the foot that landed last.
-        free: whether the first and the second footstep after the stance row may be shifted.
+        schedule: the steps in sight.
+        landed: number of the step that landed last, whose foot is or will be the stance foot.
+        free: whether the first and the second footstep after it may be shifted.
         half_size: half extents of the (shrunk) foot, shape (2,) [m].
         stay: footsteps stay where they are when the one before them is shifted.
     """
-    rows = np.arange(len(plan.feet))
-    points = plan.support_points()
-    rotation = frame_rotation(float(plan.yaw[stance_row]))
+    stance, points = schedule.index(landed), schedule.support_points
+    position, yaw = schedule.positions, schedule.yaws
+    rotation = frame_rotation(float(yaw[stance]))
     values = np.empty((len(points), 7))
-    values[:, :2] = (points[:, :2] - plan.position[stance_row, :2]) @ rotation
-    moves = np.equal if stay else np.greater_equal
-    shifted = np.where(moves(rows[:, None], stance_row + np.arange(1, 3)), np.array(free, dtype=np.float64), 0.0)
-    values[:, 2:4] = plan.between_rows(shifted)
-    values[:, 4:6] = plan.between_rows(_inscribed_boxes(plan.yaw - plan.yaw[stance_row], half_size))
-    one, other = plan.supports.T
+    values[:, :2] = (points[:, :2] - position[stance, :2]) @ rotation
+    moves, rows = np.equal if stay else np.greater_equal, np.arange(len(position))
+    shifted = np.where(moves(rows[:, None], stance + np.arange(1, 3)), np.array(free, dtype=np.float64), 0.0)
+    values[:, 2:4] = schedule.at_supports(shifted)
+    values[:, 4:6] = schedule.at_supports(_inscribed_boxes(yaw - yaw[stance], half_size))
+    one, other = schedule.supports.T
     between = one != other
-    apart = (plan.position[other[between], :2] - plan.position[one[between], :2]) @ rotation
+    apart = (position[other[between], :2] - position[one[between], :2]) @ rotation
     values[between, 4:6] = _joint_boxes(values[between, 4:6], 0.5 * np.abs(apart))
     values[:, 6] = points[:, 2]
     steps = np.zeros_like(values)
@@ -128,13 +128,13 @@ class SupportKey(NamedTuple):
     """What a support follows from in a walk: of two ticks with the same key it is the same, to the last digit.
 
     Attributes:
-        revision: of the footholds (see `planner.walk.stepper.Stepper`).
+        schedule: the steps in sight.
         landed: number of the step that landed last.
         phase_start: begin of the phase on the clock [samples].
         free: whether the next two footsteps may be shifted.
     """
 
-    revision: int
+    schedule: Schedule
     landed: int
     phase_start: float
     free: tuple[bool, bool]
@@ -174,34 +174,35 @@ def load_left(samples: PhaseSamples, support: Support) -> Array:
 
 
 def present_support(
-    last: Support | None, stepper: Stepper, half_size: Array, margin: float, room: tuple[float, float]
+    last: Support | None, execution: Execution, half_size: Array, margin: float, room: tuple[float, float]
 ) -> Support:
     """The support of this tick, the last one while its key stays.
 
     Args:
         last: support of the tick before.
-        stepper: clock and footholds.
+        execution: the steps in sight, and how far they have been made.
         half_size: half of the sole's length and width, shape (2,) [m].
         margin: share of the sole in which the ZMP must stay [-].
         room: what of the half size the ankles can bear, forward and sideways [m].
     """
-    steps, row, phase = stepper.footsteps, stepper.row, stepper.phase
-    key = SupportKey(stepper.revision, stepper.landed, phase.start, stepper.free)
+    schedule, landed, phase = execution.schedule, execution.landed, execution.phase
+    key = SupportKey(schedule, landed, phase.start, execution.free)
     if last is not None and last.key == key:
         return last
-    latest, before = steps.footstep(row), steps.footstep(row - 1)
+    latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
     standing = [latest] if phase.kind is PhaseKind.SINGLE else [latest, before]
     outer, inner = (
         convex_hull(np.concatenate([sole_corners(foot, scale * half_size) for foot in standing]))
         for scale in (1.0, margin)
     )
+    stay = not schedule.ground.terrain.free_footholds
     return Support(
         key=key,
         rotation=frame_rotation(latest.yaw),
         origin=latest.position[:2],
-        table=support_table(steps, row, stepper.free, np.minimum(margin * half_size, room), not stepper.wide),
-        heights=steps.support_points()[:, 2],
-        on_left=steps.between_rows(np.array([float(foot is Foot.LEFT) for foot in steps.feet])),
+        table=support_table(schedule, landed, key.free, np.minimum(margin * half_size, room), stay),
+        heights=schedule.support_points[:, 2],
+        on_left=schedule.at_supports(np.array([float(step.place.foot is Foot.LEFT) for step in schedule.steps])),
         outer=outer,
         inner=inner,
         footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),

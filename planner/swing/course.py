@@ -1,6 +1,6 @@
 """How a swing foot gets over edges: when it glides forward and when it is highest, so that the whole sole is clear."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
 
@@ -21,26 +21,43 @@ EDGE_DISTANCE = 0.003
 """The sole is taken as larger by this on every side, so that it passes risers at a distance [m]."""
 
 _STARTS = (0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35)
+"""Shares of a swing at which its way over the ground may begin, so that it first rises before a riser [-]."""
+
 _ENDS = (1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.65)
+"""Shares at which it may end, so that it then sinks beside one [-]."""
+
 _GLIDES = tuple(product(_STARTS, _ENDS))
 _APEXES = (0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7)
+"""Shares at which it may be highest: the nearer to an edge, the lower [-]."""
+
 _FINER = np.ldexp(1.0 / 80, [-4, -3, -2, -1])
 _WAY = np.sort(np.concatenate((np.linspace(0.0, 1.0, 81), _FINER, 1.0 - _FINER)))
 """Where the ground is looked at; close to both ends closer, where a foot stands right before a riser [-]."""
 
 _INSTANTS = 200
+"""Instants of a swing at which its way is compared with the ground: steps of half a centimetre [-]."""
+
 _LEVEL = 1e-3
+"""Difference of height, of the reference robot, up to which ground is level, as its boxes are rounded [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """What steps are laid on, and by whom.
+
+    Attributes:
+        terrain: the ground as the planner believes it to be.
+        half_size: half of the sole's length and width, shape (2,) [m].
+        parameters: of the planner.
+    """
+
+    terrain: Terrain
+    half_size: Array
+    parameters: PlannerParameters
 
 
 def swing_course(
-    number: int,
-    leaving: Footstep,
-    landing: Footstep,
-    samples: float,
-    terrain: Terrain,
-    half_size: Array,
-    clearance: float,
-    parameters: PlannerParameters,
+    number: int, leaving: Footstep, landing: Footstep, samples: float, clearance: float, ground: Ground
 ) -> SwingCourse:
     """Course of a step.
 
@@ -52,23 +69,22 @@ def swing_course(
         leaving: foothold that its foot leaves.
         landing: where it lands.
         samples: duration of single support [samples].
-        terrain: the ground as the planner believes it to be.
-        half_size: half of the sole's length and width, shape (2,) [m].
         clearance: least height of the apex above lift-off and touchdown [m].
-        parameters: give the apex of a swing over level ground.
+        ground: what lies before the foot, and the apex of a swing over level ground.
 
     Raises:
         ParameterError: no course clears the edges of the step.
     """
+    terrain, parameters = ground.terrain, ground.parameters
     plain = SwingCourse(parameters.apex_share, 0.0, 1.0, clearance)
     if not terrain.has_edges:
         return plain
     start, end = (sole_pose(place.position, place.yaw, place.normal) for place in (leaving, landing))
-    ground = _ground(start, end, terrain, half_size, parameters.size.length)
     length = parameters.size.length
-    if np.ptp(ground) <= _LEVEL * length:
+    needed = _ground(start, end, terrain, ground.half_size, length)
+    if np.ptp(needed) <= _LEVEL * length:
         return plain
-    course = _gentlest(start, end, ground, clearance, samples, parameters)
+    course = _gentlest(start, end, needed, clearance, samples, parameters)
     if course is None:
         what = f"footstep {number} cannot be swung {EDGE_CLEARANCE * length:g} m clear of the edges before it"
         raise ParameterError(("terrain", "depth"), what, "give the treads more depth, or the swing more height")

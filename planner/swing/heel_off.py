@@ -7,12 +7,13 @@ front foot can carry it.
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, sole_rates, sole_rotation
+from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.types import Array, Foot, Footstep
-from surefoot.planner.walk.phases import Hurry, Phase, RollSpan
 
 _BEGIN = 0.25
 """Share of the weight shift after which the heel leaves the ground [-]."""
@@ -29,6 +30,20 @@ _LEAST_STEP = 1.5
 """Feet nearer to each other than so many half soles along the foot do not roll [-]."""
 
 
+class RollSpan(NamedTuple):
+    """When a foot rolls about its toe edge, and how far.
+
+    Attributes:
+        start: when it begins to [samples].
+        end: when it is level again [samples].
+        angle: its greatest pitch [rad].
+    """
+
+    start: float
+    end: float
+    angle: float
+
+
 @dataclass(frozen=True, slots=True)
 class FootRoll:
     """Pitch of one foot about its toe edge over time; the heel is up where it is positive.
@@ -42,7 +57,8 @@ class FootRoll:
         end: end, likewise [s].
         angle: A, the greatest pitch [rad].
         toe: toe edge from the sole's centre [m].
-        hurry: how that clock goes meanwhile; None where it goes as the time does.
+        scaling: how that clock goes meanwhile; None where it goes as the time does.
+        told: what clock and time show at the instant of the scaling [s].
     """
 
     foot: Foot
@@ -50,7 +66,8 @@ class FootRoll:
     end: float
     angle: float
     toe: float
-    hurry: Hurry | None = None
+    scaling: TimeScaling | None = None
+    told: float = 0.0
 
     def rolling(self, time: float) -> bool:
         """Whether the foot is not level."""
@@ -58,7 +75,7 @@ class FootRoll:
 
     def _clock(self, time: float) -> tuple[float, float, float]:
         """The clock of the gait [s], its rate [-] and the derivative of that [1/s]."""
-        return (time, 1.0, 0.0) if self.hurry is None else self.hurry.at(time)
+        return (time, 1.0, 0.0) if self.scaling is None else self.scaling.seconds(self.told, time)
 
     def evaluate(self, time: float) -> tuple[float, float, float]:
         """Pitch, its rate and its acceleration [rad, rad/s, rad/s^2]."""
@@ -110,26 +127,25 @@ _PER_WAY, _SHORT, _MOST = 3.0, 1.1, 0.5
 """Pitch for each metre beyond so many radii, and the greatest [rad/m, -, rad]: 7 cm of leg are 0.5 rad."""
 
 
-def roll_span(
-    before: Phase, single: float, leaving: Footstep, stance: Footstep, angle: float, half_length: float
-) -> RollSpan | None:
-    """When the foot of a step rolls, and how far; None for one that stays flat.
+def rolls(leaving: Footstep, stance: Footstep, half_length: float) -> bool:
+    """Whether the foot of a step is so far behind the other one that it rolls.
 
     Args:
-        before: the double support before the step.
-        single: duration of its single support [samples].
         leaving: nominal foothold that the foot leaves.
         stance: that of the other foot.
-        angle: greatest pitch [rad].
         half_length: of the sole [m].
     """
     ahead = (stance.position - leaving.position)[:2] @ frame_rotation(stance.yaw)
-    if angle == 0.0 or ahead[0] <= _LEAST_STEP * half_length:
-        return None
-    return roll_times(before, single, angle)
+    return bool(ahead[0] > _LEAST_STEP * half_length)
 
 
-def roll_times(before: Phase, single: float, angle: float) -> RollSpan:
-    """When a foot rolls that does; arguments as of `roll_span`."""
-    ramp, lift_off = before.samples - before.rest, before.end
+def roll_span(ramp: float, lift_off: float, single: float, angle: float) -> RollSpan:
+    """When a foot rolls.
+
+    Args:
+        ramp: time that the weight takes to leave it, which ends as it leaves the ground [samples].
+        lift_off: when it leaves the ground [samples].
+        single: duration of its single support [samples].
+        angle: greatest pitch [rad].
+    """
     return RollSpan(lift_off - (1.0 - _BEGIN) * ramp, lift_off + _END * single, angle)

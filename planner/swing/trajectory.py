@@ -13,14 +13,14 @@ TOUCHING = 1e-9
 """Times of ticks carry rounding; a piece begins this much early [s]."""
 
 FEWEST_SWING_SAMPLES = 4
-"""Planner samples of a single support: lift-off, apex, descent and touchdown."""
+"""Planner samples of a single support: lift-off, apex, descent and touchdown [-]."""
 
 _GLIDING = [0, 1, 3, 4, 5]
-"""Columns of all but z."""
+"""Columns of all but z: x, y and the angles [-]."""
 
 LEAST_GLIDE = 0.1
 """A new target is reached by touchdown instead of by the end of the glide when less than this is left of it, of the
-reference robot [s]."""
+reference robot: a shorter quintic would jerk the foot [s]."""
 
 
 @dataclass(frozen=True, slots=True)

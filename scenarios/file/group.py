@@ -100,7 +100,7 @@ def profiles() -> Registry[Any]:
 
 def estimators() -> Registry[Any]:
     """Of ``sensing.source``."""
-    from surefoot.scenarios.loop.sensing import ESTIMATORS
+    from surefoot.scenarios.run.sensing import ESTIMATORS
 
     return ESTIMATORS
 

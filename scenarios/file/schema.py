@@ -164,7 +164,8 @@ class Gait(Group):
     steps: Annotated[int, Field(ge=0, le=100_000), WHOLE] = Field(default=5, description="footsteps to take [-]")
     step_length: Length = Field(
         default=0.2,
-        description="forward distance between successive footsteps; on stairs, unless given, terrain.tread",
+        description="forward distance between successive footsteps, and at most that of a walk to a place; on stairs, "
+        "unless given, terrain.tread",
     )
     step_width: Size = Field(default=0.2, description="lateral distance between the feet's centres")
     lateral_step: Length = Field(default=0.0, description="lateral progress of each footstep, left positive")

@@ -110,7 +110,7 @@ def parse(text: str, name: str, most_values: int = MAX_VALUES) -> Source:
     """
     source = Source(name)
     try:
-        root = _Composer(text).get_single_node()
+        root = _Composer(text, most_values).get_single_node()
         if root is not None:
             source.value = _Reader(source, most_values).read(root, ())
     except yaml.MarkedYAMLError as error:
@@ -138,12 +138,19 @@ def plain_scalar(text: str) -> Any:
 
 
 class _Composer(yaml.SafeLoader):
-    """Composes nodes, and stops before nesting exhausts the interpreter's stack."""
+    """Composes nodes, and stops before nesting exhausts the interpreter's stack, or their number time and memory."""
 
-    depth = 0
+    depth = made = 0
+
+    def __init__(self, text: str, most_values: int) -> None:
+        super().__init__(text)
+        self.most = most_values
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         self.depth += 1
+        self.made += index is not None  # which is None of a key
+        if self.made > self.most:
+            raise self._refusal(f"more than {self.most} values")
         if self.depth > MAX_DEPTH:
             raise self._refusal(f"nested deeper than {MAX_DEPTH} levels")
         tag = getattr(self.peek_event(), "tag", None)  # type: ignore[no-untyped-call]

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import CommandSettings
 from surefoot.scenarios.judge.body import headings
 from surefoot.scenarios.judge.digest import Array, Mask, RunView
+from surefoot.scenarios.judge.feet import terrain_of
 from surefoot.scenarios.judge.walking import runs_of
 
 AT_PLACE = 0.02
@@ -125,11 +127,11 @@ def unmet_ground(run: RunView) -> Iterator[str]:
     if not unforeseen or not run.has("/truth", "/contact"):
         return
     soles, later = _stances(run, 0), _stances(run, run.walking.start) if run.walking.stop else np.zeros((0, 3))
-    half = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
+    half, ground = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width]), terrain_of(run)
     for key, numbers in unforeseen.items():
         # Noise leaves the ground as it is believed to be where the robot starts; a box may lie there too.
         stances = soles if key.startswith("errors.ground.") else later
-        if not any(_touches(stances, half, run.constants.boxes[number]).any() for number in numbers):
+        if not any(_stands_on(stances, half, number, ground) for number in numbers):
             yield f"{key} never acted: no foot came upon ground that is not as believed"
 
 
@@ -144,15 +146,36 @@ def _stances(run: RunView, start: int) -> Array:
     return np.concatenate(found)
 
 
-def _touches(soles: Array, half: Array, box: Sequence[float]) -> Mask:
+_PATCH = np.stack(np.meshgrid(np.linspace(-1.0, 1.0, 9), np.linspace(-1.0, 1.0, 5)), axis=-1).reshape(-1, 2)
+"""Points of a sole at which the ground under it is looked at, in its half sizes [-]."""
+
+_ABOVE = 1e-6
+"""Height by which other ground lies above a box that it buries [m]."""
+
+
+def _stands_on(soles: Array, half: Array, number: int, ground: Terrain) -> bool:
+    """Whether a sole has a part over a box of the ground, and other ground does not bury the box there."""
+    box = ground.boxes[number]
+    over = soles[_touches(soles, half, box)]
+    ahead = np.stack([np.cos(over[:, 2]), np.sin(over[:, 2])], axis=-1)
+    left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
+    points = over[:, None, :2] + (_PATCH * half) @ np.stack([ahead, left], axis=1)
+    top, inside = box.top(points.reshape(-1, 2))
+    under = ground.heights(points.reshape(-1, 2)) > top + _ABOVE
+    within, free = (mask.reshape(-1, len(_PATCH)) for mask in (inside >= 0.0, (inside >= 0.0) & ~under))
+    # A corner of the box between the points counts as free.
+    return bool((free.any(axis=1) | ~within.any(axis=1)).any())
+
+
+def _touches(soles: Array, half: Array, box: Box) -> Mask:
     """Which soles have a part over a box: two rectangles on the ground are apart if an axis of one of them parts them.
 
     Args:
         soles: places and headings, shape (n, 3).
         half: half length and width of a sole, shape (2,) [m].
-        box: centre, half sizes and rotation to the world, row by row.
+        box: of the ground.
     """
-    centre, size, axes = np.array(box[:2]), np.array(box[3:5]), np.array(box[6:]).reshape(3, 3)[:2, :2].T
+    centre, size, axes = box.center[:2], box.half_size[:2], box.rotation[:2, :2].T
     c, s = np.cos(soles[:, 2]), np.sin(soles[:, 2])
     own = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=1)
     between = centre - soles[:, :2]

@@ -48,7 +48,7 @@ def footstep_error_max(run: RunView) -> float | None:
 @metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("foot",)}, tolerance=(0.001, 0.0))
 def stair_edge_margin_min(run: RunView) -> float | None:
     """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
-    terrain = _terrain(run)
+    terrain = terrain_of(run)
     if not terrain.boxes:
         return None
     half_size = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
@@ -80,10 +80,10 @@ def swing_clearance_min(run: RunView) -> float | None:
 def _clearance(run: RunView, poses: Array) -> float:
     """Least height of the corners of soles with these poses, shape (n, 7), over the ground [m]."""
     flat = corners(poses, run.constants.foot_length, run.constants.foot_width).reshape(-1, 3)
-    return float((flat[:, 2] - _terrain(run).heights(flat[:, :2])).min(initial=np.inf))
+    return float((flat[:, 2] - terrain_of(run).heights(flat[:, :2])).min(initial=np.inf))
 
 
-def _terrain(run: RunView) -> Terrain:
+def terrain_of(run: RunView) -> Terrain:
     """The true ground."""
     boxes = [np.array(numbers) for numbers in run.constants.boxes]
     return Terrain(tuple(Box(n[:3], n[3:6], n[6:].reshape(3, 3)) for n in boxes), plane=run.constants.plane)
@@ -160,7 +160,7 @@ def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
     It is of those corners of the sole that are on the ground, each from where it came to it. So yaw counts, and a foot
     that rolls over one of its edges does not; a sole with no corner on the ground, as on an edge, counts by its centre.
     """
-    slips, terrain = [], _terrain(run)
+    slips, terrain = [], terrain_of(run)
     for stance in stances(run, until):
         poses = run.sole(stance.foot)[stance.ticks]
         points = corners(poses, run.constants.foot_length, run.constants.foot_width)
@@ -200,7 +200,7 @@ def stance_tilt_max(run: RunView) -> float | None:
     Only sideways while it is planned to roll; only ahead of a foot that no joint rolls, which leans as its leg does.
     """
     leaning = feet_lean(run.constants.roles)
-    rolling, terrain = run.field("/reference", "roll") != 0.0, _terrain(run)
+    rolling, terrain = run.field("/reference", "roll") != 0.0, terrain_of(run)
     largest = []
     for stance in stances(run):
         poses = run.sole(stance.foot)[stance.ticks]

@@ -186,7 +186,7 @@ class RunConstants:
 
 PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "piqp", "numpy", "scipy", "mcap")
 CODE = ("planner", "wbc", "sim", "models", "scenarios")
-READERS = ("scenarios/check", "scenarios/paper", "scenarios/show", "scenarios/sweep")
+READERS = ("scenarios/study/checks", "scenarios/study/paper", "scenarios/show", "scenarios/study/campaigns")
 """Folders of the code, and those in it that only read logs: no run depends on them."""
 
 ABSENT = "not installed"

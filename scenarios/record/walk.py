@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.steps.commands import Orders
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, PlannedFootstep, SolverStatus
-from surefoot.planner.walk.commands import Orders
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes

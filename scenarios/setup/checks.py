@@ -9,7 +9,7 @@ from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
-from surefoot.scenarios.file.schema import Gait, Rates, Sensing, TerrainSettings
+from surefoot.scenarios.file.schema import Gait, PendulumSettings, Rates, Sensing, TerrainSettings
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.commands import told_problems
 from surefoot.scenarios.setup.draft import Draft
@@ -217,8 +217,11 @@ _NO_CONTACT = (
 )
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
 
-_POINT_ONLY = (("pendulum", "plant"), ("pendulum", "feedback"))
+_POINT_ONLY = tuple(("pendulum", name) for name in PendulumSettings.model_fields)
 """Keys of the pendulum alone."""
+
+_PLANT_READS = {"pendulum": ("feedback",), "cart_table": ()}
+"""Keys of `pendulum` that each of its plants reads."""
 
 
 def notes(draft: Draft, driven: bool = False) -> tuple[str, ...]:
@@ -247,13 +250,10 @@ def _unlikely(draft: Draft) -> Iterator[str]:
 
 def _without_effect(draft: Draft) -> Iterator[str]:
     keys = draft.keys
-    instead = next((name for name in ("velocity", "footsteps", "waypoints") if getattr(keys.gait, name)), None)
-    for name in EQUAL_STEPS if instead else ():
-        means = instead == "waypoints" and name == "step_length"
-        if not means and getattr(keys.gait, name) != default_of(Gait, name, draft.size):
-            yield f"gait.{name} has no effect beside gait.{instead}"
+    yield from _no_equal_steps(draft)
     yield from _unshaped(draft)
     point = keys.fidelity == "pendulum"
+    yield from _not_felt(draft) if point else ()
     for group, name in _NO_CONTACT if point else _POINT_ONLY:
         settings = getattr(keys, group)
         if getattr(settings, name) != default_of(type(settings), name, draft.size):
@@ -262,6 +262,32 @@ def _without_effect(draft: Draft) -> Iterator[str]:
         yield "wbc has no effect on a pendulum"
     if point and keys.rates.physics not in (Rates().physics, clock(Rates(), draft.size.time).physics):
         yield "rates.physics has no effect on a pendulum"
+
+
+def _no_equal_steps(draft: Draft) -> Iterator[str]:
+    """Tell keys of equal steps in a walk whose steps are given in another way."""
+    gait, commands = draft.keys.gait, draft.keys.commands
+    instead = next((f"gait.{name}" for name in ("velocity", "footsteps", "waypoints") if getattr(gait, name)), None)
+    names: tuple[str, ...] = EQUAL_STEPS
+    if instead is None and not gait.steps and any(not command.live for command in commands):
+        instead, names = "commands and gait.steps 0", EQUAL_STEPS[1:]
+    # Of a walk to a place it is the longest stride.
+    bound = gait.waypoints or any(command.place is not None for command in commands)
+    for name in names if instead else ():
+        if not (bound and name == "step_length") and getattr(gait, name) != default_of(Gait, name, draft.size):
+            yield f"gait.{name} has no effect beside {instead}"
+
+
+def _not_felt(draft: Draft) -> Iterator[str]:
+    """Tell what a pendulum, which is one body, and its plant make nothing of."""
+    pendulum, load = draft.keys.pendulum, draft.keys.errors.payload
+    for name in PendulumSettings.model_fields:
+        read = name == "plant" or name in _PLANT_READS[pendulum.plant]
+        if not read and getattr(pendulum, name) != default_of(PendulumSettings, name, draft.size):
+            yield f"pendulum.{name} has no effect on pendulum.plant {pendulum.plant}"
+    bodies = {f"pushes.{index}.body": push.body for index, push in enumerate(draft.keys.pushes)}
+    bodies["errors.payload.body"] = None if load is None else load.body
+    yield from (f"{name} has no effect on a pendulum" for name, body in bodies.items() if body is not None)
 
 
 _STEPPING = ("step_length", "lateral_step", "turn", "swing_height", "apex_single", "apex_double", "heel_off")

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations
 from surefoot.planner.geometry import frame_rotation, wrap_angle
-from surefoot.planner.walk.commands import Command, Pose, TimedCommand, Twist
-from surefoot.planner.walk.source import AWAY, CommandSource, steps_ordered
+from surefoot.planner.steps.commands import Command, Pose, TimedCommand, Twist
+from surefoot.planner.steps.source import AWAY, CommandSource, steps_ordered
 from surefoot.scenarios.errors import Key, Problem
 from surefoot.scenarios.file.schema import CommandSettings
 from surefoot.scenarios.setup.gait import step_region
@@ -64,8 +64,10 @@ def told_until(draft: "Draft") -> float:
 def told_problems(draft: "Draft") -> Iterator[Problem]:
     """List commands and waypoints that say nothing, say two things, or cannot be obeyed."""
     keys = draft.keys
-    if keys.gait.waypoints and keys.gait.step_length == 0.0:
-        yield Problem(("gait", "step_length"), "gait.waypoints with steps of no length", "give the longest step")
+    placed = any(command.place is not None and not command.live for command in keys.commands)
+    if (keys.gait.waypoints or placed) and keys.gait.step_length == 0.0:
+        what = f"{'gait.waypoints' if keys.gait.waypoints else 'a place to go to'} with steps of no length"
+        yield Problem(("gait", "step_length"), what, "give the longest step")
     if keys.gait.waypoints and (keys.gait.velocity or keys.gait.footsteps):
         what = f"waypoints beside gait.{'velocity' if keys.gait.velocity else 'footsteps'}"
         yield Problem(("gait", "waypoints"), what, "give one of them", at_key=True)

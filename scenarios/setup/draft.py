@@ -19,10 +19,10 @@ from surefoot.planner.references.com_height import (
     Rise,
     SmoothHeight,
 )
-from surefoot.planner.types import Array, FeetState
-from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import StepRegion
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.leg_reach import StepRegion
+from surefoot.planner.types import Array, FeetState, FootstepPlan
 from surefoot.scenarios.file.schema import GroundError, Scenario
 from surefoot.scenarios.setup.commands import told_until
 from surefoot.scenarios.setup.gait import (

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from surefoot.errors import ParameterError
-from surefoot.planner.walk.commands import velocity_bouts
+from surefoot.planner.steps.commands import velocity_bouts
 from surefoot.scenarios.errors import Key, Problem
 from surefoot.scenarios.file.schema import Fault, PushSettings, Rates, VelocitySettings
 from surefoot.scenarios.file.units import meant

@@ -8,8 +8,7 @@ import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.types import Foot, Footstep, PhaseInfo, PhaseKind
-from surefoot.planner.walk.commands import (
+from surefoot.planner.steps.commands import (
     Twist,
     VelocityCommand,
     VelocityTimeline,
@@ -19,8 +18,9 @@ from surefoot.planner.walk.commands import (
     velocity_bouts,
     walk_of,
 )
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import GAP, StepRegion, landing
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.leg_reach import StepRegion
+from surefoot.planner.types import Foot, Footstep, PhaseInfo, PhaseKind
 from surefoot.scenarios.file.schema import FootstepSettings, Gait, PushSettings, VelocitySettings
 from surefoot.scenarios.setup.robot import RobotFacts
 
@@ -78,7 +78,7 @@ def fitted_to(region: StepRegion, gait: GaitParameters, keys: Gait) -> GaitParam
 
 def longest_landing(gait: GaitParameters) -> float:
     """How far ahead of or behind its stance foot a step lands at most, either foot leading [m]."""
-    places = [landing(stride, foot) for stride in gait.strides for foot in Foot]
+    places = [stride.landing(foot) for stride in gait.strides for foot in Foot]
     return max((abs(place.ahead) for place in places), default=0.0)
 
 
@@ -111,7 +111,7 @@ def step_region(
     """Where commanded steps may land: within the planner's reach, and the legs' if they are given."""
     near, far = parameters.reach_width
     width = (max(near, shank_spacing), far)
-    gap = GAP * parameters.size.length
+    gap = parameters.recovery.sole_gap
     return StepRegion(parameters.reach_length, width, sole, gap, leg_span=leg_span, hip_width=hip_width)
 
 

@@ -11,7 +11,6 @@ from surefoot.errors import ParameterError, at_most
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
-from surefoot.scenarios.setup.stances import SPARE
 from surefoot.scenarios.setup.straight import ankle_pitch, pitch_joints, shank_outline, yaw_joint
 from surefoot.scenarios.setup.walk import Walk
 
@@ -172,21 +171,23 @@ def _check_speeds(robot: "RobotDescription", angles: Array, sample_time: float) 
 
 
 def _check_ankles(robot: "RobotDescription", angles: Array, way: Rehearsed) -> None:
-    """Of feet that roll, at whose lift-off `check_stances` does not look; angles have shape (2, n) [rad]."""
+    """Of feet that roll, at whose lift-off `check_stances` does not look; angles have shape (2, n) [rad].
+
+    The rehearsal is the walk itself, so that nothing is to spare as in the stances of a walk's periodic likeness.
+    """
     for foot in Foot:
         index, zero, sign = ankle_pitch(robot, foot)
         position = np.where(way.standing[foot], zero + sign * angles[foot], robot.nominal_joint_positions[index])
         ends = robot.position_lower[index], robot.position_upper[index]
         left = np.minimum(position - ends[0], ends[1] - position)
         at = int(np.argmin(left))
-        if left[at] < SPARE:
+        if left[at] < 0.0:
             end = min(ends, key=lambda limit: abs(float(limit - position[at])))
             raise ParameterError(
                 ("gait", "step_length"),
                 f"joint '{robot.joint_names[index]}' of robot '{robot.name}' would come to {position[at]:.2f} rad "
-                f"{at * way.sample_time:.2f} s after the start, its range ends at {end:.2f} rad and {SPARE:g} rad are "
-                "to be left",
-                "take shorter steps",
+                f"{at * way.sample_time:.2f} s after the start, its range ends at {end:.2f} rad",
+                "take shorter steps, lower risers or a larger gait.heel_off",
             )
 
 

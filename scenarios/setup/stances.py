@@ -19,9 +19,10 @@ import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation, sole_angles, sole_pose
-from surefoot.planner.types import GRAVITY, Array, Footstep
-from surefoot.planner.walk.footsteps import plan_footsteps
-from surefoot.planner.walk.gait import GaitParameters
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.heel_off import FootRoll, roll_span, rolls
+from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
 from surefoot.scenarios.setup.stance import Body, start_posture
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.wbc.ik import PostureIk, PostureResult, PostureTarget
@@ -55,6 +56,7 @@ class Stance:
         heading: of the trunk [rad].
         landing: whether the foot has just landed, or the other one is about to leave.
         bearing: the foot that bears all, 0 the left one.
+        rolled: whether the other one stands on its toe edge.
     """
 
     number: int
@@ -63,6 +65,7 @@ class Stance:
     heading: float
     landing: bool
     bearing: int
+    rolled: bool
 
     @property
     def moment(self) -> str:
@@ -87,6 +90,8 @@ def check_stances(walk: Walk, body: Body, q: Array) -> None:
     ik = replace(body, limits=limits).ik(body.robot.nominal_joint_positions)
     for stance in _stances(walk):
         found = _taken(ik, walk, stance, q)
+        if not found.reached and stance.rolled:
+            continue  # how far ankles come while a foot rolls is for the rehearsal to say
         if not found.reached:
             raise _unreached(walk, body, stance, found.q, found.error)
         _check_torque(walk, body, stance, found.q)
@@ -146,7 +151,8 @@ def _refusal(walk: Walk, stance: Stance, what: str, right: str) -> ParameterErro
     if np.any(stance.soles[:, 4:]):
         return ParameterError(("terrain", "angle"), what, "give less steep ground, or another gait.com_height")
     if walk.terrain.has_edges and abs(float(np.ptp(stance.soles[:, 2]))) > 1e-3:
-        return ParameterError(("terrain", "riser"), what, "give lower stairs, or another gait.com_height")
+        right = "give lower stairs, another gait.com_height, or feet that roll (gait.heel_off)"
+        return ParameterError(("terrain", "riser"), what, right)
     return ParameterError(("gait", "step_length"), what, right)
 
 
@@ -166,22 +172,34 @@ def _stances(walk: Walk) -> Iterator[Stance]:
             continue
         seen.add(key)
         last = row == footsteps.steps + 1
-        for landing in (True,) if last or walk.gait.heel_off > 0.0 else (True, False):
-            yield _stance(walk.gait, stands, lands, (way, lead), row - 1, landing)
+        for landing in (True,) if last else (True, False):
+            yield _stance(walk, stands, lands, (way, lead), row - 1, landing)
 
 
 def _stance(
-    gait: GaitParameters, stands: Footstep, lands: Footstep, ways: tuple[Array, Array], number: int, landing: bool
+    walk: Walk, stands: Footstep, lands: Footstep, ways: tuple[Array, Array], number: int, landing: bool
 ) -> Stance:
-    way, lead = ways
+    (way, lead), gait, toe = ways, walk.gait, 0.5 * walk.sole[0]
     low = min(float(stands.position[2]), float(lands.position[2]))
     ahead, aside = (0.5 + share for share in _shares(gait))
     off = ahead * lead[:2] + aside * (way - lead)[:2]
     middle = 0.5 * (stands.position + lands.position)[:2]
     com = np.append(middle + (-off if landing else off), low + gait.com_height)
-    feet = sorted((stands, lands), key=lambda step: int(step.foot))
-    soles = np.array([sole_pose(step.position, step.yaw, step.normal) for step in feet])
-    return Stance(number, soles, com, float(np.mean(soles[:, 3])), landing, int((stands if landing else lands).foot))
+    rolled = not landing and gait.heel_off > 0.0 and rolls(stands, lands, toe)
+    poses = {step.foot: sole_pose(step.position, step.yaw, step.normal) for step in (stands, lands)}
+    heading = float(np.mean([pose[3] for pose in poses.values()]))
+    if rolled:
+        poses[stands.foot] = _on_toe(poses[stands.foot], gait, toe)
+    soles = np.array([poses[foot] for foot in sorted(poses)])
+    return Stance(number, soles, com, heading, landing, int((stands if landing else lands).foot), rolled)
+
+
+def _on_toe(sole: Array, gait: GaitParameters, toe: float) -> Array:
+    """A sole, turned about its toe edge as far as it is when it leaves the ground, shape (6,) [m, rad]."""
+    span = roll_span(gait.double_support, 0.0, gait.single_support, gait.heel_off)
+    roll = FootRoll(Foot.LEFT, span.start, span.end, span.angle, toe)
+    centre, _ = roll.centre(0.0, sole, np.zeros(6))
+    return np.concatenate((centre, (sole[3], sole[4] + roll.evaluate(0.0)[0], sole[5])))
 
 
 def _shares(gait: GaitParameters) -> tuple[float, float]:

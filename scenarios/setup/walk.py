@@ -17,10 +17,10 @@ from surefoot.planner.parameters import LegInertia, PlannerParameters
 from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
+from surefoot.planner.steps.commands import Pose, TimedCommand
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.leg_reach import LegReach, StepRegion
 from surefoot.planner.types import GRAVITY, Array, FeetState
-from surefoot.planner.walk.commands import Pose, TimedCommand
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import Legs, StepRegion
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
 from surefoot.scenarios.setup.commands import told, waypoints
@@ -38,12 +38,6 @@ if TYPE_CHECKING:
 LEG_SHARE = 0.9
 """Share of the span of the legs that steps on command make use of: with all of it both are straight at touchdown, and
 at 0.88 m/s a push felled the robot that it took at 0.65 to 0.8 m/s [-]."""
-
-ACROSS = 0.12
-"""How far beyond its stance foot a foot may land to catch the body; lengths here are the reference robot's [m]."""
-
-GAP = 0.02
-"""Least gap between two soles one of which lands ahead of the other [m]."""
 
 ANKLE_SHARE = 0.85
 """Share of an ankle's torque that bears the robot with the CoP at the edge of its room; the rest is for shocks [-]."""
@@ -161,18 +155,17 @@ class Walk:
         return step_region(self.parameters, self.sole, facts.shank_spacing, span, facts.hip_width)
 
     @property
-    def legs(self) -> Legs:
+    def legs(self) -> LegReach:
         """What the legs can do to catch the body."""
         facts, apart = facts_of(self.robot), self.parameters.reach_width[0]
         radius = 0.5 * LEG_SHARE * leg_span(self.gait.com_height, facts)
-        length = self.size.length
-        clear = self.robot.sole_length + GAP * length
-        return Legs(
+        recovery = self.parameters.recovery
+        return LegReach(
             radius=radius,
             hip_width=facts.hip_width,
             near=apart,
-            across=ACROSS * length,
-            clear=clear,
+            across=recovery.across,
+            clear=self.robot.sole_length + recovery.clear,
             acceleration=facts.swing_acceleration,
             sole=self.sole,
             height=self.standing_height - facts.com_above_hip,

@@ -8,11 +8,11 @@ from itertools import pairwise
 from surefoot.errors import ParameterError, at_least, at_most
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.references.com_height import highest_apex
+from surefoot.planner.steps.commands import Twist, fastest
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import Stride
+from surefoot.planner.swing.leg_reach import Landing, StepRegion, check_reach, soles_apart
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
-from surefoot.planner.walk.commands import Twist, fastest
-from surefoot.planner.walk.footsteps import plan_footsteps
-from surefoot.planner.walk.gait import Stride
-from surefoot.planner.walk.reach import Landing, StepRegion, check_reach, landing, soles_apart
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.setup.draft import LONGEST_REACH, Draft
@@ -145,7 +145,7 @@ def commanded_step_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem
     if gait.footsteps:
         walk = draft.gait
         for index, stride in enumerate(walk.strides):
-            why = region.why_not(landing(stride, walk.step_foot(index + 1)))
+            why = region.why_not(stride.landing(walk.step_foot(index + 1)))
             if why is not None:
                 yield Problem((*_FOOTSTEPS, index), f"footstep {index + 1} {why.what}", why.right)
                 return

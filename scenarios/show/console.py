@@ -22,8 +22,8 @@ from surefoot.scenarios.judge.health import Finding
 from surefoot.scenarios.judge.inspection import Inspection
 from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text, shown_unit, value_text
 from surefoot.scenarios.log import ChannelData, Log
-from surefoot.scenarios.loop.skeleton import Progress
 from surefoot.scenarios.output import refuse_existing, write_whole
+from surefoot.scenarios.run.skeleton import Progress
 
 _REFRESH = 0.1
 

@@ -18,6 +18,12 @@ DRAWN = (
 )
 """Topics that the figures draw."""
 
+FOOT_NAMES = ("left", "right")
+"""Of the feet, by their numbers."""
+
+LOADED = 0.05
+"""Share of the weight from which a foot bears enough for its friction to tell something [-]."""
+
 _GREATEST = 1e9
 """No sound value or time is greater; beyond it axes fail rather than show the rest."""
 
@@ -121,7 +127,7 @@ class LogView:
         clock, planned = self.time("/reference"), self.time("/footsteps")
         foot = _last_alone(self.field("/reference", "stance"))[_at_or_before(clock, times)]
         rows = _at_or_before(planned, times)
-        left, right = (self.field("/footsteps", f"current_{name}", 4)[rows] for name in ("left", "right"))
+        left, right = (self.field("/footsteps", f"current_{name}", 4)[rows] for name in FOOT_NAMES)
         pose = np.select([foot[:, None] == 0, foot[:, None] == 1], [left, right], (left + right) / 2)
         sine, cosine = np.sin(pose[:, 3]), np.cos(pose[:, 3])
         x, y = (points - pose[:, :2]).T

@@ -12,7 +12,7 @@ from surefoot.scenarios.errors import ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.show.compare.divergence import WALL_CLOCK
+from surefoot.scenarios.show.compare.differences import WALL_CLOCK
 
 FEET = "robot_options: {foot_length: 0.22, foot_width: 0.11}\n"
 PACE = "single_support: 0.4, double_support: 0.1, com_height: 0.99, initial_stand: 0.1"
@@ -21,6 +21,9 @@ STAND = f"gait: {{steps: 0, {PACE}}}\n"
 POINT = "fidelity: pendulum\ncriteria: {fell: false}\n" + FEET
 BODY = "criteria: {fell: false}\n" + FEET
 LOW = PACE.replace("0.99", "0.93").replace("0.4", "0.7")
+CLIMB = LOW.replace("double_support: 0.1", "double_support: 0.3")
+EARLY = STEPS.replace("initial_stand: 0.1", "initial_stand: 0.5")
+LOADED = "errors: {payload: {mass: 4.0}}\n"
 
 BASES = {
     "walk": POINT + STEPS,
@@ -31,24 +34,29 @@ BASES = {
     + "gait: {footsteps: [{foot: left, x: 0.2, y: 0.1}, {foot: right, x: 0.2, y: -0.1}], "
     + PACE
     + "}\n",
-    "waypoints": POINT + f"gait: {{waypoints: [{{x: 0.4, y: 0, yaw: 0.1}}], step_length: 0.2, {PACE}}}\n",
+    "waypoints": POINT + f"gait: {{waypoints: [{{x: 0.41, y: 0, yaw: 0.1}}], step_length: 0.2, {PACE}}}\n",
     "commands": POINT
     + STAND
     + "duration: 3\n"
-    + "commands: [{time: 0.5, v_x: 0.1, single_support: 0.5}, {time: 1.5, v_x: 0}]\n",
-    "place": POINT + STAND + "duration: 5\ncommands: [{time: 0.5, place: {x: 0.3, y: 0, yaw: 0.1}}]\n",
+    + "commands: [{time: 0.06, v_x: 0.1, single_support: 0.5}, {time: 1.5, v_x: 0}]\n",
+    "place": POINT + STAND + "duration: 5\ncommands: [{time: 0.06, place: {x: 0.41, y: 0, yaw: 0.1}}]\n",
     "pushed": POINT + STEPS + "pushes: [{time: 1.0, force: [20, 5, 0]}]\n",
     "pushed-in-step": POINT + STEPS + "pushes: [{step: 2, phase: single, fraction: 0.5, impulse: 0.05}]\n",
     "frozen": POINT + STEPS + "faults: [{kind: planner_freeze, time: 0.5, duration: 0.1}]\n",
-    "stairs": POINT + f"terrain: {{kind: stairs, count: 2, riser: 0.05}}\ngait: {{steps: 4, {LOW}}}\n",
+    "stairs": POINT + f"terrain: {{kind: stairs, count: 2, riser: 0.05}}\ngait: {{steps: 4, {CLIMB}}}\n",
     "blocks": POINT + f"terrain: {{kind: blocks, riser: 0.02}}\ngait: {{steps: 4, step_length: 0.3, {LOW}}}\n",
     "slope": POINT + f"terrain: {{kind: slope, angle: 0.05}}\ngait: {{steps: 4, step_length: 0.25, {LOW}}}\n",
+    "loaded": POINT.replace("0.11}", "0.11, payload_mass: 2.0}") + STEPS + LOADED,
     **{
-        profile: POINT + STEPS + f"planner: {{profile: {profile}}}\n"
+        profile: POINT + (EARLY if profile == "preview" else STEPS) + f"planner: {{profile: {profile}}}\n"
         for profile in ("paper", "repaired", "lti", "preview", "dcm")
     },
 }
-"""Scenarios of a second or three on the pendulum, so that every part of the schema acts in one of them."""
+"""Scenarios of a few seconds on the pendulum, so that every part of the schema acts in one of them.
+
+Places are a little farther than two strides, so that a longer stride makes fewer of them; a preview of the ZMP alone
+has to see the first step for longer than the others.
+"""
 
 BODIES = {
     "body-stand": BODY + STAND + "duration: 0.5\n",

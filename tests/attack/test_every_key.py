@@ -6,15 +6,15 @@ import pytest
 import yaml
 from every_key import NOT_YET, SCENARIOS, given, keys
 
-from surefoot.scenarios.check.check import cases, check, run_case
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.log import read
 from surefoot.scenarios.setup.load import load, written
-from surefoot.scenarios.sweep.campaign import Base
-from surefoot.scenarios.sweep.engine import Single, local_workers, outcome_of, processes, run_cells
-from surefoot.scenarios.sweep.journal import Journal
-from surefoot.scenarios.sweep.points import Point
+from surefoot.scenarios.study.campaigns.campaign import Base
+from surefoot.scenarios.study.campaigns.engine import Single, local_workers, outcome_of, processes, run_cells
+from surefoot.scenarios.study.campaigns.journal import Journal
+from surefoot.scenarios.study.campaigns.points import Point
+from surefoot.scenarios.study.checks.check import cases, check, run_case
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from dotted import named
 
 from surefoot.planner.types import Foot, PhaseInfo, PhaseKind
 from surefoot.scenarios.file.schema import PushSettings
-from surefoot.scenarios.loop.skeleton import ClosedLoop
+from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import resolve
 

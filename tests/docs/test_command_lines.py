@@ -9,9 +9,10 @@ import pytest
 import typer
 import yaml
 
-from surefoot.scenarios.cli import app
-from surefoot.scenarios.show.listing import keys
-from surefoot.scenarios.sweep.campaign import read_campaign, shipped
+from surefoot.scenarios.apps.cli import app
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.show.options import keys
+from surefoot.scenarios.study.campaigns.campaign import read_campaign, shipped
 
 pytestmark = pytest.mark.unit
 
@@ -41,7 +42,7 @@ def faults(line):
     if command is None:
         return [words[0]]
     given = [word for text in words for word in re.findall(r"^-[\w-]+", text.strip("()[]"))]
-    known = {re.sub(r"\.\d+", "", key) for key, _ in keys()}
+    known = {re.sub(r"\.\d+", "", key) for key, _ in keys(Scenario)}
     known |= AXES.get("".join(words[1:2]), set()) if words[:1] == ["sweep"] else set()
     settings = [text.partition("=")[0] for before, text in pairwise(words) if before == "--set"]
     return [word for word in given if word not in options(command)] + [key for key in settings if key not in known]
@@ -79,7 +80,7 @@ def test_what_is_not_there_is_found():
 
 
 def test_keys_that_the_pages_set_are_there():
-    known = {*dict(keys()), *chain.from_iterable(AXES.values())}
+    known = {*dict(keys(Scenario)), *chain.from_iterable(AXES.values())}
     for page in PAGES:
         for key in re.findall(r"--set [\"']?([a-z_.]+)=", page.read_text(encoding="utf-8")):
             assert key in known, f"{page.name}: {key}"

@@ -47,9 +47,21 @@ def test_the_digest_follows_the_sources(make, tmp_path, monkeypatch):
     assert make.digest("figures.png") != before
 
 
+def test_the_moving_picture_of_the_readme_is_smooth_and_small(make):
+    with make.Image.open(make.FOLDER / "front.webp") as picture:
+        assert picture.width == 720
+        picture.seek(1)
+        picture.load()
+        assert picture.info["duration"] <= 40
+        assert picture.n_frames * picture.info["duration"] > 4000
+    assert (make.FOLDER / "front.webp").stat().st_size < 2_000_000
+
+
 def test_every_picture_that_a_page_shows_can_be_made(make):
     pages = (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))
     shown = {name for page in pages for name in re.findall(r"!\[[^\]]*\]\(\S*images/(\S+)\)", page.read_text("utf-8"))}
-    drawn = {path.name for path in (ROOT / "docs" / "images").iterdir() if path.suffix in (".png", ".gif", ".svg")}
+    drawn = {
+        path.name for path in (ROOT / "docs" / "images").iterdir() if path.suffix in (".png", ".gif", ".svg", ".webp")
+    }
     assert shown == drawn
     assert set(make.PICTURES) <= drawn <= {*make.PICTURES, *make.OF_CAMPAIGNS}

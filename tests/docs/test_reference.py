@@ -87,6 +87,24 @@ def test_the_faults_that_the_page_shows_are_those_that_are_found():
 
 
 def test_links_lead_somewhere():
-    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+    for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")):
         for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+def test_the_index_has_every_page_with_a_line():
+    text = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    listed = re.findall(r"(?m)^\| \[[^\]]+\]\(([\w./-]+\.md)\) \| \S.* \|$", text)
+    assert sorted(listed) == sorted(
+        {path.name for path in (ROOT / "docs").glob("*.md")} - {"index.md"} | {"decisions/index.md"}
+    )
+
+
+def test_the_index_of_the_decisions_has_every_record():
+    folder = ROOT / "docs" / "decisions"
+    text = (folder / "index.md").read_text(encoding="utf-8")
+    listed = re.findall(r"(?m)^\| \[[^\]]+\]\(([\w-]+\.md)\) \| \S.* \|$", text)
+    assert listed == sorted(path.name for path in folder.glob("*.md") if path.name != "index.md")
+    for name in listed:
+        record = (folder / name).read_text(encoding="utf-8")
+        assert re.findall(r"(?m)^## (.*)$", record) == ["Decision", "What else was considered", "Why"], name

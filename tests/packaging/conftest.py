@@ -15,10 +15,10 @@ import pytest
 
 from surefoot.models.registry import ROBOTS
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.scenarios import cli
+from surefoot.scenarios.apps import cli
 from surefoot.scenarios.catalogue import SCENARIOS
 from surefoot.scenarios.judge.metrics import METRICS
-from surefoot.scenarios.loop.sensing import ESTIMATORS
+from surefoot.scenarios.run.sensing import ESTIMATORS
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.wbc.tasks import TASKS
 
@@ -130,9 +130,8 @@ def at_hand(
     def give(*arguments: str, sites: Iterable[Site] = ()) -> Answer:
         for made in sites:
             monkeypatch.syspath_prepend(str(made.folder))
-        monkeypatch.setattr(sys, "argv", ["surefoot", *arguments])
         with pytest.raises(SystemExit) as ended:
-            cli.main()
+            cli.main([*arguments])
         said = capsys.readouterr()
         return Answer(int(ended.value.code or 0), said.out, said.err)
 

@@ -36,7 +36,12 @@ def test_the_wheel_holds_the_package_whole_and_nothing_beside_it(distributions):
     paths = {Path(folder, name) for folder, _, names in walk for name in names if "__pycache__" not in folder}
     packed = {name: data for name, data in files_of(distributions[0]).items() if ".dist-info/" not in name}
     assert packed == {path.relative_to(ROOT).as_posix(): path.read_bytes() for path in paths}
-    data = ("py.typed", "scenarios/show/page.css", "scenarios/paper/sections.yaml", "scenarios/catalogue/walk.yaml")
+    data = (
+        "py.typed",
+        "scenarios/show/kit/page.css",
+        "scenarios/study/paper/sections.yaml",
+        "scenarios/catalogue/walk.yaml",
+    )
     assert {f"surefoot/{name}" for name in data} <= set(packed)
 
 

@@ -8,11 +8,10 @@ from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PendulumTrace, walk_pendulum
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import FeetState, Foot
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.phases import Flow
-from surefoot.planner.walk.queue import StepQueue
-from surefoot.planner.walk.step import Ground
 
 
 def stand(width: float = 0.2, origin: tuple[float, float] = (0.0, 0.0), yaw: float = 0.0) -> FeetState:
@@ -37,20 +36,17 @@ def schedule(
     sample_time: float = 0.02,
     after: int = 150,
 ) -> SimpleNamespace:
-    """All steps of a gait in one queue, and its phases at every sample until some after its end."""
+    """All steps of a gait in one schedule, and its phases at every sample until some after its end."""
     ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(sample_time=sample_time, reach_length=0.8))
-    queue = StepQueue(gait, stand(gait.step_width), ground)
-    queue.extend(np.inf)
-    last = round(queue.phases[-1].start)
-    samples = queue.samples(Flow(np.arange(last + after, dtype=np.float64)))
-    steps = queue.footsteps
-    on_left = steps.between_rows(np.array([float(foot is Foot.LEFT) for foot in steps.feet]))
+    whole = Schedule.start(gait, stand(gait.step_width), ground).extended(np.inf)
+    last = round(whole.phases[-1].start)
+    samples = whole.samples(np.arange(last + after, dtype=np.float64))
+    on_left = whole.at_supports(np.array([float(step.place.foot is Foot.LEFT) for step in whole.steps]))
     following = on_left[np.minimum(samples.index + 1, len(on_left) - 1)]
     return SimpleNamespace(
-        queue=queue,
-        phases=queue.phases,
+        schedule=whole,
+        phases=whole.phases,
         samples=samples,
-        steps=steps,
         last=last,
         load_left=(1.0 - samples.fraction) * on_left[samples.index] + samples.fraction * following,
     )

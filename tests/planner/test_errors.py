@@ -9,7 +9,7 @@ import pytest
 import surefoot.planner.planner
 from surefoot.errors import ParameterError
 from surefoot.planner.parameters import GroundSearch, LegInertia, PlannerParameters
-from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
+from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
 
 pytestmark = pytest.mark.unit
 

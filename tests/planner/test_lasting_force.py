@@ -10,8 +10,8 @@ from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet, Pendulum
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import GRAVITY, CentroidalState, LastingForce
-from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 

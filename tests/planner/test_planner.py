@@ -12,9 +12,9 @@ from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.references.com_height import SmoothHeight
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
 from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, SolverStatus
-from surefoot.planner.walk.footsteps import plan_footsteps
-from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
 
 pytestmark = pytest.mark.unit
 
@@ -25,8 +25,8 @@ def assert_walks(planner, trace, rms, step_error):
     error = trace.zmp - trace.zmp_reference
     side = np.array([0.0, 0.5 * planner.gait.step_width, 0.0])
     whole = plan_footsteps(planner.gait, FeetState(np.array([side, -side]), np.zeros(2), (True, True)), flat())
-    nominal = np.diff(whole.position[planner.footsteps.first + 1 :, :2], axis=0)
-    taken = np.diff(planner.footsteps.position[1:, :2], axis=0)
+    nominal = np.diff(whole.position[planner.schedule.steps[0].number + 2 :, :2], axis=0)
+    taken = np.diff(planner.schedule.positions[1:, :2], axis=0)
     assert trace.fall_time is None
     assert trace.margin.min() > 0.0
     assert np.all(np.sqrt(np.mean(error**2, axis=0)) < rms)
@@ -34,7 +34,7 @@ def assert_walks(planner, trace, rms, step_error):
     assert all(plan.status.solver is SolverStatus.SOLVED for plan in trace.plans)
     assert max(np.max(plan.status.zmp_slack) for plan in trace.plans) < 1e-6
     assert np.abs(trace.plans[-1].com_velocity[0]).max() < 1e-3
-    assert np.abs(trace.com[-1, :2] - planner.footsteps.support_points()[-1, :2]).max() < 1e-3
+    assert np.abs(trace.com[-1, :2] - planner.schedule.support_points[-1, :2]).max() < 1e-3
 
 
 def test_diagonal_walk_tracks_its_reference_inside_the_box(diagonal):
@@ -121,7 +121,7 @@ def test_steps_move_only_when_adaptation_is_on(walk, stand, schedule):
         assert trace.fall_time is None
         ends = [(a, b) for a, b in pairwise(trace.plans) if a.swing is not None and b.swing is None]
         landed = np.array([after.footholds[before.swing.foot].position[:2] for before, after in ends])
-        nominal = schedule(gait).steps.position[2 : 2 + len(landed), :2]
+        nominal = schedule(gait).schedule.positions[2 : 2 + len(landed), :2]
         moved[adaptation] = np.abs(np.diff(landed, axis=0) - np.diff(nominal, axis=0)).max()
     assert moved[StepAdaptation.NONE] < 1e-9
     assert moved[StepAdaptation.LOCATION] > 0.005
@@ -169,7 +169,7 @@ def test_early_touchdown_fixes_the_footstep_and_never_moves_the_clock(stand):
 def test_measured_foothold_replaces_the_planned_one_and_carries_the_next(stand):
     gait = GaitParameters(initial_stand=0.0, single_support=0.6, double_support=0.2)
     planner = WalkingPlanner(gait, stand(), *HUMAN)
-    nominal = planner.footsteps.position.copy()
+    nominal = planner.schedule.positions
     offset = np.array([0.02, -0.01, 0.003])
     com, feet = np.array([0.0, 0.0, 1.0]), stand()
     for tick in range(52):
@@ -179,7 +179,7 @@ def test_measured_foothold_replaces_the_planned_one_and_carries_the_next(stand):
         feet = FeetState(position, feet.yaw, (True, True) if tick >= 48 else (False, True))
     assert plan.phase.kind is PhaseKind.DOUBLE
     np.testing.assert_allclose(plan.footholds[Foot.LEFT].position, nominal[2] + offset)
-    np.testing.assert_allclose(planner.footsteps.position[3, :2], nominal[3, :2] + offset[:2], atol=1e-12)
+    np.testing.assert_allclose(planner.schedule.positions[3, :2], nominal[3, :2] + offset[:2], atol=1e-12)
 
 
 def test_plan_arrays_have_the_shapes_they_say(diagonal):

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from surefoot.planner.plan import PlanSampler
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import PhaseKind
-from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 

@@ -12,10 +12,10 @@ from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.references.com_height import Rise, SmoothHeight
+from surefoot.planner.steps.commands import Command, Pose
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import FeetState
-from surefoot.planner.walk.commands import Command, Pose
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import Legs
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 pytestmark = pytest.mark.unit
@@ -47,7 +47,7 @@ def walked(size, profile="default", push=0.0, ahead=0.0, place=None, stairs=Fals
     position = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]) * length
     feet = FeetState(position, np.zeros(2), (True, True))
     # An arm of the force per mass is a length over a time squared: gravity's own, the same for all.
-    legs = Legs(0.36 * length, 0.2 * length, 0.115 * length, 0.12 * length, 0.24 * length, (60.0, 50.0))
+    legs = LegReach(0.36 * length, 0.2 * length, 0.115 * length, 0.12 * length, 0.24 * length, (60.0, 50.0))
     climb = Stairs(0.1, 0.3, 3, Direction.UP, 0.15, 0.9, 2.0)
     lengths = {name: length * getattr(climb, name) for name in ("riser", "tread", "start", "landing", "beyond")}
     terrain = replace(climb, **lengths).build(Site(np.zeros(2), 0.0, 0.8)) if stairs else None

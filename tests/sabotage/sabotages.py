@@ -12,8 +12,8 @@ import numpy as np
 from controllers import CONTROLLERS
 
 import surefoot
-from surefoot.scenarios.check import check as checking
 from surefoot.scenarios.judge import metrics
+from surefoot.scenarios.study.checks import check as checking
 from surefoot.sim import contacts, scene, world
 
 
@@ -122,7 +122,7 @@ class Numb(contacts.ContactSense):
 
 
 def _world(made: type) -> Sabotage:
-    return Sabotage(patches={"scenarios.loop.full.World": made})
+    return Sabotage(patches={"scenarios.run.full.World": made})
 
 
 WORLDS: Mapping[str, Sabotage] = {
@@ -138,7 +138,7 @@ WORLDS: Mapping[str, Sabotage] = {
 
 JUDGES: Mapping[str, Sabotage] = {
     "fall detector never fires": Sabotage(
-        patches={"scenarios.loop.full.lies": _never, "scenarios.judge.walking.lies": _never}
+        patches={"scenarios.run.full.lies": _never, "scenarios.judge.walking.lies": _never}
     ),
     "slip metric halved": Sabotage(judge={"foot_slip_max": halved}),
     "ZMP metrics halved": Sabotage(judge={"zmp_error_rms": halved, "zmp_error_max": halved}),

@@ -99,6 +99,10 @@ class Browser:
     def _act(self, kind: str, actions: list[dict[str, Any]]) -> None:
         self._call("POST", "/actions", {"actions": [{"type": kind, "id": kind, "actions": actions}]})
 
+    def resize(self, width: int, height: int) -> None:
+        """Give the window another size [px]."""
+        self._call("POST", "/window/rect", {"width": width, "height": height})
+
     def screenshot(self) -> bytes:
         """A PNG picture of the page."""
         return base64.b64decode(self._call("GET", "/screenshot"))

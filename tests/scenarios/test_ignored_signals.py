@@ -8,8 +8,8 @@ import time
 
 import pytest
 
-from surefoot.scenarios.loop.interrupts import SIGNALS
-from surefoot.scenarios.sweep.engine import processes
+from surefoot.scenarios.run.interrupts import SIGNALS
+from surefoot.scenarios.study.campaigns.engine import processes
 
 CAMPAIGN = "scenario: stand\nset: {duration: 2, criteria: {fell: false}}\n"
 

@@ -68,9 +68,10 @@ def test_what_would_be_right_is_said(group, name, value, right):
 
 
 def test_zero_and_whole_numbers_are_fine_where_they_mean_something():
-    replace(DEFAULT.weights, swing=0, com_vertical=0.0)
-    replace(DEFAULT.gains, posture=(0, 9))
-    replace(DEFAULT.separation, slots=0)
+    weights = replace(DEFAULT.weights, swing=0, com_vertical=0.0)
+    assert (weights.swing, weights.com_vertical) == (0, 0.0)
+    assert replace(DEFAULT.gains, posture=(0, 9)).posture == (0, 9)
+    assert replace(DEFAULT.separation, slots=0).slots == 0
 
 
 def test_solvers_and_arm_swing_are_looked_at():

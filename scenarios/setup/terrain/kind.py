@@ -9,8 +9,8 @@ import numpy as np
 from surefoot.errors import at_most
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.types import Array
-from surefoot.planner.walk.footsteps import FootstepPlan, plan_footsteps
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.types import Array, FootstepPlan
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.units import meant

@@ -9,8 +9,7 @@ import numpy as np
 from surefoot.errors import at_least, at_most
 from surefoot.planner.ground.slope import Slope
 from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.types import Array
-from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.types import Array, FootstepPlan
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.robot import RobotFacts

@@ -9,7 +9,7 @@ import numpy as np
 from surefoot.errors import at_least
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.walk.footsteps import FootstepPlan
+from surefoot.planner.types import FootstepPlan
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.robot import RobotFacts
@@ -65,6 +65,8 @@ class StairsKind(TerrainKind):
         there = stairs.count * (2 if stairs.direction == "up_down" else 1)
         if taken < there:
             yield f"the footsteps take {taken} of the {there} risers of the stairs"
+        if stairs.landing is not None and stairs.direction != "up_down":
+            yield f"terrain.landing has no effect on stairs whose terrain.direction is {stairs.direction}"
 
 
 def _risers(draft: "Draft", plan: FootstepPlan) -> list[int]:

@@ -12,13 +12,16 @@ from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
-from surefoot.scenarios.show.compare.divergence import ChannelDifference, Point, compare_channels, unreadable
-from surefoot.scenarios.show.compare.settings import (
+from surefoot.scenarios.show.compare.differences import (
+    ChannelDifference,
     Difference,
+    FirstDifference,
+    compare_channels,
     file_differences,
     metric_pairs,
     record_differences,
     setting_differences,
+    unreadable,
     version_differences,
 )
 from surefoot.scenarios.show.console import number, plain_console, plain_table
@@ -167,8 +170,8 @@ def draw(found: Comparison, a: Log, b: Log, out: Path, replace: bool = False) ->
     Raises:
         LogError: there is nothing to draw, or the file exists or cannot be written.
     """
-    from surefoot.scenarios.show.figures.overlay import overlay
-    from surefoot.scenarios.show.figures.style import save
+    from surefoot.scenarios.show.figures.page import overlay
+    from surefoot.scenarios.show.kit.figures import save
 
     when = None if found.first is None else found.first.time
     header = f"A: {shown(found.a)}\nB: {shown(found.b)}\n{found.summary}".replace("$", r"\$")
@@ -265,5 +268,5 @@ def _remarks(channel: ChannelDifference) -> list[str]:
     return [*alone, *channel.layout]
 
 
-def _time(point: Point | None) -> str:
+def _time(point: FirstDifference | None) -> str:
     return "-" if point is None else f"{point.time:.3f}"

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from surefoot.scenarios.judge.body import Roles, leg, side_of
 from surefoot.scenarios.palette import BLACK, BLUE, GREY, VERMILION
-from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import CYCLE, Area, curve, legend, or_say, time_axes
-from surefoot.scenarios.show.logview import LogView, MissingError
+from surefoot.scenarios.show.kit.figures import CYCLE, Area, curve, legend, or_say, time_axes
+from surefoot.scenarios.show.kit.shading import Background
+from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError
 
 TORQUES_TITLE = "Joint torques in percent of their limits"
 ANGLES_TITLE = "Joint angles in percent of half their range"
@@ -59,7 +59,7 @@ def _draw_groups(
 
 def groups(names: tuple[str, ...], roles: Roles) -> dict[str, dict[str, list[int]]]:
     """Joints by figure and label: both legs joint by joint, waist joints likewise, arms and head together."""
-    legs = {side: leg(names, roles, side) for side in ("left", "right")}
+    legs = {side: leg(names, roles, side) for side in FOOT_NAMES}
     drawn = {f"{side} leg": {_short(names[i], side): [i] for i in joints} for side, joints in legs.items()}
     upper: dict[str, list[int]] = {}
     for index, name in enumerate(names):

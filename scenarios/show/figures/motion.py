@@ -22,9 +22,7 @@ from surefoot.scenarios.palette import (
     ZMP_PLANNED,
 )
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
-from surefoot.scenarios.show.figures.shading import Background
-from surefoot.scenarios.show.figures.style import (
-    FOOT_NAMES,
+from surefoot.scenarios.show.kit.figures import (
     Area,
     curve,
     legend,
@@ -33,7 +31,8 @@ from surefoot.scenarios.show.figures.style import (
     steps,
     time_axes,
 )
-from surefoot.scenarios.show.logview import LogView, MissingError
+from surefoot.scenarios.show.kit.shading import Background
+from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError
 
 Array = NDArray[np.float64]
 
@@ -60,11 +59,10 @@ def draw_balance(area: Area, view: LogView, background: Background) -> None:
         for axis, one in enumerate(axes):
             one.set_ylabel(f"{_directions(view)[axis]} [m]")
             with or_say(one):
-                _support(one, view, axis)
+                draw_support(one, view, axis)
                 _positions(one, view, axis)
         if number == 0:
-            support = Patch(facecolor=SUPPORT, edgecolor=GREY, alpha=0.3, label="planned support, bounds")
-            legend(axes[0], 7, [support])
+            legend(axes[0], 7, [support_handle()])
     _draw_errors(parts[-1], view, background)
 
 
@@ -121,11 +119,17 @@ def true_dcm(view: LogView) -> Array:
     return view.field("/truth", "com", 3)[:, :2] + view.field("/truth", "com_velocity", 3)[:, :2] / omega
 
 
-def _support(axes: Axes, view: LogView, axis: int) -> None:
+def draw_support(axes: Axes, view: LogView, axis: int) -> None:
+    """Draw the planned support in a direction, with its bounds."""
     time, low, high = support_bounds(view, axis)
     axes.fill_between(time, low, high, step="post", color=SUPPORT, alpha=0.18, linewidth=0, zorder=1)
     for bound in (low, high):
         axes.plot(time, bound, drawstyle="steps-post", color=GREY, linewidth=0.6, zorder=1.5)
+
+
+def support_handle() -> Patch:
+    """Entry of a legend for the support."""
+    return Patch(facecolor=SUPPORT, edgecolor=GREY, alpha=0.3, linewidth=0.5, label="planned support, bounds")
 
 
 def _positions(axes: Axes, view: LogView, axis: int) -> None:

@@ -1,26 +1,38 @@
-"""The page of all figures of a log, or one of them, as a file."""
+"""The page of all figures of a log, one of them, or two runs over each other, as a file."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import shorten
+from typing import Any
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import refuse_existing, shown
+from surefoot.scenarios.palette import BLACK, BLUE, VERMILION, Color
 from surefoot.scenarios.record.provenance import ABSENT
-from surefoot.scenarios.show.figures import top_view
 from surefoot.scenarios.show.figures.effort import draw_joints, draw_solver, draw_torques
+from surefoot.scenarios.show.figures.ground import draw_grip, draw_soles, draw_top_view, is_wide, strip_height
 from surefoot.scenarios.show.figures.motion import draw_balance, draw_feet, draw_height, strips
-from surefoot.scenarios.show.figures.shading import Background, background
-from surefoot.scenarios.show.figures.soles import draw_grip, draw_soles
-from surefoot.scenarios.show.figures.style import Area, canvas, format_of, in_style, save
+from surefoot.scenarios.show.kit.figures import (
+    Area,
+    canvas,
+    curve,
+    format_of,
+    in_style,
+    legend,
+    or_say,
+    save,
+    time_axes,
+)
+from surefoot.scenarios.show.kit.shading import Background, background
 from surefoot.scenarios.show.logview import LogView, MissingError
 
-Draw = Callable[[Area, LogView, Background], None]
+DrawFigure = Callable[[Area, LogView, Background], None]
 
 _A3, _A4 = 11.7, 8.3
 _HEADER = 0.75
@@ -37,7 +49,7 @@ class Family:
         longer: height of each strip more that a long run needs [in].
     """
 
-    draw: Draw
+    draw: DrawFigure
     size: tuple[float, float]
     over_time: bool = True
     longer: float = 0.0
@@ -49,7 +61,7 @@ class Family:
 
 FIGURES: dict[str, Family] = {
     "balance": Family(draw_balance, (_A3, 7.0), longer=2.7),
-    "top-view": Family(top_view.draw, (_A3, 5.5), over_time=False),
+    "top-view": Family(draw_top_view, (_A3, 5.5), over_time=False),
     "height": Family(draw_height, (_A4, 4.5)),
     "feet": Family(draw_feet, (_A4, 4.5)),
     "soles": Family(draw_soles, (_A4, 4.0), over_time=False),
@@ -62,7 +74,7 @@ FIGURES: dict[str, Family] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class PageRow:
     """A row of the page: its height [in] and the figures in it."""
 
     height: float
@@ -70,30 +82,30 @@ class Row:
 
 
 _COMPACT = (
-    Row(6.0, ("balance",)),
-    Row(3.6, ("top-view", "height")),
-    Row(3.9, ("feet", "torques")),
-    Row(3.3, ("soles", "grip")),
-    Row(3.9, ("joints",)),
-    Row(3.3, ("solver",)),
+    PageRow(6.0, ("balance",)),
+    PageRow(3.6, ("top-view", "height")),
+    PageRow(3.9, ("feet", "torques")),
+    PageRow(3.3, ("soles", "grip")),
+    PageRow(3.9, ("joints",)),
+    PageRow(3.3, ("solver",)),
 )
 _WIDE = (
-    Row(5.7, ("balance",)),
-    Row(0.9, ("top-view",)),
-    Row(3.1, ("height", "feet")),
-    Row(3.3, ("soles", "grip")),
-    Row(3.3, ("torques",)),
-    Row(3.9, ("joints",)),
-    Row(3.1, ("solver",)),
+    PageRow(5.7, ("balance",)),
+    PageRow(0.9, ("top-view",)),
+    PageRow(3.1, ("height", "feet")),
+    PageRow(3.3, ("soles", "grip")),
+    PageRow(3.3, ("torques",)),
+    PageRow(3.9, ("joints",)),
+    PageRow(3.1, ("solver",)),
 )
 
 
 def page(view: LogView, header: str) -> Figure:
-    """Draw all figures on one page, A3 wide."""
-    rows = _WIDE if top_view.is_wide(view) else _COMPACT
+    """DrawFigure all figures on one page, A3 wide."""
+    rows = _WIDE if is_wide(view) else _COMPACT
     heights = [_HEADER, *(row.height + max(FIGURES[name].more(view) for name in row.names) for row in rows)]
     if rows is _WIDE:
-        heights[2] += top_view.height(view, _A3)
+        heights[2] += strip_height(view, _A3)
     with in_style():
         figure, areas = canvas(_A3, heights)
         behind = background(view)
@@ -105,7 +117,7 @@ def page(view: LogView, header: str) -> Figure:
 
 
 def single(view: LogView, header: str, name: str) -> Figure:
-    """Draw one figure by name.
+    """DrawFigure one figure by name.
 
     Raises:
         LogError: there is no such figure.
@@ -133,7 +145,7 @@ _REASON = 90
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class Plotted:
     """What was drawn.
 
     Attributes:
@@ -152,8 +164,8 @@ def plot(
     start: float | None = None,
     end: float | None = None,
     replace: bool = False,
-) -> Drawn:
-    """Draw the figures of a log.
+) -> Plotted:
+    """DrawFigure the figures of a log.
 
     Args:
         log_path: a log, also a truncated one.
@@ -175,7 +187,7 @@ def plot(
     view = LogView(log, start, end)
     figure = page(view, _header(view)) if what is None else single(view, _header(view), what)
     save(figure, out, replace)
-    return Drawn(out, _notes(log))
+    return Plotted(out, _notes(log))
 
 
 def _header(view: LogView) -> str:
@@ -205,3 +217,53 @@ def _verdict(log: Log) -> str:
 def _notes(log: Log) -> tuple[str, ...]:
     truncated = (f"the file is truncated: it can be read up to {log.time_range()[1]:.3f} s",) if log.truncated else ()
     return (*truncated, *dict.fromkeys(log.damage))
+
+
+_CURVES = (
+    ("ZMP x [m]", "/contact", "zmp", 0),
+    ("ZMP y [m]", "/contact", "zmp", 1),
+    ("CoM x [m]", "/truth", "com", 0),
+    ("CoM y [m]", "/truth", "com", 1),
+    ("CoM z [m]", "/truth", "com", 2),
+)
+_HEIGHTS = (0.5, 9.5)
+
+
+def overlay(a: LogView, b: LogView, header: str, divergence: float | None) -> Figure:
+    """DrawFigure both runs on one page.
+
+    Args:
+        a: first run.
+        b: second run.
+        header: says which they are.
+        divergence: time at which they part [s], None when they do not.
+    """
+    with in_style():
+        figure, (top, area) = canvas(_A3, _HEIGHTS)
+        top.text(0.01, 0.9, header, ha="left", va="top", fontsize=9, linespacing=1.4)
+        axes = time_axes(area, a, "Measured ZMP and true CoM of both runs", (1.0,) * len(_CURVES))
+        axes[-1].set_xlim(min(a.start, b.start), max(a.end, b.end, a.start + 1e-3))
+        for one, (label, topic, name, axis) in zip(axes, _CURVES, strict=True):
+            one.set_ylabel(label)
+            with or_say(one):
+                _both(one, (a, b), topic, name, axis)
+            if divergence is not None:
+                one.axvline(divergence, color=BLACK, linewidth=0.8, linestyle=":", label="first divergence")
+        legend(axes[0])
+    return figure
+
+
+def _both(axes: Axes, views: tuple[LogView, LogView], topic: str, name: str, axis: int) -> None:
+    """DrawFigure a channel of both runs; one that has not got it is left out, and named when neither has."""
+    styles: tuple[tuple[str, Color, dict[str, Any]], ...] = (
+        ("A", BLUE, {"linewidth": 1.8}),
+        ("B", VERMILION, {"linewidth": 1.0, "linestyle": (0, (4, 2))}),
+    )
+    missing = []
+    for view, (label, color, style) in zip(views, styles, strict=True):
+        try:
+            curve(axes, view.time(topic), view.field(topic, name, 3)[:, axis], label, color, **style)
+        except MissingError as absent:
+            missing.append(absent)
+    if len(missing) == len(views):
+        raise missing[0]

@@ -1,4 +1,4 @@
-"""What a replay shows, independent of what shows it: surfaces on bodies, marks that move, footprints that stay."""
+"""What a replay shows, independent of what shows it: frames, surfaces on bodies, marks that move, footprints."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -10,7 +10,47 @@ from surefoot.scenarios.palette import Color
 
 Array = NDArray[np.float64]
 
-Kind = Literal["point", "arrow", "outline"]
+MarkKind = Literal["point", "arrow", "outline"]
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayWindow:
+    """What is asked for of a run.
+
+    Attributes:
+        start: first time, the log's if None [s].
+        end: last time, the log's if None [s].
+        frame_rate: frames per simulated second [Hz].
+    """
+
+    start: float | None = None
+    end: float | None = None
+    frame_rate: float = 30.0
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """Which ticks are shown.
+
+    Attributes:
+        time: of each frame, shape (n,) [s].
+        rows: of the control-rate channels, shape (n,).
+    """
+
+    time: Array
+    rows: NDArray[np.intp]
+
+    def strongest(self, strength: Array, ticks: Array, seconds: float) -> NDArray[np.intp]:
+        """Row of the largest value within some seconds before each frame, the frame's own included.
+
+        Args:
+            strength: by control tick.
+            ticks: time of the control ticks [s].
+            seconds: how far to look back [s].
+        """
+        first = np.minimum(np.searchsorted(ticks, self.time - seconds), self.rows)
+        windows = zip(first.tolist(), self.rows.tolist(), strict=True)
+        return np.array([begin + int(strength[begin : end + 1].argmax()) for begin, end in windows])
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +86,7 @@ class Track:
 
     layer: str
     name: str
-    kind: Kind
+    kind: MarkKind
     color: Color
     size: float
     vertices: Array

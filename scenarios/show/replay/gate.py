@@ -18,6 +18,7 @@ from dataclasses import dataclass, field, replace
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
+from weakref import WeakSet
 
 from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.output import reason
@@ -44,6 +45,12 @@ LONGEST_MESSAGE = 100_000
 
 VIEWER = "viewer"
 """Name of the viewer's own page, where another one is served at the address."""
+
+GRACE = 0.5
+"""How long a page has to take its leave when the viewer ends [s]."""
+
+HEARD = ("ViewerCameraMessage", "GuiUpdateMessage", "SceneNodeClickMessage", "SceneNodeDragMessage")
+"""What the pages here send to viser, which knows more: uploads, and a tunnel that shows the viewer to the internet."""
 
 HEADERS = {"Cache-Control": "no-store", "Referrer-Policy": "no-referrer", "X-Frame-Options": "DENY"}
 """Of every page: its address holds the token, which nothing else shall learn."""
@@ -124,12 +131,44 @@ class Gate:
         elif connection.subprotocol != f"viser-v{importlib.import_module('viser').__version__}":
             await connection.close(1002, "another version of viser; load the page anew")
         else:
-            await viewer(connection)
+            await viewer(_Screened(connection))  # type: ignore[arg-type]
 
     @staticmethod
     def _name(request: "Request") -> str:
         """What is asked for, below the token."""
         return "/".join(request.path.split("?")[0].split("/")[2:])
+
+
+class _Screened:
+    """A viewer's websocket, on which nothing arrives that no page here would send."""
+
+    def __init__(self, connection: "ServerConnection") -> None:
+        self._connection = connection
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._connection, name)
+
+    async def recv(self) -> str | bytes:
+        while not is_heard(message := await self._connection.recv()):
+            pass
+        return message
+
+
+def is_heard(message: str | bytes) -> bool:
+    """Whether viser may be given a message; it would set any attribute of a control that one names, also a callback."""
+    msgspec: Any = importlib.import_module("msgspec")
+    try:
+        given = msgspec.msgpack.decode(message if isinstance(message, bytes) else b"")
+    except (msgspec.MsgspecError, ValueError, RecursionError):
+        return False
+    if not isinstance(given, dict) or given.get("type") not in HEARD:
+        return False
+    if given["type"] != "GuiUpdateMessage":
+        return True
+    match given.get("updates"):
+        case {"value": bool() | int() | float() | str(), **others}:
+            return not others
+    return False
 
 
 def _hostname(host: str) -> str | None:
@@ -164,22 +203,27 @@ def serving(gate: Gate | None = None) -> "Iterator[viser.ViserServer]":
                 raise LogError(f"viser {viser.__version__}: cannot be guarded from other pages; install viser 1.1.1")
             yield server
         finally:
+            for connections in guards:
+                connections.end()
             with contextlib.redirect_stdout(io.StringIO()):
                 server.stop()
 
 
 @contextlib.contextmanager
-def _guarded(gate: Gate | None, listener: socket.socket) -> Iterator[list[Any]]:
-    """Put the gate before the server of websockets that begins within the context; gives those that did.
+def _guarded(gate: Gate | None, listener: socket.socket) -> Iterator[list["_Connections"]]:
+    """Put the gate before the server of websockets that begins within the context; gives the connections of each.
 
     Viser has no way to ask for this. It serves by one call of `websockets.asyncio.server.serve`, so that all that is
     set here is what that function documents.
     """
     module: Any = importlib.import_module("websockets.asyncio.server")
-    serve, guards = module.serve, []
+    serve = module.serve
+    guards: list[_Connections] = []
 
     def guarded(handler: Handler, *_: object, process_request: Answer, **options: Any) -> Any:
-        asyncio.get_running_loop().set_exception_handler(_note)
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(_note)
+        connections = _Connections(loop)
         warnings.filterwarnings("ignore", module=r"viser\b")  # of frames that are not as they should be
         places = {key: value for key, value in options.items() if key not in ("host", "port")}
         ours: dict[str, Any] = {"sock": listener, "logger": logger, "max_size": LONGEST_MESSAGE}
@@ -187,8 +231,8 @@ def _guarded(gate: Gate | None, listener: socket.socket) -> Iterator[list[Any]]:
             ours["start_serving"] = False
         else:
             ours["process_request"] = lambda connection, request: gate.answered(connection, request, process_request)
-            ours["create_connection"] = _answering(module.ServerConnection)
-        guards.append(gate)
+            ours["create_connection"] = _answering(module.ServerConnection, connections)
+        guards.append(connections)
         return serve(handler if gate is None else lambda connection: gate.handle(connection, handler), **places | ours)
 
     module.serve = guarded
@@ -202,11 +246,37 @@ def _note(_: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
     logger.debug("%s", context.get("message"), exc_info=context.get("exception"))
 
 
-def _answering(connection: Any) -> Any:
+@dataclass(slots=True)
+class _Connections:
+    """All connections to a server.
+
+    Attributes:
+        loop: of the server.
+        made: those that are still there.
+    """
+
+    loop: asyncio.AbstractEventLoop
+    made: WeakSet[Any] = field(default_factory=WeakSet)
+
+    def end(self) -> None:
+        """End all, after a grace also those whose other side answers nothing, for which the server would wait."""
+        with contextlib.suppress(RuntimeError):  # the loop is closed already
+            self.loop.call_soon_threadsafe(self.loop.call_later, GRACE, self._abort)
+
+    def _abort(self) -> None:
+        for connection in list(self.made):
+            connection.transport.abort()
+
+
+def _answering(connection: Any, connections: _Connections) -> Any:
     """A kind of connection that also answers what is no GET request, which websockets closes without a word."""
 
     class Connection(connection):  # type: ignore[misc]
         begun = b""
+
+        def connection_made(self, transport: asyncio.BaseTransport) -> None:
+            super().connection_made(transport)
+            connections.made.add(self)
 
         def data_received(self, data: bytes) -> None:
             self.begun += data[: len(_GET) - len(self.begun)]

@@ -12,15 +12,15 @@ from surefoot.scenarios.judge.body import level_corners, rotations, torso
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.log import Log
-from surefoot.scenarios.show.replay.content import Array, Footprint, Track
-from surefoot.scenarios.show.replay.poses import Frames
+from surefoot.scenarios.show.logview import FOOT_NAMES
+from surefoot.scenarios.show.replay.content import Array, Footprint, Frames, Track
 
 LIFT = 0.004
 """How far marks on the ground are drawn above it [m]."""
 
 
 @dataclass(frozen=True, slots=True)
-class Balance:
+class BalanceMarks:
     """Where the points of balance are, by frame.
 
     Attributes:
@@ -71,10 +71,10 @@ class Balance:
         return np.concatenate([self.polygon, height[..., None] + LIFT], axis=2)
 
 
-def balance(run: RunView, frames: Frames) -> Balance:
+def balance(run: RunView, frames: Frames) -> BalanceMarks:
     """The points of balance of a log."""
     rows = frames.rows
-    return Balance(
+    return BalanceMarks(
         com=run.field("/truth", "com")[rows],
         dcm=run.field("/estimate", "dcm")[rows],
         zmp=run.field("/contact", "zmp")[rows],
@@ -96,7 +96,7 @@ def _flat(position: Array, height: Array) -> Array:
     return np.column_stack([position, height + LIFT])
 
 
-Sole = tuple[float, float]
+SoleSize = tuple[float, float]
 """Length and width of a sole [m]."""
 
 
@@ -109,7 +109,7 @@ def planned_footprints(run: RunView, frames: Frames) -> Iterator[Track]:
     yield from footsteps_ahead(channel.field("next")[rows], channel.field("next_foot")[rows], _sole(run))
 
 
-def footsteps_ahead(poses: Array, feet: Array, sole: Sole) -> Iterator[Track]:
+def footsteps_ahead(poses: Array, feet: Array, sole: SoleSize) -> Iterator[Track]:
     """Footsteps to come.
 
     Args:
@@ -121,7 +121,7 @@ def footsteps_ahead(poses: Array, feet: Array, sole: Sole) -> Iterator[Track]:
         for ahead in range(poses.shape[1]):
             corners = sole_corners(poses[:, ahead], sole)
             corners[feet[:, ahead] != foot] = np.nan
-            name = f"{('left', 'right')[foot]}, {ahead + 1} ahead"
+            name = f"{FOOT_NAMES[foot]}, {ahead + 1} ahead"
             yield Track("Planned footprints", name, "outline", palette.FOOTSTEP, 0.003, corners)
 
 
@@ -140,11 +140,11 @@ def taken_footprints(run: RunView, frames: Frames) -> Iterator[Footprint]:
                 yield Footprint(palette.FEET[foot == 1], place, time)
 
 
-def _sole(run: RunView) -> Sole:
+def _sole(run: RunView) -> SoleSize:
     return run.constants.foot_length, run.constants.foot_width
 
 
-def sole_corners(poses: Array, sole: Sole) -> Array:
+def sole_corners(poses: Array, sole: SoleSize) -> Array:
     """Corners of soles at x y z yaw of shape (n, 4), just above the ground, shape (n, 4, 3) [m]."""
     ground = level_corners(poses, *sole)
     height = np.broadcast_to(poses[:, 2, None] + LIFT / 2, ground.shape[:2])
@@ -166,9 +166,9 @@ LEAST_FORCE = 5.0
 
 def contact_forces(run: RunView, frames: Frames) -> Iterator[Track]:
     """Contact force on each sole, from its centre of pressure."""
-    sides, rows = ("left", "right"), frames.rows
-    cop = np.stack([run.field("/contact", f"cop_{side}")[rows] for side in sides], axis=1)
-    force = np.stack([run.field("/measurement", f"wrench_{side}")[rows, :3] for side in sides], axis=1)
+    rows = frames.rows
+    cop = np.stack([run.field("/contact", f"cop_{side}")[rows] for side in FOOT_NAMES], axis=1)
+    force = np.stack([run.field("/measurement", f"wrench_{side}")[rows, :3] for side in FOOT_NAMES], axis=1)
     return sole_forces(run.soles[rows], cop, force)
 
 
@@ -180,7 +180,7 @@ def sole_forces(soles: Array, cop: Array, force: Array) -> Iterator[Track]:
         cop: centres of pressure in the sole frames, shape (n, 2, 2) [m].
         force: in the sole frames, shape (n, 2, 3) [N].
     """
-    for foot, name in enumerate(("left", "right")):
+    for foot, name in enumerate(FOOT_NAMES):
         to_world = rotations(soles[:, foot, 3:])
         tail = soles[:, foot, :3] + np.einsum("nij,nj->ni", to_world[:, :, :2], cop[:, foot])
         arrow = _arrow(tail, np.einsum("nij,nj->ni", to_world, force[:, foot]), CONTACT_SCALE)

@@ -1,12 +1,10 @@
 """The page: a recording of the scene in viser's own viewer, with charts beside it that follow its timeline."""
 
 import html
-import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from string import Template
 from typing import Any
 
 import numpy as np
@@ -23,7 +21,8 @@ from surefoot.scenarios.palette import (
     Color,
     hexadecimal,
 )
-from surefoot.scenarios.show.logview import LogView, MissingError
+from surefoot.scenarios.show.kit.viewer import filled, taken_in
+from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError
 from surefoot.scenarios.show.replay.content import Array, Replay
 from surefoot.scenarios.show.replay.gate import serving
 from surefoot.scenarios.show.replay.scene import ViserScene
@@ -82,7 +81,7 @@ AXES = (
 )
 """Label of each chart, and digits after the point."""
 
-FEET_NAMES = ("left foot", "right foot")
+FEET_NAMES = tuple(f"{name} foot" for name in FOOT_NAMES)
 
 
 def charts(view: LogView, time: Array) -> tuple[Chart, ...]:
@@ -148,24 +147,20 @@ def page(replay: Replay, beside: Iterable[Chart] = ()) -> str:
             scene.show(frame)
         recorded: str = recorder.as_html()
         layers = scene.moving_layers
-    title = html.escape(replay.title)
-    head, tail = recorded.rsplit("</body>", 1)
-    before, after = head.split("<head>", 1)
-    return f"{before}<head><title>{title}</title>{after}{column(replay, layers, beside)}</body>{tail}"
+    return taken_in(recorded, f"<title>{html.escape(replay.title)}</title>", column(replay, layers, beside))
 
 
 def column(replay: Replay, layers: tuple[str, ...], beside: Iterable[Chart]) -> str:
     """What stands beside the picture: title, legend, charts, and the room for viser's switches of the layers."""
     time = replay.time.round(4).tolist()
     data = {"time": time, "layers": layers, "charts": [_chart(chart) for chart in beside]}
-    return Template(files(__package__).joinpath("column.html").read_text(encoding="utf-8")).substitute(
+    legend = (f'<span><b style="background:{hexadecimal(c)}"></b>{name}</span>' for name, c in replay.legend().items())
+    return filled(
+        files(__package__).joinpath("column.html").read_text(encoding="utf-8"),
+        data,
         title=html.escape(replay.title),
         span=f"{time[0]:.1f} s to {time[-1]:.1f} s",
-        legend="".join(
-            f'<span><b style="background:{hexadecimal(c)}"></b>{name}</span>' for name, c in replay.legend().items()
-        ),
-        # An end of the script inside a name would end it.
-        data=json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/"),
+        legend="".join(legend),
     )
 
 

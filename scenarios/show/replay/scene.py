@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.replay.content import Array, Footprint, Replay, Track
@@ -12,7 +13,7 @@ if TYPE_CHECKING:
     import viser
 
 
-class Mark:
+class MarkNode:
     """A node that follows a track; `layer/name` is its place in the scene tree."""
 
     def __init__(self, node: Any) -> None:
@@ -31,31 +32,31 @@ class Mark:
         raise NotImplementedError
 
 
-class _Point(Mark):
+class _PointNode(MarkNode):
     def _move(self, vertices: Array) -> None:
         self._node.position = vertices[0]
 
 
-class _Arrow(Mark):
+class _ArrowNode(MarkNode):
     def _move(self, vertices: Array) -> None:
         self._node.points = vertices[None]
 
 
-class _Outline(Mark):
+class _OutlineNode(MarkNode):
     def _move(self, vertices: Array) -> None:
         self._node.points = closed(vertices)
 
 
-def make_mark(scene: "viser.SceneApi", track: Track) -> Mark:
+def make_mark(scene: "viser.SceneApi", track: Track) -> MarkNode:
     """Add the node of a track, not yet in sight."""
     name, color, size = f"/{track.layer}/{track.name}", rgb(track.color), track.size
     if track.kind == "point":
-        return _Point(scene.add_icosphere(name, radius=size, color=color, subdivisions=2))
+        return _PointNode(scene.add_icosphere(name, radius=size, color=color, subdivisions=2))
     if track.kind == "arrow":
         head: dict[str, Any] = {"head_radius": 2.2 * size, "head_length": 5.0 * size}
-        return _Arrow(scene.add_arrows(name, np.zeros((1, 2, 3)), _linear(color), shaft_radius=size, **head))
+        return _ArrowNode(scene.add_arrows(name, np.zeros((1, 2, 3)), _linear(color), shaft_radius=size, **head))
     nowhere = np.zeros((track.vertices.shape[1], 2, 3))
-    return _Outline(scene.add_line_segments(name, nowhere, color, thickness=2 * size))
+    return _OutlineNode(scene.add_line_segments(name, nowhere, color, thickness=2 * size))
 
 
 def _linear(color: tuple[int, int, int]) -> tuple[int, int, int]:
@@ -94,6 +95,7 @@ def set_stage(server: "viser.ViserServer", replay: Replay) -> Any:
     scene.set_up_direction("+z")
     scene.world_axes.visible = False
     scene.configure_default_lights(cast_shadow=True)
+    scene.set_background_image(_sky(), format="png")
     look_at[2] = replay.footprints[0].corners[0, 2] if replay.footprints else 0.0
     look_at[2] += LOOK_AT_HEIGHT
     server.initial_camera.look_at = look_at
@@ -106,10 +108,24 @@ def set_stage(server: "viser.ViserServer", replay: Replay) -> Any:
     )  # fmt: skip
 
 
-SEE_THROUGH = 0.6
-"""Opacity of the robot through which the marks inside it are seen."""
+SKY = ((0.0, (182, 206, 230)), (0.55, (226, 234, 241)), (1.0, (238, 240, 242)))
+"""Colours of the sky from the top of the picture (0) to its bottom (1); the last is that of the ground [-]."""
+
+SEE_THROUGH = "Robot, see-through"
+"""Layer of the robot through which the marks inside it are seen, forces and CoM among them; hidden at first."""
+
+_OPACITY = 0.6
+"""Of that layer [-]."""
 
 _QUADRANGLE = np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def _sky() -> NDArray[np.uint8]:
+    """Picture behind the scene, shape (64, 2, 3)."""
+    at, colors = np.array([share for share, _ in SKY]), np.array([color for _, color in SKY], dtype=np.float64)
+    height = np.linspace(0.0, 1.0, 64)
+    column = np.stack([np.interp(height, at, channel) for channel in colors.T], axis=1)
+    return np.repeat(column[:, None], 2, axis=1).round().astype(np.uint8)
 
 
 class ViserScene:
@@ -121,15 +137,14 @@ class ViserScene:
     Args:
         server: of the page.
         replay: what is shown at first.
-        solid: whether the robot can be looked at without seeing through it, too.
 
     Attributes:
         layers: nodes that hide all that is below them, by name.
         skin: names of bodies, and the nodes of the robot's surfaces on them.
     """
 
-    def __init__(self, server: "viser.ViserServer", replay: Replay, solid: bool = True) -> None:
-        self._scene, self._solid = server.scene, solid
+    def __init__(self, server: "viser.ViserServer", replay: Replay) -> None:
+        self._scene = server.scene
         self.skin: list[tuple[str, Any]] = []
         self._ground, self._origin = set_stage(server, replay), replay.followed()[0]
         self.layers: dict[str, Any] = {}
@@ -173,12 +188,12 @@ class ViserScene:
             node.visible = footprint.since <= replay.time[frame] + 1e-9
 
     def _add_bodies(self, replay: Replay) -> Iterator[tuple[int, Any]]:
-        """Terrain and robot; the robot once more where it shall be solid: forces and CoM are seen only through it."""
+        """Terrain and robot, which is there twice: solid, and to see through."""
         yield from self._add_branch(replay, "Terrain", lambda body: body == 0)
-        yield from self._add_branch(replay, "Robot", lambda body: body > 0, opacity=SEE_THROUGH)
-        if self._solid:
-            yield from self._add_branch(replay, "Robot, solid", lambda body: body > 0)
-            self.layers["Robot, solid"].visible = False
+        yield from self._add_branch(replay, "Robot", lambda body: body > 0)
+        yield from self._add_branch(replay, SEE_THROUGH, lambda body: body > 0, opacity=_OPACITY)
+        if SEE_THROUGH in self.layers:
+            self.layers[SEE_THROUGH].visible = False
 
     def _add_branch(
         self, replay: Replay, layer: str, wanted: Callable[[int], bool], **look: Any

@@ -3,8 +3,10 @@
 from pathlib import Path
 
 import biped
+from test_meshes import ball
 
 from surefoot.models import RobotOptions, describe
+from surefoot.models.robot_file.mesh_file import binary_stl
 
 LIMITS = "torque_limit: {'*_ankle_roll': 40}\nvelocity_limit: {'*': 12}\n"
 
@@ -43,3 +45,28 @@ TEXT = f"""<mujoco model="biped"><compiler angle="radian"/>
 def described(folder: Path, text: str = TEXT, limits: str = LIMITS):
     file = biped.FILE.replace("biped.urdf", "biped.xml") + limits
     return describe(str(biped.write(folder, text, file, "biped.xml")), RobotOptions())
+
+
+TYPE = ' type="mesh"'
+DRAWN = 'mass="0" contype="0" conaffinity="0"'
+
+
+def meshed(folder, rings, *geoms, weighs=(), compiler="", kind="stl"):
+    """A robot with dense ellipsoids on its base: geoms, and others that weigh."""
+    vertices, faces = ball(0.09, rings)
+    vertices = vertices * [1.0, 0.7, 0.5]
+    if kind == "obj":
+        lines = ["v {:.6f} {:.6f} {:.6f}".format(*row) for row in vertices] + [
+            "f {} {} {}".format(*row) for row in faces + 1
+        ]
+        (folder / "m.obj").write_text("\n".join(lines))
+    (folder / "m.stl").write_bytes(binary_stl((vertices, faces)))
+    names = [f"m{at}" for at in range(len(geoms) + len(weighs))]
+    assets = "".join(f'<mesh name="{name}" file="m.{kind}"/>' for name in names)
+    told = [geom if " type=" in geom else geom + TYPE for geom in (*geoms, *weighs)]
+    shapes = "".join(f'<geom mesh="{name}" {geom}/>' for name, geom in zip(names, told, strict=True))
+    text = TEXT.replace("<worldbody>", f"{compiler}<asset>{assets}</asset><worldbody>")
+    (folder / "biped.xml").write_text(text.replace("<freejoint/>", f"<freejoint/>{shapes}"))
+    file = folder / "biped.yaml"
+    file.write_text(biped.FILE.replace("biped.urdf", "biped.xml") + LIMITS)
+    return str(file)

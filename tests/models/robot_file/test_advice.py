@@ -10,10 +10,10 @@ import yaml
 
 from surefoot.models import RobotError, RobotOptions, describe
 from surefoot.models.robot_file.draft import draft
+from surefoot.scenarios.apps.robots.examine import examine
 from surefoot.scenarios.errors import ScenarioError, SetupError
-from surefoot.scenarios.robots.examine import examine
+from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.simulation import Simulation
 
 pytestmark = pytest.mark.unit
 

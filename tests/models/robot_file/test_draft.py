@@ -11,7 +11,7 @@ from surefoot.models import RobotOptions, describe
 from surefoot.models.robot_file.draft import draft
 from surefoot.models.robot_file.schema import RobotFile, read
 from surefoot.models.types import RobotError
-from surefoot.scenarios.robots.command import new
+from surefoot.scenarios.apps.robots.command import new
 
 pytestmark = pytest.mark.unit
 

@@ -2,13 +2,15 @@
 
 import time
 
+import biped
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from surefoot.models import RobotError
-from surefoot.models.robot_file.mesh_file import colour_in_file
-from surefoot.models.robot_file.meshes import MOST_FACES, decimated, hull, merged
+from surefoot.models import RobotError, explain
+from surefoot.models.robot_file import shapes
+from surefoot.models.robot_file.mesh_file import MOST_WORDS, colour_in_file, read_mesh
+from surefoot.models.robot_file.meshes import MOST_EXACT, MOST_FACES, decimated, hull, merged, outer, thinned
 
 pytestmark = pytest.mark.unit
 
@@ -106,3 +108,80 @@ def test_many_triangles_between_few_places_take_seconds() -> None:
     (part,) = decimated([(corners, np.arange(len(corners)).reshape(-1, 3))])
     assert time.process_time() - begin < 10.0
     assert 0 < len(part[1]) <= MOST_FACES
+
+
+def rough_ball(triangles):
+    """A sphere of a decimetre with a millimetre of noise, of which collapsing its edges takes long."""
+    vertices, faces = ball(0.1, round((triangles / 4) ** 0.5))
+    return vertices + np.random.default_rng(0).normal(scale=1e-3, size=vertices.shape), faces
+
+
+@pytest.mark.parametrize("triangles", [300_000, pytest.param(2_400_000, marks=pytest.mark.long)])
+def test_rough_meshes_get_as_few_triangles_as_there_may_be_within_seconds(triangles) -> None:
+    """A third of a million were left of 1.2 million, after half a minute."""
+    part = rough_ball(triangles)
+    begin = time.process_time()
+    ((points, kept),) = decimated([part])
+    assert time.process_time() - begin < 10.0
+    assert 1000 < len(kept) <= 1.2 * MOST_FACES
+    np.testing.assert_allclose(np.ptp(points, axis=0), 0.2, atol=0.015)
+
+
+def reach(points, directions):
+    """How far points reach in each direction, some at a time, since all together fill the memory."""
+    return np.concatenate([(points @ some.T).max(axis=0) for some in np.array_split(directions, 50)])
+
+
+def test_a_thinned_mesh_keeps_some_vertices_and_nearly_its_hull() -> None:
+    directions = np.random.default_rng(1).normal(size=(300, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    flat = ball(0.1, 160)
+    for vertices, faces in (ball(0.1, 160), rough_ball(100_000), (flat[0] * [1.0, 0.5, 0.05], flat[1])):
+        points, kept = thinned((vertices, faces), 20_000)
+        assert 4000 < len(kept) <= 20_000
+        assert {tuple(point) for point in points} <= {tuple(vertex) for vertex in vertices}
+        assert (reach(vertices, directions) - reach(points, directions)).max() < 2e-3 * np.ptp(vertices)
+        assert volume(points, kept) == pytest.approx(volume(vertices, faces), rel=0.05)
+    assert len(thinned((vertices, faces), 10**6)[1]) > 0.9 * len(faces)
+
+
+def test_the_hull_of_very_many_points_is_true_to_a_thousandth() -> None:
+    flat = ball(1.0, 300)[0] * [0.1, 0.05, 0.002]
+    directions = np.random.default_rng(1).normal(size=(2000, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    for points in (flat, rough_ball(400_000)[0]):
+        assert len(points) > MOST_EXACT
+        kept = outer(points)
+        assert len(kept) < 0.1 * len(points)
+        lacking = reach(points, directions) - reach(kept, directions)
+        assert lacking.min() >= 0.0
+        assert lacking.max() < 1e-3 * np.ptp(points, axis=0).max()
+    few = flat[:MOST_EXACT]
+    assert outer(few) is few
+
+
+def sparse(path, size):
+    with path.open("wb") as file:
+        file.truncate(size)
+
+
+def test_text_that_is_long_or_has_many_words_is_refused(tmp_path) -> None:
+    sparse(tmp_path / "long.obj", (32 << 20) + 1)
+    with pytest.raises(RobotError, match=r"long.obj: has 33554433 bytes, more than 33554432; .*binary STL"):
+        read_mesh(tmp_path / "long.obj")
+    (tmp_path / "dense.obj").write_bytes(b"f 1 1 1\n" * (MOST_WORDS // 4 + 1))
+    with pytest.raises(RobotError, match=r"dense.obj: cannot be read, it has 8000004 spaces"):
+        read_mesh(tmp_path / "dense.obj")
+
+
+def test_bytes_of_all_text_and_triangles_of_all_shapes_are_bounded(tmp_path, monkeypatch) -> None:
+    names = [f"m{at}.dae" for at in range(3)]
+    for name in names:
+        sparse(tmp_path / name, 20 << 20)
+    mesh = "".join(f'<visual><geometry><mesh filename="{name}"/></geometry></visual>' for name in names)
+    model = biped.Biped().urdf().replace("</link>", f"{mesh}</link>", 1)
+    with pytest.raises(RobotError, match=r"its OBJ and DAE have 62914560 bytes together; .*binary STL"):
+        explain(str(biped.write(tmp_path, model)))
+    monkeypatch.setattr(shapes, "MOST_TRIANGLES", 200)  # 132 are drawn, as many touch
+    with pytest.raises(RobotError, match="more than 200 triangles; give coarser ones"):
+        explain(str(biped.write(tmp_path)))

@@ -6,12 +6,14 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
-from mjcf_biped import LIMITS, TEXT, described, leg
+from mjcf_biped import DRAWN, LIMITS, TEXT, described, leg, meshed
 
-from surefoot.models import RobotError, RobotOptions, describe
+from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.consistency import EnginePair
 from surefoot.models.convert import pinocchio_to_mujoco, velocity_map
 from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.robot_file import mujoco_source
+from surefoot.models.robot_file.mesh_file import burden
 
 pytestmark = pytest.mark.unit
 
@@ -81,3 +83,46 @@ def test_g1_of_an_mjcf_is_g1_of_its_urdf(tmp_path) -> None:
     assert (one.mass, one.leg_length, one.com_height) == pytest.approx(
         (other.mass, other.leg_length, other.com_height), rel=1e-3
     )
+
+
+def compiled(monkeypatch):
+    """What MuJoCo gets, by name, of each model that it compiles."""
+    got, before = [], mujoco_source._moderate
+    monkeypatch.setattr(mujoco_source, "_moderate", lambda *args: got.append(before(*args)) or got[-1])
+    return got
+
+
+def test_meshes_that_are_not_dense_reach_mujoco_as_they_are(tmp_path, monkeypatch) -> None:
+    got = compiled(monkeypatch)
+    explain(meshed(tmp_path, 20, DRAWN, 'mass="0"'))
+    assert got == [dict.fromkeys(("mesh0.stl", "mesh1.stl"), (tmp_path / "m.stl").read_bytes())]
+
+
+@pytest.mark.parametrize("kind", ["stl", "obj"])
+def test_dense_meshes_become_coarser_but_for_those_that_say_how_heavy_a_body_is(tmp_path, monkeypatch, kind) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    file = meshed(tmp_path, 60, DRAWN, 'mass="0"', weighs=("",), kind=kind)  # 14 400 each
+    whole, got = describe(file, RobotOptions()), compiled(monkeypatch)
+    monkeypatch.setattr(mujoco_source, "MOST_COMPILED", 20_000)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "other"))
+    told = explain(meshed(tmp_path, 60, DRAWN, 'mass="0"', weighs=("",), kind=kind))
+    (files,) = got
+    assert files[f"mesh2.{kind}"] == (tmp_path / f"m.{kind}").read_bytes()
+    assert {name for name in files if name.startswith("thin")} == {"thin mesh0.stl", "thin mesh1.stl"}
+    assert sum(burden(f".{name.rpartition('.')[2]}", data) for name, data in files.items()) <= 20_000
+    assert any("made coarser, with at most 2800 triangles each: m." in note for note in told.notes)
+    thin = told.description
+    assert thin.mass == whole.mass
+    for one, other in zip(pinocchio_model(thin).inertias, pinocchio_model(whole).inertias, strict=True):
+        np.testing.assert_array_equal(one.toDynamicParameters(), other.toDynamicParameters())
+
+
+@pytest.mark.parametrize(
+    ("geom", "compiler"),
+    [("", ""), (f'{DRAWN} type="box"', ""), ('density="1"', '<compiler inertiafromgeom="true"/>')],
+)
+def test_dense_meshes_by_which_bodies_have_inertia_or_size_are_refused(tmp_path, monkeypatch, geom, compiler) -> None:
+    monkeypatch.setattr(mujoco_source, "MOST_COMPILED", 20_000)
+    explain(meshed(tmp_path, 60, DRAWN, DRAWN))
+    with pytest.raises(RobotError, match=r"28800 triangles in MSH and in meshes by which .* at most 20000"):
+        explain(meshed(tmp_path, 60, geom, geom, compiler=compiler))

@@ -6,7 +6,7 @@ import pytest
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site, flat
-from surefoot.planner.walk.reach import turned_room
+from surefoot.planner.swing.leg_reach import turned_room
 
 pytestmark = pytest.mark.unit
 
@@ -19,7 +19,7 @@ def stairs(direction, yaw=0.0):
 
 
 def test_bare_ground_has_room_everywhere():
-    assert np.isinf(flat().room(np.zeros(3), 0.3, HALF)).all()
+    assert np.isinf(flat().free_area(np.zeros(3), 0.3, HALF)).all()
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.7])
@@ -28,7 +28,7 @@ def test_a_sole_keeps_off_the_edges_of_its_tread_and_a_shank_off_the_riser(direc
     """The second tread: 5.5 cm before and behind the sole, of which it keeps 1, and 4 to a riser, in whole cm."""
     level, place = stairs(direction, yaw), frame_rotation(yaw) @ (0.3 + 1.5 * 0.33, 0.1)
     position = np.append(place, level.height(*place))
-    low, high = level.room(position, yaw, HALF)
+    low, high = level.free_area(position, yaw, HALF)
     np.testing.assert_allclose((low[0], high[0]), room, atol=1e-9)
     np.testing.assert_allclose((low[1], high[1]), (-0.8, 0.8), atol=1e-9)
 
@@ -36,7 +36,7 @@ def test_a_sole_keeps_off_the_edges_of_its_tread_and_a_shank_off_the_riser(direc
 @pytest.mark.parametrize("angle", [0.0, 0.1, -0.4, 1.2])
 def test_a_room_in_another_frame_lies_in_it(angle):
     room = np.array([[-0.02, -0.4], [0.04, 0.3]])
-    low, high = turned_room(room, angle)
+    low, high = turned_room(room, angle, 0.02)
     assert (low <= 0.0).all()
     assert (high >= 0.0).all()
     corners = np.array([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])]) @ frame_rotation(angle)

@@ -9,11 +9,12 @@ from surefoot.planner.ground.blocks import LEVEL_STEPS, Blocks
 from surefoot.planner.ground.slope import Slope
 from surefoot.planner.ground.terrain import Site, flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.course import swing_course
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.swing.course import Ground, swing_course
 from surefoot.planner.swing.trajectory import start_swing, swing_times
 from surefoot.planner.types import Foot
-from surefoot.planner.walk.footsteps import plan_footsteps
-from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 
@@ -99,7 +100,7 @@ def test_the_turning_sole_clears_all_blocks_and_lands_flat(stand, seed):
     outline = np.array([(x, y, 0.0) for x in np.linspace(-0.11, 0.11, 9) for y in (-0.055, 0.055)])
     for row in range(2, plan.steps + 2):
         ends = plan.footstep(row - 2), plan.footstep(row)
-        course = swing_course(row - 1, *ends, samples, terrain, HALF_SOLE, 0.05, parameters)
+        course = swing_course(row - 1, *ends, samples, 0.05, Ground(terrain, HALF_SOLE, parameters))
         start, end = (sole_pose(plan.position[r], plan.yaw[r], plan.normal[r]) for r in (row - 2, row))
         times = swing_times(0.0, samples, course, parameters)
         swing = start_swing(Foot.LEFT, start, end, times, course.height, parameters)
@@ -123,13 +124,17 @@ def test_footholds_are_free_on_wide_faces_and_where_there_are_none(stand):
     ground = Slope(0.17, 0.15, 6.0, 1.0).build(Site(ORIGIN, YAW, 0.7))
     assert (flat().free_footholds, ground.free_footholds, field(stand)[1].free_footholds) == (True, True, False)
     assert (flat().has_edges, ground.has_edges) == (False, True)
-    plan = plan_footsteps(GAIT, stand(origin=tuple(ORIGIN), yaw=YAW), ground)
-    place = plan.position[4] + np.array([0.1, 0.05, 0.0])
+    feet, on = stand(origin=tuple(ORIGIN), yaw=YAW), Ground(ground, HALF_SOLE, PlannerParameters(reach_length=0.8))
+    plan = Schedule.start(GAIT, feet, on).extended(np.inf)
+    place = plan.positions[4] + np.array([0.1, 0.05, 0.0])
     place[2] = ground.height(*place[:2])
-    moved = plan.moved(4, place, ground)
-    np.testing.assert_allclose(moved.position[5:, :2] - plan.position[5:, :2], np.tile([0.1, 0.05], (9, 1)), atol=1e-12)
-    np.testing.assert_allclose(moved.position[5:, 2], ground.heights(moved.position[5:, :2]))
-    np.testing.assert_array_equal(moved.normal[4:], ground.normals(moved.position[4:, :2]))
-    back = plan.moved(2, np.append(ahead(0.05), 0.0), ground)
-    np.testing.assert_array_equal(back.normal[2], [0.0, 0.0, 1.0])
-    assert plan.normal[2, 2] < 1.0
+    moved = plan.moved(3, place)
+    np.testing.assert_allclose(
+        moved.positions[5:, :2] - plan.positions[5:, :2], np.tile([0.1, 0.05], (9, 1)), atol=1e-12
+    )
+    np.testing.assert_allclose(moved.positions[5:, 2], ground.heights(moved.positions[5:, :2]))
+    normals = [step.place.normal for step in moved.steps[4:]]
+    np.testing.assert_array_equal(normals, ground.normals(moved.positions[4:, :2]))
+    back = plan.moved(1, np.append(ahead(0.05), 0.0))
+    np.testing.assert_array_equal(back.step(1).place.normal, [0.0, 0.0, 1.0])
+    assert plan.step(1).place.normal[2] < 1.0

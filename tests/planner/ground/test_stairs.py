@@ -4,9 +4,9 @@ import pytest
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import FeetState
-from surefoot.planner.walk.footsteps import plan_footsteps
-from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 

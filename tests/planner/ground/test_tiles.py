@@ -6,9 +6,9 @@ import pytest
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import Box, Site, Terrain
 from surefoot.planner.ground.tiles import AROUND, TILE, Tiles
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import FeetState
-from surefoot.planner.walk.footsteps import plan_footsteps
-from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 

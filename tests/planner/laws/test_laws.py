@@ -8,8 +8,8 @@ from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.laws.zmp_preview import preview_gains
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import CentroidalState
-from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 

@@ -7,11 +7,12 @@ import pytest
 import qpsolvers
 
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.planner.laws.qp import OPTIONS, SOLVERS
+from surefoot.planner.laws.qp import OPTIONS
+from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import SolverStatus
-from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 

@@ -8,6 +8,7 @@ from surefoot.planner.laws.law import MotionProblem
 from surefoot.planner.laws.tvmpc import corrected_shift, paper_shift
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.recovery.step_bounds import StepBounds
 from surefoot.planner.references.zmp_reference import ZmpReference
 
 pytestmark = pytest.mark.unit
@@ -16,9 +17,10 @@ T, W = 0.02, np.sqrt(9.81)
 P = PlannerParameters()
 STEP = np.array([0.2, 0.2])
 HALF = 0.03
+UNBOUNDED = StepBounds(np.full((2, 2), -np.inf), np.full((2, 2), np.inf))
 
 
-def problem(error=(0.0, 0.0), left=0.6, transfer=0.5, **context):
+def problem(error=(0.0, 0.0), left=0.6, transfer=0.5, parameters=P, **context):
     """Right foot stands, the left one swings; the DCM is the nominal one plus an error."""
     count, touchdown, ramp = 151, round(left / T), round(transfer / T)
     share = np.clip((np.arange(count) - touchdown) / ramp, 0.0, 1.0)[:, None]
@@ -27,9 +29,13 @@ def problem(error=(0.0, 0.0), left=0.6, transfer=0.5, **context):
     reference = ZmpReference(share * STEP, np.hstack((share, np.zeros_like(share))), half, np.zeros(count))
     here = nominal_dcm(stiffness, omega, reference.point, T)[0] + error
     state = np.column_stack((here - 0.1 / W, np.full(2, 0.1), np.zeros(2)))
-    steps = StepContext(np.array([STEP, STEP]), (1.0, -1.0), (True, True), np.array([0.1, 0.2]), left, transfer)
+    steps = StepContext(
+        np.array([STEP, STEP]), (1.0, -1.0), (True, True), np.array([0.1, 0.2]), left, transfer, UNBOUNDED
+    )
+    steps = replace(steps, **context)
+    bounds = StepBounds.reachable(parameters, steps.increment, 1.0, steps.free, steps.swing, steps.time_left)
     zero = np.zeros((50, 2))
-    return MotionProblem(state, stiffness, omega, reference, replace(steps, **context), zero[0], zero, np.eye(2))
+    return MotionProblem(state, stiffness, omega, reference, replace(steps, bounds=bounds), zero[0], zero, np.eye(2))
 
 
 def test_paper_law_is_the_printed_formula_outside_its_margin_and_inside_the_reach():
@@ -80,7 +86,7 @@ def test_shifts_stay_in_reach_and_need_a_free_swing(law):
 
 def test_corrected_law_freezes_and_keeps_to_the_swing_speed():
     assert not corrected_shift(problem((0.5, 0.5), left=0.08), P).any()
-    late = problem((0.5, 0.5), left=0.1)
+    late = problem((0.5, 0.5), left=0.1, parameters=replace(P, reach_length=9.0))
     reach = P.swing_speed * 0.1 / np.sqrt(2.0)
-    assert np.all(STEP + corrected_shift(late, replace(P, reach_length=9.0)) <= np.array([0.1, 0.2]) + reach + 1e-12)
+    assert np.all(STEP + corrected_shift(late, P) <= np.array([0.1, 0.2]) + reach + 1e-12)
     assert not corrected_shift(problem((0.5, 0.5), left=3.5), P).any()

@@ -4,17 +4,15 @@ import pytest
 from surefoot.planner.check import check_height
 from surefoot.planner.references.com_height import (
     BENT_KNEES,
-    LIFTING,
     BentKneeHeight,
-    Bridge,
     PaperHeight,
     Rise,
     SmoothHeight,
     preview_height,
 )
+from surefoot.planner.references.height_transition import HeightTransition
+from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
 from surefoot.planner.types import GRAVITY, PhaseKind
-from surefoot.planner.walk.gait import Bout, GaitParameters, Stride
-from surefoot.planner.walk.phases import Flow
 
 pytestmark = pytest.mark.unit
 
@@ -29,7 +27,7 @@ SMOOTH = [SmoothHeight(), SmoothHeight(Rise.SINGLE), BentKneeHeight(), BentKneeH
 def preview(schedule):
     def of(profile, support=UP, sample_time=FINE, gait=GAIT):
         plan = schedule(gait, sample_time, 10)
-        samples = plan.queue.samples(Flow(np.maximum(np.arange(-1.0, plan.last + 11.0), 0.0)))
+        samples = plan.schedule.samples(np.maximum(np.arange(-1.0, plan.last + 11.0), 0.0))
         index = samples.index[1:-1]
         ground = support[index] + samples.fraction[1:-1] * np.append(np.diff(support), 0.0)[index]
         return preview_height(profile, gait, samples, support, ground), ground, plan
@@ -144,7 +142,7 @@ def test_a_stop_on_a_tread_leaves_the_level_alone(schedule, place):
     gait = GaitParameters(steps=5, bouts=(Bout(1.0, (stride, stride, closing)), Bout(1.0, (stride, closing))))
     plan = schedule(gait)
     feet = np.array([0.0, 0.0, 0.1, 0.2, 0.2, 0.3, 0.3])
-    supports = feet[plan.steps.supports].mean(axis=1)
+    supports = feet[plan.schedule.supports].mean(axis=1)
     height = SmoothHeight(place).height(gait, plan.samples, supports)
     assert np.abs(np.diff(height[0])).max() < 0.02 * 0.4
     assert np.abs(np.diff(height[1])).max() < 0.02 * 5.0
@@ -161,12 +159,12 @@ def test_a_bridge_goes_smoothly_from_a_state_to_its_law(preview, rise, speed, le
     t = 0.01
     law = preview(SmoothHeight(), sample_time=t)[0].height[:, 20:]
     state = law[:, 0] + (rise, speed, 0.0)
-    bridge = Bridge.onto(law, state, 7, left, t)
+    bridge = HeightTransition.onto(law, state, 7, left, t, 5.0)
     height = bridge.over(law, 7)
     np.testing.assert_allclose(height[:, 0], state, atol=1e-12)
     np.testing.assert_array_equal(height[:, bridge.samples :], law[:, bridge.samples :])
     assert bridge.samples >= left
-    assert np.abs(height[2, : bridge.samples]).max() <= max(LIFTING, abs(state[2])) + 1e-9
+    assert np.abs(height[2, : bridge.samples]).max() <= max(5.0, abs(state[2])) + 1e-9
     np.testing.assert_allclose(np.gradient(height[0], t)[1:-1], height[1, 1:-1], atol=0.02)
     np.testing.assert_allclose(np.gradient(height[1], t)[1:-1], height[2, 1:-1], atol=1.0)
     # At a later tick it is what it was to be then.

@@ -7,9 +7,9 @@ from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.leg_offset import softening
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import GRAVITY, CentroidalState, Foot
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import Legs
 
 pytestmark = pytest.mark.unit
 
@@ -20,7 +20,7 @@ CHAIN = LegChain(
 LEG = LegInertia(mass_ratio=0.05, chain=CHAIN)
 
 
-LEGS = Legs(0.36, 0.2, 0.11, 0.12, 0.22, (60.0, 50.0))
+LEGS = LegReach(0.36, 0.2, 0.11, 0.12, 0.22, (60.0, 50.0))
 
 
 def plans(stand, leg, until=3.0, kick=(0.0, 0.0), single=0.5):

@@ -6,16 +6,17 @@ import numpy as np
 import pytest
 
 from surefoot.planner.model.leg_chain import LegChain, Link
-from surefoot.planner.parameters import LegInertia, PlannerParameters
+from surefoot.planner.model.time_scaling import TimeScaling
+from surefoot.planner.parameters import LegInertia, PlannerParameters, RecoveryParameters
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.references import window
 from surefoot.planner.references.leg_offset import nominal_feet
 from surefoot.planner.references.window import OffsetTable
 from surefoot.planner.references.zmp_reference import SupportKey
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import CentroidalState
-from surefoot.planner.walk.gait import GaitParameters
-from surefoot.planner.walk.reach import Legs
 
 pytestmark = pytest.mark.unit
 
@@ -25,34 +26,40 @@ KEY = SupportKey(3, 2, 100.0, (True, False))
 
 
 AIM = np.array([1.0, 0.2, 0.0])
+CLOCK = TimeScaling(0.02).scaled(30.0, 20.0)
 
 
 def table(aim=None):
-    return OffsetTable(110, KEY, 2, aim, np.arange(400.0).reshape(200, 2))
+    return OffsetTable(110, KEY, CLOCK.course, aim, np.arange(400.0).reshape(200, 2), 5)
+
+
+def at(tick, clock=CLOCK):
+    return replace(clock, ticks=tick)
 
 
 def test_a_table_holds_for_few_later_ticks_of_an_equal_key():
-    assert [tick for tick in range(105, 120) if table().holds(tick, SupportKey(*KEY), 2, None, 0.005)] == [
+    assert [tick for tick in range(105, 120) if table().holds(at(tick), SupportKey(*KEY), None, 0.005)] == [
         111, 112, 113, 114,
     ]  # fmt: skip
     np.testing.assert_array_equal(table().since(113, 150), table().values[3:153])
 
 
-@pytest.mark.parametrize("change", [{"revision": 4}, {"landed": 3}, {"phase_start": 101.0}, {"free": (True, True)}])
+@pytest.mark.parametrize("change", [{"schedule": 4}, {"landed": 3}, {"phase_start": 101.0}, {"free": (True, True)}])
 def test_a_table_does_not_hold_for_another_support(change):
-    assert not table().holds(111, KEY._replace(**change), 2, None, 0.005)
+    assert not table().holds(at(111), KEY._replace(**change), None, 0.005)
 
 
-def test_a_table_does_not_hold_at_another_pace():
-    assert not table().holds(111, KEY, 3, None, 0.005)
+def test_a_table_does_not_hold_on_another_time_scaling():
+    assert not table().holds(at(111, CLOCK.scaled(30.0, 25.0)), KEY, None, 0.005)
+    assert not table().holds(at(111, TimeScaling(0.02)), KEY, None, 0.005)
 
 
 def test_a_table_holds_for_a_swing_that_is_aimed_at_about_the_same_place():
     aside = np.array([0.0, 0.001, 0.0])
-    assert table(AIM).holds(111, KEY, 2, AIM + 4.0 * aside, 0.005)
-    assert not table(AIM).holds(111, KEY, 2, AIM + 6.0 * aside, 0.005)
-    assert not table(AIM).holds(111, KEY, 2, None, 0.005)
-    assert not table().holds(111, KEY, 2, AIM, 0.005)
+    assert table(AIM).holds(at(111), KEY, AIM + 4.0 * aside, 0.005)
+    assert not table(AIM).holds(at(111), KEY, AIM + 6.0 * aside, 0.005)
+    assert not table(AIM).holds(at(111), KEY, None, 0.005)
+    assert not table().holds(at(111), KEY, AIM, 0.005)
 
 
 class Recorded:
@@ -63,29 +70,29 @@ class Recorded:
 
     def update(self, state, feet):
         plan = self.planner.update(state, feet)
-        self.given.append((state, feet, self.planner._stepper.aim is not None))
+        self.given.append((state, feet, self.planner._execution.aim is not None))
         return plan
 
 
 def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch):
     """Within what a footstep moves meanwhile, while a step is adapted; and it does serve for most ticks."""
     gait = GaitParameters(steps=3, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
-    legs, made = Legs(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0)), []
+    legs, made = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0)), []
 
-    def planner():
-        return Recorded(WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=PlannerParameters(leg=LEG), legs=legs))
+    def planner(**numbers):
+        parameters = PlannerParameters(leg=LEG, recovery=RecoveryParameters(**numbers))
+        return Recorded(WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=legs))
 
-    def counted(samples, queue, frame, toe, deviation):
-        made.append(deviation is not None)
-        return nominal_feet(samples, queue, frame, toe, deviation)
+    def counted(samples, schedule, frame, toe, flown):
+        made.append(flown is not None)
+        return nominal_feet(samples, schedule, frame, toe, flown)
 
     monkeypatch.setattr(window, "nominal_feet", counted)
     usual, push = planner(), PointPush(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0]))
     end, com = gait.lift_off(2) + 0.48, np.array([0.0, 0.0, 0.95])
     plans = walk_pendulum(usual, stand(), end, com=com, pushes=(push,)).plans
     assert 10 < sum(adapts for *_, adapts in usual.given) > 2 * sum(made)
-    monkeypatch.setattr(window, "_SAME_SWING", -1.0)
-    anew, apart = planner(), []
+    anew, apart = planner(same_swing=-1.0), []
     for plan, (state, feet, adapts) in zip(plans, usual.given, strict=True):
         other = anew.update(state, feet)
         apart += [np.abs(other.zmp_offset - plan.zmp_offset).max()] * adapts
@@ -95,20 +102,20 @@ def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch
 
 @pytest.mark.parametrize("copied", [False, True])
 def test_plans_depend_on_values_and_not_on_objects(stand, copied):
-    """Footholds replaced by equal ones change no plan; moved ones do, even of a step that was fixed before."""
+    """A schedule replaced by an equal one changes no plan; moved steps do, even one that was fixed before."""
     gait = GaitParameters(steps=2, initial_stand=0.0)
     plans = []
     for change in (False, True):
         planner = WalkingPlanner(gait, stand(), 0.2, 0.1, parameters=PlannerParameters(leg=LEG))
         for tick in range(4):
-            stepper = planner._stepper
+            execution, place = planner._execution, planner.schedule.step(1).place.position
             if tick == 1:
-                stepper.fix(stepper.footsteps.position[2])
+                execution.fix(place)
             if change and tick == 2:
                 if copied:
-                    stepper.queue.footsteps = replace(stepper.footsteps)
+                    execution.schedule = replace(execution.schedule)
                 else:
-                    stepper.fix(stepper.footsteps.position[2] + (0.05, 0.0, 0.0))
+                    execution.fix(place + np.array([0.05, 0.0, 0.0]))
             state = CentroidalState(0.02 * tick, np.array([0.001 * tick, 0.0, 1.0]), np.zeros(3))
             plan = planner.update(state, stand())
         plans.append(plan)

@@ -6,11 +6,11 @@ from surefoot.planner.geometry import sole_corners, sole_pose
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site, flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.course import EDGE_CLEARANCE, swing_course
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.course import EDGE_CLEARANCE, Ground, swing_course
 from surefoot.planner.swing.trajectory import start_swing, swing_times
 from surefoot.planner.types import FeetState, Foot, Footstep
-from surefoot.planner.walk.footsteps import plan_footsteps
-from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 
@@ -27,8 +27,8 @@ def walk_plan(direction, riser, tread, steps=6):
 
 def courses_of(plan, terrain, half_size, samples=75):
     ends = [(plan.footstep(row - 2), plan.footstep(row)) for row in range(2, plan.steps + 2)]
-    steps, size = enumerate(ends, 1), np.array(half_size)
-    return [swing_course(step, *of, samples, terrain, size, 0.05, PARAMETERS) for step, of in steps]
+    ground = Ground(terrain, np.array(half_size), PARAMETERS)
+    return [swing_course(step, *of, samples, 0.05, ground) for step, of in enumerate(ends, 1)]
 
 
 def swings(plan, courses, samples):

@@ -8,9 +8,9 @@ from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.leg_offset import nominal_feet
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.heel_off import FootRoll, bump
 from surefoot.planner.types import CentroidalState, Foot, PhaseKind
-from surefoot.planner.walk.gait import GaitParameters
 
 pytestmark = pytest.mark.unit
 
@@ -68,7 +68,7 @@ def test_only_feet_that_are_left_behind_roll(walk):
 
 
 def test_pitch_over_a_window_is_that_of_the_rolls(walk):
-    feet = nominal_feet(walk.samples, walk.queue, (np.eye(2), np.zeros(2)), 0.11)
+    feet = nominal_feet(walk.samples, walk.schedule, (np.eye(2), np.zeros(2)), 0.11)
     start, end, angle = next(phase.roll for phase in walk.phases if phase.roll is not None)
     roll = FootRoll(Foot.RIGHT, 0.02 * start, 0.02 * end, angle, 0.11)
     for sample in range(int(start), int(end) + 2):

@@ -8,7 +8,7 @@ from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.rows import ChannelWriter
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.unit
 

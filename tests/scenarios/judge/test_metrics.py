@@ -7,7 +7,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import OWN, compute, digest
 from surefoot.scenarios.log import LogWriter, read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.unit
 

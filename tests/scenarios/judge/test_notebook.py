@@ -8,7 +8,7 @@ import pytest
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.unit
 

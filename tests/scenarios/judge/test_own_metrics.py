@@ -20,7 +20,7 @@ from surefoot.scenarios.judge.metric import RESERVED, Metric, metric, reduction
 from surefoot.scenarios.judge.metrics import METRICS, OWN, digest, gathered, register
 from surefoot.scenarios.judge.verdict import bound_text, judge, shown_unit, value_text
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import read_scenario
 
 pytestmark = pytest.mark.unit

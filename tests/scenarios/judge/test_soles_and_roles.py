@@ -12,9 +12,9 @@ from surefoot.scenarios.judge.body import corners, forward, headings, knees, leg
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop import run
-from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.record.provenance import RunConstants
+from surefoot.scenarios.run import run
+from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.unit
 

@@ -6,6 +6,8 @@ from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.unit
 
+_LANDING = "terrain.landing=0.56"
+
 
 @pytest.mark.parametrize(
     ("name", "override", "key"),
@@ -20,6 +22,12 @@ pytestmark = pytest.mark.unit
 def test_keys_of_other_terrain_are_noted(name: str, override: str, key: str) -> None:
     scenario = load_scenario(name, [override])
     assert notes(Draft(scenario)) == (f"terrain.{key} has no effect on terrain.kind {scenario.terrain.kind}",)
+
+
+@pytest.mark.parametrize(("name", "idle"), [("stairs-up", True), ("stairs-down", True), ("stairs-up-down", False)])
+def test_a_landing_is_noted_where_stairs_go_one_way(name: str, idle: bool) -> None:
+    told = any(note.startswith("terrain.landing has no") for note in notes(Draft(load_scenario(name, [_LANDING]))))
+    assert told == idle
 
 
 @pytest.mark.parametrize("name", ["walk", "slope", "blocks", "stairs-up", "stairs-up-down", "stair-climbing"])

@@ -11,8 +11,8 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import judge, missed
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.recover import recover
-from surefoot.scenarios.loop.run import run_scenario
-from surefoot.scenarios.loop.skeleton import End
+from surefoot.scenarios.run.run import run_scenario
+from surefoot.scenarios.run.skeleton import End
 
 pytestmark = pytest.mark.unit
 

@@ -7,11 +7,11 @@ import pytest
 from mcap.writer import Writer
 from typer.testing import CliRunner
 
-from surefoot.scenarios.cli import app
+from surefoot.scenarios.apps.cli import app
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.record.foxglove.views import EventLog
+from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.unit
 

@@ -15,8 +15,8 @@ from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute, digest
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, Log, LogWriter, read
 from surefoot.scenarios.log.spec import layout_of
-from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.record import channels
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.show.console import export, selected
 
 pytestmark = pytest.mark.unit

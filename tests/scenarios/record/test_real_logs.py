@@ -15,9 +15,9 @@ from mcap_protobuf.decoder import DecoderFactory
 from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.recover import recover
-from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
 from surefoot.scenarios.record.provenance import WORLD_FILE
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.physics
@@ -120,7 +120,7 @@ _TELLING = """
 import sys
 from pathlib import Path
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 run_scenario(load("diagonal-walk"), Path(sys.argv[1]), lambda progress: print(progress.time, flush=True))
 """
 
@@ -153,9 +153,8 @@ def test_a_full_disk(tmp_path):
     """A limit on the size of files stands for it: the run stops with a clear error, and nothing is called a log."""
     limited = "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
     limited += "resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))\n"
-    limited += (
-        "sys.argv = ['surefoot', 'run', 'stand', '--out', sys.argv[1]]\nfrom surefoot.scenarios.cli import main\nmain()"
-    )
+    limited += "sys.argv = ['surefoot', 'run', 'stand', '--out', sys.argv[1]]\n"
+    limited += "from surefoot.scenarios.apps.cli import main\nmain()"
     done = subprocess.run([sys.executable, "-c", limited, str(tmp_path)], capture_output=True, text=True)
     assert done.returncode == 2
     assert "cannot be written on, file too large; what was written is kept in log.mcap.incomplete" in done.stderr

@@ -12,9 +12,9 @@ from mcap_protobuf.decoder import DecoderFactory
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop.run import run_scenario
 from surefoot.scenarios.record.foxglove.drawing import FINEST, METRES_PER_NEWTON, force_arrow, world_scene
 from surefoot.scenarios.record.foxglove.views import RATE
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.robot import describe
 from surefoot.sim.bodies import BodyPoses

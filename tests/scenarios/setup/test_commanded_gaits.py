@@ -8,8 +8,8 @@ import yaml
 
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import LegInertia
+from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.types import Foot
-from surefoot.planner.walk.footsteps import plan_footsteps
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft

@@ -3,7 +3,7 @@
 import pytest
 
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup import events
 from surefoot.scenarios.setup.events import FaultWindow
 from surefoot.scenarios.setup.load import load
@@ -57,7 +57,8 @@ def test_what_never_acts_is_refused_with_its_place(settings, key, words):
     ],
 )
 def test_what_acts_however_shortly_is_taken(settings):
-    load("walk", [*SHORT, *settings])
+    scenario = load("walk", [*SHORT, *settings])
+    assert len(scenario.pushes) + len(scenario.faults) == 1
 
 
 @pytest.mark.parametrize(("start", "duration", "first"), [(0.0, None, 0.02), (0.02, None, 0.02), (0.024, 0.02, 0.04)])

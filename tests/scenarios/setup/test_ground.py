@@ -5,8 +5,8 @@ import pytest
 
 from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.loop.run import run_constants
 from surefoot.scenarios.record.provenance import RECORD, RunConstants
+from surefoot.scenarios.run.run import run_constants
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load as load_scenario

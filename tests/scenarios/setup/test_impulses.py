@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import resolve
 

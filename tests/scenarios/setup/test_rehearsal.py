@@ -11,7 +11,6 @@ from surefoot.planner.types import Foot
 from surefoot.scenarios.setup.legs import leg_inertia
 from surefoot.scenarios.setup.rehearsal import _edges, check_legs, joint_angles, rehearsed
 from surefoot.scenarios.setup.stance import body_of, feet_at, start_posture
-from surefoot.scenarios.setup.stances import SPARE
 from surefoot.scenarios.setup.straight import pitch_joints, shank_outline
 from surefoot.scenarios.setup.walk import Walk, resolve
 
@@ -129,7 +128,7 @@ def test_an_ankle_that_would_come_to_its_end_before_the_foot_rolls_is_named(bris
     ankles = [walk.robot.joint_names.index(f"{side}_ankle_pitch") for side in ("left", "right")]
     for more, named in ((0.005, False), (-0.005, True)):
         lower = walk.robot.position_lower.copy()
-        lower[ankles] = -bent - SPARE - more
+        lower[ankles] = -bent - more
         robot = replace(walk.robot, position_lower=lower)
         if not named:
             check_legs(replace(rolls, robot=robot), feet, leg)

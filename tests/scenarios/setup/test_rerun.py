@@ -4,7 +4,7 @@ import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 
 pytestmark = pytest.mark.unit

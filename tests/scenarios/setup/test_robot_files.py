@@ -11,7 +11,7 @@ import surefoot
 from surefoot.models import RobotOptions, describe
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
-from surefoot.scenarios.loop.run import run_constants
+from surefoot.scenarios.run.run import run_constants
 from surefoot.scenarios.setup.legs import leg_inertia
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.published import published

@@ -11,7 +11,7 @@ from surefoot.models.similar import scaled
 from surefoot.models.types import Robot, RobotOptions
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Rates, RobotSettings
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load, read_scenario

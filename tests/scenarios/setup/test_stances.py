@@ -9,8 +9,8 @@ import pytest
 import surefoot
 from surefoot.errors import ParameterError
 from surefoot.models import RobotDescription
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import GRAVITY
-from surefoot.planner.walk.gait import GaitParameters
 from surefoot.scenarios.setup.stance import body_of, start_posture
 from surefoot.scenarios.setup.stances import _shares, _stances, check_stances
 from surefoot.scenarios.setup.walk import Walk, resolve

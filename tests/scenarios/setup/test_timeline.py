@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from surefoot.planner.ground.terrain import flat
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import PhaseKind
-from surefoot.planner.walk.queue import StepQueue
-from surefoot.planner.walk.step import Ground
 from surefoot.scenarios.file.schema import Gait, Scenario
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import FINAL_STAND, phase_of
@@ -14,9 +14,8 @@ pytestmark = pytest.mark.unit
 
 def phases_of(draft):
     """The phases of a whole walk."""
-    queue = StepQueue(draft.gait, draft.stance, Ground(flat(), np.array([0.1, 0.05]), draft.parameters))
-    queue.extend(np.inf)
-    return queue.phases
+    ground = Ground(flat(), np.array([0.1, 0.05]), draft.parameters)
+    return Schedule.start(draft.gait, draft.stance, ground).extended(np.inf).phases
 
 
 @pytest.mark.parametrize("stand", [0.0, 1.0])

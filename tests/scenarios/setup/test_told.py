@@ -2,7 +2,7 @@
 
 import pytest
 
-from surefoot.planner.walk.commands import Pose, Twist
+from surefoot.planner.steps.commands import Pose, Twist
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.setup.commands import timed_command, waypoints
 from surefoot.scenarios.setup.draft import Draft
@@ -22,6 +22,8 @@ REFUSED = {
     "gait: {waypoints: [{x: 1, y: 0}], velocity: [{time: 0}]}": "waypoints beside gait.velocity",
     "gait: {waypoints: [{x: 1}]}": "gait.waypoints.0 lacks element y",
     END + "commands: [{time: 1, v_z: 0.1}]": "unknown key 'v_z'",
+    "gait: {waypoints: [{x: 1, y: 0}], step_length: 0}": "gait.waypoints with steps of no length",
+    END + "commands: [{time: 1, place: {x: 1, y: 0}}]\ngait: {steps: 0, step_length: 0}": "a place to go to with",
 }
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load

@@ -2,15 +2,14 @@
 
 import json
 import random
-import sys
 
 import pytest
 from mcap.writer import Writer
 
-from surefoot.scenarios import cli
+from surefoot.scenarios.apps import cli
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, LogWriter, read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.show.compare.compare import compare
 from surefoot.scenarios.show.figures.page import plot
@@ -35,11 +34,10 @@ def logs(tmp_path_factory):
 
 
 @pytest.fixture
-def command(monkeypatch, capsys):
+def command(capsys):
     def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["surefoot", *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
-            cli.main()
+            cli.main([*map(str, arguments)])
         captured = capsys.readouterr()
         return ended.value.code or 0, captured.out, captured.err
 

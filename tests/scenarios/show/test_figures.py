@@ -13,14 +13,19 @@ from scipy.spatial.transform import Rotation
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import LogWriter, read
-from surefoot.scenarios.loop.run import run_scenario
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.show.figures.effort import _angles, _speeds, groups, stretch_extremes
+from surefoot.scenarios.show.figures.ground import (
+    friction_used,
+    is_wide,
+    landing_errors,
+    loaded_wrench,
+    yaw_moment_used,
+)
 from surefoot.scenarios.show.figures.motion import strips, support_bounds, true_dcm
 from surefoot.scenarios.show.figures.page import FIGURES, page, plot, single
-from surefoot.scenarios.show.figures.shading import background, stretches
-from surefoot.scenarios.show.figures.soles import friction_used, landing_errors, loaded_wrench, yaw_moment_used
-from surefoot.scenarios.show.figures.top_view import is_wide
+from surefoot.scenarios.show.kit.shading import background, stretches
 from surefoot.scenarios.show.logview import LogView, MissingError
 from surefoot.wbc.cone import wrench_cone
 

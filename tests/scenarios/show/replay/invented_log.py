@@ -10,9 +10,9 @@ from surefoot.models.types import RobotOptions
 from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import AttachedFile, LogWriter
-from surefoot.scenarios.loop.run import run_constants
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE, WORLD_FILE
+from surefoot.scenarios.run.run import run_constants
 from surefoot.scenarios.setup.walk import resolve, scenario_yaml
 from surefoot.sim.world import World
 

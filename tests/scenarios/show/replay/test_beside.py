@@ -7,9 +7,9 @@ from typing import ClassVar
 import pytest
 from typer.testing import CliRunner
 
-from surefoot.scenarios.cli import app
+from surefoot.scenarios.apps.cli import app
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.loop.skeleton import Progress
+from surefoot.scenarios.run.skeleton import Progress
 from surefoot.scenarios.show.replay import command as beside
 
 pytestmark = pytest.mark.unit
@@ -24,9 +24,10 @@ class Process:
         self.started.append(command)
         self.waited = self.ended = False
 
-    def wait(self):
+    def wait(self, timeout=None):
         self.waited = True
-        raise KeyboardInterrupt
+        if not self.ended:
+            raise KeyboardInterrupt
 
     def terminate(self):
         self.ended = True
@@ -35,15 +36,24 @@ class Process:
 def test_the_first_progress_opens_one_replay_of_the_log_until_ctrl_c(monkeypatch, tmp_path):
     monkeypatch.setattr(beside.subprocess, "Popen", Process)
     Process.started, told = [], []
-    live = beside.LiveView(told.append)
-    live.begin(tmp_path / "log.mcap")
-    live.wait()
-    for time in (0.1, 0.2):
-        live(Progress(time, 1.0, "standing", 1.0))
-    live.wait()
+    with beside.LiveView(told.append) as live:
+        live.begin(tmp_path / "log.mcap")
+        live.wait()
+        for time in (0.1, 0.2):
+            live(Progress(time, 1.0, "standing", 1.0))
+        live.wait()
+        assert not live._process.ended
     assert Process.started == [[sys.executable, "-m", "surefoot", "replay", str(tmp_path / "log.mcap"), "--live"]]
     assert [progress.time for progress in told] == [0.1, 0.2]
     assert live._process.waited
+    assert live._process.ended
+
+
+def test_the_replay_ends_with_a_run_that_does_not(monkeypatch, tmp_path):
+    monkeypatch.setattr(beside.subprocess, "Popen", Process)
+    with pytest.raises(LogError), beside.LiveView(lambda _: None) as live:
+        live(Progress(0.1, 1.0, "standing", 1.0))
+        raise LogError("no space left on device")
     assert live._process.ended
 
 

@@ -11,10 +11,10 @@ from strangers import ask, exchange, let_in, listening
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import Log
+from surefoot.scenarios.show.replay.command import serve
+from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
-from surefoot.scenarios.show.replay.gate import LONGEST_MESSAGE, Gate, serving
-from surefoot.scenarios.show.replay.live import serve
-from surefoot.scenarios.show.replay.poses import Window
+from surefoot.scenarios.show.replay.gate import LONGEST_MESSAGE, Gate, is_heard, serving
 
 pytestmark = pytest.mark.unit
 
@@ -62,7 +62,7 @@ def test_a_live_view_is_behind_the_gate_and_on_one_port(log_path):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        serve(log_path, Window(), say)
+        serve(log_path, ReplayWindow(), say)
     ((ports, strangers, own),) = seen
     assert (len(ports), strangers, own) == (1, [], 200)
 
@@ -117,6 +117,58 @@ FRAMES = (
     packed(kind="nothing"),
     b"\x00" * (LONGEST_MESSAGE + 1),
 )
+
+
+@pytest.mark.parametrize(
+    ("heard", "message"),
+    [
+        (True, packed(type="GuiUpdateMessage", uuid="x", updates={"value": 0.5})),
+        (True, packed(type="SceneNodeClickMessage", name="/Robot/torso/0", **HANDS)),
+        (False, packed(type="GuiUpdateMessage", uuid="x", updates={"update_cb": 7})),
+        (False, packed(type="GuiUpdateMessage", uuid="x", updates={"value": 1.0, "removed": True})),
+        (False, packed(type="GuiUpdateMessage", uuid="x", updates={"value": [1.0]})),
+        (False, packed(type="GuiUpdateMessage", uuid="x", updates=None)),
+        (False, packed(type="ShareUrlRequest")),
+        (False, packed(type="FileTransferStartUpload", part_count=0)),
+        (False, packed(type=["GuiUpdateMessage"])),
+        (False, packed(kind="nothing")),
+        *((False, frame) for frame in ("text", b"", b"\xc1", b"\x91" * 90_000)),
+    ],
+)
+def test_viser_hears_what_the_pages_send_and_no_more(heard, message):
+    assert is_heard(message) is heard
+
+
+def test_a_message_that_names_an_attribute_of_a_control_does_not_reach_it():
+    gate = Gate()
+    with serving(gate) as server:
+        slider = server.gui.add_slider("x", min=0.0, max=1.0, step=0.1, initial_value=0.0)
+        with connected(gate.address) as page:
+            page.send(packed(type="GuiUpdateMessage", uuid=slider._impl.uuid, updates={"update_cb": 7}))
+            page.send(packed(type="GuiUpdateMessage", uuid=slider._impl.uuid, updates={"value": 0.5}))
+            end = time.monotonic() + 10
+            while slider.value != 0.5 and time.monotonic() < end:
+                time.sleep(0.01)
+        slider.value = 0.7  # calls what is called on an update
+        assert slider.value == 0.7
+
+
+def test_a_connection_that_says_nothing_does_not_hold_back_the_end():
+    gate = Gate()
+    with serving(gate):
+        half_open = socket.create_connection(("127.0.0.1", int(gate.address.split(":")[2].split("/")[0])))
+        half_open.sendall(b"GET / HT")
+        time.sleep(0.2)
+        begin = time.monotonic()
+    assert time.monotonic() - begin < 4.0  # viser waits for 6 s
+    half_open.close()
+
+
+def test_a_log_that_is_there_no_more_is_told_of(log_path, tmp_path):
+    path = tmp_path / "log.mcap"
+    path.write_bytes(log_path.read_bytes())
+    with pytest.raises(LogError, match=r"cannot be followed any more, .*leave it where it is"):
+        serve(path, ReplayWindow(), lambda _: path.unlink())
 
 
 def noise(chance: random.Random, address: str) -> bytes:
@@ -186,7 +238,7 @@ def test_bad_frames_and_noise_leave_the_terminal_alone_and_the_page_open(recwarn
 def test_what_a_page_sends_does_not_end_a_live_view(log: Log):
     from types import SimpleNamespace
 
-    from surefoot.scenarios.show.replay.live import Player
+    from surefoot.scenarios.show.replay.command import Player
 
     with serving() as server:
         player = Player(server, extract(log))

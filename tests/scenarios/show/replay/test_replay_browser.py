@@ -54,7 +54,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     log = read(write(folder / "log.mcap", speed=SPEED))
     replay = extract(log)
     write_page(replay, folder / "walk.html", charts(LogView(log), replay.time))
-    with Browser(folder / "walk.html", folder / "profile") as opened:
+    with Browser(folder / "walk.html", folder / "profile", (760, 400)) as opened:
         opened.wait_for("return document.querySelector('input') && document.querySelector('canvas') && true")
         opened.wait_for("return document.querySelector('[data-playback-scene-tree]') && true")
         opened.run(PLAY)
@@ -105,6 +105,17 @@ def test_nothing_lies_over_the_picture(page: Browser) -> None:
     for part in ("#surefoot", "[data-playback-scene-tree]"):
         assert page.run(f"return document.querySelector('{part}').getBoundingClientRect().left") >= right - 1
     assert page.run("return document.querySelector('[data-playback-scene-tree]').getBoundingClientRect().height") > 30
+
+
+def test_on_a_narrow_screen_the_robot_gets_half_of_it(page: Browser) -> None:
+    page.resize(500, 800)  # the narrowest that this browser opens
+    page.wait_for(f"{CANVAS}.width === innerWidth")
+    bottom, height = page.run(CANVAS)["bottom"], page.run("return innerHeight")
+    assert bottom >= 0.5 * height
+    for part in ("#surefoot", "[data-playback-scene-tree]"):
+        assert page.run(f"return document.querySelector('{part}').getBoundingClientRect().top") >= bottom - 1
+    page.resize(760, 400)
+    page.wait_for(f"{CANVAS}.width < 0.8 * innerWidth")
 
 
 def test_the_charts_show_the_time_of_the_timeline(page: Browser) -> None:

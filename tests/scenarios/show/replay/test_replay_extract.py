@@ -14,10 +14,9 @@ from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
-from surefoot.scenarios.show.replay.content import Replay, Track
+from surefoot.scenarios.show.replay.content import Replay, ReplayWindow, Track
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.overlays import CONTACT_SCALE, PUSH_SCALE, PUSH_SHOWN
-from surefoot.scenarios.show.replay.poses import Window
 from surefoot.scenarios.show.replay.video import marks_of
 
 pytestmark = pytest.mark.unit
@@ -54,10 +53,10 @@ def test_body_poses_are_pinocchios(replay):
 
 
 def test_a_window(log):
-    replay = extract(log, Window(0.25, 0.5))
+    replay = extract(log, ReplayWindow(0.25, 0.5))
     assert replay.time[0] == 0.25
     assert 0.5 - 1 / 30 < replay.time[-1] <= 0.5 + 1e-9
-    assert len(extract(log, Window(0.5, 0.5))) == 1
+    assert len(extract(log, ReplayWindow(0.5, 0.5))) == 1
 
 
 def test_contact_forces_act_at_the_centre_of_pressure(replay):
@@ -156,7 +155,9 @@ def test_flipped_bits_give_a_replay_or_a_sentence(write_log, tmp_path):
             assert all(np.isfinite(mark.ends).all() for mark in marks_of(replay, len(replay) - 1))
 
 
-@pytest.mark.parametrize("window", [Window(5.0, None), Window(None, -1.0), Window(0.6, 0.5), Window(float("nan"))])
+@pytest.mark.parametrize(
+    "window", [ReplayWindow(5.0, None), ReplayWindow(None, -1.0), ReplayWindow(0.6, 0.5), ReplayWindow(float("nan"))]
+)
 def test_an_empty_window_says_what_there_is(log, window):
     with pytest.raises(LogError, match=r"nothing .*; the log goes from 0 s to 0\.998 s"):
         extract(log, window)

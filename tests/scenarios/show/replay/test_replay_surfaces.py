@@ -6,7 +6,7 @@ import pytest
 
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.scenarios.show.replay.poses import box, capsule, creased, cylinder, ellipsoid, surfaces
+from surefoot.scenarios.show.replay.extract import box, capsule, creased, cylinder, ellipsoid, surfaces
 
 pytestmark = pytest.mark.unit
 

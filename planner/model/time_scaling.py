@@ -1,0 +1,126 @@
+"""Time scaling: how the clock of the gait goes, one sample a tick or, for some time, faster or slower.
+
+The clock counts planner samples, as a real number: a phase may last any time. Where a phase is to end at another time
+the clock follows a quintic to that instant, and goes at its own rate again from there on.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from surefoot.planner.geometry import quintic
+from surefoot.planner.types import Array
+
+CLOCK_ROUNDING = 1e-9
+"""Instants on the clock are sums of durations and are compared with this tolerance [samples]."""
+
+_LENGTHS = tuple(float(1.1 ** (sign * k)) for k in range(16) for sign in (1, -1))[1:]
+"""Shares of a length that are tried in its place, up to 4.2 times as long or short [-]."""
+
+_SLOWEST = 0.05
+"""Rate of the clock below which no quintic goes: a clock that stands still ends no phase [-]."""
+
+_LOOKED_AT = 33
+"""Instants of a quintic at which its rate is looked at: some four for each of its turning points [-]."""
+
+Course = tuple[float, tuple[float, ...]]
+"""What the clock showed when it began to follow a quintic [samples], and the coefficients of that."""
+
+
+@dataclass(frozen=True, slots=True)
+class TimeScaling:
+    """The clock, and the quintic that it follows or has followed last.
+
+    Attributes:
+        sample_time: length of a sample [s].
+        now: what the clock shows [samples], -1 before the first tick.
+        ticks: how often it has gone on.
+        begun: what it showed when the quintic began [samples].
+        elapsed: time since then [samples].
+        way: how far it goes on the quintic [samples].
+        length: time that this takes [samples].
+        coefficients: of the way by time, of 1, t, ..., t^5 [samples, -, 1/samples, ...]; none before the first quintic.
+    """
+
+    sample_time: float
+    now: float = -1.0
+    ticks: int = 0
+    begun: float = 0.0
+    elapsed: float = 0.0
+    way: float = 0.0
+    length: float = 0.0
+    coefficients: tuple[float, ...] = ()
+
+    @property
+    def steady(self) -> bool:
+        """Whether the clock goes by one sample a tick."""
+        return not self.coefficients or self.elapsed >= self.length - CLOCK_ROUNDING
+
+    @property
+    def course(self) -> Course:
+        """The last quintic, by which two scalings are told apart."""
+        return self.begun, self.coefficients
+
+    def at(self, ahead: Array) -> tuple[Array, Array, Array]:
+        """The clock, its rate and the derivative of that by samples, so many samples from now, shape (n,) each."""
+        if self.steady:
+            return self.now + ahead, np.ones_like(ahead), np.zeros_like(ahead)
+        way, rate, bend = self._followed(self.elapsed + ahead)
+        return self.begun + way, rate, bend
+
+    def after(self, samples: float) -> float:
+        """What the clock shows so many samples from now [samples]."""
+        return self.now + samples if self.steady else float(self.at(np.array([samples]))[0][0])
+
+    def until(self, instant: float) -> float:
+        """Time until the clock shows an instant that is not within the quintic [samples]."""
+        if self.steady:
+            return instant - self.now
+        return self.length - self.elapsed + instant - self.begun - self.way
+
+    def seconds(self, told: float, time: float) -> tuple[float, float, float]:
+        """The clock in seconds, its rate [-] and the derivative of that [1/s] at a time.
+
+        Args:
+            told: what clock and time show now [s].
+            time: the instant [s].
+        """
+        if self.steady:
+            return time, 1.0, 0.0
+        t = self.sample_time
+        begin = told - self.elapsed * t
+        way, rate, bend = (float(value[0]) for value in self._followed(np.array([(time - begin) / t])))
+        return told + (self.begun - self.now) * t + way * t, rate, bend / t
+
+    def scaled(self, way: float, length: float) -> "TimeScaling":
+        """The clock that goes a way in a length of time from now on [samples].
+
+        Where it would stand still or go back it takes the nearest length in which it does not. A clock that is slow and
+        slows down may have none: it stops to slow down at once.
+        """
+        _, rates, bends = self.at(np.zeros(1))
+        rate, bend = float(rates[0]), float(bends[0])
+        for slowing, factor in product((bend, max(bend, 0.0)), _LENGTHS):
+            start, end = np.array([[0.0], [rate], [slowing]]), np.array([[way], [1.0], [0.0]])
+            lasting = factor * length
+            course = tuple(quintic(start, end, lasting)[:, 0].tolist())
+            scaling = replace(self, begun=self.now, elapsed=0.0, way=way, length=lasting, coefficients=course)
+            if scaling._followed(np.linspace(0.0, lasting, _LOOKED_AT))[1].min() > _SLOWEST:
+                break
+        return scaling
+
+    def advanced(self) -> "TimeScaling":
+        """The clock one tick later."""
+        return replace(self, now=self.after(1.0), ticks=self.ticks + 1, elapsed=self.elapsed + 1.0)
+
+    def _followed(self, time: Array) -> tuple[Array, Array, Array]:
+        """Way, rate and its derivative at times since the quintic began; after it the clock goes at its own rate."""
+        order, coefficients = np.arange(1.0, 6.0), np.array(self.coefficients)
+        first = coefficients[1:] * order
+        inside = np.clip(time, 0.0, self.length)
+        powers = inside[:, None] ** np.arange(6)
+        ways = (coefficients, first, first[1:] * order[:-1])
+        way, rate, bend = (powers[:, : 6 - k] @ c for k, c in enumerate(ways))
+        over = time > self.length
+        return way + (time - inside), np.where(over, 1.0, rate), np.where(over, 0.0, bend)

@@ -1,0 +1,1 @@
+"""Steps changed in place and time, so that the DCM is captured."""

@@ -1,0 +1,156 @@
+"""Recovery: what is made of the steps to come where the CoP alone does not hold the body."""
+
+import numpy as np
+
+from surefoot.planner.geometry import signed_distance
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
+from surefoot.planner.recovery.step_adjustment import AdjustedStep, NextStep, StepAdjustment
+from surefoot.planner.recovery.step_bounds import StepBounds
+from surefoot.planner.references.window import Window
+from surefoot.planner.references.zmp_reference import Support
+from surefoot.planner.steps.adaptation import with_step_in_place, with_steps_repeated
+from surefoot.planner.steps.execution import Execution
+from surefoot.planner.steps.step import room_left
+from surefoot.planner.types import Array, Balance, Foot, PhaseKind
+
+
+class Recovery:
+    """Watches the balance of the body, inserts steps, and adjusts the next one, of an execution.
+
+    Args:
+        execution: the clock and the steps in sight.
+        half_size: half of the sole's length and width, shape (2,) [m].
+
+    Attributes:
+        adjustment: of the next step; None where the legs are not known.
+    """
+
+    def __init__(self, execution: Execution, half_size: Array) -> None:
+        self._execution, legs = execution, execution.legs
+        self._parameters = p = execution.schedule.ground.parameters
+        self.adjustment = None if legs is None else StepAdjustment(legs, p)
+        self._movable = None if self.adjustment is None else CaptureMargin(self.adjustment, p, half_size)
+
+    def steps_out(self, local: Array, window: Window) -> bool:
+        """Insert a step of a robot that stands and would fall, or stands astride; says whether."""
+        execution, schedule, now = self._execution, self._execution.schedule, self._execution.clock.now
+        stands = execution.adapts and execution.info.leads_to == 0 and schedule.stops(now)
+        if self.adjustment is None or not stands:
+            return False
+        numbers, standing = self._parameters.recovery, execution.phase.kind is PhaseKind.STAND
+        error, falls = self.adjustment.topples(_dcm(local, window), window)
+        if not falls:
+            # Once it is at rest the robot brings its feet side by side again.
+            # Feet without a CoP of their own would end in a wide step, since there is no time to shift the weight.
+            calm = self._parameters.cop_authority[1] > 0.0 and np.abs(error).max() < numbers.calm
+            here, usual = schedule.apart(execution.landed)
+            calm = calm and standing and float(np.hypot(*(here - usual))) > numbers.apart
+            if calm:
+                execution.follow(with_step_in_place(schedule, now, at_once=False))
+            return bool(calm)
+        # The foot that carries stays, and the other one is brought to it.
+        foot = None
+        if standing and abs(error[1]) > numbers.aside:
+            foot = Foot.RIGHT if error[1] > 0.0 else Foot.LEFT
+        execution.follow(with_step_in_place(schedule, now, foot))
+        return True
+
+    def adds_steps(self, margin: float) -> bool:
+        """Insert steps before those to come where the next one leaves something to catch; says whether.
+
+        A robot that would stand makes one on the spot. On faces that footsteps were chosen for, one step of each foot
+        where it stands is sooner made than one that climbs.
+
+        Args:
+            margin: of the DCM inside what the CoP captures with steps as planned [m].
+        """
+        execution, schedule, now = self._execution, self._execution.schedule, self._execution.clock.now
+        if schedule.stops(now):
+            execution.follow(with_step_in_place(schedule, now))
+            return True
+        if margin < 0.0 and schedule.climbs_next(now):
+            execution.follow(with_steps_repeated(schedule, execution.phase.step))
+            return True
+        return False
+
+    def balance(
+        self, step: NextStep | None, local: Array, support: Support, window: Window, last: WalkPlan | None
+    ) -> Balance:
+        """How far the DCM is inside what is captured, and what the last plan has made of the landing to come.
+
+        Args:
+            step: that lands next; None where none is to come.
+            local: CoM position, velocity and acceleration per axis of the plan frame, shape (2, 3).
+            support: what carries the robot now, with the plan frame.
+            window: references.
+            last: the plan before; None for the first.
+        """
+        execution = self._execution
+        planned, movable = self._margins(step, local, support, window)
+        kept = last is not None and last.phase.landed == execution.landed
+        shift, delay = (last.balance.shift, last.balance.delay) if last is not None and kept else (np.zeros(2), 0.0)
+        outside = 0 if last is None else last.balance.outside
+        # Steps that a law moves of its own accord may save more than the margin says.
+        if self._movable is not None or not execution.adapts:
+            outside = outside + 1 if movable < -self._parameters.recovery.fall_margin else 0
+        return Balance(planned, movable, shift, delay, outside)
+
+    def _margins(self, step: NextStep | None, local: Array, support: Support, window: Window) -> tuple[float, float]:
+        """How far the DCM is inside what the CoP alone captures, and with steps moved [m]."""
+        execution, p, dcm = self._execution, self._parameters, _dcm(local, window)
+        planned = planned_margin(dcm, window, p.sample_time, p.foot_margin)
+        if step is None:
+            return (max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm)),) * 2
+        if self._movable is None or not execution.adapts:
+            return planned, planned
+        # Where any ground will do, steps are added when there are no more.
+        most = p.recovery.most_steps
+        steps = (
+            most
+            if execution.schedule.ground.terrain.free_footholds
+            else min(len(execution.schedule.after(execution.landed)), most)
+        )
+        fixed = not execution.free[0]
+        moved = self._movable.margins(local[:, 0], dcm, float(window.omega[0]), step, steps, fixed)
+        return planned, max(planned, float(moved[-1]))
+
+    def adjusted(self, step: NextStep | None, local: Array, window: Window) -> AdjustedStep | None:
+        """What is made of the next step where the CoP alone does not hold the body."""
+        execution = self._execution
+        if self.adjustment is None or step is None or not execution.free[0]:
+            return None
+        if execution.phase.swing_foot is not None and execution.swing is None:
+            return None
+        adjusted = self.adjustment.solve(local[:, 0], _dcm(local, window), window, step)
+        execution.adapted |= adjusted is not None
+        return adjusted
+
+    def bounds(self, increment: Array, here: Array | None, left: float, adjusted: AdjustedStep | None) -> StepBounds:
+        """Where the next two footsteps may land.
+
+        Args:
+            increment: their nominal displacements from the foothold before, in the plan frame, shape (2, 2) [m].
+            here: position of the swing foot from the stance foot, shape (2,) [m], or None when no foot swings.
+            left: time until the first of them lands [s].
+            adjusted: what is made of the next one.
+        """
+        execution, schedule, landed = self._execution, self._execution.schedule, self._execution.landed
+        stance, free, p = schedule.step(landed).place, execution.free, self._parameters
+        side = stance.foot.other.side
+        if self.adjustment is None:
+            return StepBounds.reachable(p, increment, side, free, here, left)
+        if not execution.adapted:
+            return StepBounds.within(np.stack((increment, increment), axis=1), increment, free)
+        rooms, following = np.zeros((2, 2, 2)), schedule.after(landed)[:2]
+        rooms[: len(following)] = [room_left(step, stance, p.recovery.parallel) for step in following]
+        turns = schedule.turn(landed + 1), schedule.turn(landed + 2)
+        boxes = self.adjustment.boxes(increment, side, turns, rooms)
+        if adjusted is not None:
+            boxes[0] = adjusted.box
+        return StepBounds.within(boxes, increment, free)
+
+
+def _dcm(local: Array, window: Window) -> Array:
+    """DCM of a CoM position and velocity per axis, shape (2,) [m]."""
+    return np.asarray(local[:, 0] + local[:, 1] / window.omega[0])

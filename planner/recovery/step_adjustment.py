@@ -1,0 +1,349 @@
+"""Step adjustment: when and where the next step lands so that a pushed body is captured, as one optimisation.
+
+Variables: T_d, T_s, times left of double and single support [s]; c, distance of the CoP from its nominal way [m];
+p, place of the next footstep from its stance foot [m]; s, shift of the footstep after it [m].
+
+Minimise
+
+    shift_weight |p - p̄|²  +  second_weight |s|²  +  time_weight ((T_d - T̄_d)² + (T_s - T̄_s)²) / T²
+        +  stretch_weight r²  +  swing_weight (u² + v²)
+
+with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, u, v of three constraints, subject to
+
+- dcm: ξ' = ω (ξ - CoP) from the measured ξ until the landing; with g p of what the DCM there keeps bounded;
+- cop: |c| ≤ cop_share of the ZMP box, and of what both feet have beyond it in double support;
+- reach: p in one of the boxes of `LegReach.allowed`, and within `radius` of its hip then; the other hip is out of
+  reach of the stance foot by r;
+- swing: p where the foot can be swung to until then (`SwingLimits`), but for u, on a way around the stance leg that is
+  too long by v;
+- second: s = e^{ωT} g |p* - p| less what the CoP holds until then, where p* leaves nothing; cross_factor s to a side
+  where that step would have to cross;
+- times: T_d = T̄_d + a member of time_changes, not below least_double, and T_s likewise, nor below what body and foot
+  need to come to the height of the footstep.
+
+Solver: for given times p* follows in closed form, since the CoP does what it can; p is p* brought into the limits, the
+boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken. Other
+times than planned have to save `least_saving`. Nothing is solved while the CoP alone brings the DCM back until the foot
+lands, but for `tolerance`: without need nothing is adapted.
+
+It is the law of Khadiv et al. (IEEE Transactions on Robotics 2020) with the CoP as one more means, with double support,
+and with the limits of the legs as they are, over a list of times in place of a QP.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
+from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.references.window import Window
+from surefoot.planner.references.zmp_reference import Support
+from surefoot.planner.steps.execution import Execution
+from surefoot.planner.steps.step import Step, room_left
+from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.limits import PEAK, SwingLimits
+from surefoot.planner.types import Array, FeetState, PhaseKind
+
+
+@dataclass(frozen=True, slots=True)
+class NextStep:
+    """The step that lands next as the schedule has it, in the plan frame: its origin is the stance foot of that step.
+
+    Attributes:
+        nominal: where it lands, shape (2,) [m].
+        side: +1 where it is a left one, -1 where it is a right one.
+        turn: heading in which it lands against that of its stance foot [rad].
+        swing: position and velocity of its foot, shape (2, 2) [m, m/s].
+        double: time until that leaves the ground, zero when it has [s].
+        single: time that it swings, or swings on [s].
+        cycle: duration of the step after it [s].
+        shortest: time left of its swing in which the body can be lifted or lowered with it [s].
+        face: lower and upper corner of where it stays on its face, shape (2, 2) [m].
+        crosses: whether it may land beyond its stance foot, as far as legs may at all.
+        last: whether the robot stands after it.
+        adapted: whether it is being adapted already.
+    """
+
+    nominal: Array
+    side: float
+    turn: float
+    swing: Array
+    double: float
+    single: float
+    cycle: float
+    shortest: float
+    face: Array
+    crosses: bool
+    last: bool
+    adapted: bool
+
+    @classmethod
+    def of(cls, time: float, execution: Execution, feet: FeetState, support: Support) -> "NextStep | None":
+        """That of a tick; None where no step is to come.
+
+        Args:
+            time: now [s].
+            execution: the clock and the steps in sight.
+            feet: the measured feet.
+            support: what carries the robot now, with the plan frame.
+        """
+        phase, rotation, moving = execution.info, support.rotation, np.zeros(2)
+        if not phase.leads_to:
+            return None
+        schedule, clock, landed = execution.schedule, execution.clock, execution.landed
+        step, stance = schedule.step(landed + 1), schedule.step(landed).place
+        swings, foot, numbers = phase.kind is PhaseKind.SINGLE, step.place.foot, schedule.ground.parameters.recovery
+        yet = min(1.0, (step.touchdown - clock.now) / step.single)
+        legs = execution.legs
+        shortest = 0.0 if legs is None else shortest_swing(step, legs, numbers.lifting)
+        if execution.swing is not None:
+            moving = execution.swing.evaluate(time)[1, :2] @ rotation
+        nominal = (step.place.position[:2] - support.origin) @ rotation
+        return cls(
+            nominal=nominal,
+            side=foot.side,
+            turn=schedule.turn(step.number),
+            swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
+            double=0.0 if swings else phase.left,
+            single=phase.left if swings else step.single * clock.sample_time,
+            cycle=schedule.gait.period,
+            shortest=yet * shortest,
+            face=nominal + room_left(step, stance, numbers.parallel),
+            crosses=schedule.may_cross(step.number),
+            last=schedule.stops(clock.now),
+            adapted=execution.adapted,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class AdjustedStep:
+    """The solution for the next step.
+
+    Attributes:
+        left: time until the present phase is to end [s].
+        box: lower and upper corner of where it may land, shape (2, 2) [m].
+        more: whether the step after it has something to catch, too.
+    """
+
+    left: float
+    box: Array
+    more: bool
+
+
+class StepAdjustment:
+    """The program of the module's head, for one robot.
+
+    Args:
+        legs: what they can do.
+        parameters: of the planner.
+
+    Attributes:
+        legs: what they can do.
+        limits: how far a foot can be swung in time.
+        timing: whether times may change.
+    """
+
+    def __init__(self, legs: LegReach, parameters: PlannerParameters) -> None:
+        self.legs, self.limits = legs, SwingLimits.of(legs, parameters)
+        self.timing = parameters.step_adaptation is not StepAdaptation.LOCATION
+        self._sample_time, self._numbers = parameters.sample_time, parameters.recovery
+        self._authority = np.array(parameters.cop_authority)
+        self._changes = np.array(parameters.recovery.time_changes)
+
+    def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
+        """DCM error of a robot that stands, or will without another step, and whether no CoP can hold it.
+
+        Args:
+            dcm: now, in the plan frame, shape (2,) [m].
+            window: references.
+
+        Returns:
+            The error, shape (2,) [m], and whether it falls.
+        """
+        nominal = nominal_dcm(window.stiffness, window.omega, window.driving.point, self._sample_time)
+        error = dcm - nominal[0]
+        return error, bool((np.abs(error) > self._numbers.stand_share * window.driving.half_size[-1]).any())
+
+    def boxes(self, increment: Array, side: float, turns: tuple[float, float], rooms: Array) -> Array:
+        """Where the next two footsteps of an adapted step may land, from the foothold before each, shape (2, 2, 2) [m].
+
+        Args:
+            increment: their nominal displacements from there, shape (2, 2) [m].
+            side: +1 where the first is a left one, -1 where it is a right one.
+            turns: heading of each against the one before it [rad].
+            rooms: least and greatest way by which each stays on its face, shape (2, 2, 2) [m].
+        """
+        found = np.stack([self.legs.turned(turns[n]).beside(increment[n], (side, -side)[n]) for n in (0, 1)])
+        found[:, 0] = np.maximum(found[:, 0], increment + rooms[:, 0])
+        found[:, 1] = np.minimum(found[:, 1], increment + rooms[:, 1])
+        return found
+
+    def solve(self, com: Array, dcm: Array, window: Window, step: NextStep) -> AdjustedStep | None:
+        """The solution; None where nothing has to be adjusted, or the step has no place to land.
+
+        Args:
+            com: now, in the plan frame, shape (2,) [m].
+            dcm: now, likewise.
+            window: references.
+            step: as scheduled.
+        """
+        t, numbers, count = self._sample_time, self._numbers, len(window.stiffness)
+        lift = min(round(step.double / t), count - 3)
+        land = min(max(round((step.double + step.single) / t), lift + 1), count - 2)
+        # The DCM that keeps bounded what comes, and what a shift of the step does to it.
+        reference = window.driving
+        box = reference.half_size[lift]
+        wider = reference.half_size - box
+        wider[lift:] = 0.0
+        future = np.concatenate((reference.point, reference.gain[:, :1], wider), axis=1)
+        bounded = nominal_dcm(window.stiffness, window.omega, future, t)
+        gain = max(float(bounded[land, 2]), numbers.least_gain)
+        # Between the feet on which it stood the CoP has more room than on one.
+        more = bounded[0, 3:]
+        fade = float(decays(window.stiffness[: land + 1], window.omega[: land + 1], t)[-1])
+        own = np.minimum(box, self._authority)
+        missed = np.where(own < box, fade * numbers.unheld_share * box, fade * numbers.tolerance)
+        fine = bool((np.abs(dcm - bounded[0, :2]) <= (1.0 - fade) * own + more + missed).all())
+        if fine and not step.adapted:
+            return None
+        times, held = self._times(step, fine), numbers.cop_share * own
+        means = held, numbers.cop_share * more
+        left, landed = _landing(com, dcm, window, step, times, bounded[[0, lift, land], :2], means)
+        return self._cheapest(landed, window, step, times, step.nominal + left / gain, (gain, held))
+
+    def _times(self, step: NextStep, fine: bool) -> tuple[Array, Array]:
+        """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
+        if fine or not self.timing:
+            return np.array([step.double]), np.array([step.single])
+        numbers = self._numbers
+        singles = self._around(step.single, max(numbers.least_single, step.shortest))
+        doubles = self._around(step.double, numbers.least_double) if step.double else np.zeros(1)
+        grid = np.zeros((len(doubles), len(singles)))
+        return (doubles[:, None] + grid).ravel(), (singles + grid).ravel()
+
+    def _around(self, time: float, least: float) -> Array:
+        """Times about one, which is the last [s]."""
+        times = time + self._changes
+        return np.append(times[times >= min(time, least)], time)
+
+    def _cheapest(
+        self,
+        com: Array,
+        window: Window,
+        step: NextStep,
+        times: tuple[Array, Array],
+        wanted: Array,
+        means: tuple[float, Array],
+    ) -> AdjustedStep | None:
+        """The cheapest of all times and boxes, with the part of its box in which the step then may land.
+
+        Args:
+            com: at the landing, shape (n, 2) [m].
+            window: references.
+            step: as scheduled.
+            times: left of double and single support, the present ones last, shape (n,) each [s].
+            wanted: p*, where the step would leave nothing to the one after it, shape (n, 2) [m].
+            means: g, what a shift of the step does to the DCM that stays bounded [-], and half size of what the CoP has
+                of its box, shape (2,) [m].
+        """
+        legs, numbers, (double, single), (gain, held) = self.legs.turned(step.turn), self._numbers, times, means
+        swung = self.limits.edges(step.swing, step.nominal, single)
+        low, high = -swung[2:].T, swung[:2].T
+        # Of each box that the foot may land in, shape (boxes, n).
+        boxes = legs.allowed(step.side, step.face, step.crosses)
+        lower, upper = boxes[:, :1], boxes[:, 1:]
+        aside = 0.5 * step.side * legs.hip_width * np.array([0.0, 1.0])
+        hips = com + aside
+        places = legs.within(_between(_between(wanted, low, high), lower, upper), hips)
+        places = _between(places, lower, upper)
+        growth = np.exp(float(window.omega[0]) * step.cycle)
+        # What the CoP holds until the step after it, or in a stand on both feet for ever.
+        stand = numbers.stand_share * window.driving.half_size[-1]
+        held_next = growth * stand if step.last else (growth - 1.0) * held
+        short = wanted - places
+        second = np.maximum(gain * growth * np.abs(short) - held_next, 0.0)
+        second[..., 1] *= np.where(step.side * short[..., 1] > 0.0, numbers.cross_factor, 1.0)
+        changed = (double - step.double) ** 2 + (single - step.single) ** 2
+        stretch = np.maximum(np.hypot(*(com - aside).T) - legs.radius, 0.0)
+        shortfall = self.limits.shortfall(step.swing, step.side, legs, single, places)
+        cost = numbers.time_weight * changed / step.cycle**2
+        cost = cost + numbers.stretch_weight * stretch**2
+        cost = cost + numbers.shift_weight * ((places - step.nominal) ** 2).sum(axis=-1)
+        cost = cost + numbers.second_weight * (second**2).sum(axis=-1)
+        cost = cost + numbers.swing_weight * ((places - _between(places, low, high)) ** 2).sum(axis=-1)
+        cost = cost + numbers.swing_weight * shortfall**2
+        cost[(lower > upper).any(axis=(1, 2))] = np.inf
+        cheapest = np.where(cost.min(axis=1) < cost[:, -1] - numbers.least_saving, cost.argmin(axis=1), -1)
+        way = int(cost[np.arange(len(cost)), cheapest].argmin())
+        best = int(cheapest[way])
+        if cost[way, best] == np.inf:
+            return None
+        place, least, most = places[way, best], low[best], high[best]
+        if not way:
+            # Beside its stance foot it lands with the DCM well inside the next box, or as near to that as it comes.
+            left = np.maximum(numbers.landing_share * held, held / numbers.cop_share - numbers.landing_spare) / gain
+            least, most = np.maximum(least, wanted[best] - left), np.minimum(most, wanted[best] + left)
+        box = legs.around(place, hips[best], boxes[way], legs.radius)
+        box[0], box[1] = np.maximum(box[0], np.minimum(least, place)), np.minimum(box[1], np.maximum(most, place))
+        return AdjustedStep(float(double[best] if step.double else single[best]), box, bool(second[way, best].any()))
+
+
+def _landing(
+    com: Array,
+    dcm: Array,
+    window: Window,
+    step: NextStep,
+    times: tuple[Array, Array],
+    bounded: Array,
+    means: tuple[Array, Array],
+) -> tuple[Array, Array]:
+    """What no CoP holds of the DCM when the step lands, and the CoM then, shape (n, 2) each [m].
+
+    On a foot the DCM goes away from the CoP p as ξ(t) = p + (ξ - p) e^{ωt}, in double support as `moving_cop` says.
+
+    Args:
+        com: now, shape (2,) [m].
+        dcm: now, shape (2,) [m].
+        window: references.
+        step: as scheduled.
+        times: of double and single support, shape (n,) each [s].
+        bounded: DCM that the steps as planned keep bounded, now, when the foot leaves the ground, and when it lands,
+            shape (3, 2) [m].
+        means: half sizes of what the CoP has of its box, and by how much the DCM now may be farther off since it has
+            more in double support, shape (2,) each [m].
+    """
+    omega, (present, lift_off, landed), (half, more) = float(window.omega[0]), bounded, means
+    doubles, singles = times
+    spread, grown = np.exp(omega * doubles), np.exp(omega * singles)
+    # The constant CoP on the foot, and beside the moving one before it, that are nominal.
+    growth = np.exp(omega * step.single)
+    centre = (landed - growth * lift_off) / (1.0 - growth)
+    lifted, start = np.broadcast_to(dcm, (len(singles), 2)), centre
+    if step.double:
+        growth, start = np.exp(omega * step.double), window.driving.point[0]
+        beside = growth * present - moving_cop(start, centre, omega, np.array([step.double]))[0] - lift_off
+        lifted = spread[:, None] * dcm - moving_cop(start, centre, omega, doubles)
+        lifted = lifted - (spread[:, None] - 1.0) * (beside / (growth - 1.0))
+    astray = grown[:, None] * (lifted - centre) + centre - landed
+    most = (grown * spread - 1.0)[:, None] * half + (grown * spread)[:, None] * more
+    held = _between(astray, -most, most)
+    cop = centre + half * held / np.maximum(most, 1e-9)
+    there = pendulum_com(com, dcm, 0.5 * (start + cop), spread) if step.double else com
+    return astray - held, pendulum_com(there, lifted, cop, grown)
+
+
+def _between(places: Array, low: Array, high: Array) -> Array:
+    """The places of a box nearest to these, or its upper corner where it is empty: a faster `numpy.clip`."""
+    return np.asarray(np.minimum(np.maximum(places, low), high))
+
+
+def shortest_swing(step: Step, legs: LegReach, lifting: float) -> float:
+    """Shortest time in which body and foot can come to the height of a step [s].
+
+    Args:
+        step: the step.
+        legs: give the acceleration of the foot.
+        lifting: vertical acceleration of the body [m/s^2].
+    """
+    return math.sqrt(max(PEAK * abs(step.lift) / lifting, step.hardest / legs.acceleration[0]))

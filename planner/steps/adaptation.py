@@ -1,0 +1,88 @@
+"""What a step that is adapted to a push does to the schedule: steps inserted, later ones moved, a heel lifted."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.steps.gait import Stride
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.steps.step import Stop
+from surefoot.planner.swing.heel_off import roll_span, stretched
+from surefoot.planner.types import Foot, PhaseKind
+
+
+def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None, at_once: bool = True) -> Schedule:
+    """A step on the spot is inserted where the robot stands or would stand next, before anything else.
+
+    The weight goes from between the feet onto one of them. In the time that it usually takes it gets there only
+    from feet as near to each other as usual: at leisure it takes the longer the wider the robot stands, once the
+    weight has begun to shift. A longer rest before that would take the CoM farther than the rear leg reaches.
+
+    Args:
+        schedule: the steps in sight.
+        now: [samples].
+        foot: that makes it, of a robot that stands; else it is the one that landed first.
+        at_once: with a weight shift no longer than any, wherever the feet are.
+    """
+    present = schedule.following(now)
+    stand = next(phase for phase in present if phase.kind is PhaseKind.STAND)
+    kept, stop = schedule.until(stand.step, stands=stand is present[0]), None
+    if foot is not None and kept.gait.step_foot(stand.step + 1) is not foot:
+        kept = _with_feet_swapped(kept)
+    if kept.stands:
+        double, stood = schedule.durations[1], max(0.0, now - kept.last.end)
+        here, usual = (float(np.hypot(*way)) for way in kept.apart(stand.step))
+        farther = 1.0 if at_once else max(1.0, here / usual)
+        stop = Stop(stood, double, 0.0) if at_once else Stop.usual(stood, double, farther)
+    return kept.followed(Stride(0.0, 0.0, 0.0, schedule.gait.step_width), stop, inserted=True)
+
+
+def with_steps_repeated(schedule: Schedule, number: int) -> Schedule:
+    """After a step both feet land once more where they are, before anything else.
+
+    Args:
+        schedule: the steps in sight.
+        number: of the step, which is being swung.
+    """
+    stride = schedule.step(number).stride
+    back = replace(stride, length=-stride.length, lateral=-stride.lateral, turn=-stride.turn)
+    again = schedule.until(number, stands=False).followed(back, None, inserted=True)
+    return again.followed(stride, None, inserted=True)
+
+
+def _with_feet_swapped(schedule: Schedule) -> Schedule:
+    """The other foot is the one that landed last, so that this one makes the next step."""
+    *before, one, other = schedule.steps
+    swapped = (replace(step, nominal=by.nominal, place=by.place) for step, by in ((one, other), (other, one)))
+    gait = replace(schedule.gait, first_foot=Foot(schedule.gait.first_foot).other)
+    return replace(schedule, gait=gait, steps=(*before, *swapped))
+
+
+def aligned(schedule: Schedule, number: int) -> Schedule:
+    """All steps after one that has landed aside of its place on its face go as far aside, as far as theirs go."""
+    step, terrain = schedule.step(number), schedule.ground.terrain
+    aside = frame_rotation(step.nominal.yaw)[:, 1]
+    shift = aside * float(aside @ (step.place.position - step.nominal.position)[:2])
+    later = (replace(one, place=one.beside(shift, terrain)) for one in schedule.after(number))
+    return replace(schedule, steps=(*schedule.steps[: schedule.index(number) + 1], *later), shift=shift)
+
+
+def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule:
+    """The foot that a step has left too far behind for its leg rolls as it leaves the ground.
+
+    Args:
+        schedule: the steps in sight.
+        number: of the step, which has just landed.
+        radius: how far from under its hip a sole reaches flat [m].
+    """
+    stance, leaving, at = schedule.step(number), schedule.step(number - 1).place, schedule.index(number) + 1
+    if at == len(schedule.steps) or schedule.steps[at].stop is not None:
+        return schedule
+    step, place = schedule.steps[at], stance.place
+    ahead = float(((place.position - leaving.position)[:2] @ frame_rotation(place.yaw))[0])
+    angle = stretched(ahead, radius, schedule.ground.parameters.size.length)
+    if angle <= (step.roll.angle if step.roll else 0.0):
+        return schedule
+    step = replace(step, roll=roll_span(stance.double, step.lift_off, step.single, angle))
+    return replace(schedule, steps=(*schedule.steps[:at], step, *schedule.steps[at + 1 :]))

@@ -1,0 +1,287 @@
+"""The execution of a schedule: the clock, the touchdowns that are felt, and the swing that is flown."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from surefoot.planner.geometry import sole_pose, wrap_angle
+from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
+from surefoot.planner.parameters import StepAdaptation
+from surefoot.planner.steps.adaptation import aligned, with_heel_lifted
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.phases import PhaseSamples
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.steps.source import StepSource
+from surefoot.planner.swing.heel_off import FootRoll
+from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.limits import around_stance_leg
+from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
+
+_LEAST_LEFT = 3.0
+"""A phase of which less is left, or would be, until its foot is to touch down keeps its time [samples]."""
+
+_SAME_GROUND = 1e-3
+"""Footstep shift up to which the ground height is not looked up again, of the reference robot [m]."""
+
+_SAME_TIME = 1e-3
+"""Difference of a phase's time left that is not worth another time scaling, likewise [s]."""
+
+_SAME_TARGET = 1e-4
+"""Difference of touchdown pose that is not worth a new swing trajectory, likewise [m, rad]."""
+
+_TOLD = 3
+"""Footsteps to come that a plan tells [-]."""
+
+
+class Execution:
+    """Goes through a schedule one sample per tick.
+
+    A touchdown that is late holds the clock at the end of single support; an early one fixes its footstep where it was
+    felt and never moves the clock (moving it was measured to cost 17 to 28 mm of DCM error).
+
+    Args:
+        schedule: the steps in sight.
+        window: how far a plan looks ahead [samples].
+        legs: what they can do; None where it is not known.
+
+    Attributes:
+        schedule: the steps in sight, which reach as far as any plan of the present phase looks.
+        clock: that of the gait.
+        phase: the phase now.
+        landed: number of the step that landed last; its foot is the stance foot in single support.
+        swing: trajectory of the swing foot; None without one.
+        waited: ticks for which the clock has waited for the present touchdown.
+        early: the swing foot has landed before its time.
+        fixed: the next footstep may not be shifted any more.
+        adapted: place or time of the next footstep are being adapted.
+        lowering: how much lower than by its law the CoM is to be for the legs to span the step that is adapted, or was
+            before the present double support [m].
+        adapts: whether footsteps may be adapted at all.
+        legs: what they can do; None where it is not known.
+    """
+
+    def __init__(self, schedule: Schedule, window: int, legs: LegReach | None = None) -> None:
+        self.legs, self._window, parameters = legs, window, schedule.ground.parameters
+        self.landed, self.waited, self.lowering = 0, 0, 0.0
+        self.early = self.fixed = self.adapted = False
+        self.swing: SwingTrajectory | None = None
+        self.clock = TimeScaling(parameters.sample_time)
+        # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
+        self._wide = schedule.ground.terrain.free_footholds
+        self.adapts = parameters.step_adaptation is not StepAdaptation.NONE and (self._wide or legs is not None)
+        self._parameters, self._size, self._terrain = parameters, parameters.size, schedule.ground.terrain
+        self._pose = np.repeat([self._size.length, 1.0], 3)
+        self._lead = parameters.touchdown_lead / parameters.sample_time
+        self._patience = round(parameters.late_touchdown / parameters.sample_time)
+        self.follow(schedule)
+
+    def follow(self, schedule: Schedule) -> None:
+        """Go on with another schedule, and see as far along it as any plan of the present phase looks."""
+        now = max(self.clock.now, 0.0)
+        schedule = schedule.extended(now + self._window, now)
+        end = schedule.phase(now).end
+        self.schedule = schedule.extended(end + self._window, now) if end < math.inf else schedule
+        self.phase = self.schedule.phase(now)
+
+    @property
+    def info(self) -> PhaseInfo:
+        """The phase now, in seconds."""
+        phase, t = self.phase, self._parameters.sample_time
+        follows = phase if phase.stance is not None else self.schedule.phase(phase.end)
+        leads_to = follows.step if follows.stance is not None else 0
+        elapsed, duration = (self.clock.now - phase.start) * t, phase.samples * t
+        return PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to, self.time_left)
+
+    @property
+    def left(self) -> float:
+        """Time until the present phase ends [samples]."""
+        return self.clock.until(self.phase.end)
+
+    @property
+    def time_left(self) -> float:
+        """Time until the present phase ends [s]."""
+        return self.left * self._parameters.sample_time
+
+    @property
+    def free(self) -> tuple[bool, bool]:
+        """Whether the next two footsteps exist and may be shifted."""
+        remaining = self.schedule.last.number - self.landed
+        return (self.adapts and remaining >= 1 and not self.fixed, self.adapts and remaining >= 2)
+
+    @property
+    def aim(self) -> Array | None:
+        """Where a swing goes that deviates from its step, shape (3,) [m]; None where none does."""
+        return None if self.swing is None or not (self.adapted or self.swing.bent) else self.swing.target[:3]
+
+    @property
+    def aimed(self) -> Schedule:
+        """The schedule, with the step that is being swung where its foot now goes."""
+        return self.schedule if self.aim is None or self.fixed else self.schedule.moved(self.landed + 1, self.aim)
+
+    def samples(self, count: int) -> PhaseSamples:
+        """The phases at `count` samples from now on, with one more before them and one after."""
+        clock, rate, bend = self.clock.at(np.arange(-1.0, count + 1))
+        if self.clock.steady:
+            return self.schedule.samples(np.maximum(clock, 0.0))
+        return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
+
+    def advance(self, feet: FeetState) -> None:
+        """Go on by one tick.
+
+        Args:
+            feet: the measured feet.
+        """
+        following = self.clock.after(1.0)
+        phase, swing = self.phase, self.phase.swing_foot
+        over = following >= phase.end - CLOCK_ROUNDING
+        if swing is not None and self.clock.now >= 0.0:
+            contact = feet.contact[swing]
+            if over:
+                if not contact and self.waited < self._patience:
+                    self.waited += 1
+                    return
+                self._land(feet.position[swing])
+            elif contact and not self.early and 2.0 * (following - phase.start) > phase.samples:
+                self.early = True
+                self.fix(feet.position[swing])
+        self.clock = self.clock.advanced()
+        if over:
+            self.schedule = self.schedule.forgotten(following)
+        if over or phase.samples == math.inf:
+            self.follow(self.schedule)
+        if self.phase.swing_foot is None:
+            self.swing = None
+
+    def change(self, gait: GaitParameters, source: StepSource | None, time: float) -> None:
+        """Walk on otherwise; what is left of the present phase changes in proportion to its duration.
+
+        Args:
+            gait: gives durations and swing height of the steps to come; the durations from now on.
+            source: of the steps to come; the present one if None.
+            time: now [s].
+        """
+        before = self.schedule.gait
+        gait = replace(gait, first_foot=before.first_foot)
+        if (gait.single_support, gait.double_support) != (before.single_support, before.double_support):
+            self._retime(gait, time)
+        self.schedule = replace(self.schedule, gait=gait)
+        if source is not None or gait.swing_height != before.swing_height:
+            self.follow(self.schedule.reordered(self.clock.now, source))
+
+    def _retime(self, gait: GaitParameters, time: float) -> None:
+        left, phase, now = self.time_left, self.phase, self.clock.now
+        schedule, way = self.schedule.retimed(gait, now), phase.end - now
+        lasting = schedule.usual_samples(phase) * way / phase.samples
+        if phase.kind is not PhaseKind.STAND and min(way, lasting) >= _LEAST_LEFT + self._lead:
+            self.clock = self.clock.scaled(way, lasting)
+        self.follow(schedule)
+        if self.swing is not None and self.time_left != left:
+            self.swing = self.swing.retimed(time, self.time_left - left, self._parameters.sample_time)
+
+    def end_in(self, left: float, time: float) -> bool:
+        """Let the present phase end at another time, or as near to it as the clock can.
+
+        Args:
+            left: time from now on [s].
+            time: now [s].
+
+        Returns:
+            Whether that is another one than before.
+        """
+        before, t = self.time_left, self._parameters.sample_time
+        if abs(left - before) < _SAME_TIME * self._size.time:
+            return False
+        self.clock = self.clock.scaled(self.phase.end - self.clock.now, left / t)
+        self.follow(self.schedule)
+        if self.swing is not None:
+            self.swing = self.swing.retimed(time, self.time_left - before, t)
+        return True
+
+    def fix(self, position: Array) -> None:
+        """Decide the next footstep.
+
+        Args:
+            position: where it lands, shape (3,) [m].
+        """
+        self.schedule = self.schedule.moved(self.landed + 1, position)
+        self.fixed = True
+
+    def fix_imminent(self, time: float) -> None:
+        """Decide the next footstep where its foot now lands, shortly before it does."""
+        if self.swing is None or self.fixed:
+            return
+        if self.swing.touchdown_time - time <= self._parameters.freeze_time + CLOCK_ROUNDING:
+            self.fix(self.swing.target[:3])
+
+    def _land(self, position: Array) -> None:
+        self.fix(position)
+        self.landed += 1
+        if self.adapted and self.legs is not None:
+            schedule = with_heel_lifted(self.schedule, self.landed, self.legs.radius)
+            self.schedule = schedule if self._wide else aligned(schedule, self.landed)
+        self.waited, self.early, self.fixed, self.adapted = 0, False, False, False
+
+    def upcoming(self, time: float, shifts: Array) -> tuple[PlannedFootstep, ...]:
+        """The next footsteps.
+
+        Args:
+            time: now [s].
+            shifts: shifts of the first two from their nominal increments, in the world frame, shape (2, 2) [m].
+        """
+        planned, shift, free = [], np.zeros(2), self.free
+        for ahead, step in enumerate(self.schedule.after(self.landed)[:_TOLD]):
+            place = step.place
+            position, normal = place.position.copy(), place.normal
+            if ahead < len(free) and free[ahead]:
+                shift = shift + shifts[ahead] if self._wide else shifts[ahead]
+            elif not self._wide:
+                shift = np.zeros(2)
+            position[:2] += shift
+            if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND * self._size.length:
+                x, y = float(position[0]), float(position[1])
+                position[2] = self._terrain.height(x, y)
+                normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
+            landing = Footstep(place.foot, position, place.yaw, normal)
+            touchdown = time + self.clock.until(step.touchdown) * self._parameters.sample_time
+            planned.append(PlannedFootstep(step.number, landing, touchdown))
+        return tuple(planned)
+
+    def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool) -> None:
+        """Let the swing foot go on to where it is to land; asked in single support only.
+
+        Args:
+            landing: the footstep.
+            time: now [s].
+            feet: the measured feet, from one of which a swing begins.
+            held: keep to the target of before.
+        """
+        target, stance = sole_pose(landing.position, landing.yaw, landing.normal), self.schedule.step(self.landed).place
+        if self.swing is None:
+            foot, leaving = landing.foot, self.schedule.step(self.landed - 1).place
+            yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
+            pose = sole_pose(feet.position[foot], yaw, leaving.normal)
+            course = self.schedule.step(self.phase.step).course
+            times = swing_times(time, self.left, course, self._parameters)
+            self.swing = start_swing(foot, pose, target, times, course.height, self._parameters)
+        elif not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
+            # Over edges the foot keeps to the times in which its course clears them.
+            gliding = self.adapted and self._wide
+            self.swing = self.swing.retargeted(time, target, gliding, LEAST_GLIDE * self._size.time)
+        if self.adapted and self.swing.search.hurry_after > 0.0:
+            # While a foot that is to catch the body searches for the ground the DCM goes on away from it.
+            self.swing = replace(self.swing, search=replace(self.swing.search, hurry_after=0.0))
+        if self.legs is not None:
+            stride = math.dist(landing.position, stance.position)
+            self.lowering = self.legs.lowering(stride) if self.adapted and self._wide else 0.0
+            self.swing = around_stance_leg(self.swing, stance, self.legs, time, self._parameters.sample_time)
+
+    def roll(self, time: float) -> FootRoll | None:
+        """Pitch of the foot that leaves the ground next or has just left it; None for one that stays level."""
+        span, clock = self.phase.roll, self.clock
+        if span is None or clock.now >= span.end:
+            return None
+        start, end = (time + (at - clock.now) * clock.sample_time for at in span[:2])
+        foot, toe = self.schedule.gait.step_foot(self.phase.leaves), float(self.schedule.ground.half_size[0])
+        return FootRoll(foot, start, end, span.angle, toe, None if clock.steady else clock, time)

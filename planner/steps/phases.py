@@ -1,0 +1,175 @@
+"""Support phases of the steps in sight, and what follows from them at the samples of a window."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
+from surefoot.planner.steps.step import Step
+from surefoot.planner.swing.heel_off import RollSpan
+from surefoot.planner.types import Array, Foot, PhaseKind
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """One support phase; it covers the clock from `start` to `end`.
+
+    Attributes:
+        kind: stand, double or single support.
+        start: when it begins [samples].
+        samples: how long it lasts, infinite for standing of which no end is known [samples].
+        step: number of the step that this phase swings (single support) or has just landed (otherwise); 0 before.
+        stance: the only supporting foot of a single support, otherwise None.
+        support: support point on which the ZMP reference stands, or which it leaves.
+        rest: part of a double support before it leaves [samples].
+        roll: of the foot that leaves the ground in it or after it; None for one that stays level.
+    """
+
+    kind: PhaseKind
+    start: float
+    samples: float
+    step: int
+    stance: Foot | None
+    support: int
+    rest: float = 0.0
+    roll: RollSpan | None = None
+
+    @property
+    def end(self) -> float:
+        """When it is over."""
+        return self.start + self.samples
+
+    @property
+    def swing_foot(self) -> Foot | None:
+        """The swinging foot of a single support, otherwise None."""
+        return None if self.stance is None else self.stance.other
+
+    @property
+    def leaves(self) -> int:
+        """Number of the step whose foot swings, or leaves the ground next; the other foot stands where it landed."""
+        return self.step + (self.kind is not PhaseKind.SINGLE)
+
+
+def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
+    """The phases of steps in turn: a single and a double support each, and before some of them a stop.
+
+    Args:
+        steps: in order; a stop before the first of them is left out.
+        stands: whether the robot stands after the last one.
+    """
+    phases: list[Phase] = []
+    for step, following in pairwise((*steps, None)):
+        if step is None:
+            continue
+        stop = None if following is None else following.stop
+        roll = None if following is None else following.roll
+        if step.number >= 1:
+            stance = step.place.foot.other
+            swing = Phase(
+                PhaseKind.SINGLE, step.lift_off, step.single, step.number, stance, step.support, roll=step.roll
+            )
+            rolling = roll if stop is None else None
+            after = Phase(PhaseKind.DOUBLE, step.touchdown, step.double, step.number, None, step.support, roll=rolling)
+            phases += [swing, after]
+        between = step.support + 1
+        if stop is not None:
+            if stop.stand:
+                phases.append(Phase(PhaseKind.STAND, step.end, stop.stand, step.number, None, between))
+            start = step.end + stop.stand
+            phases.append(Phase(PhaseKind.DOUBLE, start, stop.shift, step.number, None, between, stop.rest, roll))
+        elif following is None and stands:
+            phases.append(Phase(PhaseKind.STAND, step.end, np.inf, step.number, None, between))
+    return tuple(phases)
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseSamples:
+    """The phases at the n samples of a window.
+
+    The ZMP reference moves along the polyline of the support points (`Schedule.supports`): a point between the feet
+    before each bout and at the end, and the stance foot of each step. At sample k it is `fraction[k]` of the
+    way from point `index[k]` to the next. It rests while the robot stands, and on the stance foot in single
+    support; in every double support it goes on to exactly the next point.
+
+    Attributes:
+        phases: those in sight, in order, without gaps.
+        which: index into `phases`, shape (n,).
+        kind: support phase, shape (n,).
+        clock: shape (n,) [samples].
+        rate: of the clock over that of time, shape (n,) [-], and its rate, shape (n,) [1/s]; None for one and zero.
+        elapsed: clock since the phase began, shape (n,) [samples].
+        length: of the phase, shape (n,) [samples].
+        index: support point that the ZMP reference leaves, counted from `first`, shape (n,).
+        fraction: share of the way to the next support point, shape (n,), in [0, 1).
+        fraction_rate: rate of that share on the clock, within the phase's ramp, shape (n,) [1/s].
+        contacts: planned contacts (left, right), shape (n, 2).
+        sample_time: length of a sample [s].
+        first: support point of the walk from which `index` counts.
+    """
+
+    phases: tuple[Phase, ...]
+    which: NDArray[np.intp]
+    kind: NDArray[np.intp]
+    clock: Array
+    rate: tuple[Array, Array] | None
+    elapsed: Array
+    length: Array
+    index: NDArray[np.intp]
+    fraction: Array
+    fraction_rate: Array
+    contacts: NDArray[np.bool_]
+    sample_time: float
+    first: int
+
+    @classmethod
+    def of(
+        cls,
+        phases: tuple[Phase, ...],
+        clock: Array,
+        sample_time: float,
+        first: int = 0,
+        rate: tuple[Array, Array] | None = None,
+    ) -> "PhaseSamples":
+        """The phases where the clock shows some instants, shape (n,) [samples]; arguments as of the attributes."""
+        which = np.searchsorted([p.start for p in phases], clock + CLOCK_ROUNDING, side="right") - 1
+        which = np.maximum(which, 0)
+        contacts = np.array([(p.stance is not Foot.RIGHT, p.stance is not Foot.LEFT) for p in phases])
+        columns = ([getattr(p, name) for p in phases] for name in ("kind", "start", "samples", "rest", "support"))
+        kind, start, length, rest, support = (np.array(column)[which] for column in columns)
+        elapsed = np.maximum(clock - start, 0.0)
+        ramp = np.where(kind == PhaseKind.DOUBLE, length - rest, np.inf)
+        gone = elapsed - rest
+        return cls(
+            phases=phases,
+            which=which,
+            kind=kind,
+            clock=clock,
+            rate=rate,
+            elapsed=elapsed,
+            length=length,
+            index=support - first,
+            fraction=np.maximum(gone / ramp, 0.0),
+            fraction_rate=np.where(gone >= 0.0, 1.0 / (ramp * sample_time), 0.0),
+            contacts=contacts[which],
+            sample_time=sample_time,
+            first=first,
+        )
+
+    @property
+    def last_stand(self) -> NDArray[np.bool_]:
+        """Where the robot stands and no end of it is known, shape (n,)."""
+        return np.isinf(self.length)
+
+    def per_phase(self, values: Sequence[float]) -> Array:
+        """Values of the kinds of phases at each sample, shape (n,)."""
+        return np.array(values, dtype=np.float64)[self.kind]
+
+    def in_time(self, values: Array) -> Array:
+        """Values with their first and second derivatives by the clock, shape (3, n), turned into those by time."""
+        if self.rate is None:
+            return values
+        rate, bend = self.rate
+        return np.stack((values[0], values[1] * rate, values[2] * rate**2 + values[1] * bend))

@@ -1,0 +1,312 @@
+"""The schedule of steps: one immutable value, and pure functions from one schedule to the next.
+
+A bout is a stop, a first double support of `WEIGHT_SHIFT` times the usual length that rests for all but the last of
+them, then single and double supports in turn. The last double support brings the ZMP back between the feet, where the
+robot stands until the next bout.
+"""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.planner.geometry import wrap_angle
+from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
+from surefoot.planner.steps.commands import Pose
+from surefoot.planner.steps.footsteps import start_footholds
+from surefoot.planner.steps.gait import GaitParameters, Stride, in_samples
+from surefoot.planner.steps.phases import Phase, PhaseSamples, phases_of
+from surefoot.planner.steps.source import GaitSource, Request, StepSource
+from surefoot.planner.steps.step import Step, Stop, durations, lay, start_step
+from surefoot.planner.swing.course import Ground
+from surefoot.planner.types import Array, FeetState, PhaseKind
+
+_MORE_STEPS = 3
+"""Steps in sight beyond a window: its last support points depend on the ones after them, and a plan tells three [-]."""
+
+_STOP_AHEAD = 4
+"""Phases, with the present one, within which a stand is the end of the step that is being made [-]."""
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """The steps in sight, those that have landed as measured; all times are on the clock of the gait, in samples.
+
+    Two schedules are equal where they have the same steps, not merely steps that are alike.
+
+    Attributes:
+        gait: what all steps to come have in common.
+        ground: to lay steps on.
+        source: of the steps to come.
+        steps: in order; the first ones are start feet (steps -1 and 0), or have landed long ago.
+        stands: whether the robot stands after the last one, as far as is known for ever.
+        shift: where steps that come into sight lie from their nominal places, shape (2,) [m].
+        begin: phases that were over by then are forgotten [samples].
+    """
+
+    gait: GaitParameters
+    ground: Ground = field(compare=False)
+    source: StepSource
+    steps: tuple[Step, ...]
+    stands: bool
+    shift: Array = field(compare=False)
+    begin: float
+
+    @classmethod
+    def start(
+        cls, gait: GaitParameters, feet: FeetState, ground: Ground, source: StepSource | None = None
+    ) -> "Schedule":
+        """The schedule of a robot that stands, with no step in sight yet.
+
+        Args:
+            gait: gives the durations and what else all steps have in common.
+            feet: where the feet stand.
+            ground: to lay steps on.
+            source: of the steps; those of the gait by default.
+        """
+        path, places = start_footholds(gait, feet, ground.terrain)
+        steps = tuple(
+            start_step(number, place, path, gait, ground) for number, place in zip((-1, 0), places, strict=True)
+        )
+        return cls(gait, ground, source or GaitSource(gait), steps, True, np.zeros(2), 0.0)
+
+    # What follows from a schedule.
+
+    @cached_property
+    def phases(self) -> tuple[Phase, ...]:
+        """The phases in sight in order, without gaps."""
+        return tuple(p for p in phases_of(self.steps, self.stands) if p.end > self.begin + CLOCK_ROUNDING)
+
+    @cached_property
+    def first_support(self) -> int:
+        """Number in the walk of the first support point in sight."""
+        return max(self.phases[0].support - 2, 0)
+
+    @cached_property
+    def supports(self) -> NDArray[np.intp]:
+        """Support points of the ZMP in sight, as indices of the two steps that each lies between, shape (m, 2).
+
+        It lies between both feet where the robot stands, and on one, given twice, while the robot stands on that.
+        """
+        points: list[tuple[int, tuple[int, int]]] = []
+        for at, step in enumerate(self.steps):
+            if step.stop is not None:
+                points.append((step.support - 1, (at - 2, at - 1)))
+            points.append((step.support, (at - 1, at - 1)))
+        if self.stands:
+            points.append((self.steps[-1].support + 1, (len(self.steps) - 2, len(self.steps) - 1)))
+        return np.array([between for number, between in points if number >= self.first_support])
+
+    @cached_property
+    def positions(self) -> Array:
+        """Where the steps land, sole centres in the world frame, shape (n, 3) [m]."""
+        return np.array([step.place.position for step in self.steps])
+
+    @cached_property
+    def yaws(self) -> Array:
+        """Their headings, unwrapped, shape (n,) [rad]."""
+        return np.array([step.place.yaw for step in self.steps])
+
+    def at_supports(self, values: Array) -> Array:
+        """What values of the steps, shape (n, ...), are at the support points: means of two, shape (m, ...)."""
+        return np.asarray(0.5 * (values[self.supports[:, 0]] + values[self.supports[:, 1]]))
+
+    @cached_property
+    def support_points(self) -> Array:
+        """The support points, shape (m, 3) [m]."""
+        return self.at_supports(self.positions)
+
+    @property
+    def last(self) -> Step:
+        """The last step in sight."""
+        return self.steps[-1]
+
+    def index(self, number: int) -> int:
+        """Where a step is in `steps`."""
+        return number - self.steps[0].number
+
+    def step(self, number: int) -> Step:
+        """A step in sight."""
+        return self.steps[number - self.steps[0].number]
+
+    def after(self, number: int) -> tuple[Step, ...]:
+        """The steps in sight after one."""
+        return self.steps[number + 1 - self.steps[0].number :]
+
+    def turn(self, number: int) -> float:
+        """Heading of a step against the one before it; zero where there is none [rad]."""
+        if number > self.last.number:
+            return 0.0
+        return wrap_angle(float(self.yaws[self.index(number)] - self.yaws[self.index(number - 1)]))
+
+    def phase(self, clock: float) -> Phase:
+        """The phase at an instant, the first in sight if it lies before."""
+        return next((p for p in reversed(self.phases) if p.start <= clock + CLOCK_ROUNDING), self.phases[0])
+
+    def following(self, clock: float) -> tuple[Phase, ...]:
+        """The phase at an instant and those after it."""
+        return self.phases[self.phases.index(self.phase(clock)) :]
+
+    def stops(self, clock: float) -> bool:
+        """Whether the robot stands at an instant, or will with the next step that lands."""
+        return any(phase.kind is PhaseKind.STAND for phase in self.following(clock)[:_STOP_AHEAD])
+
+    def samples(self, clock: Array, rate: tuple[Array, Array] | None = None) -> PhaseSamples:
+        """The phases where the clock shows some instants; arguments as of `PhaseSamples`."""
+        return PhaseSamples.of(self.phases, clock, self.ground.parameters.sample_time, self.first_support, rate)
+
+    def usual_samples(self, phase: Phase) -> float:
+        """How long a phase would last that had not begun [samples]."""
+        single, double = self.durations
+        if phase.kind is PhaseKind.SINGLE:
+            return single
+        if phase.kind is PhaseKind.STAND:
+            return phase.samples
+        return Stop.usual(0.0, double).shift if phase.rest else double
+
+    def climbs_next(self, clock: float) -> bool:
+        """Whether a foot swings, on faces that footsteps were chosen for, and the step after it climbs."""
+        present = self.phase(clock)
+        following = self.after(present.step)
+        climbs = present.stance is not None and bool(following) and following[0].climb != 0.0
+        return climbs and not self.ground.terrain.free_footholds
+
+    def may_cross(self, number: int) -> bool:
+        """Whether a step may land beyond its stance foot, as far as the ground is concerned.
+
+        A leg that lets the body down from its face has its knee in the way.
+        """
+        return self.ground.terrain.free_footholds or self.step(number).lift >= 0.0
+
+    def apart(self, number: int) -> tuple[Array, Array]:
+        """Way to where a step landed from where the one before it did, and nominally, shape (2,) each [m]."""
+        step, other = self.step(number), self.step(number - 1)
+        ways = step.place.position - other.place.position, step.nominal.position - other.nominal.position
+        return ways[0][:2], ways[1][:2]
+
+    @property
+    def durations(self) -> tuple[float, float]:
+        """Single and double support of the steps to come [samples]."""
+        return durations(self.gait, self.ground.parameters.sample_time)
+
+    @property
+    def _pose(self) -> Pose:
+        """Where the path is that the footsteps in sight go along."""
+        path = self.last.path
+        x, y = path.middle + self.shift
+        return Pose(float(x), float(y), path.yaw)
+
+    # From a schedule to the next.
+
+    def extended(self, until: float, now: float = 0.0) -> "Schedule":
+        """Steps are asked for until all is known up to an instant, and three steps more.
+
+        Args:
+            until: the instant [samples].
+            now: the robot has stood until then, if it stands [samples].
+
+        Raises:
+            ParameterError: a footstep is out of reach, or no swing clears the edges before it.
+        """
+        schedule = self
+        while schedule._lift_offs_after(until) < _MORE_STEPS and (more := schedule._asked(now)) is not None:
+            schedule = more
+        return schedule
+
+    def _lift_offs_after(self, clock: float) -> int:
+        # Of the last steps alone, since a walk may be laid out as a whole.
+        phases = phases_of(self.steps[-_MORE_STEPS - 1 :], self.stands)[-2 * _MORE_STEPS :]
+        return sum(phase.kind is PhaseKind.SINGLE and phase.start >= clock for phase in phases)
+
+    def _asked(self, now: float) -> "Schedule | None":
+        """The schedule with what comes next; None where nothing does."""
+        last, t = self.last, self.ground.parameters.sample_time
+        before = None if self.stands else last.stride
+        order = self.source.order(Request(last.ordinal + 1, last.end * t, before, self._pose, self.gait.period))
+        if order is None:
+            return None if self.stands else replace(self, stands=True)
+        stop = None
+        if self.stands:
+            stop = Stop.usual(max(in_samples(order.stand, t), now - last.end), self.durations[1])
+        return self.followed(order.stride, stop)
+
+    def followed(self, stride: Stride, stop: Stop | None, inserted: bool = False) -> "Schedule":
+        """The schedule with one more step."""
+        one, other = self.steps[-2:]
+        step = lay(stride, (one, other), self.gait, self.ground, stop, inserted)
+        step = replace(step, place=step.beside(self.shift, self.ground.terrain))
+        return replace(self, steps=(*self.steps, step), stands=False)
+
+    def until(self, number: int, stands: bool) -> "Schedule":
+        """The schedule without the steps after one, with which the robot then stands or not."""
+        return replace(self, steps=self.steps[: self.index(number) + 1], stands=stands)
+
+    def forgotten(self, clock: float) -> "Schedule":
+        """What lies behind an instant is let go of, but for the phase of the sample before it."""
+        begin = clock - 1.0
+        first = next(phase for phase in self.phases if phase.end > begin + CLOCK_ROUNDING)
+        if first is self.phases[0]:
+            return self
+        return replace(self, steps=self.steps[max(self.index(first.step - 3), 0) :], begin=begin)
+
+    def reordered(self, now: float, source: StepSource | None = None) -> "Schedule":
+        """All steps but the one being swung and the one to which the weight is being shifted are asked for anew.
+
+        A stop is made once its last foot swings: the DCM is on its way to rest between the feet by then, and small feet
+        cannot bring it to where the next step would need it. Steps that were inserted stay unless the source is new.
+
+        Args:
+            now: [samples].
+            source: of the steps from now on; that of those before by default.
+        """
+        present, *later = self.following(now)
+        shifts = present.kind is PhaseKind.DOUBLE and later[0].kind is PhaseKind.SINGLE
+        kept = self.until(present.leaves if shifts else present.step, stands=not shifts)
+        if present.kind is PhaseKind.SINGLE:
+            kept = replace(kept, stands=later[1].kind is PhaseKind.STAND)
+        if source is not None:
+            last = replace(kept.last, ordinal=kept.last.number)
+            return replace(kept, source=source, steps=(*kept.steps[:-1], last))
+        for step in self.after(kept.last.number):
+            kept = kept.followed(step.stride, step.stop, inserted=True) if step.inserted else kept
+        return kept
+
+    def retimed(self, gait: GaitParameters, now: float) -> "Schedule":
+        """All phases to come have the durations of a gait; those that have begun keep theirs on the clock.
+
+        Args:
+            gait: what all steps to come have in common.
+            now: [samples].
+        """
+        begun, steps = self.phase(now).start, [self.steps[0]]
+        single, double = durations(gait, self.ground.parameters.sample_time)
+        for step in self.steps[1:]:
+            if step.lift_off > begun:
+                step = step.retimed(steps[-1], (single, double), begun, now, self.ground.parameters)
+            elif step.touchdown > begun:
+                step = replace(step, double=double)
+            steps.append(step)
+        return replace(self, gait=gait, steps=tuple(steps))
+
+    def moved(self, number: int, position: Array) -> "Schedule":
+        """A step lands somewhere else, and those after it are shifted by as much.
+
+        Where footholds are not free they stay on the treads that were chosen for them.
+
+        Args:
+            number: of the step.
+            position: where it lands, in the world frame, shape (3,) [m].
+        """
+        at, terrain = self.index(number), self.ground.terrain
+        step, position = self.steps[at], np.array(position)
+        if not terrain.free_footholds:
+            moved = step.landing(position, step.place.normal)
+            return replace(self, steps=(*self.steps[:at], moved, *self.steps[at + 1 :]))
+        way, places = position[:2] - step.place.position[:2], self.positions[at:].copy()
+        places[0] = position
+        places[1:, :2] += way
+        places[1:, 2] = terrain.heights(places[1:, :2])
+        landings = zip(self.steps[at:], places, terrain.normals(places[:, :2]), strict=True)
+        later = (step.landing(place, normal) for step, place, normal in landings)
+        return replace(self, steps=(*self.steps[:at], *later), shift=self.shift + way)

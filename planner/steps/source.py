@@ -1,0 +1,237 @@
+"""Where the steps of a walk come from: one after another, when the schedule asks for the next."""
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from surefoot.planner.geometry import frame_rotation, wrap_angle
+from surefoot.planner.steps.commands import MOST_STEPS, Pose, Twist, fastest
+from surefoot.planner.steps.footsteps import Path
+from surefoot.planner.steps.gait import GaitParameters, Stride
+from surefoot.planner.swing.leg_reach import StepRegion
+from surefoot.planner.types import Array
+from surefoot.similarity import REFERENCE_SIZE, Similarity
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """Where the walk is when it asks for its next step.
+
+    Attributes:
+        step: number of the step, from 1; steps that were inserted between those of the source do not count.
+        time: on the clock of the gait; when its foot would lift off, or from when on the robot stands [s].
+        before: stride of the step before it; None when the robot stands.
+        pose: where the path is that the footsteps in sight go along, landed ones as measured.
+        period: time from one lift-off to the next [s].
+    """
+
+    step: int
+    time: float
+    before: Stride | None
+    pose: Pose
+    period: float
+
+
+@dataclass(frozen=True, slots=True)
+class StepOrder:
+    """A step to come.
+
+    Attributes:
+        stride: what it does to the path.
+        stand: standing before the weight shift to it; of a step that follows another without a stop it says nothing
+            [s].
+    """
+
+    stride: Stride
+    stand: float = 0.0
+
+
+class StepSource(Protocol):
+    """Gives the steps of a walk one by one."""
+
+    def order(self, at: Request) -> StepOrder | None:
+        """The next step.
+
+        Args:
+            at: where the walk is.
+
+        Returns:
+            The step; None to stand, in a walk until the next bout, in standing as far as is known for ever.
+        """
+
+
+class GaitSource:
+    """The steps of a gait.
+
+    Args:
+        gait: the gait.
+    """
+
+    def __init__(self, gait: GaitParameters) -> None:
+        self._strides, self._begins = gait.strides, gait.begins
+
+    def order(self, at: Request) -> StepOrder | None:
+        """See `StepSource`."""
+        if at.step > len(self._strides) or (at.before is not None and at.step in self._begins):
+            return None
+        return StepOrder(self._strides[at.step - 1], self._begins.get(at.step, 0.0))
+
+
+_SOFTLY = 0.4
+"""Most by which a stride is longer than the one before it, as a share of the reach [-]."""
+
+_SHARE = 0.6
+"""Likewise its turn, as a share of the greatest; and what of both a walk to a place makes use of [-]."""
+
+_THERE = 0.002
+"""Distance from a place at which a walk to it is over, of the reference robot [m], or in heading [rad]."""
+
+AWAY = 0.008
+"""Distance from it at which a robot that stands there goes on, likewise [m, rad]."""
+
+_ASTRAY = 1.0
+"""Bearing of a place from which on the robot first turns towards it on the spot [rad]."""
+
+_FAR = 3.0
+"""Strides to a place from which on the robot walks ahead towards it, and not as it will stand there [-]."""
+
+
+_STANDING = Twist()
+
+
+class CommandSource:
+    """Steps that follow a velocity, or go to places one after another; either may be told anew at any time.
+
+    What cannot be done is bent to the nearest that can: a velocity to the fastest in its direction whose steps are
+    within reach, a stride to one that is no more than a little longer than the one before it, nor leads the other way.
+
+    Args:
+        gait: gives the step width, the stride of a walk to a place, and the rest before the first step.
+        region: where feet may land.
+        twist: the velocity to follow.
+        places: where to go in its place.
+        size: of the robot.
+
+    Attributes:
+        twist: the velocity to follow where there are no places to go to.
+        places: where to go, in order.
+    """
+
+    def __init__(
+        self,
+        gait: GaitParameters,
+        region: StepRegion,
+        twist: Twist = _STANDING,
+        places: tuple[Pose, ...] = (),
+        size: Similarity = REFERENCE_SIZE,
+    ) -> None:
+        self._width, self._rest, self._region = gait.step_width, gait.initial_stand, region
+        side = 0.5 * (region.width[1] - region.nearest(0.0))
+        self._change = np.array([_SOFTLY * region.length, side, _SHARE * region.turn])
+        self._most = np.array([min(abs(gait.step_length), region.length), _SHARE * side, _SHARE * region.turn])
+        self.twist, self.places, self._length = twist, places, size.length
+        self._reached: dict[int, int] = {}
+
+    def followed(self, period: float) -> Twist:
+        """The velocity that is followed for the one asked for.
+
+        Args:
+            period: time from one lift-off to the next [s].
+        """
+        return fastest(self.twist, period, self._width, self._region)
+
+    def order(self, at: Request) -> StepOrder | None:
+        """See `StepSource`."""
+        before = np.zeros(3) if at.before is None else _way(at.before)
+        wanted = self._onward(at) if self.places else _way(self.followed(at.period).stride(at.period, self._width))
+        # It may stop at once, but neither turn round nor speed up by much in a step.
+        backward = np.where(before > 0.0, 0.0, before - self._change)
+        forward = np.where(before < 0.0, 0.0, before + self._change)
+        way = np.clip(wanted, backward, forward)
+        if not way.any() and not before.any():
+            return None
+        return StepOrder(self._admitted(way), self._rest if at.step == 1 else 0.0)
+
+    def _onward(self, at: Request) -> Array:
+        """Length, lateral and turn of the stride to the next place, zero at the last one, shape (3,) [m, rad]."""
+        near = AWAY if at.before is None else _THERE
+        # How many places were reached before which step: a step may be asked for anew.
+        self._reached = {step: count for step, count in self._reached.items() if step < at.step}
+        reached = max(self._reached.values(), default=0)
+        while (way := self._towards(self.places[reached], at.pose, near)) is None:
+            if reached == len(self.places) - 1:
+                return np.zeros(3)
+            reached += 1
+            self._reached[at.step] = reached
+        return way
+
+    def _towards(self, place: Pose, pose: Pose, near: float) -> Array | None:
+        """The stride to a place; None for one that is reached.
+
+        Far from it the robot walks ahead, turning to it. Near to it it takes the fewest equal strides on the arc on
+        which it arrives with the heading asked for.
+        """
+        way = np.array([place.x - pose.x, place.y - pose.y])
+        turn, distance = wrap_angle(place.yaw - pose.yaw), float(np.hypot(*way))
+        if max(distance / self._length, abs(turn)) <= near:
+            return None
+        ahead, _, most_turn = self._most
+        if distance > _FAR * ahead:
+            bearing = wrap_angle(math.atan2(way[1], way[0]) - pose.yaw)
+            turn = float(np.clip(bearing, -most_turn, most_turn))
+            return np.array([ahead * math.cos(bearing - 0.5 * turn) if abs(bearing) < _ASTRAY else 0.0, 0.0, turn])
+        way = way @ frame_rotation(pose.yaw + 0.5 * turn)
+        for count in range(1, _MOST_EQUAL + 1):
+            # Equal strides on an arc: their chords add up to the way.
+            share = math.sin(0.5 * turn / count) / math.sin(0.5 * turn) if abs(turn) > _STRAIGHT else 1.0 / count
+            stride = np.array([*(share * way), turn / count])
+            if (np.abs(stride) <= self._most).all():
+                break
+        return stride
+
+    def _admitted(self, way: Array) -> Stride:
+        """The longest stride this way that both feet may make."""
+        factor, stride = 1.0, self._stride(way)
+        while not stride.within(self._region) and factor > 0.0:
+            factor = max(factor - _LESS, 0.0)
+            stride = self._stride(factor * way)
+        return stride
+
+    def _stride(self, way: Array) -> Stride:
+        return Stride(float(way[0]), float(way[1]), float(way[2]), self._width).fitted(self._region)
+
+
+def steps_ordered(source: StepSource, gait: GaitParameters, pose: Pose, most: int = MOST_STEPS) -> int:
+    """Steps that a source orders until the robot stands where every one of them lands where it is nominally.
+
+    Args:
+        source: of the steps, which may have been used up then.
+        gait: gives the durations and the first foot.
+        pose: where the walk begins.
+        most: count no further.
+    """
+    path, before = Path(np.array(pose[:2]), pose.yaw, 0.0, gait.step_width), None
+    for step in range(1, most + 1):
+        here = Pose(float(path.middle[0]), float(path.middle[1]), path.yaw)
+        order = source.order(Request(step, step * gait.period, before, here, gait.period))
+        if order is None:
+            return step - 1
+        before = order.stride
+        path, _ = path.advanced(before, gait.step_foot(step))
+    return most
+
+
+_MOST_EQUAL = 1000
+"""Equal strides of which no more make sense: feet that wide cannot step sideways at all [-]."""
+
+_STRAIGHT = 1e-6
+"""Turn below which an arc is a line [rad]."""
+
+_LESS = 0.05
+"""Steps in which a stride is shortened until feet may make it [-]."""
+
+
+def _way(stride: Stride) -> Array:
+    return np.array([stride.length, stride.lateral, stride.turn])

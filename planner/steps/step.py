@@ -1,0 +1,281 @@
+"""A step: where and when it lands, and what its swing over the ground takes."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.ground.terrain import Terrain
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.steps.footsteps import Path
+from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
+from surefoot.planner.swing.course import Ground, swing_course
+from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
+from surefoot.planner.swing.leg_reach import Landing, check_reach, turned_room
+from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.types import Array, Foot, Footstep
+
+_MEASURED = 6
+"""Decimals to which heights of footholds are compared: start feet may be some nanometres off the ground [-]."""
+
+_LOOKED_AT = 60
+"""Instants of a swing over edges at which its acceleration is looked at [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Standing before a step, and the double support in which the weight then goes onto the stance foot.
+
+    Attributes:
+        stand: how long the robot stands [samples].
+        shift: how long the double support takes [samples].
+        rest: part of it before the ZMP begins to move [samples].
+    """
+
+    stand: float
+    shift: float
+    rest: float
+
+    @classmethod
+    def usual(cls, stand: float, double: float, farther: float = 1.0) -> "Stop":
+        """A stop whose weight shift rests for all but the last of `WEIGHT_SHIFT` double supports.
+
+        Args:
+            stand: how long the robot stands [samples].
+            double: usual double support [samples].
+            farther: how many times as far as usual the weight goes, and as long it takes [-].
+        """
+        rest = (WEIGHT_SHIFT - 1) * double
+        return cls(stand, farther * double + rest, rest)
+
+    def retimed(self, double: float) -> "Stop":
+        """The stop with another usual double support [samples]."""
+        return Stop.usual(self.stand, double) if self.rest else Stop(self.stand, double, 0.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """A step in sight, or one that has landed; the start feet count as steps -1 and 0.
+
+    Attributes:
+        number: in the walk, from 1.
+        ordinal: number by which its source knows it, which does not count steps that were inserted.
+        inserted: whether it was inserted between those of its source.
+        stride: what it does to the path.
+        path: where the nominal path comes to with it.
+        nominal: its footstep as it was laid.
+        place: its footstep now: moved, or measured once it has landed. Landing errors do not enter its heading, which
+            therefore does not drift.
+        climb: height of its nominal footstep above where its foot nominally stood before [m].
+        lift: by which the lower of both feet, which the body follows, is higher with it than before [m].
+        room: by which it may land elsewhere on its face, least and greatest way in its own heading, shape (2, 2) [m].
+        course: of its swing over the ground.
+        swing: that swing to a footstep one metre ahead, in its own time.
+        hardest: greatest acceleration of its foot over edges, times the square of its duration; zero without edges [m].
+        support: number in the walk of the support point of the ZMP on its stance foot.
+        stop: standing before it; None where it follows a step.
+        lift_off: when its foot leaves the ground, on the clock [samples].
+        single: duration of its single support [samples].
+        double: duration of the double support after it [samples].
+        roll: of its foot as it leaves the ground; None for one that stays level.
+    """
+
+    number: int
+    ordinal: int
+    inserted: bool
+    stride: Stride
+    path: Path
+    nominal: Footstep
+    place: Footstep
+    climb: float
+    lift: float
+    room: Array
+    course: SwingCourse
+    swing: SwingTrajectory
+    hardest: float
+    support: int
+    stop: Stop | None
+    lift_off: float
+    single: float
+    double: float
+    roll: RollSpan | None
+
+    @property
+    def touchdown(self) -> float:
+        """When its foot lands, on the clock [samples]."""
+        return self.lift_off + self.single
+
+    @property
+    def end(self) -> float:
+        """When the double support after it is over, on the clock [samples]."""
+        return self.touchdown + self.double
+
+    def landing(self, position: Array, normal: Array) -> "Step":
+        """The step that lands elsewhere, positions and normals of shape (3,) [m, -]."""
+        return replace(self, place=replace(self.place, position=position, normal=normal))
+
+    def beside(self, shift: Array, terrain: Terrain) -> Footstep:
+        """The footstep so far from its nominal place as its face goes.
+
+        Args:
+            shift: world frame, shape (2,) [m].
+            terrain: gives its height and normal there.
+        """
+        place = self.nominal
+        if not terrain.free_footholds:
+            axes = frame_rotation(place.yaw)
+            shift = axes @ np.clip(shift @ axes, *self.room)
+        xy = place.position[:2] + shift
+        return replace(place, position=np.append(xy, terrain.heights(xy[None])), normal=terrain.normals(xy[None])[0])
+
+    def retimed(
+        self, before: "Step", lasting: tuple[float, float], begun: float, now: float, parameters: PlannerParameters
+    ) -> "Step":
+        """A step to come in other times, as far as these have not begun.
+
+        A roll that has begun stays, and the swing lasts at least until its foot is level.
+
+        Args:
+            before: the step before it.
+            lasting: single and double support [samples].
+            begun: when the present phase began [samples].
+            now: on the clock [samples].
+            parameters: of the planner.
+        """
+        (single, double), stop, roll = lasting, self.stop, self.roll
+        if stop is not None and before.end + stop.stand > begun:
+            stop = stop.retimed(double)
+        lift_off = lift_off_after(before, stop)
+        if roll is not None and now < roll.start:
+            roll = roll_span(ramp_before(before, stop), lift_off, single, roll.angle)
+        elif roll is not None:
+            single = max(single, (roll.end - lift_off) / LEVEL_AGAIN)
+        swing = unit_swing(single, self.climb, self.course, parameters)
+        return replace(self, stop=stop, lift_off=lift_off, single=single, double=double, roll=roll, swing=swing)
+
+
+def durations(gait: GaitParameters, sample_time: float) -> tuple[float, float]:
+    """Single and double support of a gait [samples]."""
+    return in_samples(gait.single_support, sample_time), in_samples(gait.double_support, sample_time)
+
+
+def lift_off_after(before: Step, stop: Stop | None) -> float:
+    """When a foot leaves the ground after a step and a stop, on the clock [samples]."""
+    return before.end if stop is None else before.end + stop.stand + stop.shift
+
+
+def ramp_before(before: Step, stop: Stop | None) -> float:
+    """Time that the weight takes to leave a foot after a step and a stop [samples]."""
+    return before.double if stop is None else stop.shift - stop.rest
+
+
+def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, ground: Ground) -> Step:
+    """A start foot, as a step from which others are laid."""
+    course, zero = SwingCourse(0.5, 0.0, 1.0, 0.0), Stride(0.0, 0.0, 0.0, gait.step_width)
+    single, _ = durations(gait, ground.parameters.sample_time)
+    return Step(
+        number=number,
+        ordinal=number,
+        inserted=False,
+        stride=zero,
+        path=path,
+        nominal=place,
+        place=place,
+        climb=0.0,
+        lift=0.0,
+        room=np.zeros((2, 2)),
+        course=course,
+        swing=unit_swing(single, 0.0, course, ground.parameters),
+        hardest=0.0,
+        support=-1,
+        stop=None,
+        lift_off=0.0,
+        single=0.0,
+        double=0.0,
+        roll=None,
+    )
+
+
+def lay(
+    stride: Stride, before: tuple[Step, Step], gait: GaitParameters, ground: Ground, stop: Stop | None, inserted: bool
+) -> Step:
+    """The step after two others, where it nominally lands.
+
+    Args:
+        stride: what it does to the path.
+        before: the last step of its foot, and that of the other one.
+        gait: gives the feet, durations, swing height and roll.
+        ground: on which it is laid.
+        stop: standing before it.
+        inserted: whether its source does not know of it.
+
+    Raises:
+        ParameterError: no swing clears the edges before it, or it is out of reach.
+    """
+    (start, stance), parameters, terrain = (step.nominal for step in before), ground.parameters, ground.terrain
+    last, number = before[1], before[1].number + 1
+    single, double = durations(gait, parameters.sample_time)
+    foot = gait.step_foot(number)
+    path, xy = last.path.advanced(stride, foot)
+    position, normal = np.append(xy, terrain.heights(xy[None])), terrain.normals(xy[None])[0]
+    place = Footstep(foot, position, path.yaw, normal)
+    course = swing_course(number, start, place, single, gait.swing_height, ground)
+    to, off, other = (float(one.position[2]) for one in (place, start, stance))
+    climb, lift = round(to - off, _MEASURED), round(min(to, other) - min(other, off), _MEASURED)
+    swing = unit_swing(single, climb, course, parameters)
+    way, over_edges = math.dist(xy, start.position[:2]), climb != 0.0 and not terrain.free_footholds
+    lift_off, half_length = lift_off_after(last, stop), float(ground.half_size[0])
+    heel_off = gait.heel_off != 0.0 and rolls(start, stance, half_length)
+    step = Step(
+        number=number,
+        ordinal=last.ordinal + (not inserted),
+        inserted=inserted,
+        stride=stride,
+        path=path,
+        nominal=place,
+        place=place,
+        climb=climb,
+        lift=lift,
+        room=terrain.free_area(position, path.yaw, ground.half_size, parameters.size.length),
+        course=course,
+        swing=swing,
+        hardest=_hardest(swing, way) if over_edges else 0.0,
+        support=last.support + 1 + (stop is not None),
+        stop=stop,
+        lift_off=lift_off,
+        single=single,
+        double=double,
+        roll=roll_span(ramp_before(last, stop), lift_off, single, gait.heel_off) if heel_off else None,
+    )
+    check_reach(number, Landing.between(stance, place), parameters)
+    return step
+
+
+def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
+    """By which a step may be moved on its face from where it now is to land.
+
+    Args:
+        step: the step.
+        stance: gives the heading in which that is told.
+        parallel: angle up to which the room is the same there [rad].
+
+    Returns:
+        Least and greatest way, shape (2, 2) [m].
+    """
+    yaw = step.nominal.yaw
+    way = (step.place.position - step.nominal.position)[:2] @ frame_rotation(yaw)
+    return turned_room(step.room - way, yaw - stance.yaw, parallel)
+
+
+def _hardest(swing: SwingTrajectory, way: float) -> float:
+    """Greatest acceleration of a unit swing over so much way, times the square of its duration [m]."""
+    instants = np.linspace(0.0, swing.touchdown_time, _LOOKED_AT, endpoint=False)
+    bends = np.abs([swing.evaluate(at)[2, [0, 2]] for at in instants.tolist()]).max(axis=0)
+    return float((bends * (way, 1.0)).max()) * swing.touchdown_time**2
+
+
+def unit_swing(samples: float, climb: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTrajectory:
+    """A swing of so many samples from the origin at time 0 to a footstep one metre ahead that lies higher [m]."""
+    end, times = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), swing_times(0.0, samples, course, parameters)
+    return start_swing(Foot.LEFT, np.zeros(6), end, times, course.height, parameters)

@@ -1,0 +1,1 @@
+"""The programs: the command line, the robot live in a browser page, robot files."""

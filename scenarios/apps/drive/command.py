@@ -1,0 +1,100 @@
+"""``surefoot drive``: the robot live in a browser, until a signal ends it."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.show.options import INTERRUPTED, Seed, Settings, scenarios_from
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.apps.drive.session import Input
+    from surefoot.scenarios.file.schema import Scenario
+    from surefoot.scenarios.run.simulation import Simulation
+
+OWN = Path(__file__).with_name("drive.yaml")
+"""The scenario that is driven if no other one is."""
+
+LONGEST = "duration=3600"
+"""Setting of a drive's runs, which nothing but a fall or their driver shall end."""
+
+
+app = typer.Typer()
+
+
+@app.command()
+def drive(
+    scenario: Annotated[
+        str | None,
+        typer.Argument(help="Catalogue name, scenario file or log; stands by default.", autocompletion=scenarios_from),
+    ] = None,
+    set_: Settings = None,
+    seed: Seed = None,
+    out: Annotated[Path, typer.Option(help="Directory that gets a folder for each run.")] = Path("runs"),
+    port: Annotated[
+        int | None, typer.Option(min=1, max=65534, help="Of the page; the first free one from 8080 on by default.")
+    ] = None,
+) -> None:
+    """Drive the robot in a browser: walk it, push it, until Ctrl-C."""
+    from surefoot.scenarios.errors import SetupError, require
+    from surefoot.scenarios.setup.load import load, locate
+
+    require("viser", "replay", "surefoot drive")
+    reference = scenario or str(OWN)
+    overrides = [LONGEST, *(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
+    loaded = load(reference, overrides)
+    try:
+        drive_scenario(loaded, out, port, typer.echo)
+    except SetupError as refusal:
+        raise locate(reference, overrides, refusal) from None
+    typer.echo("ended; the logs are whole", err=True)
+    raise typer.Exit(INTERRUPTED)
+
+
+def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Callable[[str], None]) -> None:
+    """Drive a scenario's robot until a signal ends it.
+
+    Args:
+        scenario: of every run.
+        out: directory that gets a folder for each run.
+        port: of the page; the first free one if None.
+        say: is told where the page is, and where each run's log.
+
+    Raises:
+        MissingExtraError: viser is not installed.
+        LogError: it is a pendulum; a log cannot be written; the port is taken.
+        SetupError: a part refuses the scenario.
+    """
+    from surefoot.scenarios.apps.drive.page import opened
+    from surefoot.scenarios.apps.drive.session import Session
+    from surefoot.scenarios.record.provenance import LOG_NAME
+    from surefoot.scenarios.run.interrupts import held_back
+    from surefoot.scenarios.run.run import own_folder
+    from surefoot.scenarios.run.simulation import Simulation
+
+    if scenario.fidelity == "pendulum":
+        raise LogError("a pendulum has no body to show or to push; drive with fidelity full")
+
+    def begin() -> "Simulation":
+        folder = own_folder(out, scenario.name, scenario.seed)
+        try:
+            simulation = Simulation(scenario, log=folder / LOG_NAME)
+        except BaseException:
+            with suppress(OSError):
+                folder.rmdir()
+            raise
+        say(f"log: {folder / LOG_NAME}")
+        return simulation
+
+    inputs: SimpleQueue[Input] = SimpleQueue()
+    with held_back() as interrupts, opened(port, inputs) as page:
+        say(f"{page.address} drives {scenario.name}; Ctrl-C ends it")
+        session = Session(begin, page, inputs)
+        try:
+            session.run(lambda: interrupts.count > 0)
+        finally:
+            session.close()

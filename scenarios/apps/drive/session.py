@@ -1,0 +1,347 @@
+"""A drive: runs that keep step with the wall clock, and inputs that take effect between their control ticks."""
+
+import math
+import time
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from queue import Empty, SimpleQueue
+from typing import Any, Protocol
+
+from surefoot.errors import ParameterError
+from surefoot.scenarios.run.planning import RunFault
+from surefoot.scenarios.run.simulation import Tick
+from surefoot.scenarios.run.skeleton import End
+
+
+@dataclass(frozen=True, slots=True)
+class Velocity:
+    """How the robot shall walk, in the frame of its path's heading [m/s, rad/s]."""
+
+    v_x: float = 0.0
+    v_y: float = 0.0
+    yaw_rate: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class GaitInput:
+    """How it shall step; None leaves as it is [s, s, m]."""
+
+    single_support: float | None = None
+    double_support: float | None = None
+    swing_height: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PushInput:
+    """A push on a body, world frame [N·s]; evenly over `PUSH_TIME`."""
+
+    impulse: tuple[float, float, float]
+    body: str
+
+
+@dataclass(frozen=True, slots=True)
+class PaceInput:
+    """Simulated over wall-clock time; None leaves as it is [-]."""
+
+    speed: float | None = None
+    paused: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Reset:
+    """End this run and begin another one."""
+
+
+Input = Velocity | GaitInput | PushInput | PaceInput | Reset
+
+PUSH_TIME = 0.1
+"""How long a push acts, simulated [s]."""
+
+COMMAND_PERIOD = 0.1
+"""Least time between two commands, simulated [s]; a stop does not wait."""
+
+PICTURE_PERIOD, SLOWEST_PICTURES = 1 / 30, 1 / 5
+"""Time between pictures where there is time for them and the browser keeps up, and otherwise [s]."""
+
+BURST = 0.008
+"""How long control ticks are simulated before inputs are looked at again [s]."""
+
+NO_TIME = 0.03
+"""Lag behind the wall clock from which on pictures are left out [s]."""
+
+TOO_FAR = 1.0
+"""Lag that is not caught up any more [s]; the machine is too slow."""
+
+IDLE = 0.004
+"""How long is waited when nothing is due [s]."""
+
+_PACE_SPAN = 2.0
+_SLOW_SHOWN = 4.0
+
+
+class DrivenRobot(Protocol):
+    """What is driven: a `Simulation`, to which nothing is done but between two of its control ticks."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the next tick [s]."""
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing more to step."""
+
+    @property
+    def end(self) -> End:
+        """How the run ended."""
+
+    def advance(self) -> None:
+        """Go through one control tick."""
+
+    def look(self) -> Tick:
+        """The last tick."""
+
+    def push(self, force: Any, duration: float = ..., body: str | None = ...) -> None:
+        """Push it."""
+
+    def command(
+        self,
+        v_x: float | None = ...,
+        v_y: float | None = ...,
+        yaw_rate: float | None = ...,
+        *,
+        single_support: float | None = ...,
+        double_support: float | None = ...,
+        swing_height: float | None = ...,
+    ) -> None:
+        """Tell it how to walk."""
+
+    def close(self) -> None:
+        """End the run and make its log whole."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveStatus:
+    """What is to be told beside a picture.
+
+    Attributes:
+        run: number of the run, from 1 on.
+        time: simulated time of the run [s].
+        speed: asked for, simulated over wall-clock time [-].
+        pace: reached in the last seconds, likewise [-].
+        paused: whether time stands still.
+        over: whether the run has ended.
+        wanted: velocity that was asked for last.
+        note: what is to be said: a fall, a machine that is too slow, a command that was refused; empty for nothing.
+    """
+
+    run: int
+    time: float
+    speed: float
+    pace: float
+    paused: bool
+    over: bool
+    wanted: Velocity
+    note: str
+
+
+class DriveView(Protocol):
+    """Where the robot is seen."""
+
+    @property
+    def drawn(self) -> bool:
+        """Whether all that was shown has been drawn where somebody looks."""
+
+    def begin(self, robot: Any) -> None:
+        """A run begins."""
+
+    def pushed(self, push: PushInput, time: float) -> None:
+        """A push begins to act at a simulated time [s]."""
+
+    def show(self, tick: Tick, status: DriveStatus) -> None:
+        """Show a picture."""
+
+
+class Session:
+    """Runs one after another, each in real time.
+
+    Control ticks are never left out; pictures are, where the ticks leave no time for them.
+
+    Args:
+        begin: makes the simulation of the next run.
+        page: shows it.
+        inputs: of any thread; each takes effect before the next control tick.
+        clock: wall-clock time [s].
+    """
+
+    def __init__(
+        self,
+        begin: Callable[[], DrivenRobot],
+        page: DriveView,
+        inputs: "SimpleQueue[Input]",
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        self._make, self._page, self._inputs, self._clock = begin, page, inputs, clock
+        self._speed, self._paused = 1.0, False
+        self._gait = GaitInput()
+        self._runs = 0
+        self._robot: DrivenRobot
+        self._shown_at = -math.inf
+        self._begin()
+
+    def run(self, stopped: Callable[[], bool], sleep: Callable[[float], None] = time.sleep) -> None:
+        """Go on until stopped."""
+        while not stopped():
+            sleep(self.advance())
+
+    def close(self) -> None:
+        """End the run; its log is whole then."""
+        self._robot.close()
+
+    def advance(self) -> float:
+        """Do what is due now; gives the time until there is more to do [s]."""
+        self._take_inputs()
+        now = self._clock()
+        moving = not (self._paused or self._robot.done)
+        if not moving:
+            self._anchor(now)
+            self._passed.clear()
+        elif self._lag(now) > TOO_FAR:
+            self._slow_at, self._slow_pace = now, self._pace(now)
+            self._anchor(now)
+        self._step_until(now + BURST)
+        now = self._clock()
+        lag = self._lag(now)
+        period = PICTURE_PERIOD if moving and lag < NO_TIME and self._page.drawn else SLOWEST_PICTURES
+        if now - self._shown_at >= period - 1e-6:
+            self._shown_at = now
+            with suppress(RunFault):  # there is nothing to see of a run that ended in its first tick
+                self._page.show(self._robot.look(), self._status(now))
+            return 0.0
+        if not moving:
+            return 5 * IDLE
+        return 0.0 if lag > 0.0 else IDLE
+
+    def _begin(self) -> None:
+        self._robot = self._make()
+        self._runs += 1
+        self._wanted = self._sent = Velocity()
+        self._sent_gait, self._sent_at = GaitInput(), -math.inf
+        self._over, self._note = False, ""
+        self._slow_at = self._shown_at = -math.inf
+        self._page.begin(self._robot)
+        with suppress(RunFault):  # its end says why
+            self._robot.advance()
+        self._passed: deque[tuple[float, float]] = deque()
+        self._anchor(self._clock())
+
+    def _anchor(self, now: float) -> None:
+        """Count simulated time anew from here and now."""
+        self._anchored = (now, self._robot.time)
+
+    def _due(self, now: float) -> float:
+        """Simulated time that should be reached [s]."""
+        wall, simulated = self._anchored
+        return simulated + (now - wall) * self._speed
+
+    def _lag(self, now: float) -> float:
+        """How far the run is behind, in wall-clock time [s]."""
+        return (self._due(now) - self._robot.time) / self._speed
+
+    def _pace(self, now: float) -> float:
+        """Simulated over wall-clock time in the last seconds."""
+        passed = self._passed
+        passed.append((now, self._robot.time))
+        while len(passed) > 2 and passed[1][0] < now - _PACE_SPAN:
+            passed.popleft()
+        span = now - passed[0][0]
+        return (self._robot.time - passed[0][1]) / span if span > 0.1 else self._speed
+
+    def _step_until(self, deadline: float) -> None:
+        """Simulate what is due, or as much of it as there is time for."""
+        robot, now = self._robot, self._clock()
+        while not (robot.done or self._paused) and robot.time < self._due(now) - 1e-9 and now < deadline:
+            self._send()
+            with suppress(RunFault):
+                robot.advance()
+            now = self._clock()
+        if robot.done and not self._over:
+            self._over, self._note = True, _ending(robot.end)
+
+    def _take_inputs(self) -> None:
+        while True:
+            try:
+                given = self._inputs.get_nowait()
+            except Empty:
+                return
+            self._take(given)
+
+    def _take(self, given: Input) -> None:
+        if isinstance(given, Velocity):
+            self._wanted = given
+        elif isinstance(given, GaitInput):
+            self._gait = replace(self._gait, **{key: v for key, v in asdict(given).items() if v is not None})
+        elif isinstance(given, PushInput):
+            if self._over:
+                return
+            self._note = ""
+            if self._try(self._push, given):
+                self._page.pushed(given, self._robot.time)
+        elif isinstance(given, PaceInput):
+            self._speed = self._speed if given.speed is None else given.speed
+            self._paused = self._paused if given.paused is None else given.paused
+            self._anchor(self._clock())
+            self._passed.clear()
+        else:
+            self._robot.close()
+            self._begin()
+
+    def _push(self, push: PushInput) -> None:
+        self._robot.push([part / PUSH_TIME for part in push.impulse], PUSH_TIME, push.body)
+
+    def _send(self) -> None:
+        """Command what has changed, before a control tick."""
+        wanted, stop = self._wanted, self._wanted == Velocity()
+        if (wanted, self._gait) == (self._sent, self._sent_gait):
+            return
+        if self._robot.time - self._sent_at < COMMAND_PERIOD - 1e-9 and not (stop and wanted != self._sent):
+            return
+        before = asdict(self._sent_gait)
+        changed = {key: value for key, value in asdict(self._gait).items() if value != before[key]}
+        # One after the other: a gait that is refused shall not take a stop with it.
+        orders = (asdict(wanted) if wanted != self._sent else {}, changed)
+        self._sent, self._sent_gait, self._sent_at = wanted, self._gait, self._robot.time
+        self._note = ""
+        for keys in filter(None, orders):
+            self._try(lambda keys: self._robot.command(**keys), keys)
+
+    def _try(self, do: Callable[[Any], None], what: Any) -> bool:
+        """Do what the robot may refuse, and say so if it does."""
+        try:
+            do(what)
+        except ParameterError as refusal:
+            self._note = f"{refusal.what}; {refusal.right}"
+            return False
+        return True
+
+    def _status(self, now: float) -> DriveStatus:
+        slow = now - self._slow_at < _SLOW_SHOWN
+        return DriveStatus(
+            run=self._runs,
+            time=self._robot.time,
+            speed=self._speed,
+            pace=self._pace(now),
+            paused=self._paused,
+            over=self._over,
+            wanted=self._wanted,
+            note=self._note or (f"the machine is too slow: {self._slow_pace:.1f} x real time" if slow else ""),
+        )
+
+
+def _ending(end: End) -> str:
+    what = {
+        "completed": f"the scenario's {end.time:g} s are over",
+        "fall": f"it has fallen at {end.time:.1f} s",
+    }.get(end.kind, end.reason)
+    return f"{what}: reset it (R)"

@@ -1,0 +1,67 @@
+"""``surefoot robot``: what a robot of one's own is worth, and a first file for it."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from surefoot.scenarios.apps.terminal import Commands
+from surefoot.scenarios.show.options import INTERRUPTED, MISSED, AsJson, Jobs
+
+app = typer.Typer(cls=Commands, help="Check a robot of one's own, or write a first file for it.", no_args_is_help=True)
+
+
+@app.command()
+def check(
+    robot: Annotated[str, typer.Argument(metavar="FILE", help="A robot file, or the name of a robot.")],
+    walk: Annotated[bool, typer.Option("--walk", help="Run the scenarios that it accepts.")] = False,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="SCENARIO", help="Of the catalogue this scenario alone; repeatable.")
+    ] = None,
+    jobs: Jobs = None,
+    out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/robot"),
+    as_json: AsJson = False,
+) -> None:
+    """Say what was derived of a robot, measure it, and which scenarios it takes."""
+    from surefoot.scenarios.apps.robots import report
+    from surefoot.scenarios.apps.robots.examine import chosen, examine, known, rows
+    from surefoot.scenarios.show.console import plain_console
+    from surefoot.scenarios.study.campaigns.sweep import cores
+
+    names, console = chosen(only or ()), plain_console()
+    explained = known(robot)
+    found = examine(explained.description)
+    if not as_json:
+        report.print_examination(console, explained, found)
+    try:
+        with report.CatalogueBar(None if as_json else console, names) as bar:
+            table = rows(robot, names, walk, jobs or cores(), out, bar)
+    except KeyboardInterrupt:
+        typer.echo("interrupted", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    if as_json:
+        typer.echo(json.dumps(report.to_json(explained, found, table), allow_nan=False))
+    else:
+        typer.echo(report.summary(table))
+    sound = not found.faults and any(row.outcome in ("walks", "accepted") for row in table)
+    raise typer.Exit(0 if sound and not any(row.outcome == "fails" for row in table) else MISSED)
+
+
+@app.command()
+def new(
+    model: Annotated[str, typer.Argument(help="URDF or MJCF: a path, or package://NAME/...")],
+) -> None:
+    """Print a first robot file for a model, to be saved where the model's path is right."""
+    from surefoot.models.robot_file.draft import draft
+    from surefoot.models.types import RobotError
+    from surefoot.scenarios.errors import ScenarioError
+
+    try:
+        made = draft(model, Path())
+    except RobotError as error:
+        raise ScenarioError([str(error)]) from None
+    typer.echo(made.text, nl=False)
+    if made.refusal:
+        typer.echo(f"not yet usable: {made.refusal}", err=True)
+        raise typer.Exit(MISSED)

@@ -1,0 +1,331 @@
+"""What a described robot is worth, standing and walking: engines, legs, soles, torque, and which scenarios it takes."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from surefoot.models.consistency import EnginePair
+from surefoot.models.registry import UnknownRobotError, explain
+from surefoot.models.robot_file.build import Explanation
+from surefoot.models.types import RobotDescription, RobotError
+from surefoot.plugins import PluginError
+from surefoot.scenarios import catalogue
+from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.run.run import run_scenario
+from surefoot.scenarios.run.simulation import Simulation
+from surefoot.scenarios.setup.gait import leg_span
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.robot import facts_of
+from surefoot.scenarios.setup.stance import Body, body_of
+from surefoot.scenarios.setup.standing import TorqueMargin, on_one_foot, standing
+from surefoot.scenarios.study.campaigns.engine import side_by_side
+
+Array = NDArray[np.float64]
+
+PARITY = 1e-9
+"""Engines that differ by more do not compute the same robot; over the mass in kilograms, or absolute below 1 kg."""
+
+_ALIKE = 1e-3
+"""Relative difference of left and right from which on it is told [-]."""
+
+HEIGHTS = (0.98, 1.02, 0.96, 1.04, 0.94, 0.92, 0.9, 0.87)
+"""CoM heights that are proposed, over the nominal one, the nearest first [-]."""
+
+_STATES = 50
+_LEVEL, _TILT = 1e-4, 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Examination:
+    """What was measured of a description.
+
+    Attributes:
+        parity: largest difference between MuJoCo and Pinocchio over random states, over the mass in kilograms, or
+            absolute below 1 kg.
+        differences: what is not alike on the left and on the right, one sentence each.
+        sole_height: how much higher the right sole is than the left one in the nominal posture [m].
+        sole_tilt: larger angle of a sole's normal from the vertical there, pelvis upright [rad].
+        both_feet: static torques of standing with the CoM between the soles at its nominal height.
+        one_foot: likewise with the CoM over one sole, which bears all; the worse of both.
+        both_height: CoM height at which the joints could stand on both feet; None where no other is needed or does [m].
+        one_height: likewise on one foot [m].
+        longest_step: with flat soles at the nominal CoM height [m].
+        touching: bodies that touch each other in that stance, by pairs.
+    """
+
+    parity: float
+    differences: tuple[str, ...]
+    sole_height: float
+    sole_tilt: float
+    both_feet: TorqueMargin
+    one_foot: TorqueMargin
+    both_height: float | None
+    one_height: float | None
+    longest_step: float
+    touching: tuple[tuple[str, str], ...]
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What keeps it from walking, one sentence each; what is merely unlike is none."""
+        return tuple(self._faults())
+
+    def _faults(self) -> Iterator[str]:
+        if not self.parity <= PARITY:
+            yield f"MuJoCo and Pinocchio differ by {self.parity:.1e}; they must agree within {PARITY:.0e}"
+        if abs(self.sole_height) > _LEVEL:
+            yield (
+                f"in the nominal posture the right sole is {1e3 * self.sole_height:.1f} mm higher than the left one; "
+                "give a posture in which both are on the same ground"
+            )
+        if self.sole_tilt > _TILT:
+            yield (
+                f"in the nominal posture a sole is tilted by {math.degrees(self.sole_tilt):.2f} deg; "
+                "give a posture in which both are level"
+            )
+        if not self.both_feet.joint:
+            yield f"it cannot stand on both feet at its nominal CoM height; {self._height(self.both_height)}"
+        for margin, height, where in (
+            (self.both_feet, self.both_height, "both feet"),
+            (self.one_foot, self.one_height, "one foot"),
+        ):
+            if margin.joint and margin.share > 1.0:
+                more = f"give torque_limit: {{{margin.joint}: {math.ceil(margin.needed)}}} if its motor has it"
+                yield (
+                    f"joint '{margin.joint}' needs {margin.needed:.0f} N m to stand on {where}, "
+                    f"{margin.share:.0%} of its limit; {self._height(height) if height else more}"
+                )
+        for one, other in self.touching:
+            yield f"bodies '{one}' and '{other}' touch in the stance; give a posture that keeps them apart"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be known of it, and keeps it from nothing, one sentence each."""
+        leaning = "it cannot stand still on one foot at its nominal CoM height, which walking need not"
+        wide = () if self.one_foot.joint else (f"{leaning}; {self._height(self.one_height)}",)
+        return (*self.differences, *wide)
+
+    @staticmethod
+    def _height(height: float | None) -> str:
+        return f"com_height: {height:g} would do" if height else "no com_height near it would do"
+
+
+def known(name: str) -> Explanation:
+    """A robot by its name or file, with what of it was derived and what else is to be known.
+
+    Raises:
+        ScenarioError: there is none, or its file cannot be used.
+    """
+    try:
+        return explain(name)
+    except (UnknownRobotError, PluginError, RobotError) as error:
+        raise ScenarioError([str(error)]) from None
+
+
+def examine(robot: RobotDescription) -> Examination:
+    """Measure a robot."""
+    body = body_of(robot)
+    height, tilt = _soles(body)
+    both, q = standing(body, 0.0)
+    one = on_one_foot(body)
+    return Examination(
+        parity=_parity(robot),
+        differences=tuple(_differences(body)),
+        sole_height=height,
+        sole_tilt=tilt,
+        both_feet=both,
+        one_foot=one,
+        both_height=_other_height(body, both, lambda other: standing(other, 0.0)[0]),
+        one_height=_other_height(body, one, on_one_foot),
+        longest_step=leg_span(robot.com_height, facts_of(robot)),
+        touching=_touching(robot, q),
+    )
+
+
+def _other_height(body: Body, margin: TorqueMargin, stands: Callable[[Body], TorqueMargin]) -> float | None:
+    """The nearest of some CoM heights at which a robot stands that does not at its own; None where it does [m]."""
+    heights = (float(f"{share * body.robot.com_height:.3g}") for share in HEIGHTS)
+    others = (replace(body, robot=replace(body.robot, com_height=height)) for height in heights)
+    return None if margin.share <= 1.0 else next((b.robot.com_height for b in others if stands(b).share <= 1.0), None)
+
+
+def _parity(robot: RobotDescription) -> float:
+    pair, rng = EnginePair(robot), np.random.default_rng(0)
+    return max(pair.difference(*pair.random_state(rng)).largest for _ in range(_STATES)) / max(1.0, robot.mass)
+
+
+def _differences(body: Body) -> Iterator[str]:
+    """Limits of each pair of leg joints, and masses of the legs."""
+    robot = body.robot
+    masses = []
+    for leg in (robot.roles.left_leg, robot.roles.right_leg):
+        data = body.model.createData()
+        pin.computeSubtreeMasses(body.model, data)
+        masses.append(data.mass[body.model.getJointId(leg[0])])
+    if abs(masses[0] - masses[1]) > _ALIKE * max(masses):
+        yield f"the left leg weighs {masses[0]:.3f} kg, the right one {masses[1]:.3f} kg"
+    pairs = zip(robot.roles.left_leg, robot.roles.right_leg, strict=False)
+    for left, right in pairs:
+        i, j = robot.joint_indices((left, right))
+        for name, unit in (("torque_limit", "N m"), ("velocity_limit", "rad/s")):
+            one, other = float(getattr(robot, name)[i]), float(getattr(robot, name)[j])
+            if abs(one - other) > _ALIKE * max(one, other):
+                kind = name.replace("_", " ")
+                yield f"the {kind} of '{left}' is {one:g} {unit}, that of '{right}' {other:g} {unit}"
+        here, there = (np.array((robot.position_lower[k], robot.position_upper[k])) for k in (i, j))
+        if min(np.abs(here - there).max(), np.abs(here + there[::-1]).max()) > _ALIKE:
+            yield (
+                f"'{left}' turns from {here[0]:.3f} to {here[1]:.3f} rad, "
+                f"'{right}' from {there[0]:.3f} to {there[1]:.3f} rad, which is no mirror image"
+            )
+
+
+def _soles(body: Body) -> tuple[float, float]:
+    """How much higher the right sole is, and the larger tilt, with the pelvis upright in the nominal posture."""
+    q = pin.neutral(body.model)
+    q[7:] = body.robot.nominal_joint_positions
+    data = body.model.createData()
+    pin.framesForwardKinematics(body.model, data, q)
+    left, right = (data.oMf[body.model.getFrameId(name)] for name in body.frames.soles)
+    # How a foot leans that no joint rolls is its leg's.
+    rows = slice(0, 1 if body.robot.roles.feet_lean else 2)
+    tilt = max(math.atan2(np.linalg.norm(sole.rotation[2, rows]), sole.rotation[2, 2]) for sole in (left, right))
+    return float(right.translation[2] - left.translation[2]), tilt
+
+
+def _touching(robot: RobotDescription, q: Array) -> tuple[tuple[str, str], ...]:
+    """Bodies that touch at a configuration in Pinocchio's convention."""
+    model = mujoco.MjModel.from_xml_string(robot.mjcf)
+    data = mujoco.MjData(model)
+    data.qpos[:] = q
+    data.qpos[3:7] = q[[6, 3, 4, 5]]
+    mujoco.mj_forward(model, data)
+    found = []
+    for contact in data.contact[: data.ncon]:
+        one, other = (model.body(model.geom_bodyid[geom]).name for geom in contact.geom)
+        if contact.dist < 0.0:
+            found.append((one, other))
+    return tuple(dict.fromkeys(found))
+
+
+CatalogueOutcome = Literal["accepted", "walks", "fails", "refused"]
+
+
+@dataclass(frozen=True, slots=True)
+class CatalogueRow:
+    """A scenario and what a robot makes of it.
+
+    Attributes:
+        scenario: name in the catalogue.
+        outcome: accepted (it may be run, and was not), walks (it ran and met every criterion), fails (it ran and did
+            not), or refused before any run.
+        why: it fails or is refused, one sentence each.
+        log: of the run, None where there was none.
+        duration: simulated time of the run, also of one that is still to come; 0 where it is refused [s].
+    """
+
+    scenario: str
+    outcome: CatalogueOutcome
+    why: tuple[str, ...] = ()
+    log: Path | None = None
+    duration: float = 0.0
+
+
+class Watcher:
+    """Is told how far the catalogue is; this one does nothing with it."""
+
+    def begun(self, runs: int, duration: float) -> None:
+        """So many runs of so much simulated time in all [s] are to come."""
+
+    def done(self, row: CatalogueRow) -> None:
+        """A row is known for good."""
+
+
+class _Looked(NamedTuple):
+    """A row before any run, and the scenario that a run takes; None where it is refused."""
+
+    row: CatalogueRow
+    scenario: Scenario | None
+
+
+def chosen(names: Sequence[str]) -> tuple[str, ...]:
+    """Those of the catalogue that are named, in its order; all where none is.
+
+    Raises:
+        ScenarioError: the catalogue has no such scenario.
+    """
+    for name in names:
+        if name not in catalogue.OWN:
+            raise catalogue.unknown(name, "no such catalogue name")
+    return tuple(name for name in catalogue.OWN if not names or name in names)
+
+
+def rows(
+    robot: str, names: Sequence[str], walk: bool, jobs: int, out: Path, watcher: Watcher | None = None
+) -> tuple[CatalogueRow, ...]:
+    """Scenarios of the catalogue on a robot.
+
+    Each is looked at once. The longest runs come first, so that no process waits for the others at the end.
+
+    Args:
+        robot: name or path of its file.
+        names: of the scenarios.
+        walk: whether to run what it accepts.
+        jobs: runs at once.
+        out: directory of the logs.
+        watcher: is told how far it is.
+
+    Returns:
+        a row for each scenario, in the given order.
+    """
+    watcher = watcher or Watcher()
+    found: dict[str, CatalogueRow] = {}
+    for row in _walked(robot, names, jobs, out, watcher) if walk else (_look(name, robot).row for name in names):
+        found[row.scenario] = row
+        watcher.done(row)
+    return tuple(found[name] for name in names)
+
+
+def _walked(robot: str, names: Sequence[str], jobs: int, out: Path, watcher: Watcher) -> Iterator[CatalogueRow]:
+    """Rows as they come: what is refused, then the runs."""
+    looked = list(side_by_side(_look, [(name, robot) for name in names], jobs, _unseen))
+    runs = sorted((one for one in looked if one.scenario is not None), key=lambda one: -one.row.duration)
+    watcher.begun(len(runs), sum(one.row.duration for one in runs))
+    yield from (one.row for one in looked if one.scenario is None)
+    if runs:
+        yield from side_by_side(_run, [(*one, out) for one in runs], jobs, _lost)
+
+
+def _look(name: str, robot: str) -> _Looked:
+    try:
+        scenario = load(name, {"robot": robot})
+        with Simulation(scenario) as simulation:
+            return _Looked(CatalogueRow(name, "accepted", duration=simulation.walk.duration), scenario)
+    except (ScenarioError, SetupError) as refusal:
+        return _Looked(CatalogueRow(name, "refused", tuple(str(refusal).splitlines())), None)
+
+
+def _run(row: CatalogueRow, scenario: Scenario, out: Path) -> CatalogueRow:
+    try:
+        result = run_scenario(scenario, out)
+    except (ScenarioError, SetupError) as refusal:
+        return replace(row, outcome="refused", why=tuple(str(refusal).splitlines()))
+    except LogError as error:
+        return replace(row, outcome="fails", why=(str(error),))
+    outcome: CatalogueOutcome = "walks" if result.verdict.passed else "fails"
+    return replace(row, outcome=outcome, why=tuple(result.verdict.reasons), log=result.log)
+
+
+def _unseen(name: str, robot: str, why: str) -> _Looked:
+    return _Looked(CatalogueRow(name, "fails", (why,)), None)
+
+
+def _lost(row: CatalogueRow, scenario: Scenario, out: Path, why: str) -> CatalogueRow:
+    return replace(row, outcome="fails", why=(why,))

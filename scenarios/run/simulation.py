@@ -1,0 +1,333 @@
+"""A simulation that is stepped from outside, one control tick at a time: looked into, pushed, stopped at will."""
+
+import json
+import math
+from collections.abc import Callable, Sequence
+from copy import deepcopy
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import ValidationError
+
+from surefoot.errors import ParameterError
+from surefoot.planner.laws.profiles import Profile
+from surefoot.planner.plan import Planner, PlanSample
+from surefoot.planner.steps.commands import Orders
+from surefoot.scenarios.errors import LogError, nearest
+from surefoot.scenarios.file.schema import CommandSettings, Scenario
+from surefoot.scenarios.log import LogWriter, NoLog
+from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED
+from surefoot.scenarios.run.full import Parts, SimulatedRobot
+from surefoot.scenarios.run.planning import RunFault
+from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
+from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing
+from surefoot.scenarios.run.tick import Tick
+from surefoot.scenarios.setup.commands import timed_command
+from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.setup.walk import Walk, resolve
+from surefoot.sim.pushes import Push
+
+if TYPE_CHECKING:
+    from surefoot.models.types import RobotDescription
+    from surefoot.scenarios.run.sensing import Estimator
+    from surefoot.wbc.controller import WholeBodyController
+    from surefoot.wbc.tasks import TaskFactory
+
+__all__ = ["Simulation", "Tick"]
+
+
+class Simulation:
+    """A walk in simulation, from outside.
+
+        sim = Simulation("walk", seed=3)
+        while not sim.done:
+            tick = sim.step()
+
+    While one is open, numpy's linear algebra keeps to one thread. Usable as a context manager.
+
+    Args:
+        scenario: a scenario, or what `surefoot.load` takes to find one.
+        seed: over that of the scenario.
+        log: file that becomes the log; None for none. An existing file is not replaced.
+        planner: a `Profile` in place of the scenario's: one's own law of motion, or a whole planner in it.
+        controller: makes the whole-body controller; called with the arguments of `WholeBodyController` by name.
+        estimator: makes the state estimator from the walk; see `surefoot.scenarios.run.sensing.Estimator`.
+        robot: a description in place of the robot that the scenario names.
+        tasks: make tasks for the whole-body QP beside its own; see `surefoot.wbc.tasks.Task`.
+
+    Attributes:
+        scenario: what is simulated.
+        walk: what it means.
+
+    Raises:
+        ScenarioError: the scenario cannot be found or run.
+        SetupError: a part refuses it.
+        PartError: a part of others cannot be made.
+        LogError: the log exists or cannot be written.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario | str,
+        seed: int | None = None,
+        log: str | Path | None = None,
+        *,
+        planner: Profile | None = None,
+        controller: "Callable[..., WholeBodyController] | None" = None,
+        estimator: "Callable[[Walk], Estimator] | None" = None,
+        robot: "RobotDescription | None" = None,
+        tasks: "Sequence[TaskFactory]" = (),
+    ) -> None:
+        loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
+        self.scenario = loaded if seed is None else loaded.model_copy(update={"seed": seed})
+        with refusing():
+            self.walk = resolve(self.scenario, robot, planner)
+        self._parts = Parts.of(controller=controller, estimator=estimator, tasks=tuple(tasks) or None)
+        self._given = {"planner": planner, "robot": robot, **self._parts.given()}
+        self._path = None if log is None else Path(log)
+        self._writer: LogWriter
+        self._loop: ClosedLoop
+        self._last: tuple[float, PlanSample] | None
+        self._pushes, self._told, self._closed = 0, 0, False
+        self._threads = one_thread()
+        self._begin()
+
+    def _begin(self) -> None:
+        self._last = None
+        if self._path is None:
+            self._writer = NoLog()
+        else:
+            self._writer = open_log(self._path, self.walk)
+        try:
+            self._loop = closed_loop(self.walk, self._writer, self._parts)
+            note_parts(self._writer, self._given)
+        except BaseException:
+            self._writer.discard()
+            raise
+        self._end_when_over()
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the next tick [s]."""
+        return self._loop.time
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing more to step: the time is over, the robot has fallen, or a fault ended the run."""
+        return self._loop.done
+
+    @property
+    def fell(self) -> bool:
+        """Whether the robot has fallen."""
+        return self._loop.fell
+
+    @property
+    def end(self) -> End:
+        """How the run ended, or will if nothing happens."""
+        return self._loop.end
+
+    @property
+    def planner(self) -> Planner:
+        """The walking planner."""
+        return self._loop.planning.planner
+
+    @property
+    def controller(self) -> "WholeBodyController":
+        """The whole-body controller.
+
+        Raises:
+            AttributeError: a pendulum has none.
+        """
+        walker = self._loop.walker
+        if not isinstance(walker, SimulatedRobot):
+            raise AttributeError("a pendulum has no whole-body controller; simulate with fidelity full")
+        return walker.controller
+
+    def step(self) -> Tick:
+        """Go through one control tick.
+
+        Raises:
+            RunFault: the run is over; says since when and why. `reset` begins anew.
+        """
+        self.advance()
+        return self.look()
+
+    def advance(self) -> None:
+        """Go through one control tick without a look at it, which saves a tenth of the time; errors as of `step`."""
+        self._refuse_when_over()
+        loop = self._loop
+        time, sample = loop.time, loop.step()
+        self._end_when_over()
+        if sample is None:
+            raise RunFault(f"{loop.end.reason}; reset() begins anew") from loop.fault
+        self._last = (time, sample)
+
+    def _refuse_when_over(self) -> None:
+        loop = self._loop
+        if loop.done:
+            raise RunFault(f"the run is over at {loop.end.time:.3f} s, {loop.end.kind}; reset() begins anew")
+
+    def _end_when_over(self) -> None:
+        """Make the log whole once nothing more will happen, whether or not anyone closes the simulation."""
+        if self._loop.done:
+            write_end(self._writer, self._loop.end)
+            self._writer.close()
+
+    def look(self) -> Tick:
+        """The last tick.
+
+        Raises:
+            RunFault: there is none before the first step.
+        """
+        if self._last is None:
+            raise RunFault("there is no tick to look at yet; step() makes the first one")
+        loop, (time, sample) = self._loop, self._last
+        seen = loop.walker.look()
+        return Tick(
+            time=time,
+            com=seen.com,
+            com_velocity=seen.com_velocity,
+            zmp=seen.zmp,
+            plan=loop.planning.plan,
+            reference=sample,
+            fell=loop.fell,
+            state=deepcopy(seen.state),
+            report=deepcopy(seen.report),
+            measurement=deepcopy(seen.measurement),
+        )
+
+    def command(
+        self,
+        v_x: float | None = None,
+        v_y: float | None = None,
+        yaw_rate: float | None = None,
+        *,
+        single_support: float | None = None,
+        double_support: float | None = None,
+        swing_height: float | None = None,
+    ) -> None:
+        """Tell the walk something, from the next plan on; what is None stays as it is.
+
+        A step that is being swung, or to which the weight is being shifted, is taken as it was planned. A velocity that
+        is out of reach is bent to the fastest in its direction that is not; see `orders`.
+
+        Args:
+            v_x: forward velocity of the path, held until the next one; 0 if another of the three is given [m/s].
+            v_y: to the left, likewise [m/s].
+            yaw_rate: rate of the heading, likewise, positive to the left [rad/s].
+            single_support: duration; what is left of the present phase changes in proportion [s].
+            double_support: likewise [s].
+            swing_height: clearance of the steps to come [m].
+
+        Raises:
+            RunFault: the run is over.
+            ParameterError: a number is out of bounds, the ground has edges, or the planner takes no commands.
+        """
+        velocity = {"v_x": v_x, "v_y": v_y, "yaw_rate": yaw_rate}
+        gait = {"single_support": single_support, "double_support": double_support, "swing_height": swing_height}
+        self._tell({name: value for name, value in {**velocity, **gait}.items() if value is not None})
+
+    def go_to(self, x: float, y: float, yaw: float) -> None:
+        """Walk to a place and stand there, from the next plan on.
+
+        Args:
+            x: where the middle of the stance shall be, in the world frame [m].
+            y: likewise [m].
+            yaw: heading there [rad].
+
+        Raises:
+            ParameterError: as of `command`.
+        """
+        self._tell({"place": {"x": x, "y": y, "yaw": yaw}})
+
+    def _tell(self, keys: dict[str, Any]) -> None:
+        self._refuse_when_over()
+        if not keys:
+            right = "give a velocity, or what of the gait is to change"
+            raise ParameterError(("command",), "a command that says nothing", right)
+        try:
+            settings = CommandSettings.model_validate({"time": self.time, **keys})
+        except ValidationError as error:
+            fault = error.errors(include_url=False)[0]
+            what = f"a command with {fault['loc'][-1]} {fault['input']!r}"
+            raise ParameterError(("command", *map(str, fault["loc"])), what, fault["msg"]) from None
+        self._loop.planning.command(timed_command(settings).command, self._loop.tick)
+        self._told += 1
+        record = json.dumps(settings.model_dump(mode="json", exclude_none=True))
+        self._writer.add_metadata(f"{COMMAND_RECORD}{self._told}", {"command": record})
+
+    @property
+    def orders(self) -> Orders:
+        """What the walk does of what it has been told, in its last plan.
+
+        Raises:
+            ParameterError: the planner takes no commands.
+        """
+        return self._loop.planning.orders
+
+    def push(self, force: ArrayLike, duration: float = 0.1, body: str | None = None) -> None:
+        """Push the robot, from the next tick on.
+
+        Args:
+            force: in the world frame, shape (3,) [N].
+            duration: how long it acts [s].
+            body: on whose CoM it acts; the torso if None, the point mass on a pendulum.
+
+        Raises:
+            RunFault: the run is over.
+            ParameterError: the force is not finite or not of three numbers, the time is not positive, the body unknown.
+        """
+        self._refuse_when_over()
+        vector = np.array(force, dtype=np.float64)
+        if vector.shape != (3,) or not np.isfinite(vector).all():
+            raise ParameterError(("force",), f"a push of {force!r} N", "give three finite numbers, in the world frame")
+        if not 0.0 < duration < math.inf:
+            raise ParameterError(("duration",), f"a push for {duration} s", "give a time of more than 0 s")
+        body = body or self.walk.robot.torso_body
+        if body not in self.walk.robot.bodies:
+            right = nearest(body, self.walk.robot.bodies)
+            raise ParameterError(("body",), f"unknown body '{body}' of {self.walk.robot.name}", right)
+        push = Push(self.time, float(duration), vector, body)
+        self._loop.walker.push(push)
+        self._pushes += 1
+        keys = {"time": push.time, "duration": push.duration, "force": vector.tolist(), "body": body}
+        self._writer.add_metadata(f"{PUSH_RECORD}{self._pushes}", {"push": json.dumps(keys)})
+
+    def reset(self) -> None:
+        """Begin anew, without the pushes and commands that were given from outside.
+
+        Raises:
+            LogError: a log is written, which holds one run only.
+        """
+        if self._path is not None:
+            raise LogError(f"{self._path}: a log holds one run; make another Simulation with a file of its own")
+        self._pushes, self._told = 0, 0
+        self._begin()
+
+    def close(self) -> None:
+        """End the run, whose log is whole then as it is once the run is over; a second call does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        if not self._loop.done:
+            write_end(self._writer, End("interrupted", self.time, STOPPED))
+        self._writer.close()
+        self._threads.restore_original_limits()
+
+    def __enter__(self) -> Self:
+        """For ``with Simulation(...) as sim``."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close, whatever has happened."""
+        self.close()
+
+    def __repr__(self) -> str:
+        """What is simulated, and how far it is."""
+        state = f"over: {self.end.kind}" if self.done else "goes on"
+        return f"<Simulation of {self.walk.name}, seed {self.walk.seed}, at {self.time:.3f} s, {state}>"

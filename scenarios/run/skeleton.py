@@ -1,0 +1,346 @@
+"""What every closed loop has in common: it goes tick by tick until its time is over, it falls or it meets a fault."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from traceback import format_exception
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.errors import PartError
+from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
+from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
+from surefoot.scenarios.errors import SetupError
+from surefoot.scenarios.record.provenance import AFTER_FALL
+from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
+from surefoot.scenarios.run.planning import ROUNDING, Planning, RunFault
+from surefoot.scenarios.setup.gait import PushPoint
+from surefoot.scenarios.setup.keys import scenario_problem
+from surefoot.sim.measurement import Measurement
+from surefoot.sim.pushes import Push
+from surefoot.wbc.types import RobotState, WbcReport
+
+_PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Where a run is.
+
+    Attributes:
+        time: simulated [s].
+        duration: that it will take at most, simulated [s].
+        phase: in words, such as "single support, step 2".
+        real_time_factor: simulated over wall-clock time so far [-].
+    """
+
+    time: float
+    duration: float
+    phase: str
+    real_time_factor: float
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """How a run ended.
+
+    Attributes:
+        kind: completed; fall; fault (NaN, divergence, solver failure); interrupted by the user.
+        time: simulated [s].
+        reason: in words; empty when completed.
+        trace: where in the code a part of others failed; empty otherwise.
+    """
+
+    kind: Literal["completed", "fall", "fault", "interrupted"]
+    time: float
+    reason: str = ""
+    trace: str = ""
+
+
+LONGEST_TRACE = 20_000
+"""Characters of a traceback that a log keeps, the last ones."""
+
+
+def fault_end(fault: RunFault | PartError, time: float) -> End:
+    """The end of a run by a fault at a simulated time [s]."""
+    if not isinstance(fault, PartError):
+        return End("fault", time, str(fault))
+    trace = "" if fault.__cause__ is None else "".join(format_exception(fault.__cause__))
+    return End("fault", time, fault.what, trace[-LONGEST_TRACE:])
+
+
+OnProgress = Callable[[Progress], None]
+
+
+@contextmanager
+def refusing() -> Iterator[None]:
+    """Turn the refusal of a part to be built as the scenario asks into an error that the user can mend.
+
+    Raises:
+        SetupError: instead of a ValueError.
+        PartError: a part of others fails, which no scenario mends.
+    """
+    try:
+        yield
+    except PartError:
+        raise
+    except ValueError as refusal:
+        raise SetupError(scenario_problem(refusal)) from refusal
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """A look at a walker after a step; arrays may be overwritten by the next one.
+
+    Attributes:
+        com: true CoM, shape (3,) [m].
+        com_velocity: shape (3,) [m/s].
+        zmp: true ZMP, shape (2,) [m]; NaN in flight.
+        state: state that the controller was given; None without one, as are the following.
+        report: what the controller did.
+        measurement: what the sensors said.
+    """
+
+    com: NDArray[np.float64]
+    com_velocity: NDArray[np.float64]
+    zmp: NDArray[np.float64]
+    state: RobotState | None = None
+    report: WbcReport | None = None
+    measurement: Measurement | None = None
+
+
+class Walker(Protocol):
+    """What walks in a closed loop: a simulated robot under its whole-body controller, or a point mass on ideal feet.
+
+    The skeleton calls its verbs in the order in which they stand here, once per control tick.
+    """
+
+    def sense(self, tick: int, now: float) -> None:
+        """Measure.
+
+        Raises:
+            RunFault: what is measured is not finite.
+        """
+        ...
+
+    def measured(self, now: float) -> tuple[CentroidalState, NDArray[np.float64], FeetState]:
+        """What the planner may measure, without noise: CoM, ZMP, shape (2,) [m], and feet."""
+        ...
+
+    def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
+        """Decide what to do until the next tick; returns the time to build and to solve the controller's QP [s].
+
+        Args:
+            tick: number of the tick.
+            plan: that is followed.
+            sample: of it, its state that of now, and all else that of the middle of the tick (see `PlanSample.until`).
+        """
+        ...
+
+    def record(self, now_ns: int, sample: PlanSample) -> None:
+        """Write the tick into the log's channels."""
+        ...
+
+    def fallen(self, sample: PlanSample) -> bool:
+        """Whether it has fallen."""
+        ...
+
+    def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
+        """Write what MCAP viewers show of the tick."""
+        ...
+
+    def advance(self, now: float, sampler: PlanSampler) -> None:
+        """Simulate until the next tick.
+
+        Raises:
+            RunFault: the simulation diverged.
+        """
+        ...
+
+    def look(self) -> Look:
+        """What there is to see of the tick."""
+        ...
+
+    def push(self, push: Push) -> None:
+        """Take a push that begins at the next tick.
+
+        Raises:
+            ValueError: it cannot act on this walker.
+        """
+        ...
+
+
+@dataclass(slots=True)
+class Watch:
+    """Splits wall-clock time into laps.
+
+    Attributes:
+        last: end of the last lap [s].
+    """
+
+    last: float
+
+    @classmethod
+    def start(cls) -> "Watch":
+        """A watch whose first lap begins now."""
+        return cls(time.perf_counter())
+
+    def lap(self) -> float:
+        """Time since the last lap ended [s]."""
+        now = time.perf_counter()
+        passed = now - self.last
+        self.last = now
+        return passed
+
+
+class ClosedLoop:
+    """One run: a walker, its planner and their records on one integer clock.
+
+    Args:
+        walker: what walks.
+        planning: its planner.
+        recorder: gets the reference and the timing of every tick.
+        rate: of the control ticks [Hz].
+        duration: simulated time [s].
+        pushes: that begin at points of the gait; see `surefoot.scenarios.setup.walk.Walk`.
+
+    Attributes:
+        walker: what walks.
+        planning: its planner.
+        rate: of the control ticks [Hz].
+        tick: number of the next tick.
+        end: how the run ended, or will have ended if nothing happens.
+        fell: whether the walker has fallen.
+        done: whether the run is over: its time, a while after a fall, or a fault.
+        fault: that ended it, None where none has.
+    """
+
+    def __init__(
+        self,
+        walker: Walker,
+        planning: Planning,
+        recorder: WalkRecorder,
+        rate: int,
+        duration: float,
+        pushes: Sequence[tuple[PushPoint, Push]] = (),
+    ) -> None:
+        self.walker, self.planning = walker, planning
+        self._recorder, self.rate = recorder, rate
+        self._ticks = self._last = round(duration * rate)
+        self.tick = 0
+        self._pushes = list(pushes)
+        self._begun: list[tuple[PushPoint, Push]] = []
+        self.end = End("completed", self._ticks / rate)
+        self.fell = False
+        self.done = self._last == 0
+        self.fault: RunFault | PartError | None = None
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the next tick [s]."""
+        return self.tick / self.rate
+
+    @property
+    def duration(self) -> float:
+        """Simulated time that the run takes at most [s]."""
+        return self._ticks / self.rate
+
+    @property
+    def phase(self) -> PhaseInfo:
+        """Where the gait stands; asked only after a step."""
+        return self.planning.plan.phase
+
+    def step(self) -> PlanSample | None:
+        """Go through one control tick; returns the reference of the tick, None when a fault ended the run."""
+        tick, rate = self.tick, self.rate
+        try:
+            sample, fallen = self._step(tick)
+        except (RunFault, PartError) as fault:
+            self.end, self.done, self.fault = fault_end(fault, tick / rate), True, fault
+            return None
+        if fallen and not self.fell:
+            self.fell = True
+            self.end = End("fall", tick / rate, f"the robot fell at {tick / rate:.3f} s")
+            self._last = min(self._last, tick + round(AFTER_FALL * rate))
+        self.tick = tick + 1
+        self.done = self.tick >= self._last
+        if self.done and not self.fell and (broken := self._broken_promise()):
+            self.end = End("fault", self.tick / rate, broken)
+        return sample
+
+    def _broken_promise(self) -> str:
+        """Which push at a point of the gait did not act, or not to its end; empty when all did that are to."""
+        for point, _ in self._pushes:
+            if point.promised:
+                return f"a push never acted: the walk never came to {point}"
+        for point, push in self._begun:
+            if point.promised and push.time + push.duration > self.time + ROUNDING / self.rate:
+                return f"a push at {push.time:.3f} s, {point}, would have lasted {push.duration:g} s and was cut off"
+        return ""
+
+    def _step(self, tick: int) -> tuple[PlanSample, bool]:
+        watch = Watch.start()
+        begin = watch.last
+        walker, planning, rate = self.walker, self.planning, self.rate
+        now, now_ns = tick / rate, tick * 1_000_000_000 // rate
+        walker.sense(tick, now)
+        state_time = watch.lap()
+        planner_time = 0.0
+        if planning.due(tick):
+            planning.update(tick, now_ns, *walker.measured(now))
+            planner_time = watch.lap()
+        plan = planning.plan
+        if self._pushes:
+            self._push(now, plan)
+        sample = planning.sampler.sample(now)
+        # What is decided now acts until the next tick, so that it is to do what is planned for the middle of that; the
+        # state is held against that of now, from which on it does so.
+        build_time, solve_time = walker.act(tick, plan, sample.until(planning.sampler.sample(now + 0.5 / rate)))
+        watch.lap()
+        walker.record(now_ns, sample)
+        self._recorder.reference(now_ns, plan, sample)
+        fallen = walker.fallen(sample)
+        walker.draw(tick, now_ns, plan, sample, fallen)
+        log_time = watch.lap()
+        walker.advance(now, planning.sampler)
+        physics_time = watch.lap()
+        parts = (state_time, build_time, solve_time, planner_time, physics_time, log_time)
+        self._recorder.timing(now_ns, TickTiming(*parts, watch.last - begin))
+        return sample, fallen
+
+    def _push(self, now: float, plan: WalkPlan) -> None:
+        """Give the pushes whose point of the gait is reached before the next tick."""
+        waiting, self._pushes = self._pushes, []
+        for point, push in waiting:
+            begin = max(now, plan.time + point.left(plan.phase))
+            # At the end of the tick too: there the next phase may begin, which does not know the point any more.
+            if begin < now + (1.0 + ROUNDING) / self.rate:
+                self._begun.append((point, replace(push, time=begin)))
+                self.walker.push(self._begun[-1][1])
+            else:
+                self._pushes.append((point, push))
+
+
+def run_loop(loop: ClosedLoop, on_progress: OnProgress) -> End:
+    """Run a closed loop to the end, to shortly after a fall, or to a fault.
+
+    Args:
+        loop: the closed loop, at its start.
+        on_progress: is told where the run is, every simulated tenth of a second.
+    """
+    started, every = time.perf_counter(), loop.rate // 10 or 1
+    while not loop.done and loop.step() is not None:
+        if loop.tick % every == 0:
+            on_progress(_progress(loop, time.perf_counter() - started))
+    return loop.end
+
+
+def _progress(loop: ClosedLoop, wall: float) -> Progress:
+    phase = loop.phase
+    name = _PHASE_NAMES[phase.kind]
+    if phase.kind is PhaseKind.SINGLE:
+        name = f"{name}, step {phase.step}"
+    return Progress(loop.time, loop.duration, name, loop.time / wall if wall > 0.0 else 0.0)

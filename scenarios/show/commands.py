@@ -1,0 +1,177 @@
+"""The commands that show a log: inspect, plot, compare, recover and replay."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.show.options import MISSED, AsJson, From, LogFile, Replace, To, with_options
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.log import Log
+
+app = typer.Typer()
+
+
+@dataclass(frozen=True, slots=True)
+class InspectOptions:
+    """What `surefoot inspect` is told."""
+
+    log: LogFile
+    topic: Annotated[str | None, typer.Option(help="Summarise or export one topic instead.")] = None
+    field: Annotated[str | None, typer.Option(help="Only this field of the topic.")] = None
+    start: From = None
+    end: To = None
+    export: Annotated[Path | None, typer.Option(help="Write the topic to a .csv, .npz or .parquet file.")] = None
+    force: Replace = False
+    as_json: AsJson = False
+
+
+@app.command()
+@with_options(InspectOptions)
+def inspect(told: InspectOptions) -> None:
+    """Show verdict, metrics, health, topics and rates of a log."""
+    from surefoot.scenarios.judge import inspection
+    from surefoot.scenarios.log import read
+    from surefoot.scenarios.show.console import print_inspection
+
+    opened = read(told.log)
+    if told.topic is not None:
+        _show_topic(opened, told.topic, told)
+        return
+    if (told.field, told.start, told.end, told.export) != (None, None, None, None):
+        raise LogError("--field, --from, --to and --export choose from one topic; name it with --topic")
+    found = inspection.inspect(opened)
+    if told.as_json:
+        typer.echo(json.dumps(found.to_json(), allow_nan=False))
+    else:
+        print_inspection(found)
+    raise typer.Exit(0 if found.verdict.passed else MISSED)
+
+
+def _show_topic(log: "Log", topic: str, told: InspectOptions) -> None:
+    """Summarise a topic, or export it and say where it is."""
+    from surefoot.scenarios.judge.inspection import topic_summary
+    from surefoot.scenarios.show.console import export, print_topic, selected
+
+    channel = selected(log, topic, told.start, told.end, told.field)
+    for loss in log.damage:
+        typer.echo(f"not read: {loss}", err=True)
+    if told.export is not None:
+        export(channel, told.export, told.force)
+        file = str(told.export)
+        typer.echo(json.dumps({"file": file, "messages": len(channel)}) if told.as_json else file)
+    elif told.as_json:
+        typer.echo(json.dumps(topic_summary(channel), allow_nan=False))
+    else:
+        print_topic(topic, topic_summary(channel))
+
+
+@app.command()
+def plot(
+    log: LogFile,
+    out: Annotated[Path | None, typer.Option(help="PNG, SVG or PDF; figures.png beside the log by default.")] = None,
+    what: Annotated[str | None, typer.Option(metavar="NAME", help="One figure instead of the page of all.")] = None,
+    start: From = None,
+    end: To = None,
+    force: Replace = False,
+) -> None:
+    """Draw the figures that a walking engineer looks at."""
+    from surefoot.scenarios.show.figures.page import plot as plot_log
+
+    drawn = plot_log(log, out, what, start, end, force)
+    for note in drawn.notes:
+        typer.echo(f"note: {note}", err=True)
+    typer.echo(str(drawn.path))
+
+
+@app.command()
+def compare(
+    a: Annotated[Path, typer.Argument(metavar="A", help="A log.")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="Another log.")],
+    out: Annotated[Path | None, typer.Option(help="Draw both over each other: PNG, SVG or PDF.")] = None,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Of values that still agree: relative, and absolute below 1; 1e-6 by default.")
+    ] = None,
+    exit_code: Annotated[
+        bool,
+        typer.Option("--exit-code", help="Exit with 1 unless they are the same: to the bit, or within --tolerance."),
+    ] = False,
+    force: Replace = False,
+    as_json: AsJson = False,
+) -> None:
+    """Show two logs side by side, and where their channels part."""
+    from surefoot.scenarios.output import refuse_existing
+    from surefoot.scenarios.show.compare.compare import TOLERANCE, draw, print_comparison
+    from surefoot.scenarios.show.compare.compare import compare as compare_logs
+
+    if out is not None:
+        refuse_existing(out, force)
+    found, first, second = compare_logs(a, b, TOLERANCE if tolerance is None else tolerance)
+    if out is not None:
+        draw(found, first, second, out, force)
+    if as_json:
+        typer.echo(json.dumps(found.to_json(), allow_nan=False))
+    else:
+        print_comparison(found)
+    same = found.identical if tolerance is None else found.agree
+    raise typer.Exit(MISSED if exit_code and not same else 0)
+
+
+@app.command()
+def recover(
+    log: Annotated[Path, typer.Argument(help="A truncated or damaged log.")],
+    out: Annotated[Path, typer.Argument(help="The whole log to write.")],
+    force: Replace = False,
+) -> None:
+    """Make a whole, indexed log of what a truncated one still holds."""
+    from surefoot.scenarios.log.recover import recover as recover_log
+
+    recovery = recover_log(log, out, force)
+    for loss in recovery.lost:
+        typer.echo(f"lost: {loss}", err=True)
+    typer.echo(f"{recovery.messages} messages from {recovery.start:.3f} s to {recovery.end:.3f} s", err=True)
+    typer.echo(str(out))
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayOptions:
+    """What `surefoot replay` is told."""
+
+    log: Annotated[Path, typer.Argument(help="A log, also a truncated or growing one.")]
+    html: Annotated[Path | None, typer.Option(help="Write one page that opens offline.")] = None
+    video: Annotated[Path | None, typer.Option(help="Write an mp4 video.")] = None
+    live: Annotated[bool, typer.Option("--live", help="Serve it on this machine, following a growing log.")] = False
+    start: From = None
+    end: To = None
+    speed: Annotated[float, typer.Option(help="Of the video over that of the run, 0.1 to 10.")] = 1.0
+    camera: Annotated[
+        str, typer.Option(help="Of the video: follow, side, front, fixed, or azimuth,elevation,distance [deg, deg, m].")
+    ] = "follow"
+    size: Annotated[str, typer.Option(metavar="WxH", help="Of the video [px].")] = "1280x720"
+    force: Replace = False
+
+
+@app.command()
+@with_options(ReplayOptions)
+def replay(told: ReplayOptions) -> None:
+    """Show a log in 3D: as a page, as a video or live."""
+    if (told.html is not None) + (told.video is not None) + told.live != 1:
+        raise typer.BadParameter("give one of --html FILE, --video FILE and --live")
+    if told.video is None and (told.speed, told.camera, told.size) != (1.0, "follow", "1280x720"):
+        raise typer.BadParameter("--speed, --camera and --size are of a video; give them with --video FILE")
+    from surefoot.scenarios.show.replay import command
+    from surefoot.scenarios.show.replay.content import ReplayWindow
+
+    window = ReplayWindow(told.start, told.end)
+    if told.html is not None:
+        command.html_page(told.log, told.html, window, told.force)
+        typer.echo(str(told.html))
+    elif told.video is not None:
+        command.video(told.log, told.video, window, command.Filming(told.speed, told.camera, told.size), told.force)
+        typer.echo(str(told.video))
+    else:
+        command.serve(told.log, window, typer.echo)

@@ -1,0 +1,312 @@
+"""Where two runs part, channel by channel, bit by bit and by a tolerance; and what their logs were made of."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.scenarios.errors import LogError, ScenarioError
+from surefoot.scenarios.file.source import parse
+from surefoot.scenarios.judge.metrics import measure
+from surefoot.scenarios.log import ChannelData, FieldSpec, Log
+from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE
+
+WALL_CLOCK = ("/process", "/timing")
+"""Topics that differ between any two runs."""
+
+_CHAIN = (
+    *("/truth", "/measurement", "/contact", "/estimate", "/planner_state"),
+    *("/plan", "/footsteps", "/reference", "/wbc", "/torque"),
+)
+"""The way through a tick: of channels that part at the same time, the first is nearest to the cause."""
+
+
+@dataclass(frozen=True, slots=True)
+class FirstDifference:
+    """The first difference of a channel.
+
+    Attributes:
+        time: of the message [s].
+        field: that differs, with the index of the element, such as ``com[2]``.
+        a: its value in the first log.
+        b: its value in the second log.
+    """
+
+    time: float
+    field: str
+    a: float
+    b: float
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelDifference:
+    """How one channel differs between two logs.
+
+    Attributes:
+        topic: of the channel.
+        messages: in the first and in the second log.
+        exact: first difference of any bit at a time that both have; None without one.
+        tolerated: first difference beyond the tolerance; None without one.
+        only_one: first time, as far as both logs reach, at which only one has a message [s]; None without one.
+        layout: fields that are not in both, or of another shape or kind.
+    """
+
+    topic: str
+    messages: tuple[int, int]
+    exact: FirstDifference | None
+    tolerated: FirstDifference | None
+    only_one: float | None
+    layout: tuple[str, ...]
+
+    @property
+    def same(self) -> bool:
+        """Whether the channels are the same to the last bit."""
+        return self.agrees and self.exact is None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether they have the same messages, whose values are within the tolerance."""
+        parted = (self.tolerated, self.only_one)
+        return parted == (None, None) and not self.layout and self.messages[0] == self.messages[1]
+
+    @property
+    def time(self) -> float | None:
+        """First time at which the channels part, by value or because one has no message there [s]."""
+        times = [time for time in (self.exact.time if self.exact else None, self.only_one) if time is not None]
+        return min(times, default=None)
+
+
+def compare_channels(a: Log, b: Log, tolerance: float) -> tuple[ChannelDifference, ...]:
+    """Compare every channel that both logs have in a layout of ours, in the order in which they part.
+
+    Args:
+        a: first log.
+        b: second log.
+        tolerance: two values agree when they differ by no more than this times the greater magnitude, or than this
+            itself when both are below 1.
+    """
+    common = [topic for topic in a.topics if topic in b and topic not in WALL_CLOCK]
+    opened = [(_open(a, topic), _open(b, topic)) for topic in common]
+    pairs = [(first, second) for first, second in opened if first is not None and second is not None]
+    reach = min(_last([first for first, _ in pairs]), _last([second for _, second in pairs]))
+    whole = not (a.truncated or b.truncated)
+    reaches = [reach if whole else min(reach, _last([first]), _last([second])) for first, second in pairs]
+    found = (_compare(*pair, tolerance, end) for pair, end in zip(pairs, reaches, strict=True))
+    return tuple(sorted(found, key=_order))
+
+
+def unreadable(log: Log, topics: tuple[str, ...]) -> tuple[str, ...]:
+    """Those of the topics whose messages are not of a fixed layout, so that they cannot be compared by field."""
+    return tuple(topic for topic in topics if _open(log, topic) is None)
+
+
+def _open(log: Log, topic: str) -> ChannelData | None:
+    try:
+        return log[topic]
+    except LogError:
+        return None
+
+
+def _last(channels: list[ChannelData]) -> int:
+    """Time of the last message of all [ns]; a truncated log has channels that end up to a chunk earlier than others."""
+    return max((int(channel.time_ns[-1]) for channel in channels if len(channel)), default=0)
+
+
+def _order(found: ChannelDifference) -> tuple[float, int]:
+    place = _CHAIN.index(found.topic) if found.topic in _CHAIN else len(_CHAIN)
+    return (np.inf if found.time is None else found.time, place)
+
+
+def _compare(a: ChannelData, b: ChannelData, tolerance: float, reach_ns: int) -> ChannelDifference:
+    rows_a, rows_b = _paired(a.time_ns, b.time_ns)
+    exact, tolerated = _Earliest(), _Earliest()
+    shared = {field.name: field for field in b.fields}
+    for field in a.fields:
+        if _same_layout(field, shared.get(field.name)):
+            values = a.field(field.name)[rows_a], b.field(field.name)[rows_b]
+            exact.look(field.name, _bits_differ(*values), *values)
+            tolerated.look(field.name, _values_differ(*values, tolerance), *values)
+    times = a.time_ns[rows_a]
+    return ChannelDifference(
+        topic=a.topic,
+        messages=(len(a), len(b)),
+        exact=exact.point(times),
+        tolerated=tolerated.point(times),
+        only_one=_only_one(a.time_ns, b.time_ns, reach_ns),
+        layout=tuple(_layout_differences(a, b)),
+    )
+
+
+def _paired(a: NDArray[np.int64], b: NDArray[np.int64]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows of equal time; of messages at the same time the first with the first, the second with the second."""
+    common = min(len(a), len(b))
+    if np.array_equal(a[:common], b[:common]):
+        return np.arange(common), np.arange(common)
+    keys = (_numbered(a), _numbered(b))
+    _, rows_a, rows_b = np.intersect1d(*keys, assume_unique=True, return_indices=True)
+    return rows_a, rows_b
+
+
+def _numbered(times: NDArray[np.int64]) -> NDArray[np.void]:
+    """Ascending times with a count of equal ones, each pair once."""
+    first = np.searchsorted(times, times)
+    pairs = np.zeros(len(times), [("time", "<i8"), ("count", "<i8")])
+    pairs["time"], pairs["count"] = times, np.arange(len(times)) - first
+    return pairs
+
+
+def _only_one(a: NDArray[np.int64], b: NDArray[np.int64], reach_ns: int) -> float | None:
+    """First time before both logs end at which only one of the channels has a message."""
+    alone = np.setxor1d(a, b)
+    alone = alone[alone < reach_ns]
+    return float(alone[0]) * 1e-9 if len(alone) else None
+
+
+class _Earliest:
+    """The earliest difference seen so far; of fields that differ in one message the first one."""
+
+    def __init__(self) -> None:
+        self._row: int | None = None
+        self._field = ""
+        self._values = (0.0, 0.0)
+
+    def look(self, name: str, differs: NDArray[np.bool_], a: NDArray[Any], b: NDArray[Any]) -> None:
+        """Look at one field: where it differs and its values, all of shape (n, *field shape)."""
+        rows = np.flatnonzero(differs.reshape(len(differs), -1).any(axis=1)) if len(differs) else np.zeros(0, np.intp)
+        if not len(rows) or (self._row is not None and rows[0] >= self._row):
+            return
+        self._row = int(rows[0])
+        element = tuple(int(i) for i in np.argwhere(differs[self._row])[0])
+        self._field = name + "".join(f"[{i}]" for i in element)
+        self._values = float(a[self._row][element]), float(b[self._row][element])
+
+    def point(self, times_ns: NDArray[np.int64]) -> FirstDifference | None:
+        """Give it with its time."""
+        return (
+            None
+            if self._row is None
+            else FirstDifference(float(times_ns[self._row]) * 1e-9, self._field, *self._values)
+        )
+
+
+def _bits_differ(a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:
+    integer = np.dtype(f"<u{a.dtype.itemsize}")
+    return np.asarray(np.ascontiguousarray(a).view(integer) != np.ascontiguousarray(b).view(integer))
+
+
+def _values_differ(a: NDArray[Any], b: NDArray[Any], tolerance: float) -> NDArray[np.bool_]:
+    """Where values are farther apart than the tolerance; what is no number agrees with itself alone."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        scale = np.maximum(1.0, np.maximum(np.abs(a), np.abs(b)))
+        apart = ~(np.abs(a.astype(float) - b) <= tolerance * scale)
+    return np.asarray(apart & (a != b) & ~(np.isnan(a) & np.isnan(b)))
+
+
+def _same_layout(a: FieldSpec, b: FieldSpec | None) -> bool:
+    return b is not None and (a.shape, a.kind) == (b.shape, b.kind)
+
+
+def _layout_differences(a: ChannelData, b: ChannelData) -> Iterator[str]:
+    here, there = ({field.name: field for field in channel.fields} for channel in (a, b))
+    for name, field in here.items():
+        other = there.get(name)
+        if other is None:
+            yield f"{name} only in A"
+        elif not _same_layout(field, other):
+            yield f"{name} is {field.kind} {field.shape} in A, {other.kind} {other.shape} in B"
+    yield from (f"{name} only in B" for name in there if name not in here)
+
+
+VERSIONS_RECORD = "versions"
+"""Metadata record of what made a log, by which two runs may differ and still be the same."""
+
+_AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A value of two logs.
+
+    Attributes:
+        name: what it is.
+        a: in the first log, None when it is not there.
+        b: in the second log, None when it is not there.
+    """
+
+    name: str
+    a: Any
+    b: Any
+
+    @property
+    def delta(self) -> float | None:
+        """Second minus first, when both are numbers."""
+        numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in (self.a, self.b))
+        return float(self.b - self.a) if numbers else None
+
+
+def version_differences(a: Log, b: Log) -> tuple[Difference, ...]:
+    """Versions that are not the same."""
+    return _differences(*(dict(log.metadata.get(VERSIONS_RECORD, {})) for log in (a, b)))
+
+
+def setting_differences(a: Log, b: Log) -> tuple[Difference, ...]:
+    """Settings of the attached scenarios, or of the run's constants, that are not the same."""
+    return _differences(*(_settings(log) for log in (a, b)))
+
+
+def file_differences(a: Log, b: Log) -> tuple[str, ...]:
+    """Attached files other than the scenario that are not the same in both."""
+    names = sorted((a.attachments.keys() | b.attachments.keys()) - {SCENARIO_FILE})
+    return tuple(name for name in names if a.attachments.get(name) != b.attachments.get(name))
+
+
+def record_differences(a: Log, b: Log) -> tuple[str, ...]:
+    """Metadata records other than the versions that are not the same: constants, pushes, how the run ended."""
+    names = sorted((a.metadata.keys() | b.metadata.keys()) - {VERSIONS_RECORD})
+    return tuple(name for name in names if a.metadata.get(name) != b.metadata.get(name))
+
+
+def metric_pairs(a: Log, b: Log) -> tuple[tuple[Difference, ...], tuple[str, ...]]:
+    """Every metric of both logs, element by element, and a note for each log that has none."""
+    values: list[dict[str, Any]] = []
+    notes: list[str] = []
+    for name, log in (("A", a), ("B", b)):
+        try:
+            measured = measure(log)
+        except LogError as error:
+            values.append({})
+            notes.append(f"{name} has no metrics: {error}")
+        else:
+            values.append(_flat(measured.values, names=_AXES))
+            notes += [f"{name}: {note}" for note in measured.notes]
+    first, second = values
+    return tuple(Difference(name, first.get(name), second.get(name)) for name in {**first, **second}), tuple(notes)
+
+
+def _settings(log: Log) -> dict[str, Any]:
+    try:
+        text = log.attachments[SCENARIO_FILE].decode()
+        return _flat(parse(text, SCENARIO_FILE).value)
+    except (KeyError, UnicodeDecodeError, ScenarioError):
+        return dict(log.metadata.get(RECORD, {}))
+
+
+def _differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[Difference, ...]:
+    pairs = (Difference(name, a.get(name), b.get(name)) for name in {**a, **b})
+    return tuple(pair for pair in pairs if pair.a != pair.b)
+
+
+def _flat(value: Any, prefix: str = "", names: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Values by dotted name; elements of a list by number, or by the names given to them."""
+    if isinstance(value, dict):
+        parts = [(str(key), part) for key, part in value.items()]
+    elif isinstance(value, list):
+        parts = [(names[i] if i < len(names) else str(i), part) for i, part in enumerate(value)]
+    else:
+        return {prefix: value}
+    flat: dict[str, Any] = {}
+    for key, part in parts:
+        flat |= _flat(part, f"{prefix}.{key}" if prefix else key, names)
+    return flat

@@ -1,0 +1,336 @@
+"""Figures of the ground: the walk from above, where the soles are pressed, how far from slipping and from the plan."""
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+from numpy.typing import NDArray
+
+from surefoot.planner.types import GRAVITY
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.body import headings, level_corners, rotations
+from surefoot.scenarios.judge.verdict import scenario_of
+from surefoot.scenarios.palette import BLACK, COM, FEET, FOOTSTEP, GREY, SUPPORT, ZMP
+from surefoot.scenarios.record.channels import SUPPORT_VERTICES
+from surefoot.scenarios.show.kit.figures import (
+    Area,
+    curve,
+    heading,
+    kept_of_path,
+    legend,
+    or_say,
+    time_axes,
+)
+from surefoot.scenarios.show.kit.shading import Background
+from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED, LogView, MissingError
+
+Array = NDArray[np.float64]
+
+SOLES_TITLE = "Centres of pressure in the soles, and landings off the plan"
+
+_MOST_POINTS = 4000
+"""Centres of pressure that are drawn for each foot."""
+
+
+def draw_soles(area: Area, view: LogView, background: Background) -> None:
+    """Draw the centres of pressure in the outline of each sole, and where the feet landed beside the plan."""
+    del background  # there is no time in this figure
+    left, right, landings = area.subplots(1, 3)
+    heading(area, SOLES_TITLE)
+    for foot, one in enumerate((left, right)):
+        one.set_xlabel(f"to the left [m], {FOOT_NAMES[foot]} sole")
+        with or_say(one):
+            _pressures(one, view, foot)
+    left.set_ylabel("forward [m]")
+    landings.set_xlabel("left of the plan [mm]")
+    landings.set_ylabel("beyond the plan [mm]")
+    with or_say(landings):
+        _landings(landings, view)
+
+
+def _pressures(axes: Axes, view: LogView, foot: int) -> None:
+    """Seen from above, forward up and left to the left; a dashed line holds 90 percent of the half sizes."""
+    length, width = view.number("foot_length"), view.number("foot_width")
+    cop = view.field("/contact", f"cop_{FOOT_NAMES[foot]}", 2)
+    alone = bears_alone(view, foot, view.time("/contact"))
+    for rows, color, label in ((~alone, GREY, "double support"), (alone, FEET[foot], "single support")):
+        points = cop[rows & np.isfinite(cop).all(axis=1)]
+        points = points[:: -(-len(points) // _MOST_POINTS) or 1]
+        axes.plot(points[:, 1], points[:, 0], ".", color=color, markersize=2.5, alpha=0.6)
+        axes.plot([], [], "o", color=color, markersize=4, label=label)
+    for share, style in ((1.0, "-"), (0.9, "--")):
+        corner = (-share * width / 2, -share * length / 2)
+        axes.add_patch(Rectangle(corner, share * width, share * length, fill=False, edgecolor=BLACK, linestyle=style))
+    axes.set_xlim(0.8 * width, -0.8 * width)
+    axes.set_ylim(-0.6 * length, 0.6 * length)
+    axes.set_aspect("equal", adjustable="box")
+    legend(axes, 1)
+
+
+def bears_alone(view: LogView, foot: int, times: Array) -> NDArray[np.bool_]:
+    """Whether a foot is the stance foot at given times, shape (n,)."""
+    return np.asarray(view.at("/reference", "stance", times) == foot)
+
+
+def landing_errors(view: LogView) -> tuple[Array, NDArray[np.intp], Array]:
+    """Landings off the plan, along and across the planned foot, shape (k, 2) [m]; foot and number of each step."""
+    planned, actual = (view.field("/footstep", name, 4) for name in ("planned", "actual"))
+    feet, numbers = view.field("/footstep", "foot"), view.field("/footstep", "index")
+    x, y = (actual - planned)[:, :2].T
+    sine, cosine = np.sin(planned[:, 3]), np.cos(planned[:, 3])
+    errors = np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
+    sound = np.isfinite(errors).all(axis=1) & np.isin(feet, (0, 1))
+    return errors[sound], feet[sound].astype(int), numbers[sound]
+
+
+def _landings(axes: Axes, view: LogView) -> None:
+    errors, feet, numbers = landing_errors(view)
+    if not len(errors):
+        raise MissingError("/footstep in this window")
+    errors = 1e3 * errors
+    for foot, name in enumerate(FOOT_NAMES):
+        mine = feet == foot
+        axes.plot(errors[mine, 1], errors[mine, 0], "o", color=FEET[foot], markersize=4, label=f"{name} foot")
+    worst = int(np.argmax(np.linalg.norm(errors, axis=1)))
+    far: dict[str, Any] = {"textcoords": "offset points", "fontsize": 6.5}
+    place = (float(errors[worst, 1]), float(errors[worst, 0]))
+    axes.annotate(f"step {numbers[worst]:.0f}", place, (3, 3), **far)
+    for line in (axes.axhline, axes.axvline):
+        line(0.0, color=GREY, linewidth=0.6)
+    reach = 1.3 * max(float(np.abs(errors).max()), 1.0)
+    axes.set_xlim(reach, -reach)
+    axes.set_ylim(-reach, reach)
+    axes.set_aspect("equal", adjustable="box")
+    legend(axes, 1)
+
+
+GRIP_TITLE = "Grip: friction and yaw moment in percent of what the ground holds"
+
+_MOST_PERCENT = 200.0
+"""Beyond it a foot slips anyway; shown as this much."""
+
+
+def draw_grip(area: Area, view: LogView, background: Background) -> None:
+    """Draw how much of the friction each foot uses along the ground, and about the vertical."""
+    friction, moment = axes = time_axes(area, view, GRIP_TITLE, (1.0, 1.0))
+    background.shade(axes)
+    friction.set_ylabel("friction [%]")
+    moment.set_ylabel("yaw moment,\nsingle support [%]")
+    for one, used in ((friction, friction_used), (moment, yaw_moment_used)):
+        with or_say(one):
+            coefficient = _coefficient(view)
+            sole = (view.number("foot_length"), view.number("foot_width"))
+            for foot, name in enumerate(FOOT_NAMES):
+                wrench = loaded_wrench(view, foot)
+                percent = np.minimum(100.0 * used(wrench, coefficient, sole), _MOST_PERCENT)
+                if one is moment:  # a sole on its edge is no patch of ground
+                    percent[~bears_alone(view, foot, view.time("/measurement"))] = np.nan
+                curve(one, view.time("/measurement"), percent, f"{name} foot", FEET[foot])
+            one.axhline(100.0, color=BLACK, linewidth=0.9, linestyle="--", label="slips")
+            one.set_ylim(bottom=0.0)
+    legend(friction, 3)
+
+
+def _coefficient(view: LogView) -> float:
+    """Friction of the ground that the run had."""
+    try:
+        return float(scenario_of(view.log).terrain.friction)
+    except LogError:
+        raise MissingError("the scenario's terrain.friction") from None
+
+
+def loaded_wrench(view: LogView, foot: int) -> Array:
+    """Wrench at the sole's centre along the ground, force first, NaN where the foot bears too little, shape (n, 6).
+
+    On level ground a sole that rolls about its toes is turned back; elsewhere the sole tells how the ground lies.
+    """
+    wrench = view.field("/measurement", f"wrench_{FOOT_NAMES[foot]}", 6)
+    if view.constant("terrain") == "flat":
+        pose = view.field("/truth", f"{FOOT_NAMES[foot]}_sole", 7)
+        if len(pose) != len(wrench):
+            raise MissingError("/truth and /measurement of the same ticks")
+        yaw, level = headings(pose[:, 3:]), np.zeros((len(pose), 3, 3))
+        level[:, 0, 0], level[:, 1, 1], level[:, 2, 2] = np.cos(yaw), np.cos(yaw), 1.0
+        level[:, 0, 1], level[:, 1, 0] = np.sin(yaw), -np.sin(yaw)
+        turned = level @ rotations(pose[:, 3:])
+        wrench = np.einsum("nij,nkj->nki", turned, wrench.reshape(-1, 2, 3)).reshape(-1, 6)
+    wrench[wrench[:, 2] < LOADED * view.number("mass") * GRAVITY] = np.nan
+    return wrench
+
+
+def friction_used(wrench: Array, coefficient: float, sole: tuple[float, float]) -> Array:
+    """Tangential over normal force over the coefficient, shape (n,) [-].
+
+    Args:
+        wrench: at the sole's centre in its frame, force first, shape (n, 6).
+        coefficient: of friction [-].
+        sole: its length and width, on which this does not depend [m].
+    """
+    del sole
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.hypot(wrench[:, 0], wrench[:, 1]) / (coefficient * wrench[:, 2]))
+
+
+def yaw_moment_used(wrench: Array, coefficient: float, sole: tuple[float, float]) -> Array:
+    """Yaw moment over the one at which the sole turns with these other forces and moments, shape (n,) [-].
+
+    Caron, Pham and Nakamura, "Stability of surface contacts for humanoid robots", ICRA 2015, eqs. (10) to (12).
+    Arguments as of `friction_used`; infinite where the sole slips whatever its yaw moment.
+    """
+    x, y, mu = sole[0] / 2, sole[1] / 2, coefficient
+    fx, fy, fz, tx, ty, tz = wrench.T
+    most = mu * (x + y) * fz - np.abs(y * fx + mu * tx) - np.abs(x * fy + mu * ty)
+    least = -mu * (x + y) * fz + np.abs(y * fx - mu * tx) + np.abs(x * fy - mu * ty)
+    limit = np.where(tz >= 0.0, most, -least)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.where(limit <= 0.0, np.inf, np.abs(tz) / limit))
+
+
+TOP_VIEW_TITLE = "Top view"
+WIDE = 2.2
+"""Length over width of a walk beyond which the page gives it a row of its own."""
+
+_MOST_POLYGONS = 200
+
+
+def draw_top_view(area: Area, view: LogView, background: Background) -> None:
+    """Draw everything on the ground plane; a long strip of it in rows below each other."""
+    del background  # there is no time in this figure
+    rows = _rows(view)
+    axes: list[Axes] = list(area.subplots(max(len(rows), 1), 1, squeeze=False)[:, 0])
+    heading(area, TOP_VIEW_TITLE)
+    stretches: list[tuple[float, float] | None] = [*rows] or [None]
+    for one, stretch in zip(axes, stretches, strict=True):
+        one.set_ylabel("y [m]")
+        drawn = [_supports(one, view), _footprints(one, view), _paths(one, view)]
+        handles = [handle for part in drawn for handle in part]
+        if not handles:
+            with or_say(one):
+                raise MissingError("/truth, /contact, /reference")
+        one.margins(0.04)
+        one.set_aspect("equal", adjustable="box" if stretch else "datalim")
+        if stretch:
+            one.set_xlim(stretch)
+        if one is axes[0]:
+            legend(one, 7 if stretch else 4, handles)
+    axes[-1].set_xlabel("x [m]")
+
+
+ROW, MOST_ROWS = 5.0, 6
+"""Metres that a row of a strip shows legibly, and rows after which they become longer."""
+
+
+def _rows(view: LogView) -> list[tuple[float, float]]:
+    """Stretches of x that are drawn below each other [m]; none of a walk that is no strip."""
+    if not is_wide(view):
+        return []
+    x = view.field("/truth", "com", 3)[:, 0]
+    first, last = float(np.nanmin(x)) - 0.3, float(np.nanmax(x)) + 0.3
+    count = int(np.clip(np.ceil((last - first) / ROW), 1, MOST_ROWS))
+    bounds = np.linspace(first, last, count + 1).tolist()
+    return list(pairwise(bounds))
+
+
+def strip_height(view: LogView, width: float) -> float:
+    """Of the rows of a strip, drawn in a width, all [in]."""
+    rows = _rows(view)
+    if not rows:
+        return 0.0
+    y = view.field("/truth", "com", 3)[:, 1]
+    inches_per_metre = 0.93 * width / (rows[0][1] - rows[0][0])
+    return len(rows) * (inches_per_metre * (float(np.nanmax(y) - np.nanmin(y)) + 0.35) + 0.2)
+
+
+def is_wide(view: LogView) -> bool:
+    """Whether the walk is much longer in x than in y, so that its top view is a strip."""
+    try:
+        extent = np.ptp(view.field("/truth", "com", 3)[:, :2], axis=0)
+    except MissingError:
+        return False
+    return bool(extent[0] > WIDE * (extent[1] + 0.3))
+
+
+def _supports(axes: Axes, view: LogView) -> list[Artist]:
+    try:
+        vertices = view.field("/reference", "support", SUPPORT_VERTICES, 2)
+    except MissingError:
+        return []
+    flat = vertices.reshape(len(vertices), -1)
+    changed = np.concatenate(([True], np.any(flat[1:] != flat[:-1], axis=1)))
+    polygons = vertices[changed & np.isfinite(flat).all(axis=1)]
+    polygons = polygons[:: -(-len(polygons) // _MOST_POLYGONS) or 1]
+    style: dict[str, Any] = {"facecolor": SUPPORT, "edgecolor": GREY, "linewidth": 0.5}
+    axes.add_collection(PolyCollection(list(polygons), alpha=0.12, **style))
+    return [Patch(alpha=0.2, label="planned support", **style)]
+
+
+def _footprints(axes: Axes, view: LogView) -> list[Artist]:
+    """Where the soles stood at the window's begin and landed since, and where they were last planned to land."""
+    try:
+        length, width = view.number("foot_length"), view.number("foot_width")
+    except MissingError:
+        return []
+    entries: list[Artist] = []
+    for foot, pose, label in [*_first_feet(view), *_touchdowns(view, "actual")]:
+        (corners,) = level_corners(pose[None], length, width)
+        axes.fill(*corners.T, facecolor=FEET[foot], edgecolor=FEET[foot], alpha=0.55, linewidth=0.8, zorder=2)
+        below: dict[str, Any] = {"textcoords": "offset points", "ha": "right", "va": "top"}
+        axes.annotate(label, corners[2], (-2, -2), fontsize=6.5, zorder=5, annotation_clip=True, **below)
+    for _, pose, _ in [*_touchdowns(view, "planned"), *_ahead(view)]:
+        (corners,) = level_corners(pose[None], length, width)
+        axes.fill(*corners.T, facecolor="none", edgecolor=FOOTSTEP, linestyle="--", linewidth=0.9, zorder=3)
+        entries = [Patch(facecolor="none", edgecolor=FOOTSTEP, linestyle="--", label="footstep planned")]
+    soles = [Patch(color=FEET[foot], alpha=0.55, label=f"{FOOT_NAMES[foot]} footprint") for foot in (0, 1)]
+    return [*soles, *entries]
+
+
+def _first_feet(view: LogView) -> list[tuple[int, Array, str]]:
+    """Soles on the ground when the window begins; a foot in the air leaves no print."""
+    feet = []
+    for foot, name in enumerate(FOOT_NAMES):
+        try:
+            if not view.field("/contact", "felt", 2)[0, foot]:
+                continue
+            pose = view.field("/truth", f"{name}_sole", 7)[0]
+        except MissingError:
+            continue
+        feet.append((foot, np.array([*pose[:2], headings(pose[3:])]), ""))
+    return feet
+
+
+def _touchdowns(view: LogView, name: str) -> list[tuple[int, Array, str]]:
+    try:
+        poses, feet = view.field("/footstep", name, 4), view.field("/footstep", "foot")
+        numbers = view.field("/footstep", "index")
+    except MissingError:
+        return []
+    sound = np.isfinite(poses).all(axis=1) & np.isin(feet, (0, 1))
+    rows = zip(feet[sound], poses[sound], numbers[sound], strict=True)
+    return [(int(foot), pose, f"{number:.0f}") for foot, pose, number in rows]
+
+
+def _ahead(view: LogView) -> list[tuple[int, Array, str]]:
+    """Footsteps that were still to come when the window ends."""
+    try:
+        poses, feet = view.field("/footsteps", "next", 3, 4)[-1], view.field("/footsteps", "next_foot", 3)[-1]
+    except MissingError:
+        return []
+    return [(int(foot), pose, "") for foot, pose in zip(feet, poses, strict=True) if np.isfinite(pose).all()]
+
+
+def _paths(axes: Axes, view: LogView) -> list[Artist]:
+    entries: list[Artist] = []
+    for topic, name, label, color in (("/contact", "zmp", "ZMP measured", ZMP), ("/truth", "com", "CoM true", COM)):
+        try:
+            path = view.field(topic, name, 3)[:, :2]
+        except MissingError:
+            continue
+        rows = kept_of_path(path)
+        axes.plot(*path[rows].T, color=color, linewidth=1.0, zorder=4)
+        entries.append(Line2D([], [], color=color, label=label))
+    return entries

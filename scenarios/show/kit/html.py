@@ -1,0 +1,156 @@
+"""HTML pages that are whole without a network: their elements, figures and look."""
+
+import html
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from io import StringIO
+from typing import Any
+
+import matplotlib
+from matplotlib.figure import Figure
+from matplotlib.typing import RcKeyType
+
+from surefoot.scenarios.show.kit.figures import in_style
+
+MISSING = "–"
+"""Stands where there is no number."""
+_PIXELS = 98
+"""Of a page for an inch of a figure: one of 11.6 in is as wide as the text."""
+
+
+def number(value: float | None, scale: float = 1.0, digits: int = 3) -> str:
+    """A number with some significant digits."""
+    if value is None:
+        return MISSING
+    shown = scale * value
+    text = f"{shown:.0f}" if abs(shown) >= 10 ** (digits - 1) else f"{shown:.{digits}g}"
+    return text.replace("-", "\N{MINUS SIGN}")
+
+
+def escape(text: str) -> str:
+    """Text for HTML."""
+    return html.escape(text, quote=True)
+
+
+def tag(name: str, content: str, **attributes: str) -> str:
+    """An element; ``kind`` is its class, content is HTML."""
+    named = {"class" if key == "kind" else key.replace("_", "-"): value for key, value in attributes.items() if value}
+    inside = "".join(f' {key}="{escape(value)}"' for key, value in named.items())
+    return f"<{name}{inside}>{content}</{name}>"
+
+
+def document(title: str, body: str) -> str:
+    """A whole page.
+
+    Args:
+        title: of the window.
+        body: HTML.
+    """
+    style = (files(__package__) / "page.css").read_text(encoding="utf-8")
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
+    return (
+        f'<!doctype html>\n<html lang="en"><head>{head}\n<style>\n{style}</style></head>\n'
+        f"<body><main>\n{body}\n</main></body></html>\n"
+    )
+
+
+def section(title: str, *parts: str, name: str = "") -> str:
+    """A section of a page: its heading, with an anchor if it has a name, and its parts, empty ones left out."""
+    return tag("section", "\n".join((tag("h2", escape(title), id=name), *filter(None, parts))))
+
+
+def tally(boxes: Iterable[tuple[str, str]]) -> str:
+    """Numbers in boxes beside each other, each with what it counts."""
+    shown = (tag("div", tag("b", escape(count)) + tag("span", escape(what))) for count, what in boxes)
+    return tag("div", "".join(shown), kind="tally")
+
+
+def details(summary: str, content: str, name: str = "") -> str:
+    """Content that opens below its summary."""
+    return tag("details", tag("summary", escape(summary)) + content, id=name)
+
+
+@dataclass(frozen=True, slots=True)
+class TableCell:
+    """A cell of a table.
+
+    Attributes:
+        text: as shown.
+        kind: CSS classes.
+        value: the number behind the text, in SI units; None for words.
+        below: a second, quiet line.
+    """
+
+    text: str
+    kind: str = ""
+    value: float | None = None
+    below: str = ""
+
+    @property
+    def html(self) -> str:
+        """The element."""
+        value = "" if self.value is None else repr(self.value)
+        below = tag("small", escape(self.below)) if self.below else ""
+        return tag("td", escape(self.text) + below, kind=self.kind, data_value=value)
+
+
+TableRow = Sequence[TableCell | str]
+"""Cells; one that is a text is HTML."""
+
+
+@dataclass(frozen=True, slots=True)
+class PageTable:
+    """A table of a page.
+
+    Attributes:
+        name: its anchor.
+        head: of its columns, with units.
+        rows: of cells; a text is the heading of the rows below it.
+        note: below it, HTML of a sentence or two.
+        kind: CSS classes.
+    """
+
+    name: str
+    head: Sequence[str]
+    rows: Sequence[TableRow | str]
+    note: str = ""
+    kind: str = ""
+
+    @property
+    def html(self) -> str:
+        """The element; it can be scrolled where it is wider than the page."""
+        top = tag("tr", "".join(tag("th", escape(text), scope="col") for text in self.head))
+        body = f"<thead>{top}</thead>\n<tbody>\n" + "\n".join(map(self._row, self.rows)) + "\n</tbody>"
+        note = tag("p", self.note, kind="note") if self.note else ""
+        return tag("div", tag("table", body, kind=self.kind, id=self.name), kind="wide") + note
+
+    def _row(self, row: TableRow | str) -> str:
+        if isinstance(row, str):
+            heading = tag("th", escape(row), scope="rowgroup", colspan=str(len(self.head)))
+            return tag("tr", heading, kind="group")
+        return tag("tr", "".join(tag("td", cell) if isinstance(cell, str) else cell.html for cell in row))
+
+
+def figure_html(figure: Figure, caption: str, name: str = "", kind: str = "") -> str:
+    """A figure with its caption, below an anchor; a narrow one stays narrow, so that letters are as large in all."""
+    shown = (
+        f'<svg role="img" aria-label="{escape(caption)}" style="max-width: {_PIXELS * figure.get_figwidth():.0f}px" '
+    )
+    picture = svg(figure).replace("<svg ", shown, 1)
+    return tag("figure", f"{picture}\n{tag('figcaption', escape(caption))}", id=name, kind=kind)
+
+
+def svg(figure: Figure) -> str:
+    """A figure as an SVG element for a page: no prolog, no metadata, words as words."""
+    drawn = StringIO()
+    words: dict[RcKeyType, Any] = {
+        "svg.fonttype": "none",
+        "font.sans-serif": ["Helvetica", "Arial", "Liberation Sans", "DejaVu Sans"],
+    }
+    with in_style(), matplotlib.rc_context(words):
+        figure.savefig(drawn, format="svg", metadata={"Date": None})
+    text = drawn.getvalue()
+    text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
+    return re.sub(r'<svg ([^>]*?)width="[^"]*" height="[^"]*"|<svg height="[^"]*"', r"<svg \1", text, count=1)

@@ -1,0 +1,141 @@
+"""What every axis of time shows behind its curves: single and double support, pushes, a fall."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.digest import SINGLE_SUPPORT, RunView
+from surefoot.scenarios.judge.walking import fall_time
+from surefoot.scenarios.palette import BLACK, PUSH
+from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError
+
+_DOUBLE_SUPPORT = 1
+_SINGLE_GREY, _DOUBLE_GREY = "#E4E4E4", "#F4F4F4"
+_MOST = 400
+"""Phases and pushes beyond this many are not drawn: a minute of walking shows them, an hour is grey anyway."""
+
+_MOST_NAMED = 80
+"""More phases than these leave no room for the name of each stance foot."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A time in which one thing lasted.
+
+    Attributes:
+        start: [s].
+        end: [s].
+        value: what lasted.
+    """
+
+    start: float
+    end: float
+    value: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Background:
+    """What happened in a window.
+
+    Attributes:
+        phases: with the phase and the stance foot as values.
+        pushes: times with an external force.
+        fall: time of a fall [s], None without one.
+    """
+
+    phases: tuple[Stretch, ...]
+    pushes: tuple[Stretch, ...]
+    fall: float | None
+
+    def shade(self, axes: Iterable[Axes]) -> None:
+        """Draw it behind all axes; the first of them also names the stance feet."""
+        for number, one in enumerate(axes):
+            start, end = one.get_xlim()
+            seen = [phase for phase in self.phases if phase.end > start and phase.start < end]
+            for stretch in seen:
+                self._shade_phase(one, stretch, named=number == 0 and len(seen) <= _MOST_NAMED)
+            for push in self.pushes:
+                one.axvspan(push.start, push.end, color=PUSH, alpha=0.35, linewidth=0)
+            if self.fall is not None:
+                one.axvline(self.fall, color=BLACK, linewidth=1.2, linestyle=":")
+
+    def handles(self) -> list[Patch | Line2D]:
+        """Entries of the legend that explain it."""
+        kinds = {stretch.value[0] for stretch in self.phases}
+        entries: list[Patch | Line2D] = []
+        if SINGLE_SUPPORT in kinds:
+            entries.append(Patch(color=_SINGLE_GREY, label="single support (L, R: the stance foot)"))
+        if _DOUBLE_SUPPORT in kinds:
+            entries.append(Patch(facecolor=_DOUBLE_GREY, edgecolor="#C8C8C8", linewidth=0.4, label="double support"))
+        if self.pushes:
+            entries.append(Patch(color=PUSH, alpha=0.35, label="push"))
+        if self.fall is not None:
+            entries.append(Line2D([], [], color=BLACK, linewidth=1.2, linestyle=":", label="fall"))
+        return entries
+
+    @staticmethod
+    def _shade_phase(axes: Axes, stretch: Stretch, named: bool) -> None:
+        phase, stance = stretch.value
+        if phase not in (SINGLE_SUPPORT, _DOUBLE_SUPPORT):
+            return
+        single = phase == SINGLE_SUPPORT
+        axes.axvspan(stretch.start, stretch.end, color=_SINGLE_GREY if single else _DOUBLE_GREY, zorder=0, linewidth=0)
+        if named and single and stance in (0, 1):
+            middle, name = (stretch.start + stretch.end) / 2, FOOT_NAMES[stance][0].upper()
+            place = axes.get_xaxis_transform()
+            axes.text(
+                middle, 0.985, name, transform=place, ha="center", va="top", fontsize=6.5, color="#6E6E6E", clip_on=True
+            )
+
+
+def background(view: LogView) -> Background:
+    """What happened in a window, as far as the log tells."""
+    return Background(_phases(view), _pushes(view), _fall(view))
+
+
+def stretches(time: np.ndarray, values: np.ndarray) -> tuple[Stretch, ...]:
+    """Times in which a row of integers stayed the same.
+
+    Args:
+        time: shape (n,) [s].
+        values: shape (n, k).
+    """
+    starts = np.flatnonzero(np.concatenate(([True], np.any(values[1:] != values[:-1], axis=1))))
+    ends = np.append(starts[1:], len(time) - 1)
+    rows = np.nan_to_num(values[starts]).astype(int).tolist()
+    bounds = zip(time[starts].tolist(), time[ends].tolist(), rows, strict=True)
+    return tuple(Stretch(start, end, tuple(row)) for start, end, row in bounds)
+
+
+def _phases(view: LogView) -> tuple[Stretch, ...]:
+    try:
+        clock = [view.field("/reference", name) for name in ("phase", "stance")]
+        found = stretches(view.time("/reference"), np.stack(clock, axis=1))
+    except MissingError:
+        return ()
+    return found if len(found) <= _MOST else ()
+
+
+def _pushes(view: LogView) -> tuple[Stretch, ...]:
+    for topic in ("/measurement", "/truth"):
+        try:
+            pushed = np.any(view.field(topic, "external_force", 3) != 0.0, axis=1)
+        except MissingError:
+            continue
+        found = [s for s in stretches(view.time(topic), pushed[:, None]) if s.value[0]]
+        return tuple(found) if len(found) <= _MOST else ()
+    return ()
+
+
+def _fall(view: LogView) -> float | None:
+    try:
+        run = RunView(view.log)
+        time = fall_time(run) if run.has("/truth") else None
+    except LogError:
+        return None
+    return time if time is not None and view.start <= time <= view.end else None

@@ -1,0 +1,88 @@
+"""Options that commands share, what a shell completes of them, and commands whose options are one value."""
+
+import inspect
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
+
+import typer
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+T = TypeVar("T")
+
+MISSED, INTERRUPTED = 1, 130
+"""Exit codes: criteria were missed; the user stopped it."""
+
+_FARTHEST = 1e9
+
+
+def _finite(value: float | None) -> float | None:
+    """Refuse what is no time of a log."""
+    if value is not None and not abs(value) <= _FARTHEST:
+        raise typer.BadParameter(f"{value} is no time of a log; give seconds, such as 2.5")
+    return value
+
+
+def scenarios_from(incomplete: str) -> list[str]:
+    """Catalogue names that begin so; where there is none, shells go on to complete file names."""
+    from surefoot.scenarios import catalogue
+
+    return [name for name in catalogue.names() if name.startswith(incomplete)]
+
+
+def keys_from(incomplete: str) -> list[str]:
+    """Keys of scenarios that begin so."""
+    from surefoot.scenarios.file.schema import Scenario
+
+    return [key for key, _ in keys(Scenario) if key.startswith(incomplete)]
+
+
+def keys(group: "type[BaseModel]", prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Every key of a group by its dotted name with its meaning, groups before what is in them."""
+    from pydantic import BaseModel
+
+    for name, field in group.model_fields.items():
+        yield prefix + name, field.description or ""
+        for inner in (field.annotation, *get_args(field.annotation)):
+            if isinstance(inner, type) and issubclass(inner, BaseModel):
+                yield from keys(inner, f"{prefix}{name}.")
+
+
+def _settings_from(incomplete: str) -> list[str]:
+    """Keys that begin so, each as the beginning of a setting."""
+    return [f"{key}=" for key in keys_from(incomplete)]
+
+
+def settings(what: str) -> Any:
+    """An option that sets keys; what it does to a key."""
+    return typer.Option("--set", metavar="KEY=VALUE", help=f"{what}; repeatable.", autocompletion=_settings_from)
+
+
+From = Annotated[float | None, typer.Option("--from", metavar="T", help="From this time on [s].", callback=_finite)]
+To = Annotated[float | None, typer.Option("--to", metavar="T", help="Up to this time [s].", callback=_finite)]
+Replace = Annotated[bool, typer.Option("--force", "-f", help="Replace the file if it exists.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Settings = Annotated[list[str] | None, settings("Set a key")]
+Seed = Annotated[int | None, typer.Option(min=0, help="Seed, over that of the scenario.")]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")]
+LogFile = Annotated[Path, typer.Argument(help="A log, also a truncated one.")]
+
+
+def with_options(kind: Callable[..., T]) -> Callable[[Callable[[T], None]], Callable[..., None]]:
+    """Make a command of a function of one value, whose fields are the command's options.
+
+    Args:
+        kind: a dataclass whose fields are annotated as parameters of commands are.
+    """
+
+    def decorate(act: Callable[[T], None]) -> Callable[..., None]:
+        def command(**given: Any) -> None:
+            act(kind(**given))
+
+        command.__name__, command.__doc__ = act.__name__, act.__doc__
+        command.__signature__ = inspect.signature(kind)  # type: ignore[attr-defined]
+        return command
+
+    return decorate

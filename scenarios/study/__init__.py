@@ -1,0 +1,1 @@
+"""What many runs say together: campaigns, checks against baselines, the paper."""

@@ -1,0 +1,304 @@
+"""The limit of a push by one-step capturability: what no controller survives that lands once and stops.
+
+Of a linear inverted pendulum (Koolen et al., Capturability-based analysis and control of legged locomotion, 2012) whose
+centre of pressure may be anywhere in the support and whose foot may land wherever and whenever the steps may be adapted
+to, as far as the legs reach and the hips can swing it. Neither the torso's rotation nor a second step is in it: a
+controller that has these may survive more.
+"""
+
+import itertools
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from surefoot.errors import ParameterError, PluginError
+from surefoot.planner.geometry import frame_rotation, sole_corners
+from surefoot.planner.parameters import StepAdaptation
+from surefoot.planner.swing.leg_reach import ANYWHERE, reach_box
+from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
+from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.log import read
+from surefoot.scenarios.setup.gait import push_time
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.walk import Walk, resolve
+from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError
+
+LIMIT_NOTE = (
+    "Limit: one-step capturability. The largest impulse after which some centre of pressure within the soles until the "
+    "landing, and some landing, bring a linear inverted pendulum to rest: where and when the adaptation of steps may "
+    "put it, within reach of the legs and of how hard hips can swing them. Its state is that in which the push began "
+    "in a run of the same kind, by its log. Turning the torso and a second step are not in it; a threshold beyond it "
+    "uses one of these."
+)
+"""What a page says of the limit."""
+
+_TICK = 1e-6
+"""Of two times nearer than this, neither is earlier [s]."""
+
+_EVERY, _LATER = 0.04, 0.2
+"""Spacing of the times at which a foot is tried to land, and by how much that may be after the clock's [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A way to land once.
+
+    Attributes:
+        supports: until the landing: points whose hull the centre of pressure may be in, shape (n, 2) [m], and from
+            when until when [s].
+        landed: points in whose hull it may be once the foot has landed where it is best, shape (n, 2) [m].
+    """
+
+    supports: tuple[tuple[Array, tuple[float, float]], ...]
+    landed: Array
+
+    @property
+    def landing(self) -> float:
+        """Time until the foot lands [s]."""
+        return self.supports[-1][1][1] if self.supports else 0.0
+
+    def summands(self, omega: float) -> list[Array]:
+        """Polygons whose Minkowski sum holds each DCM that can be brought to rest, by their points, (n, 2) each [m].
+
+        The DCM obeys dξ/dt = ω (ξ - p). It can be brought to rest after the landing at T exactly if
+
+            ξ = Σ_k p_k (e^{-ω a_k} - e^{-ω b_k}) + e^{-ωT} q
+
+        with p_k in the support from a_k to b_k and q in that after landing.
+        """
+        shares = [(math.exp(-omega * begin) - math.exp(-omega * end), hull) for hull, (begin, end) in self.supports]
+        shares.append((math.exp(-omega * self.landing), self.landed))
+        return [share * hull for share, hull in shares if share > 0.0]
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """The state in which a push begins, and what can be done about it.
+
+    Attributes:
+        dcm: divergent component of motion, shape (2,) [m].
+        omega: rate of its divergence [1/s].
+        ways: to land.
+        duration: of the push [s].
+        direction: of it, from the world's x axis to the left [rad].
+    """
+
+    dcm: Array
+    omega: float
+    ways: tuple[Way, ...]
+    duration: float
+    direction: float = 0.0
+
+    def limit(self, direction: float) -> float:
+        """Largest impulse per mass in a direction that can be captured [N·s/kg]; 0 where not even none can be.
+
+        An acceleration j / d over the duration d moves the DCM, as of now, by j (1 - e^{-ωd}) / (ω² d).
+
+        Args:
+            direction: of the push in the world, from x to the left [rad].
+        """
+        spread = self.omega * self.duration
+        gain = -math.expm1(-spread) / spread / self.omega
+        to = np.array([math.cos(direction), math.sin(direction)])
+        return max(_distance(self.dcm, to, way.summands(self.omega)) for way in self.ways) / gain
+
+
+def _distance(point: Array, to: Array, summands: list[Array]) -> float:
+    """How far a point may go in a direction within the Minkowski sum of polygons; 0 where it is not in it [m].
+
+    The sum's edges are parallel to those of the polygons, and how far it goes in any direction is the sum of how far
+    they do.
+    """
+    ways = [np.eye(2)]
+    for hull in summands:
+        first, second = np.triu_indices(len(hull), 1)
+        ways.append(hull[first] - hull[second])
+    sides = np.vstack(ways)
+    sides = np.vstack([sides, sides[:, ::-1] * (1.0, -1.0)])
+    sides = sides[np.hypot(*sides.T) > _ROUNDING]
+    normals = np.vstack([sides, -sides]) / np.tile(np.hypot(*sides.T), 2)[:, None]
+    room = sum((hull @ normals.T).max(axis=0) for hull in summands) - normals @ point
+    along = normals @ to
+    if (room < -_ROUNDING).any():
+        return 0.0
+    return float(np.min(np.maximum(room[along > _ROUNDING], 0.0) / along[along > _ROUNDING]))
+
+
+_ROUNDING = 1e-9
+"""What is less is none [m, -]."""
+
+
+def swing_box(here: Array, speed: Array, most: Array, time: float) -> tuple[Array, Array]:
+    """Where a foot can be at rest after a time: lower and upper corner, shape (2,) each [m].
+
+    It gets farthest by full acceleration for (T - v / a) / 2 and full braking for (T + v / a) / 2.
+
+    Args:
+        here: where it is, shape (2,) [m].
+        speed: that it has, shape (2,) [m/s].
+        most: its greatest acceleration, shape (2,) [m/s^2].
+        time: until then [s].
+    """
+    middle = here + 0.5 * speed * time
+    span = 0.25 * most * (time**2 - np.minimum(np.abs(speed) / most, time) ** 2)
+    return middle - span, middle + span
+
+
+def landing_points(stance: Array, sole: tuple[float, float], reach: tuple[Array, Array]) -> Array:
+    """Corners of all that a sole can cover that lands within reach, shape (4, 2) [m].
+
+    Args:
+        stance: centre and heading of the standing sole, shape (3,) [m, rad].
+        sole: half length and half width of the landing one, which keeps the heading [m].
+        reach: lower and upper corner of where its centre may land, in the frame of the standing one, shape (2,) [m].
+    """
+    low, high = reach[0] - sole, reach[1] + sole
+    corners = np.array([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])])
+    return np.asarray(stance[:2] + corners @ frame_rotation(stance[2]).T)
+
+
+def moment_of(log: Path, push: int) -> Moment | None:
+    """The state of a run as a push begins; None where there is none of the kind that has a limit.
+
+    It has one on flat ground, before the last foot has landed.
+
+    Args:
+        log: of the run.
+        push: its number, from 0.
+    """
+    try:
+        scenario = load(log)
+        walk = resolve(scenario)
+        return _moment(scenario, walk, LogView(read(log)), push) if walk.terrain_kind == "flat" else None
+    except (ScenarioError, SetupError, ParameterError, PluginError, LogError, MissingError, IndexError):
+        return None
+
+
+def _moment(scenario: Scenario, walk: Walk, view: LogView, push: int) -> Moment | None:
+    gait = walk.gait
+    begin = push_time(gait, scenario.pushes[push])
+    ends = ((step, gait.lift_off(step) + gait.single_support) for step in range(1, gait.steps + 1))
+    step = next((step for step, end in ends if end > begin + _TICK), None)
+    times = view.time("/truth")
+    row = int(np.searchsorted(times, begin + _TICK)) - 1  # the last tick that knows nothing of the push
+    if step is None or not 0 < row < len(times) - 1:
+        return None
+    omega = math.sqrt(GRAVITY / gait.com_height)
+    lift = max(gait.lift_off(step) - begin, 0.0)
+    single = min(gait.lift_off(step) - begin, 0.0) + gait.single_support
+    pushed = scenario.pushes[push]
+    com, speed = (view.field("/truth", name, 3)[row - 1 : row + 1, :2] for name in ("com", "com_velocity"))
+    before, now = com + speed / omega
+    since = begin - times[row]
+    dcm = now + since / (times[row] - times[row - 1]) * (now - before)
+    ways = tuple(_ways(walk, view, gait.step_foot(step), (row, since), (lift, single)))
+    return Moment(dcm, omega, ways, pushed.duration, pushed.direction or 0.0)
+
+
+def _ways(walk: Walk, view: LogView, swing: Foot, at: tuple[int, float], left: tuple[float, float]) -> Iterator[Way]:
+    """Ways to land: as planned, and as steps may be adapted.
+
+    Args:
+        walk: that was resolved.
+        view: of its log.
+        swing: the foot that is to land.
+        at: row of the tick before the push, in the channels of every control tick, and time from then to it [s].
+        left: double and single support that are left by the clock [s].
+    """
+    row, since = at
+    seen = max(int(np.searchsorted(view.time("/footsteps"), view.time("/truth")[row] + _TICK)) - 1, 0)
+    poses = [view.field("/footsteps", f"current_{foot}", 4)[seen][[0, 1, 3]] for foot in FOOT_NAMES]
+    planned = view.field("/footsteps", "next", 3, 4)[seen, 0][[0, 1, 3]]
+    half = (0.5 * walk.sole[0], 0.5 * walk.sole[1])
+    both = np.vstack([_corners(foot, pose, half) for foot, pose in zip(Foot, poses, strict=True)])
+    stance = poses[swing.other]
+    alone = _corners(swing.other, stance, half)
+
+    def way(double: float, single: float, landed: Array) -> Way:
+        return Way(((both, (0.0, double)), (alone, (double, double + single))), np.vstack([alone, landed]))
+
+    yield way(*left, _corners(swing, planned, half))
+    here, speed = view.field("/truth", f"{swing.name.lower()}_sole", 7)[row, :2] - stance[:2], np.zeros(2)
+    if not left[0]:
+        speed = view.field("/reference", "swing_velocity", 3)[row, :2]
+    here, speed = (here + since * speed) @ frame_rotation(stance[2]), speed @ frame_rotation(stance[2])
+    most = np.array(walk.legs.acceleration)
+    for double, single in itertools.product(*_times(walk, left)):
+        foot = swing_box(here, speed, most, single)
+        for box in _boxes(walk, swing.side):
+            low, high = np.maximum(box[0], foot[0]), np.minimum(box[1], foot[1])
+            if (low <= high).all():
+                yield way(double, single, landing_points(stance, half, (low, high)))
+
+
+def _times(walk: Walk, left: tuple[float, float]) -> tuple[Array, Array]:
+    """Double and single support that may be left [s]."""
+    if not walk.profile.catches or walk.parameters.step_adaptation is StepAdaptation.LOCATION:
+        return np.array(left[:1]), np.array(left[1:])
+    scale, numbers = walk.size.time, walk.parameters.recovery
+    earliest = min(left[0], numbers.least_double), min(left[1], numbers.least_single)
+    ends = left[0], left[1] + _LATER * scale
+    double, single = (np.arange(begin, end, _EVERY * scale) for begin, end in zip(earliest, ends, strict=True))
+    return np.append(double, left[0]), np.append(single, left[1])
+
+
+def _boxes(walk: Walk, side: float) -> list[tuple[Array, Array]]:
+    """Boxes, in the frame of the standing foot, in one of which the other may land: lower and upper corners [m]."""
+    if walk.parameters.step_adaptation is StepAdaptation.NONE:
+        return []
+    legs = walk.legs.adapting(walk.parameters) if walk.profile.catches else None
+    if legs is None:
+        return [reach_box(walk.parameters, side)]
+    return [(low, high) for low, high in legs.allowed(side, ANYWHERE, True)]
+
+
+def _corners(foot: Foot, pose: Array, half: tuple[float, float]) -> Array:
+    sole = Footstep(foot, np.array([pose[0], pose[1], 0.0]), float(pose[2]))
+    return np.asarray(sole_corners(sole, np.array(half)))
+
+
+class Limits:
+    """The limits of a campaign that searches for the impulse of a push.
+
+    The state in which the push begins is the same for all its directions; it is taken from the first log that is kept.
+
+    Args:
+        key: that was searched.
+        logs: labels of searches with logs of runs of theirs.
+        angle: name of the axis that gives the direction; empty where it is not varied.
+    """
+
+    def __init__(self, key: str, logs: Iterable[tuple[Mapping[str, Any], Path]], angle: str) -> None:
+        self._angle = angle
+        self._moments: dict[str, Moment] = {}
+        push = re.fullmatch(r"pushes\.(\d+)\.impulse", key)
+        if push is None or (angle and angle != f"pushes.{push[1]}.direction"):
+            return
+        for labels, log in logs:
+            name = self._name(labels)
+            moment = None if name in self._moments else moment_of(log, int(push[1]))
+            if moment is not None:
+                self._moments[name] = moment
+
+    def __bool__(self) -> bool:
+        """Whether there is any."""
+        return bool(self._moments)
+
+    def at(self, labels: Mapping[str, Any], direction: float | None) -> float | None:
+        """The limit of a search, None where it is not known [N·s/kg].
+
+        Args:
+            labels: of the search.
+            direction: of the push, None for its own [rad].
+        """
+        moment = self._moments.get(self._name(labels))
+        return None if moment is None else moment.limit(moment.direction if direction is None else direction)
+
+    def _name(self, labels: Mapping[str, Any]) -> str:
+        return str([(name, value) for name, value in labels.items() if name != self._angle])

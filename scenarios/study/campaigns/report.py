@@ -1,0 +1,237 @@
+"""The page of a campaign: what was run, what came of it, and how to run any failure of it again."""
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, get_args
+from urllib.parse import quote
+
+import yaml
+
+from surefoot.scenarios.record.provenance import relevant_versions
+from surefoot.scenarios.show.kit.html import (
+    MISSING,
+    PageTable,
+    TableCell,
+    TableRow,
+    details,
+    document,
+    escape,
+    figure_html,
+    number,
+    section,
+    tag,
+    tally,
+)
+from surefoot.scenarios.study.campaigns.axes import Axis, angle_of, is_around, text, with_unit
+from surefoot.scenarios.study.campaigns.capturability import LIMIT_NOTE, Limits
+from surefoot.scenarios.study.campaigns.journal import JOURNAL
+from surefoot.scenarios.study.campaigns.points import Cell, Point, Record, Runs, RunStatus
+from surefoot.scenarios.study.campaigns.success import (
+    distributions_section,
+    judged_of,
+    map_section,
+    passed_of,
+    success_section,
+)
+from surefoot.scenarios.study.campaigns.table import wilson
+from surefoot.scenarios.study.campaigns.thresholds import Found, along, are_named, bars, compass
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.study.campaigns.sweep import Swept
+
+MOST_ROWS = 200
+"""Failing runs that the page lists."""
+
+
+def page(swept: "Swept", most: int = MOST_ROWS) -> str:
+    """The whole page as HTML, with at most so many failing runs."""
+    spec = swept.campaign.spec
+    runs = swept.facts
+    axes = [Axis(name, tuple(one.label for one in settings)) for name, settings in swept.campaign.axes.items()]
+    parts = [tag("h1", escape(spec.name)), tag("p", escape(spec.about), kind="lead") if spec.about else ""]
+    parts += [_tally(swept, runs), _what_was_run(swept)]
+    if not runs:
+        parts.append(tag("p", "No run has a result yet."))
+    elif spec.bisect is not None:
+        parts.append(_thresholds(swept, axes))
+    else:
+        parts += [success_section(swept, runs, axes), map_section(swept, runs, axes)]
+    parts += [distributions_section(swept, runs), _failures(swept, swept.runs, most)]
+    return document(f"{spec.name}: campaign", "\n".join(part for part in parts if part))
+
+
+def _tally(swept: "Swept", runs: Runs) -> str:
+    boxes = [(str(len(swept.runs)), "runs")]
+    boxes += [(str(swept.count(status)), _WORDS[status]) for status in get_args(RunStatus) if swept.count(status)]
+    judged = judged_of(runs)
+    if swept.campaign.spec.bisect is not None:
+        done = sum(outcome.threshold is not None for outcome in swept.outcomes)
+        boxes.append((f"{done} of {len(swept.outcomes)}", "thresholds found"))
+    elif judged:
+        rate = wilson(passed_of(judged), len(judged))
+        interval = f"success rate, 95 % interval {100 * rate.low:.1f} to {100 * rate.high:.1f} %"
+        boxes.append((f"{100 * rate.rate:.1f} %", interval))
+    return tally(boxes)
+
+
+_WORDS: Mapping[RunStatus, str] = {
+    "pass": "met their criteria",
+    "fail": "missed them",
+    "refused": "refused: no such scenario can run",
+    "broken": "gave no result",
+}
+
+
+def _what_was_run(swept: "Swept") -> str:
+    spec = swept.campaign.spec
+    total = sum(record.wall_time for record in swept.records)
+    journal = swept.folder / JOURNAL
+    when = datetime.fromtimestamp(journal.stat().st_mtime, UTC) if journal.exists() else None
+    incomplete = sum(not outcome.complete for outcome in swept.outcomes)
+    said = [f"{len(swept.outcomes)} {'searches' if spec.bisect else 'runs'} were asked for"]
+    said += [f"{incomplete} of them have no result yet"] if incomplete else []
+    said += [f"the last result is of {when:%Y-%m-%d %H:%M} UTC"] if when else []
+    said += [f"the runs took {_time(total)} in sum"]
+    written = yaml.safe_dump(spec.model_dump(mode="json", exclude_defaults=True), sort_keys=False)
+    versions = "  ".join(f"{name} {version}" for name, version in relevant_versions().items())
+    return section(
+        "What was run",
+        tag("p", escape("; ".join(said)) + "."),
+        *(tag("p", f"{escape(note[:1].upper() + note[1:])}.") for note in swept.repeats()),
+        details("Specification", tag("pre", escape(written))),
+        details("Versions", tag("p", escape(versions))),
+        tag("p", "The same as tables: " + ", ".join(_file_link(name) for name in _tables(swept)) + ".", kind="note"),
+    )
+
+
+def _tables(swept: "Swept") -> list[str]:
+    return [path.name for path in swept.files if path.suffix != ".html"] or [JOURNAL]
+
+
+def _file_link(name: str) -> str:
+    return tag("a", escape(name), href=quote(name))
+
+
+def _time(seconds: float) -> str:
+    return (
+        f"{seconds:.0f} s"
+        if seconds < 120
+        else f"{seconds / 60:.0f} min"
+        if seconds < 7200
+        else f"{seconds / 3600:.1f} h"
+    )
+
+
+def _thresholds(swept: "Swept", axes: Sequence[Axis]) -> str:
+    bisect = swept.campaign.spec.bisect
+    assert bisect is not None
+    ends = _searches(swept)
+    found = [one for one, _ in ends]
+    if not found:
+        return section("Thresholds", tag("p", "No search has come to its end."))
+    angle = angle_of(axes)
+    logs = ((one.labels, swept.folder / record.log) for one, runs in ends for _, record in runs if record.log)
+    limits = Limits(bisect.key, logs, angle.name if angle else "")
+    searched = tag("p", escape(_searched(bisect.ratio is not None, bisect.key)))
+    note = tag("p", LIMIT_NOTE, kind="note") if limits else ""
+    return section("Thresholds", searched, _figure(swept, found, axes, limits), _table(swept, ends, axes, limits), note)
+
+
+def _figure(swept: "Swept", found: Sequence[Found], axes: Sequence[Axis], limits: Limits) -> str:
+    """Bars among named settings, a compass of directions, or curves; none where nothing varies."""
+    assert swept.campaign.spec.bisect is not None
+    key, records = swept.campaign.spec.bisect.key, swept.campaign.spec.records
+    varied = [axis for axis in axes if len({one.labels[axis.name] for one in found}) > 1]
+    if are_named(axes):
+        drawn, caption = bars(found, axes, key, limits.at, records), "Thresholds. Hollow bars" + _BEYOND
+        caption += " Black: the most that a linear inverted pendulum survives by one step." if limits else ""
+        caption = " ".join((caption, *(f"{one}." for one in sorted({f"{one.name}: {one.source}" for one in records}))))
+    elif is_around(varied):
+        drawn, caption = compass(found, varied, key, limits.at), "Thresholds by direction in the world. Hollow marks"
+        most = "the most that a linear inverted pendulum survives by one step"
+        caption += f"{_BEYOND} Dashed, where it is known: {most}."
+    elif varied:
+        drawn, caption = along(found, varied, key), "Thresholds. Hollow marks" + _BEYOND
+    else:
+        return ""
+    return figure_html(drawn, caption, "thresholds-figure")
+
+
+_BEYOND = " lie beyond the end of the searched range."
+
+
+def _searched(ladder: bool, key: str) -> str:
+    if ladder:
+        return f"The greatest value of {key} up to which every rung of a ladder was passed by all seeds."
+    return f"The value of {key} at which passing turns into failing, by halving the range."
+
+
+def _searches(swept: "Swept") -> list[tuple[Found, Runs]]:
+    """Where every search ended that came to its end, with its runs."""
+    found: list[tuple[Found, Runs]] = []
+    for outcome in swept.outcomes:
+        cell = outcome.cell
+        assert isinstance(cell, Cell)
+        bisect = swept.campaign.bisect(cell.keys)
+        if outcome.threshold is not None and bisect is not None:
+            found.append((Found(cell.labels, outcome.threshold, (bisect.low, bisect.high)), outcome.runs))
+    return found
+
+
+def _table(swept: "Swept", ends: Sequence[tuple[Found, Runs]], axes: Sequence[Axis], limits: Limits) -> str:
+    angle, bisect = angle_of(axes), swept.campaign.spec.bisect
+    assert bisect is not None
+    head = [*(axis.heading for axis in axes), with_unit(bisect.key)]
+    head += ["limit", "threshold over limit [%]"] if limits else []
+    rows: list[TableRow] = []
+    for one, runs in ends:
+        value = one.threshold.value
+        beyond = {"below": "below ", "above": "above "}.get(one.threshold.side, "")
+        shown = number(value) if value is not None and not beyond else f"{beyond}{number(one.shown)}"
+        row: list[TableCell | str] = [escape(text(one.labels[axis.name])) for axis in axes]
+        row.append(TableCell(shown, value=value))
+        if limits:
+            limit = limits.at(one.labels, float(one.labels[angle.name]) if angle else None)
+            row.append(tag("span", number(limit), data_limit="" if limit is None else repr(limit)))
+            row.append(MISSING if not limit or value is None else f"{100 * value / limit:.0f}")
+        failed = next((_again(swept, *run, most=1) for run in runs if run[1].status == "fail"), MISSING)
+        rows.append([*row, str(len(runs)), failed])
+    return PageTable("thresholds", [*head, "runs", "first failure"], rows).html
+
+
+def _failures(swept: "Swept", runs: Runs, most: int) -> str:
+    groups: dict[str, list[tuple[Point, Record]]] = {}
+    for point, record in runs:
+        if record.status != "pass":
+            groups.setdefault(kind_of(record), []).append((point, record))
+    if not groups:
+        return ""
+    if swept.campaign.spec.bisect is not None:
+        intro = "A search has failing runs by its nature: it ends at one."
+    else:
+        intro = "By the first criterion that each missed; refused ones and those without a result stand last."
+    shown = 0
+    rows: list[TableRow] = []
+    for kind, group in sorted(groups.items(), key=lambda item: (item[0] in _WORDS, -len(item[1]))):
+        rows.append([tag("b", escape(kind)), f"{len(group)} runs"])
+        taken = group[: max(most - shown, 0)]
+        rows += [[escape(point.name), _again(swept, point, record)] for point, record in taken]
+        shown += len(taken)
+    total = sum(map(len, groups.values()))
+    left = f" Listed are {shown} of {total}; the table has all." if shown < total else ""
+    table = PageTable("failures", ["run", "why, its log, and the command that makes it again"], rows).html
+    return section("Runs that did not pass", tag("p", escape(intro + left)), table)
+
+
+def kind_of(record: Record) -> str:
+    """What a run ended by: the metric of the first criterion that it missed, or its status."""
+    if record.status != "fail" or not record.reasons:
+        return record.status
+    return record.reasons[0].split()[0].rstrip(":,;")
+
+
+def _again(swept: "Swept", point: Point, record: Record, most: int | None = None) -> str:
+    """Why a run did not pass, by at most so many reasons, its log, and how to make it again."""
+    log = f" {tag('a', 'log', href=quote(record.log))}" if record.log and (swept.folder / record.log).exists() else ""
+    command = details("command", tag("code", escape(point.command), kind="command"))
+    return escape("; ".join(record.reasons[:most])) + log + command

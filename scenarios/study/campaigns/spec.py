@@ -1,0 +1,131 @@
+"""The specification of a campaign as it is written: what is fixed, varied, drawn and searched for."""
+
+import math
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from surefoot.scenarios.errors import nearest
+from surefoot.scenarios.file.group import WHOLE, Group
+
+MOST_RUNS = 1_000_000
+MOST = 1e100
+"""No value that is searched, drawn or shown on an axis is farther from zero, so that no difference of two overflows."""
+
+BoundedNumber = Annotated[float, Field(ge=-MOST, le=MOST, allow_inf_nan=False)]
+
+
+class Draw(Group):
+    """A distribution of which a value is drawn for each seed."""
+
+    uniform: Annotated[list[BoundedNumber], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="least and greatest value"
+    )
+    normal: Annotated[list[BoundedNumber], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="mean and standard deviation"
+    )
+    choice: Annotated[list[Any], Field(min_length=1)] | None = Field(default=None, description="one of these")
+
+    @model_validator(mode="after")
+    def _one_that_can_be(self) -> Self:
+        if sum(one is not None for one in (self.uniform, self.normal, self.choice)) != 1:
+            raise ValueError("needs one distribution; give uniform: [a, b], normal: [mean, sd] or choice: [...]")
+        if self.uniform is not None and self.uniform[0] > self.uniform[1]:
+            raise ValueError(f"uniform from {self.uniform[0]:g} to {self.uniform[1]:g} is empty; give the least first")
+        if self.normal is not None and self.normal[1] < 0.0:
+            raise ValueError(f"normal has a standard deviation of {self.normal[1]:g}; give 0 or more")
+        return self
+
+
+class Bisect(Group):
+    """The search for the value of a key from which on runs fail."""
+
+    key: str = Field(description="of the scenario")
+    low: BoundedNumber = Field(description="one end of the range")
+    high: BoundedNumber = Field(description="the other")
+    tolerance: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = Field(
+        default=None, description="how well the threshold shall be known; the range is halved"
+    )
+    ratio: Annotated[float, Field(gt=1, le=1000, allow_inf_nan=False)] | None = Field(
+        default=None, description="of a rung over the one below it; the ladder is climbed as long as every seed passes"
+    )
+
+    @model_validator(mode="after")
+    def _a_range(self) -> Self:
+        if (self.tolerance is None) == (self.ratio is None):
+            raise ValueError("needs tolerance, to halve the range, or ratio, to climb it; give one of them")
+        if self.low >= self.high:
+            raise ValueError(f"the range from {self.low:g} to {self.high:g} is empty; give low below high")
+        if self.ratio is not None and self.low <= 0.0:
+            raise ValueError(f"low is {self.low:g}, from which no ratio leads upwards; give more than 0")
+        if self.ratio is not None and math.log(self.high) - math.log(self.low) > MOST_RUNS * math.log(self.ratio):
+            raise ValueError(f"the ladder has more than {MOST_RUNS} rungs; give a greater ratio")
+        if self.ratio is not None and not math.isfinite(self.high / self.low):
+            raise ValueError(
+                f"the range from {self.low:g} to {self.high:g} is too wide for a ladder; give a greater low"
+            )
+        return self
+
+    @property
+    def rungs(self) -> tuple[float, ...]:
+        """Values of a ladder, the highest not above the range."""
+        assert self.ratio is not None
+        count = 1 + math.floor(math.log(self.high / self.low) / math.log(self.ratio) + 1e-9)
+        return tuple(self.low * self.ratio**k for k in range(count))
+
+
+class Published(Group):
+    """A value of the searched key that others have published, drawn beside the thresholds."""
+
+    name: str = Field(min_length=1, description="of whom or what it is")
+    value: BoundedNumber = Field(description="in the unit of the searched key")
+    source: str = Field(min_length=1, description="where it was published")
+    at: dict[str, Any] = Field(default={}, description="settings of axes that it is comparable with")
+
+
+GridAxis = Annotated[list[Any], Field(min_length=1)] | Annotated[dict[str, dict[str, Any]], Field(min_length=1)]
+
+
+class Spec(Group):
+    """A campaign as it is written."""
+
+    name: str = Field(default="sweep", min_length=1, max_length=100, pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")
+    about: str = Field(default="", description="what it is for, in a sentence or two")
+    scenario: str = Field(default="", description="catalogue name or file, sought beside the specification first")
+    sized_for: str | None = Field(
+        default=None,
+        description="robot for which values of set and of named settings are written",
+    )
+    set: dict[str, Any] = Field(default={}, description="values of keys in every run")
+    grid: dict[str, GridAxis] = Field(
+        default={},
+        description="every combination: by key a list of values, or by a name of one's own named groups of settings",
+    )
+    first: dict[str, Annotated[list[Any], Field(min_length=1)]] = Field(
+        default={}, max_length=1, description="values of a key of which the first is taken that is not refused"
+    )
+    sample: dict[str, Draw] = Field(default={}, description="values drawn anew for each seed")
+    bisect: Bisect | None = Field(default=None, description="a threshold instead of single runs")
+    records: list[Published] = Field(default=[], description="published values to draw beside thresholds")
+    seeds: Annotated[int, Field(ge=1, le=MOST_RUNS), WHOLE] = Field(default=1, description="runs 0, 1, ... of each")
+    seed: Annotated[int, Field(ge=0, lt=2**32), WHOLE] = Field(default=0, description="of what is drawn")
+    keep: Literal["failing", "all"] = Field(default="failing", description="of which runs the logs are kept")
+
+    @model_validator(mode="after")
+    def _one_search(self) -> Self:
+        if self.first and self.bisect is not None:
+            raise ValueError("has both first and bisect; a campaign searches one key")
+        if self.records and self.bisect is None:
+            raise ValueError("has records but searches nothing that is like them; give bisect")
+        return self
+
+    @model_validator(mode="after")
+    def _records_in_the_grid(self) -> Self:
+        for record in self.records:
+            for name, label in record.at.items():
+                if not any(label == known for known in self.grid.get(name, ())):
+                    known = self.grid.get(name, self.grid)
+                    raise ValueError(
+                        f"a record is at {name}: {label}, not in the grid; {nearest(str(label), map(str, known))}"
+                    )
+        return self

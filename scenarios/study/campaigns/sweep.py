@@ -1,0 +1,213 @@
+"""``surefoot sweep``: runs a campaign and writes its tables and its page."""
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, get_args
+
+import yaml
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from surefoot.scenarios.errors import install_command
+from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.show.console import TerminalLine
+from surefoot.scenarios.study.campaigns.campaign import Campaign
+from surefoot.scenarios.study.campaigns.engine import (
+    InterruptedRunsError,
+    Outcome,
+    Worker,
+    local_workers,
+    outcome_of,
+    run_cells,
+)
+from surefoot.scenarios.study.campaigns.journal import Journal
+from surefoot.scenarios.study.campaigns.points import Record, Runs, RunStatus, cells, facts
+from surefoot.scenarios.study.campaigns.table import has_parquet, runs_table, thresholds_table, wilson, write_table
+
+SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", "table", "thresholds"
+STATUSES: tuple[RunStatus, ...] = get_args(RunStatus)
+
+
+class CampaignBar(TerminalLine):
+    """How far a campaign is: how many are done, how many failed, how long the rest takes.
+
+    Args:
+        total: number of cells.
+        what: they are called.
+    """
+
+    def __init__(self, total: int, what: str = "runs") -> None:
+        super().__init__(
+            *(TextColumn(what), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[state]}")),
+            *(TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn()),
+        )
+        self._task = self._bar.add_task("", total=total, state="")
+        self._counts = dict.fromkeys(("fail", "refused", "broken"), 0)
+        self._runs = 0
+
+    def run(self, record: Record) -> None:
+        """Count a run."""
+        self._runs += 1
+        if record.status in self._counts:
+            self._counts[record.status] += 1
+        counts = ", ".join(f"{count} {status}" for status, count in self._counts.items() if count)
+        self._bar.update(self._task, state=f"{self._runs} runs" + (f", {counts}" if counts else ""))
+
+    def cell(self) -> None:
+        """Count a cell."""
+        self._bar.advance(self._task)
+
+
+@dataclass(frozen=True, slots=True)
+class Swept:
+    """A campaign that was run.
+
+    Attributes:
+        campaign: its specification.
+        folder: where its results are.
+        outcomes: of its cells, in order.
+        stale: results of other versions that were made anew.
+    """
+
+    campaign: Campaign
+    folder: Path
+    outcomes: tuple[Outcome, ...]
+    stale: int = 0
+
+    @property
+    def runs(self) -> Runs:
+        """Every run with what became of it."""
+        return tuple(run for outcome in self.outcomes for run in outcome.runs)
+
+    @property
+    def facts(self) -> Runs:
+        """Every run but those that only repeat another."""
+        return facts(self.runs)
+
+    @property
+    def records(self) -> tuple[Record, ...]:
+        """What became of every run."""
+        return tuple(record for _, record in self.runs)
+
+    def count(self, status: str) -> int:
+        """How many runs ended so."""
+        return sum(record.status == status for record in self.records)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every cell has a result."""
+        return all(outcome.complete for outcome in self.outcomes)
+
+    @property
+    def ran(self) -> bool:
+        """Whether any run was accepted."""
+        return self.count("pass") + self.count("fail") > 0
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The page and the tables."""
+        tables = (f"{name}{ending}" for name in (THRESHOLDS_TABLE, RUNS_TABLE) for ending in (".csv", ".parquet"))
+        return tuple(path for path in (self.folder / name for name in (PAGE, *tables)) if path.exists())
+
+    def repeats(self) -> Iterator[str]:
+        """What is to be known of runs that only repeat another, a sentence if there are any."""
+        runs, facts = len(self.runs), len(self.facts)
+        if facts < runs:
+            then = "they count once" if self.campaign.spec.bisect is None else "more seeds find no other threshold"
+            alike = f"{runs - facts} of {runs} runs are those of another seed to the digit"
+            yield f"{alike}, since nothing in them is random; {then}"
+
+    def notes(self) -> Iterator[str]:
+        """What is to be known beside the result, a sentence each."""
+        yield from self.repeats()
+        if self.stale:
+            others = "of another robot, another code or other versions, or lacked their log"
+            yield f"{self.stale} results were {others}, and were not taken over"
+        if not has_parquet():
+            yield f"no parquet is written; install it with: {install_command('parquet')}"
+        broken = (reason for record in self.records if record.status == "broken" for reason in record.reasons)
+        yield from (f"a run gave no result: {reason}" for reason in dict.fromkeys(broken))
+        if not self.ran:
+            refused = next((record.reasons for record in self.records if record.status == "refused"), ())
+            yield from (f"every run was refused, the first since {reason}" for reason in refused)
+
+    def lines(self) -> Iterator[str]:
+        """The result for a person."""
+        runs = len(self.records)
+        counts = ", ".join(f"{n} {status}" for status in STATUSES if (n := self.count(status)))
+        yield f"{self.campaign.spec.name}: {runs} runs" + (f", {counts}" if counts else "")
+        if self.campaign.spec.bisect is None and self.ran:
+            judged = [record.status for _, record in self.facts if record.status in ("pass", "fail")]
+            rate = wilson(judged.count("pass"), len(judged))
+            yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {100 * rate.low:.1f} to {100 * rate.high:.1f} %"
+        yield from map(str, reversed(self.files))
+
+    def to_json(self) -> dict[str, Any]:
+        """The result as one JSON object."""
+        counts: dict[str, Any] = {status: self.count(status) for status in STATUSES}
+        files = [path.name for path in self.files]
+        name, runs = self.campaign.spec.name, len(self.records)
+        counts["repeated"] = runs - len(self.facts)
+        return {"campaign": name, "runs": runs, **counts, "out": str(self.folder), "files": files}
+
+
+def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) -> Swept:
+    """Run what has no result yet, and write tables and page.
+
+    Args:
+        campaign: to run.
+        out: its directory.
+        jobs: runs at once on this machine.
+        cluster: address of a dask scheduler, to run there.
+
+    Raises:
+        LogError: something cannot be written.
+        ScenarioError: the cluster cannot be reached or used.
+        InterruptedRunsError: the user stopped it; tables and page are of what was done.
+    """
+    keep_all, every = campaign.spec.keep == "all", tuple(cells(campaign))
+    workers = _workers(out, jobs, cluster, keep_all)
+    with Journal(out, keep_all) as journal:
+        stopped: InterruptedRunsError | None = None
+        try:
+            with CampaignBar(len(every), "searches" if campaign.spec.bisect else "runs") as bar:
+                run_cells(every, journal, workers, bar.run, bar.cell)
+        except InterruptedRunsError as error:
+            stopped = error
+        swept = Swept(campaign, out, tuple(outcome_of(cell, journal) for cell in every), journal.stale)
+        write(swept)
+    if stopped is not None:
+        raise stopped
+    return swept
+
+
+def _workers(out: Path, jobs: int, cluster: str | None, keep_all: bool) -> Sequence[Worker]:
+    if cluster is None:
+        return local_workers(out, jobs, keep_all)
+    from surefoot.scenarios.study.campaigns.cluster import cluster_workers
+
+    return cluster_workers(cluster, out, keep_all)
+
+
+def write(swept: Swept) -> None:
+    """Write what a campaign found; files of an earlier time are replaced.
+
+    Raises:
+        LogError: one cannot be written.
+    """
+    from surefoot.scenarios.study.campaigns.report import page
+
+    spec = swept.campaign.spec.model_dump(mode="json", exclude_defaults=True)
+    with write_whole(swept.folder / SPEC_FILE, replace=True) as temporary:
+        temporary.write_text(yaml.safe_dump(spec, sort_keys=False), encoding="utf-8")
+    write_table(runs_table(swept.outcomes), swept.folder / RUNS_TABLE)
+    if swept.campaign.spec.bisect is not None:
+        write_table(thresholds_table(swept.outcomes), swept.folder / THRESHOLDS_TABLE)
+    with write_whole(swept.folder / PAGE, replace=True) as temporary:
+        temporary.write_text(page(swept), encoding="utf-8")
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,0 +1,231 @@
+"""What a run is recognised by: its stages, and a handful of physical quantities in each.
+
+A stage goes from one lift-off to the next. The first tick is one of its own: all runs of a scenario begin it in the
+same state, so that what one does differently there is its controller's doing alone.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from surefoot.planner.types import GRAVITY
+from surefoot.scenarios.judge.body import headings, leg
+from surefoot.scenarios.judge.digest import Array, RunView
+from surefoot.scenarios.judge.walking import runs_of
+from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED
+
+LONGEST_LAG = 10
+"""Lags that are tried [ticks]."""
+
+ALIKE = 0.5
+"""Share of the planned changes, squared, that may be left of them when the measured ones are taken off [-]."""
+
+LEAST_CHANGE = 0.01
+"""Change of the planned forces from tick to tick, RMS, below which no lag can be told [N]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A stretch of a run.
+
+    Attributes:
+        label: its name: first tick, stand, step 1 and so on.
+        begin: its first tick.
+        end: the tick after its last.
+        foot: that swings: 0 left, 1 right, -1 none.
+        landed: tick at which its swing is over.
+    """
+
+    label: str
+    begin: int
+    end: int
+    foot: int = -1
+    landed: int = 0
+
+    @property
+    def ticks(self) -> slice:
+        """All of it."""
+        return slice(self.begin, self.end)
+
+
+def stages(run: RunView) -> list[Stage]:
+    """The stages of a run in order, none of them empty."""
+    if not run.ticks:
+        return []
+    stance = run.field("/reference", "stance")
+    swings = sorted((*swing, foot) for foot in (0, 1) for swing in runs_of(run.single_support & (stance == 1 - foot)))
+    ends = [*(begin for begin, _, _ in swings), run.ticks]
+    steps = [
+        Stage(f"step {number}", begin, ends[number], foot, min(landed, run.ticks - 1))
+        for number, (begin, landed, foot) in enumerate(swings, 1)
+    ]
+    return [one for one in (Stage("first tick", 0, 1), Stage("stand", 1, ends[0]), *steps) if one.end > one.begin]
+
+
+Measure = Callable[[RunView, Sequence[Stage]], Array]
+"""From a run and its stages to values, shape (stages, columns); NaN where they mean nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sign:
+    """Something that runs are told apart by, a number for each stage, or a place.
+
+    Attributes:
+        columns: names; three are the x, y and z of a place in the world.
+        digits: behind the point.
+        tolerance: how far two runs may be apart that count as the same, and share of the value beside it.
+        shown: factor and unit in which a person is shown it.
+        figure: of `surefoot plot` that shows it.
+        words: what it is, of which foot and in which stage.
+        measure: it.
+        body: whether it is of joints and real feet, which a pendulum has not got.
+        peak: whether it parts only above the greatest value of all stages.
+    """
+
+    columns: tuple[str, ...]
+    digits: int
+    tolerance: tuple[float, float]
+    shown: tuple[float, str]
+    figure: str
+    words: str
+    measure: Measure
+    body: bool = False
+    peak: bool = False
+
+
+def _times(run: RunView, parts: Sequence[Stage]) -> Array:
+    return run.time[[one.begin for one in parts], None]
+
+
+def _landings(run: RunView, parts: Sequence[Stage]) -> Array:
+    """Where the soles truly were when their swings were over; none where none has swung."""
+    rows = [np.full(3, np.nan) if one.foot < 0 else run.sole(one.foot)[one.landed, :3] for one in parts]
+    return np.array(rows).reshape(-1, 3)
+
+
+def _landing_yaw(run: RunView, parts: Sequence[Stage]) -> Array:
+    poses = [run.sole(max(one.foot, 0))[one.landed if one.foot >= 0 else one.begin] for one in parts]
+    return headings(np.array(poses).reshape(-1, 7)[:, 3:])[:, None]
+
+
+def _swing_error(run: RunView, parts: Sequence[Stage]) -> Array:
+    """Greatest distance of the swing sole in each stage from its reference."""
+    planned, found = run.field("/reference", "swing_position"), np.full((len(parts), 1), np.nan)
+    for row, one in enumerate(parts):
+        swing = slice(one.begin, one.landed)
+        if one.foot >= 0 and one.landed > one.begin:
+            found[row] = np.linalg.norm(run.sole(one.foot)[swing, :3] - planned[swing], axis=1).max()
+    return found
+
+
+def _each(series: Callable[[RunView], Array], reduced: Callable[[Array], float] = np.max) -> Measure:
+    """A number for each stage of a series over the control ticks, by default its greatest value."""
+
+    def measure(run: RunView, parts: Sequence[Stage]) -> Array:
+        values = series(run)
+        return np.array([[reduced(values[one.ticks])] for one in parts])
+
+    return measure
+
+
+def _leg_torque(run: RunView, side: str) -> Array:
+    """Mean square of the torques that the joints of a leg are commanded."""
+    joints = leg(run.constants.joint_names, run.constants.roles, side)
+    return np.asarray(np.mean(run.field("/torque", "command")[:, joints] ** 2, axis=1))
+
+
+def _friction(run: RunView, side: str) -> Array:
+    """Force along the ground over the normal force that the controller plans, where the foot is loaded."""
+    wrench = run.field("/wbc", f"wrench_{side}")
+    loaded = wrench[:, 2] > LOADED * run.constants.mass * GRAVITY
+    return np.where(loaded, np.hypot(wrench[:, 0], wrench[:, 1]) / np.where(loaded, wrench[:, 2], 1.0), 0.0)
+
+
+def _lag(run: RunView, parts: Sequence[Stage]) -> Array:
+    """Time by which the measured normal forces follow the planned ones: where their changes differ least.
+
+    Told while the robot shifts its weight before the first step; touchdowns shake the forces more than a lag does.
+    """
+    planned, felt = (
+        np.diff(np.column_stack([run.field(topic, f"wrench_{side}")[:, 2] for side in FOOT_NAMES]), axis=0)
+        for topic in ("/wbc", "/measurement")
+    )
+    found = np.full((len(parts), 1), np.nan)
+    for row, one in enumerate(parts):
+        asked, given = planned[one.ticks][:-LONGEST_LAG], felt[one.ticks]
+        size = float(np.mean(asked**2)) if len(asked) > LONGEST_LAG else 0.0
+        if one.foot < 0 and size > LEAST_CHANGE**2:
+            apart = [np.mean((asked - given[lag : lag + len(asked)]) ** 2) for lag in range(LONGEST_LAG)]
+            if min(apart) < ALIKE * size:
+                found[row] = int(np.argmin(apart)) / run.constants.control_rate
+    return found
+
+
+def _zmp_error(run: RunView) -> Array:
+    """Distance of the measured ZMP from the one that the footsteps define; none in flight."""
+    error = np.linalg.norm(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"), axis=1)
+    return np.where(np.isfinite(error), error, 0.0)
+
+
+def _sway(run: RunView) -> Array:
+    """Distance of the CoM along the ground from the one that the controller was asked for."""
+    return np.asarray(np.linalg.norm((run.field("/truth", "com") - run.field("/reference", "com"))[:, :2], axis=1))
+
+
+def _tilt(run: RunView) -> Array:
+    """Angle of the torso from the vertical."""
+    return run.field("/truth", "torso_tilt")
+
+
+def _com(run: RunView, parts: Sequence[Stage]) -> Array:
+    return run.field("/truth", "com")[[one.end - 1 for one in parts]]
+
+
+_SECONDS, _MS, _MM, _DEGREES, _NEWTON_METRES = (
+    (1.0, "s"),
+    (1e3, "ms"),
+    (1e3, "mm"),
+    (180.0 / math.pi, "deg"),
+    (1.0, "N m"),
+)
+_PLAIN = (1.0, "")
+_GRIP = "largest force along the ground over normal force that the controller plans for the {} foot {{stage}}"
+_LAG = "lag of the measured ground forces behind those that the controller plans {stage}"
+_SWING = "swing task: largest distance of the {foot} sole from its reference {stage}"
+_BALANCE = "balance: largest distance of the CoM along the ground from where the controller was to hold it {stage}"
+_ZMP = "largest distance of the ZMP from its reference {stage}"
+
+
+def _leg(side: str) -> Sign:
+    torque = _each(partial(_leg_torque, side=side), lambda squared: math.sqrt(np.mean(squared)))
+    words = f"torque of the {side} leg (RMS) {{stage}}"
+    return Sign((f"torque_{side}",), 2, (0.5, 0.02), _NEWTON_METRES, "torques", words, torque, body=True)
+
+
+def _grip(side: str) -> Sign:
+    used, words = _each(partial(_friction, side=side)), _GRIP.format(side)
+    return Sign((f"friction_{side}",), 3, (0.1, 0.0), _PLAIN, "grip", words, used, body=True, peak=True)
+
+
+_SOLE, _YAW = "{foot} sole at touchdown of {label}", "heading of the {foot} sole at touchdown of {label}"
+
+SIGNS: tuple[Sign, ...] = (
+    Sign(("time",), 3, (0.011, 0.0), _SECONDS, "feet", "begin of {label}", _times),
+    Sign(("lag",), 4, (1e-3, 0.0), _MS, "feet", _LAG, _lag, body=True),
+    *map(_grip, FOOT_NAMES),
+    Sign(("sole_x", "sole_y", "sole_z"), 4, (1e-3, 0.0), _MM, "soles", _SOLE, _landings),
+    Sign(("sole_yaw",), 4, (5e-3, 0.0), _DEGREES, "top-view", _YAW, _landing_yaw),
+    Sign(("swing",), 5, (5e-5, 0.05), _MM, "feet", _SWING, _swing_error),
+    *map(_leg, FOOT_NAMES),
+    Sign(("zmp",), 4, (5e-3, 0.05), _MM, "balance", _ZMP, _each(_zmp_error)),
+    Sign(("sway",), 5, (2e-4, 0.05), _MM, "balance", _BALANCE, _each(_sway)),
+    Sign(("tilt",), 4, (2e-3, 0.05), _DEGREES, "balance", "largest tilt of the torso {stage}", _each(_tilt), body=True),
+    Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), _MM, "balance", "CoM at the end of {label}", _com),
+)
+"""What is kept of a run; of those that part in the same stage, the first is nearest to the cause. Torques come late:
+after the first tick they follow from how the robot moves."""
+
+COLUMNS = tuple(column for sign in SIGNS for column in sign.columns)

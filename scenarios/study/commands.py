@@ -1,0 +1,151 @@
+"""The commands that make many runs: sweep, check and paper."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from surefoot.scenarios.show.options import (
+    INTERRUPTED,
+    MISSED,
+    AsJson,
+    Jobs,
+    Replace,
+    Settings,
+    settings,
+    with_options,
+)
+
+app = typer.Typer()
+
+
+def _campaigns_from(incomplete: str) -> list[str]:
+    """Campaigns that begin so."""
+    from surefoot.scenarios.study.campaigns.campaign import shipped
+
+    return [name for name in shipped() if name.startswith(incomplete)]
+
+
+def _interrupted(folder: Path) -> typer.Exit:
+    """Say how to go on."""
+    typer.echo(f"interrupted; finished runs are kept in {folder}, the same command goes on from there", err=True)
+    return typer.Exit(INTERRUPTED)
+
+
+@app.command()
+def sweep(
+    spec: Annotated[
+        str,
+        typer.Argument(help="A campaign's name, or its specification, a YAML file.", autocompletion=_campaigns_from),
+    ],
+    set_: Annotated[list[str] | None, settings("Fix a key, even one that varies")] = None,
+    seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None,
+    jobs: Jobs = None,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this dask scheduler instead.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run a campaign: a grid, samples or thresholds over any key.
+
+    Begun again, it goes on where it stopped.
+    """
+    from surefoot.scenarios.study.campaigns.campaign import read_campaign
+    from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
+    from surefoot.scenarios.study.campaigns.sweep import cores
+    from surefoot.scenarios.study.campaigns.sweep import sweep as run_sweep
+
+    if jobs is not None and cluster is not None:
+        raise typer.BadParameter("--jobs is of this machine; give it without --cluster")
+    campaign = read_campaign(spec, set_ or (), seeds)
+    folder = out or Path("runs") / campaign.spec.name
+    try:
+        swept = run_sweep(campaign, folder, jobs or cores(), cluster)
+    except InterruptedRunsError:
+        raise _interrupted(folder) from None
+    for text in swept.notes():
+        typer.echo(text, err=True)
+    if as_json:
+        typer.echo(json.dumps(swept.to_json(), allow_nan=False))
+    else:
+        typer.echo("\n".join(swept.lines()))
+    raise typer.Exit(0 if swept.complete and swept.ran else MISSED)
+
+
+@dataclass(frozen=True, slots=True)
+class CheckOptions:
+    """What `surefoot check` is told."""
+
+    scenarios: Annotated[
+        list[str] | None, typer.Argument(help="Catalogue names, files or folders; all of the catalogue by default.")
+    ] = None
+    update: Annotated[bool, typer.Option("--update", help="Write the baselines anew, and show the change.")] = False
+    baselines: Annotated[
+        Path | None, typer.Option(help="Directory of the baselines; beside the scenario files by default.")
+    ] = None
+    set_: Settings = None
+    jobs: Jobs = None
+    out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/check")
+    junit: Annotated[Path | None, typer.Option(help="Also write JUnit XML to this file.")] = None
+    markdown: Annotated[Path | None, typer.Option(help="Also write a summary for a CI page to this file.")] = None
+    force: Replace = False
+
+
+@app.command()
+@with_options(CheckOptions)
+def check(told: CheckOptions) -> None:
+    """Hold scenarios against their baselines."""
+    from surefoot.scenarios.output import refuse_existing
+    from surefoot.scenarios.show.console import plain_console
+    from surefoot.scenarios.study.campaigns.sweep import cores
+    from surefoot.scenarios.study.checks import check as checking
+    from surefoot.scenarios.study.checks import report
+
+    console = plain_console()
+    for report_file in (told.junit, told.markdown):
+        if report_file is not None:
+            refuse_existing(report_file, told.force)
+    chosen = checking.cases(told.scenarios or (), told.baselines, told.set_ or ())
+    try:
+        found = checking.check(
+            chosen, told.out, told.jobs or cores(), lambda one: report.print_checked(one, console), told.update
+        )
+    except KeyboardInterrupt:
+        typer.echo("interrupted", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    if told.junit is not None:
+        report.write(told.junit, report.junit(found), told.force)
+    if told.markdown is not None:
+        report.write(told.markdown, report.markdown(found).encode(), told.force)
+    typer.echo(report.summary(found))
+    raise typer.Exit(checking.exit_code(found))
+
+
+@app.command()
+def paper(
+    out: Annotated[Path, typer.Option(help="Directory for the page and its runs.")] = Path("runs/paper"),
+    jobs: Jobs = None,
+    force: Annotated[bool, typer.Option("--force", "-f", help="Replace the page of an earlier time.")] = False,
+) -> None:
+    """Run the paper's experiments; write what holds as an HTML page.
+
+    Begun again, it goes on where it stopped.
+    """
+    from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
+    from surefoot.scenarios.study.campaigns.sweep import cores
+    from surefoot.scenarios.study.paper.page import paper as run_paper
+
+    try:
+        written = run_paper(out, jobs or cores(), force)
+    except InterruptedRunsError:
+        raise _interrupted(out) from None
+    for name in written.failures:
+        typer.echo(f"could not run: {name}", err=True)
+    verdicts = ", ".join(f"{verdict}: {count}" for verdict, count in written.verdicts.items() if count)
+    typer.echo(f"{written.runs} runs, {written.falls} falls, {len(written.failures)} could not run")
+    typer.echo(f"claims: {verdicts}")
+    typer.echo(str(written.page))
+    raise typer.Exit(MISSED if written.failures else 0)

@@ -1,0 +1,343 @@
+"""The paper's figures, drawn anew from the logs: runs side by side, quantities below each other."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log import read
+from surefoot.scenarios.palette import (
+    BLACK,
+    BLUE,
+    COM,
+    COM_PLANNED,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    PUSH,
+    SKY,
+    VERMILION,
+    ZMP,
+    ZMP_PLANNED,
+)
+from surefoot.scenarios.show.figures.motion import draw_support, support_handle
+from surefoot.scenarios.show.kit.figures import DASHED, canvas, curve, in_style, note, reference_curve
+from surefoot.scenarios.show.kit.shading import background
+from surefoot.scenarios.show.logview import LogView, MissingError
+from surefoot.scenarios.study.paper import studies
+from surefoot.scenarios.study.paper.results import Results, Sample
+from surefoot.scenarios.study.paper.studies import STAIRS, WALK, PaperWorld, Study
+from surefoot.scenarios.study.paper.tables import WORLD_NAMES, error_norms
+
+Array = NDArray[np.float64]
+
+Views = Sequence[tuple[str, LogView]]
+
+WIDTH = 11.6
+"""Of a figure [in]."""
+
+_HEAD = 0.55
+
+
+@dataclass(frozen=True, slots=True)
+class PanelColumn:
+    """Runs drawn in the same axes, most often one.
+
+    Attributes:
+        title: above the column.
+        samples: label and sample of each run; the run of the first seed is drawn.
+    """
+
+    title: str
+    samples: tuple[tuple[str, Sample], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PanelRow:
+    """A quantity.
+
+    Attributes:
+        label: of the vertical axis, with unit.
+        draw: draws it from the views of a column.
+        height: of its panels [in].
+        shared: whether its vertical axis is the same for all columns.
+    """
+
+    label: str
+    draw: Callable[[Axes, Views], None]
+    height: float = 1.5
+    shared: bool = True
+
+
+def grid(columns: Sequence[PanelColumn], rows: Sequence[PanelRow]) -> Figure:
+    """Draw a figure; a run that is missing leaves a note in its column."""
+    with in_style():
+        figure, (top, area) = canvas(WIDTH, (_HEAD, sum(row.height for row in rows) + 0.5))
+        heights = [row.height for row in rows]
+        axes = area.subplots(len(rows), len(columns), sharex="col", squeeze=False, height_ratios=heights)
+        handles: dict[str, object] = {}
+        for number, column in enumerate(columns):
+            axes[0, number].set_title(column.title, fontsize=8.5, loc="left")
+            handles |= _draw_column(list(axes[:, number]), column, rows)
+            axes[-1, number].set_xlabel("time [s]")
+        for number, row in enumerate(rows):
+            axes[number, 0].set_ylabel(row.label)
+            if row.shared:
+                _share_y(list(axes[number]))
+        area.align_ylabels(axes[:, 0])
+        top.legend(handles=list(handles.values()), loc="center left", bbox_to_anchor=(0.01, 0.5), ncols=8)
+    return figure
+
+
+def _draw_column(axes: Sequence[Axes], column: PanelColumn, rows: Sequence[PanelRow]) -> dict[str, object]:
+    """Draw the panels of a column; returns the entries of its legend by label."""
+    try:
+        views = [(label, _view(sample)) for label, sample in column.samples]
+    except MissingError as missing:
+        for one in axes:
+            note(one, str(missing))
+        return {}
+    behind = background(max((view for _, view in views), key=lambda view: view.end))
+    behind.shade(axes)
+    for one in axes:
+        for push in behind.pushes:  # 10 ms of 14 s are less than a pixel
+            one.axvline(push.start, color=PUSH, linewidth=1.0, zorder=1.2)
+    entries: dict[str, object] = {"planned support, bounds": support_handle()}
+    for one, row in zip(axes, rows, strict=True):
+        try:
+            row.draw(one, views)
+        except MissingError as missing:
+            note(one, f"not in this log: {missing}")
+        found, labels = one.get_legend_handles_labels()
+        entries |= dict(zip(labels, found, strict=True))
+    axes[-1].set_xlim(0.0, max(view.end for _, view in views))
+    return entries | {str(handle.get_label()): handle for handle in behind.handles()}
+
+
+def _view(sample: Sample) -> LogView:
+    """The first run of a sample.
+
+    Raises:
+        MissingError: there is none.
+    """
+    if not sample.outcomes:
+        raise MissingError("not run")
+    first = sample.outcomes[0]
+    if first.failure or first.log is None:
+        raise MissingError("could not run")
+    try:
+        return LogView(read(first.log))
+    except LogError:
+        raise MissingError("its log cannot be read") from None
+
+
+def _share_y(axes: Sequence[Axes]) -> None:
+    """Give the panels of a row the same limits: those of all that were drawn."""
+    drawn = [one for one in axes if one.lines]
+    if drawn:
+        limits = [one.get_ylim() for one in drawn]
+        low, high = min(limit[0] for limit in limits), max(limit[1] for limit in limits)
+        for one in axes:
+            one.set_ylim(low, high)
+
+
+POINTS = 250
+"""Stretches into which a curve is thinned: about one per pixel of a panel, of each its extremes."""
+
+_PAPER_JERK = 1.5
+"""Bound on the jerk in the paper [m/s³]."""
+
+SEVERAL = (BLUE, SKY, ORANGE, VERMILION)
+"""Colours of runs in the same axes, from the least to the greatest value of what differs."""
+
+
+def position(axes: Axes, views: Views, axis: int) -> None:
+    """Reference ZMP, measured ZMP, CoM and the bounds of the support along an axis."""
+    ((_, view),) = views
+    draw_support(axes, view, axis)
+    zmp, com = view.field("/contact", "zmp", 3)[:, axis], view.field("/truth", "com", 3)[:, axis]
+    curve(axes, view.time("/contact"), zmp, "ZMP measured", ZMP, POINTS, linewidth=1.3)
+    curve(axes, view.time("/truth"), com, "CoM", COM, POINTS, linewidth=1.4)
+    reference = _reference(axes, view, axis)
+    margin = 0.12 + 0.1 * np.ptp(reference)
+    axes.set_ylim(reference.min() - margin, reference.max() + margin)
+
+
+def jerk(axes: Axes, views: Views, axis: int) -> None:
+    """First jerk of each plan, with the paper's bound."""
+    ((_, view),) = views
+    first = np.ascontiguousarray(view.field("/plan", "jerk", -1, 2)[:, 0, axis])
+    curve(axes, view.time("/plan"), first, "CoM jerk commanded", PURPLE, POINTS, drawstyle="steps-post", linewidth=0.8)
+    for sign in (-1.0, 1.0):
+        axes.axhline(sign * _PAPER_JERK, color=BLACK, linewidth=0.6, linestyle=(0, (1, 2)))
+    largest = max(1.2 * _PAPER_JERK, float(np.nanmax(np.abs(first))) * 1.1)
+    axes.set_ylim(-largest, largest)
+
+
+def height(axes: Axes, views: Views) -> None:
+    """Height of the CoM."""
+    ((_, view),) = views
+    curve(axes, view.time("/truth"), view.field("/truth", "com", 3)[:, 2], "CoM height", COM, POINTS, linewidth=1.4)
+    planned = view.field("/reference", "com", 3)[:, 2]
+    curve(axes, view.time("/reference"), planned, "its reference", COM_PLANNED, POINTS, linestyle=DASHED, linewidth=0.6)
+    axes.set_ylim(planned.min() - 0.05, planned.max() + 0.05)
+
+
+def zmp_of_several(axes: Axes, views: Views, axis: int) -> None:
+    """True ZMP of several runs in the same axes, with the support and the reference of the longest of them."""
+    longest = max((view for _, view in views), key=lambda view: view.end)
+    draw_support(axes, longest, axis)
+    for (label, view), color in zip(views, SEVERAL, strict=False):
+        zmp = view.field("/contact", "zmp", 3)[:, axis]
+        curve(axes, view.time("/contact"), zmp, f"ZMP, {label}", color, POINTS, linewidth=0.8)
+    reference = _reference(axes, longest, axis)
+    margin = 0.06 + 0.08 * np.ptp(reference)
+    axes.set_ylim(reference.min() - margin, reference.max() + margin)
+
+
+def _reference(axes: Axes, view: LogView, axis: int) -> Array:
+    reference = view.field("/reference", "zmp_reference", 2)[:, axis]
+    reference_curve(axes, view.time("/reference"), reference, "ZMP reference", ZMP_PLANNED, POINTS)
+    return reference[np.isfinite(reference)]
+
+
+RISERS = (0.0, 0.10, 0.15, 0.18)
+_SHOWN = {"lti": VERMILION, "preview": PURPLE, "repaired": GREEN, "default": BLUE}
+
+
+def preview_chart(results: Results) -> Figure:
+    """Draw it; a profile without results has no line."""
+    with in_style():
+        figure, (area,) = canvas(7.0, (2.8,))
+        axes = area.subplots()
+        for profile, color in _SHOWN.items():
+            rows = [(riser, error_norms(results.sample(study, profile, "pendulum")))
+                    for riser, study in zip(RISERS, (WALK, *STAIRS), strict=True)]  # fmt: skip
+            drawn = [(riser, sorted(values)) for riser, values in rows if values]
+            x = [riser for riser, _ in drawn]
+            middle = [1e3 * values[len(values) // 2] for _, values in drawn]
+            low = [m - 1e3 * values[0] for m, (_, values) in zip(middle, drawn, strict=True)]
+            high = [1e3 * values[-1] - m for m, (_, values) in zip(middle, drawn, strict=True)]
+            axes.errorbar(x, middle, (low, high), color=color, label=profile, marker="o", markersize=3.5, capsize=2)
+        axes.set_xlabel("riser height [m]; 0: flat ground")
+        axes.set_ylabel("ZMP error RMS, norm of x and y [mm]")
+        axes.set_xlim(-0.01, 0.19)
+        axes.set_ylim(bottom=0.0)
+        axes.legend(loc="upper left")
+    return figure
+
+
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """A figure of the page.
+
+    Attributes:
+        name: its anchor.
+        caption: what it shows.
+        draw: draws it.
+        half: whether it takes half of the page's width.
+    """
+
+    name: str
+    caption: str
+    draw: Callable[[Results], Figure]
+    half: bool = False
+
+
+POSITIONS = tuple(PanelRow(f"{name} [m]", partial(position, axis=axis), 1.7) for axis, name in enumerate("xy"))
+JERKS = tuple(
+    PanelRow(f"jerk {name} [m/s³]", partial(jerk, axis=axis), 1.1, shared=False) for axis, name in enumerate("xy")
+)
+HEIGHT = PanelRow("CoM z [m]", height, 1.4)
+ZMPS = tuple(PanelRow(f"ZMP {name} [m]", partial(zmp_of_several, axis=axis), 2.0) for axis, name in enumerate("xy"))
+
+Run = tuple[str, PaperWorld]
+SIDE_BY_SIDE: tuple[Run, ...] = (("paper", "cart-table"), ("repaired", "pendulum"), ("default", "full"))
+ON_STAIRS: tuple[Run, ...] = (("paper", "cart-table"), ("repaired", "pendulum"), ("default", "pendulum"))
+
+
+def _study(results: Results, study: Study, runs: tuple[Run, ...], rows: tuple[PanelRow, ...]) -> Figure:
+    return grid([_column(run, (("", results.sample(study, *run)),)) for run in runs], rows)
+
+
+def _heights(results: Results) -> Figure:
+    errors = [f"error {studies.with_sign(error)} m" for error in studies.HEIGHT_ERRORS]
+    columns = [
+        _column(run, tuple(zip(errors, (results.sample(study, *run) for study in studies.HEIGHTS), strict=True)))
+        for run in SIDE_BY_SIDE
+    ]
+    return grid(columns, ZMPS)
+
+
+def _column(run: Run, samples: tuple[tuple[str, Sample], ...]) -> PanelColumn:
+    profile, world = run
+    return PanelColumn(f"{profile}, {WORLD_NAMES[world]}", samples)
+
+
+def _pushes(results: Results, run: Run) -> Figure:
+    columns = [
+        PanelColumn(f"{studies.with_sign(force)} N in x and y", (("", results.sample(study, *run)),))
+        for force, study in zip(studies.PUSH_FORCES, studies.PUSHES, strict=True)
+    ]
+    return grid(columns, POSITIONS)
+
+
+PLATES: dict[str, tuple[Plate, ...]] = {
+    "diagonal-walk": (
+        Plate(
+            "figure-walk",
+            "Diagonal walk: reference and measured ZMP and CoM in x and y, and the jerk that the planner commands; "
+            "dotted, the paper's bound of ±1.5 m/s³. The axes of the paper's figure 2.",
+            partial(_study, study=studies.WALK, runs=SIDE_BY_SIDE, rows=(*POSITIONS, *JERKS)),
+        ),
+    ),
+    "stairs": (
+        Plate(
+            "figure-stairs",
+            "Stairs of 0.10 m: CoM height with single and double support shaded, ZMP and CoM in x and y. "
+            "The axes of the paper's figure 3.",
+            partial(_study, study=studies.STAIRS[0], runs=ON_STAIRS, rows=(HEIGHT, *POSITIONS)),
+        ),
+        Plate(
+            "figure-preview",
+            "ZMP error over riser height: norm of the RMS in x and y, median over seeds, with the range over seeds. "
+            "lti keeps everything of default but the preview of the changing dynamics.",
+            preview_chart,
+            half=True,
+        ),
+    ),
+    "noise": (
+        Plate(
+            "figure-noise-walk",
+            "Diagonal walk with noise of ±0.02 m on the measured ZMP and 2 mm on the CoM. "
+            "First row of the paper's figure 4.",
+            partial(_study, study=studies.NOISE_WALK, runs=SIDE_BY_SIDE, rows=POSITIONS),
+        ),
+        Plate(
+            "figure-noise-stairs",
+            "Stairs of 0.10 m with the same noise. Second row of the paper's figure 4.",
+            partial(_study, study=studies.NOISE_STAIRS, runs=ON_STAIRS, rows=POSITIONS),
+        ),
+    ),
+    "height-error": (
+        Plate(
+            "figure-height",
+            "True ZMP when the planner's CoM height is wrong by −0.2, −0.1, +0.1 and +0.2 m. The paper's figure 5.",
+            _heights,
+        ),
+    ),
+    "pushes": tuple(
+        Plate(
+            f"figure-push-{profile}",
+            f"{profile}, {WORLD_NAMES[world]}: pushes of 10 ms at 2.2 s, with noise. The axes of the paper's figure 6.",
+            partial(_pushes, run=(profile, world)),
+        )
+        for profile, world in SIDE_BY_SIDE
+    ),
+}
+"""Figures by the section that they stand in."""

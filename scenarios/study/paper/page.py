@@ -1,0 +1,243 @@
+"""The page, and the command that writes it."""
+
+import json
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+import yaml
+
+from surefoot.scenarios.output import refuse_existing, write_whole
+from surefoot.scenarios.run.run import made_folder
+from surefoot.scenarios.show.kit.html import PageTable, TableRow, details, document, escape, figure_html, section, tag
+from surefoot.scenarios.show.kit.html import tally as tally_html
+from surefoot.scenarios.study.campaigns.engine import Worker, local_workers
+from surefoot.scenarios.study.campaigns.sweep import CampaignBar
+from surefoot.scenarios.study.paper import studies
+from surefoot.scenarios.study.paper.claims import CLAIMS, Claim
+from surefoot.scenarios.study.paper.figures import PLATES, Plate
+from surefoot.scenarios.study.paper.results import Results, run_experiments
+from surefoot.scenarios.study.paper.rules import Assessment, Grade
+from surefoot.scenarios.study.paper.studies import Experiment, Study, experiments
+from surefoot.scenarios.study.paper.tables import balance_table, knee_table, provenance, runs_table, shove_table
+
+
+@dataclass(frozen=True, slots=True)
+class PageSection:
+    """A section of the page.
+
+    Attributes:
+        name: its anchor.
+        title: its heading.
+        text: paragraphs, as HTML.
+        points: entries of a list below them, as HTML.
+    """
+
+    name: str
+    title: str
+    text: tuple[str, ...]
+    points: tuple[str, ...] = ()
+
+
+def sections() -> tuple[PageSection, ...]:
+    """All sections in the order of the page."""
+    entries = yaml.safe_load((files(__package__) / "sections.yaml").read_text(encoding="utf-8"))
+    return tuple(
+        PageSection(entry["name"], entry["title"], tuple(entry["text"]), tuple(entry.get("points", ())))
+        for entry in entries
+    )
+
+
+TITLE = "A Robust Closed-Loop Biped Locomotion Planner Based on Time Varying Model Predictive Control, measured"
+
+_KINDS: dict[Grade, str] = {
+    "holds": "holds",
+    "holds with a change": "change",
+    "does not hold": "not",
+    "not measured": "unknown",
+}
+
+Judged = Sequence[tuple[Claim, Assessment]]
+
+
+def judged(results: Results) -> Judged:
+    """Every claim with what was found about it."""
+    return [(claim, claim.judge(results)) for claim in CLAIMS]
+
+
+def tables(results: Results) -> dict[str, tuple[PageTable, ...]]:
+    """Every table of numbers, by the section that it stands in."""
+
+    def balance(name: str, *chosen: Study) -> PageTable:
+        return balance_table(name, results.samples(chosen))
+
+    plain = (
+        studies.WALK,
+        studies.WIDE_WALK,
+        studies.STEP_LAW,
+        studies.BRISK_WALK,
+        *studies.STAIRS,
+        studies.BRISK_STAIRS,
+    )
+    return {
+        "profiles": (balance("profiles-table", *plain),),
+        "noise": (
+            balance("noise-table", studies.NOISE_WALK, studies.NOISE_STAIRS, studies.NOISE_ALONE, studies.ZMP_ONLY),
+        ),
+        "height-error": (balance("height-table", *studies.HEIGHTS),),
+        "pushes": (balance("push-table", *studies.PUSHES), shove_table(results)),
+        "energy": (knee_table(results),),
+    }
+
+
+Plates = Mapping[str, Sequence[Plate]]
+"""Figures by the section that they stand in."""
+
+
+def page(results: Results, plates: Plates = PLATES) -> str:
+    """The whole page as HTML, with these figures."""
+    claims, numbers = judged(results), tables(results)
+    content = {
+        "claims": _claims_table(claims),
+        "runs": provenance(results) + runs_table(results),
+    }
+    every = sections()
+    written = [_section(part, content.get(part.name, ""), numbers, results, plates) for part in every]
+    return document(TITLE, "\n".join((_top(results, claims), _contents(every), *written)))
+
+
+def tally(claims: Judged) -> dict[Grade, int]:
+    """How many claims have which verdict."""
+    counts = Counter(finding.verdict for _, finding in claims)
+    return {verdict: counts[verdict] for verdict in _KINDS}
+
+
+def _top(results: Results, claims: Judged) -> str:
+    runs = len(results.outcomes)
+    fell = sum(bool(outcome.metrics.get("fell")) for outcome in results.outcomes)
+    boxes = [(str(count), f"claims: {verdict}") for verdict, count in tally(claims).items() if count]
+    boxes += [(str(runs), "runs"), (str(fell), "falls"), (str(len(results.failures)), "could not run")]
+    lead = (
+        "The experiments of M. Kasaei, N. Lau and A. Pereira, run by Surefoot: on the paper's own plant, on a true "
+        "pendulum and in full physics. Every number and every curve on this page is read from the logs of these runs."
+    )
+    return tag("h1", escape(TITLE)) + tag("p", lead, kind="lead") + tally_html(boxes)
+
+
+def _contents(every: Sequence[PageSection]) -> str:
+    links = (tag("a", escape(section.title), href=f"#{section.name}") for section in every)
+    return tag("nav", tag("ol", "".join(tag("li", link) for link in links)))
+
+
+def _section(
+    part: PageSection, content: str, numbers: dict[str, tuple[PageTable, ...]], results: Results, plates: Plates
+) -> str:
+    points = tag("ul", "".join(tag("li", entry) for entry in part.points)) if part.points else ""
+    figures = (
+        figure_html(plate.draw(results), plate.caption, plate.name, "half" if plate.half else "")
+        for plate in plates.get(part.name, ())
+    )
+    tables = (table.html for table in numbers.get(part.name, ()))
+    text = (tag("p", paragraph) for paragraph in part.text)
+    return section(part.title, *text, points, content, *figures, *tables, name=part.name)
+
+
+def _claims_table(claims: Judged) -> str:
+    head = ("the paper says", "the pendulum shows", "full physics shows", "verdict")
+    return PageTable("claims-table", head, [_claim_row(*one) for one in claims], kind="claims").html
+
+
+def _claim_row(claim: Claim, found: Assessment) -> TableRow:
+    where = tag("span", f"section {escape(claim.section)}", kind="section", id=claim.name)
+    verdict = tag("span", found.verdict, kind=f"verdict {_KINDS[found.verdict]}")
+    says = f"{escape(claim.text)} {where}{details('rule', escape(claim.rule))}"
+    return says, _sentences(found.pendulum), _sentences(found.full), verdict
+
+
+def _sentences(text: str) -> str:
+    """Sentences on lines of their own."""
+    return "<br>".join(escape(part.strip()) for part in text.split(". "))
+
+
+PAGE_NAME, NUMBERS_NAME, RUNS_NAME = "paper.html", "paper.json", "runs"
+
+
+@dataclass(frozen=True, slots=True)
+class PaperWritten:
+    """What the command left behind.
+
+    Attributes:
+        page: path of the page.
+        runs: how many experiments there are.
+        falls: how many fell.
+        failures: names of those that gave no result.
+        verdicts: how many claims have which verdict.
+    """
+
+    page: Path
+    runs: int
+    falls: int
+    failures: tuple[str, ...]
+    verdicts: dict[Grade, int]
+
+
+def paper(
+    out: Path,
+    jobs: int,
+    replace: bool = False,
+    every: Sequence[Experiment] | None = None,
+    workers: Callable[[Path, int, bool], Sequence[Worker]] = local_workers,
+    plates: Plates = PLATES,
+) -> PaperWritten:
+    """Run what has not been run and write the page.
+
+    Args:
+        out: directory of the page and, below it, of the runs.
+        jobs: how many runs at once.
+        replace: the page and the numbers of an earlier time; runs that were done are taken as they are.
+        every: experiment; all of `experiments` by default.
+        workers: makes what makes the runs, as `local_workers`.
+        plates: figures of the page.
+
+    Raises:
+        LogError: the directory or the page cannot be written, or the page exists.
+        InterruptedRunsError: the user stopped it; what was run is kept.
+    """
+    runs = made_folder(out) / RUNS_NAME
+    for name in (PAGE_NAME, NUMBERS_NAME):
+        refuse_existing(out / name, replace)
+    every = experiments() if every is None else every
+    with CampaignBar(len(every), "experiments") as bar:
+        results = Results(run_experiments(every, runs, workers(runs, jobs, True), bar))
+    return write(results, out, replace, plates)
+
+
+def write(results: Results, out: Path, replace: bool = False, plates: Plates = PLATES) -> PaperWritten:
+    """Write the page with these figures, and the numbers behind it.
+
+    Raises:
+        LogError: they exist or cannot be written.
+    """
+    with write_whole(out / PAGE_NAME, replace) as temporary:
+        temporary.write_text(page(results, plates), encoding="utf-8")
+    with write_whole(out / NUMBERS_NAME, replace) as temporary:
+        temporary.write_text(json.dumps(_numbers(results), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    falls = sum(bool(outcome.metrics.get("fell")) for outcome in results.outcomes)
+    failures = tuple(outcome.experiment.folder for outcome in results.failures)
+    return PaperWritten(out / PAGE_NAME, len(results.outcomes), falls, failures, tally(judged(results)))
+
+
+def _numbers(results: Results) -> dict[str, object]:
+    claims = [
+        {"claim": claim.text, "section": claim.section, "verdict": finding.verdict, "rule": claim.rule,
+         "pendulum": finding.pendulum, "full": finding.full}
+        for claim, finding in judged(results)
+    ]  # fmt: skip
+    runs = [
+        {"run": outcome.experiment.folder, "command": outcome.experiment.command, "failure": outcome.failure or None,
+         "metrics": dict(outcome.metrics), "versions": dict(outcome.versions), "written": outcome.written}
+        for outcome in results.outcomes
+    ]  # fmt: skip
+    return {"claims": claims, "runs": runs}

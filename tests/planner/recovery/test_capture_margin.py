@@ -1,0 +1,306 @@
+"""How far the DCM is inside what can be captured, held against linear programs that look for CoPs and footsteps."""
+
+import itertools
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.plants import PointPush, walk_pendulum
+from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
+from surefoot.planner.recovery.step_adjustment import NextStep, StepAdjustment
+from surefoot.planner.references.com_height import HeightPreview
+from surefoot.planner.references.window import Window
+from surefoot.planner.references.zmp_reference import ZmpReference
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.leg_reach import ANYWHERE, LegReach
+from surefoot.planner.swing.limits import SwingLimits
+
+pytestmark = pytest.mark.unit
+
+P = PlannerParameters()
+T, OMEGA, HALF = P.sample_time, 3.2, np.array([0.11, 0.055])
+LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
+COUNT, SEGMENTS = P.horizon + P.preview + 1, 3
+
+
+def window(half=0.9 * HALF):
+    times = T * np.arange(COUNT)
+    point = np.clip((times - 0.3) / 0.12, 0.0, 1.0)[:, None] * (0.36, 0.2)
+    reference = ZmpReference(point, np.zeros((COUNT, 2)), np.broadcast_to(half, (COUNT, 2)), np.zeros(COUNT))
+    height = HeightPreview(np.ones((3, COUNT)), np.full(COUNT, OMEGA**2))
+    still = np.zeros((COUNT, 2))
+    stiffness, omega = np.full(COUNT, OMEGA**2), np.full(COUNT, OMEGA)
+    return Window(reference, reference, still, height, stiffness, omega, still[:, 0], still > 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Pushed(NextStep):
+    """A step as scheduled, with the body's state."""
+
+    com: np.ndarray
+    dcm: np.ndarray
+
+
+def situation(dcm=(0.1, 0.03), **keys):
+    """A left step on the right foot, or before it."""
+    given = {
+        "com": np.array([0.02, 0.06]), "dcm": np.array(dcm), "nominal": np.array([0.36, 0.2]), "side": 1.0, "turn": 0.0,
+        "swing": np.array([[0.05, 0.2], [1.0, 0.0]]), "double": 0.0, "single": 0.3, "cycle": 0.62, "shortest": 0.0,
+        "face": ANYWHERE, "adapted": False, "last": False, "crosses": True,
+    }  # fmt: skip
+    return Pushed(**{**given, **keys})
+
+
+SWINGING = situation()
+SHIFTING = situation((0.0, 0.06), double=0.1, single=0.5, swing=np.array([[-0.3, 0.21], [0.0, 0.0]]))
+RIGHT = situation((0.1, -0.03), side=-1.0, com=np.array([0.02, -0.06]), nominal=np.array([0.36, -0.2]),
+                  swing=np.array([[0.05, -0.2], [1.0, 0.0]]))  # fmt: skip
+
+
+class Law(CaptureMargin):
+    """A margin of pushed steps."""
+
+    def margins(self, now, steps, fixed=False):
+        return super().margins(now.com, now.dcm, OMEGA, now, steps, fixed)
+
+
+def margin_of(legs=LEGS, timing=False):
+    parameters = replace(P, step_adaptation=StepAdaptation.TIMING if timing else StepAdaptation.LOCATION)
+    return Law(StepAdjustment(legs, parameters), P, HALF)
+
+
+class Program:
+    """CoPs, held for a third of each phase, and footsteps of one axis that bring the DCM to rest; linear in all."""
+
+    def __init__(self, com, dcm, count):
+        self.rows, self.bounds = [], []
+        self.com, self.dcm = np.append(np.zeros(count), com), np.append(np.zeros(count), dcm)
+
+    def variable(self):
+        self.bounds.append((None, None))
+        return np.eye(1, len(self.com), len(self.bounds) - 1)[0]
+
+    def below(self, left, right):
+        self.rows.append(left - right)
+
+    def within(self, value, low, high):
+        self.below(value, high)
+        self.below(low, value)
+
+    def hold(self, time, low, high):
+        grown = np.exp(OMEGA * time / SEGMENTS)
+        for _ in range(SEGMENTS):
+            cop = self.variable()
+            self.within(cop, low, high)
+            away = self.dcm - cop
+            self.com = self.com / grown + cop * (1.0 - 1.0 / grown) + 0.5 * away * (grown - 1.0 / grown)
+            self.dcm = cop + grown * away
+
+    def solved(self):
+        rows = np.array(self.rows)
+        found = linprog(
+            np.zeros(len(self.bounds)), A_ub=rows[:, : len(self.bounds)], b_ub=-rows[:, -1], bounds=self.bounds
+        )
+        return found.success
+
+
+def rests(now, axis, box, steps, together, legs=LEGS):
+    """Whether an axis can be brought to rest after exactly so many landings, of one perhaps on the stance foot."""
+    half, side, cycle = HALF[axis], now.side, now.cycle
+    program = Program(now.com[axis], now.dcm[axis], (steps + 1) * (SEGMENTS + 1))
+    one = np.eye(1, len(program.com), len(program.com) - 1)[0]
+    if now.double:
+        behind = now.swing[0, axis]
+        program.hold(now.double, (min(behind, 0.0) - half) * one, (max(behind, 0.0) + half) * one)
+    program.hold(now.single, -half * one, half * one)
+    place = program.variable()
+    program.within(place, box[0][axis] * one, box[1][axis] * one)
+    swung = SwingLimits.of(legs, P).edges(now.swing, now.nominal, np.array([now.single]))[:, 0]
+    program.within(place, -swung[2 + axis] * one, swung[axis] * one)
+    hip = program.com + axis * 0.5 * side * legs.hip_width * one
+    program.within(place, hip - legs.radius * one, hip + legs.radius * one)
+    for _ in range(steps - 1):
+        side = -side
+        program.hold(cycle, place - half * one, place + half * one)
+        step = program.variable()
+        both = legs.allowed(side, ANYWHERE, True)[0]
+        program.within(step, both[0][axis] * one, both[1][axis] * one)
+        place = place + step
+    last = 0.0 * one if together else place
+    program.within(program.dcm, last - half * one, last + half * one)
+    return program.solved()
+
+
+def captured(now, most, legs=LEGS):
+    """Whether the body can be brought to rest within so many landings."""
+    return any(
+        all(
+            rests(now, axis, box, steps, False, legs) or (steps == 1 and rests(now, axis, box, 1, True, legs))
+            for axis in (0, 1)
+        )
+        for steps, box in itertools.product(range(1, most + 1), legs.allowed(now.side, ANYWHERE, True))
+    )
+
+
+def edge(now, direction, steps, law):
+    """The state at the edge of what the law says is captured, in a direction from a state within [m]."""
+    within, beyond = 0.0, 1.5
+    for _ in range(30):
+        middle = 0.5 * (within + beyond)
+        moved = replace(now, dcm=now.dcm + middle * direction)
+        within, beyond = (middle, beyond) if law.margins(moved, steps)[-1] > 0.0 else (within, middle)
+    return within
+
+
+@pytest.mark.parametrize("now", [SWINGING, SHIFTING, RIGHT], ids=["swinging", "shifting", "right"])
+@pytest.mark.parametrize("steps", [1, 3])
+@pytest.mark.parametrize("angle", np.linspace(-np.pi, np.pi, 5, endpoint=False))
+def test_inside_the_margin_is_captured_and_outside_is_not(now, steps, angle):
+    law, direction = margin_of(), np.array([np.cos(angle), np.sin(angle)])
+    assert law.margins(now, steps)[-1] > 0.0
+    way = edge(now, direction, steps, law)
+    assert 0.02 < way < 1.4
+    assert captured(replace(now, dcm=now.dcm + (way - 1e-3) * direction), steps)
+    assert not captured(replace(now, dcm=now.dcm + (way + 1e-3) * direction), steps)
+
+
+@pytest.mark.parametrize("angle", np.linspace(-np.pi, np.pi, 5, endpoint=False))
+def test_a_step_that_is_decided_captures_what_lands_where_it_does(angle):
+    law, direction, place = margin_of(), np.array([np.cos(angle), np.sin(angle)]), SWINGING.nominal
+    now = replace(SWINGING, dcm=np.array([0.2, 0.1]))
+    within, beyond = 0.0, 1.5
+    for _ in range(30):
+        middle = 0.5 * (within + beyond)
+        inside = law.margins(replace(now, dcm=now.dcm + middle * direction), 1, fixed=True)[0] > 0.0
+        within, beyond = (middle, beyond) if inside else (within, middle)
+    grown = np.exp(OMEGA * now.single)
+    edge = now.dcm + within * direction
+    low, high = (np.minimum(place, 0.0) - HALF, np.maximum(place, 0.0) + HALF)
+    landed = np.array([grown * edge + (1.0 - grown) * sign * HALF for sign in (1.0, -1.0)])
+    # With its best CoP it lands at the edge of both feet on one axis, and can land within them on the other.
+    assert (landed[0] < high + 1e-6).all()
+    assert (landed[1] > low - 1e-6).all()
+    assert min(np.abs(landed[0] - high).min(), np.abs(landed[1] - low).min()) < 1e-6
+
+
+def states(count=40):
+    moves = np.random.default_rng(0).uniform(-0.6, 0.6, (count, 2))
+    return [replace(now, dcm=now.dcm + move) for now in (SWINGING, SHIFTING, RIGHT) for move in moves]
+
+
+def test_more_steps_longer_legs_crossing_and_other_times_take_nothing_away():
+    law, timed = margin_of(), margin_of(timing=True)
+    short = margin_of(replace(LEGS, radius=0.3))
+    beside = margin_of(replace(LEGS, across=None))
+    gained = np.zeros(4)
+    for now in states():
+        margins = law.margins(now, 5)
+        assert (np.diff(margins) >= 0.0).all()
+        others = np.array([short.margins(now, 5)[-1], beside.margins(now, 5)[-1], margins[-1]])
+        more = np.array([margins[-1], margins[-1], timed.margins(now, 5)[-1]])
+        assert (others <= more + 1e-12).all()
+        gained = np.maximum(gained, [np.ptp(margins), *(more - others)])
+    assert (gained > 0.03).all()
+
+
+def test_its_few_times_find_what_many_do():
+    law, fixed = margin_of(timing=True), margin_of()
+    for now in states():
+        now = replace(now, nominal=now.swing[0], double=0.0)
+        times = np.append(np.linspace(min(now.single, 0.16), now.single + 0.2, 40), now.single)
+        cycle = min(law.cycle, now.cycle)
+        every = max(fixed.margins(replace(now, single=t, cycle=cycle), 3)[-1] for t in times)
+        assert every - 0.03 < law.margins(now, 3)[-1] < every + 5e-3
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_as_planned_the_cop_at_the_edge_of_its_boxes_holds_just_what_is_inside(axis, sign):
+    """The other axis has room; backward in time from rest with the CoP at the edge all the time."""
+    half = np.where(np.arange(2) == axis, 0.9 * HALF, 10.0)
+    seen, step = window(half), 1e-3
+    times = np.arange(0.0, T * (COUNT - 1), step)
+    cop = np.interp(times, T * np.arange(COUNT), seen.driving.point[:, axis]) + sign * HALF[axis]
+    edge = cop[-1]
+    for point in cop[::-1]:
+        edge = point + (edge - point) * np.exp(-OMEGA * step)
+    for margin in (-0.01, 0.0, 0.01):
+        dcm = np.where(np.arange(2) == axis, edge - sign * margin, 0.0)
+        assert abs(planned_margin(dcm, seen, T, 0.9) - margin) < 1e-3
+
+
+GAIT = GaitParameters(steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
+
+
+def plans(stand, impulse=0.0, **keys):
+    parameters, begin = replace(P, **keys), GAIT.lift_off(3) + 0.25
+    planner = WalkingPlanner(GAIT, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
+    push = PointPush(begin, 0.1, 1000.0 * impulse * np.array([1.0, 0.0]))
+    com = np.array([0.0, 0.0, GAIT.com_height])
+    trace = walk_pendulum(planner, stand(), GAIT.duration + 0.5, com=com, pushes=(push,) if impulse else ())
+    return begin, trace.plans, trace.fall_time
+
+
+@pytest.mark.parametrize("adaptation", [StepAdaptation.NONE, StepAdaptation.CROSSING])
+def test_an_undisturbed_walk_keeps_its_margins_and_moves_no_step(stand, adaptation):
+    _, made, _ = plans(stand, step_adaptation=adaptation)
+    for plan in made:
+        balance = plan.balance
+        assert 0.03 < balance.planned <= balance.movable
+        movable = adaptation is not StepAdaptation.NONE and plan.phase.leads_to > 0
+        assert movable or balance.movable == balance.planned
+        assert not movable or plan.phase.leads_to == GAIT.steps or balance.movable > balance.planned
+        assert np.abs(balance.shift).max() < 1e-3
+        assert balance.delay == 0.0
+
+
+def test_who_stands_still_is_captured_by_the_support(stand):
+    _, made, _ = plans(stand)
+    assert made[-1].phase.leads_to == 0
+    assert made[-1].balance.planned == made[-1].balance.movable == pytest.approx(0.11, abs=2e-3)  # half a sole's length
+
+
+def test_a_push_is_told_by_the_margins_and_what_is_made_of_the_step(stand):
+    begin, made, fallen = plans(stand, 0.4)
+    assert fallen is None
+    after = [plan for plan in made if begin + 0.1 < plan.time and plan.phase.step == 3]
+    assert min(plan.balance.planned for plan in after) < 0.0 < min(plan.balance.movable for plan in after)
+    landing = max(plan.balance.shift[0] for plan in after)
+    assert landing > 0.05
+    swung = [plan for plan in after if plan.swing is not None][-1]
+    nominal = GAIT.lift_off(3) + GAIT.single_support
+    assert swung.footsteps[0].footstep.position[0] - 0.9 == pytest.approx(swung.balance.shift[0], abs=5e-3)
+    assert swung.footsteps[0].touchdown_time - nominal == pytest.approx(swung.balance.delay, abs=1.5 * T)
+
+
+def test_who_falls_was_outside_before(stand):
+    _, made, fallen = plans(stand, 1.6)
+    assert fallen is not None
+    assert min(plan.balance.movable for plan in made if plan.time < fallen - 0.1) < -0.03
+
+
+def test_a_fall_is_told_after_some_plans_on_end_outside_and_stays_told(stand):
+    numbers = P.recovery
+    _, made, fallen = plans(stand, 1.6)
+    outside, told, run = [plan.balance.movable < -numbers.fall_margin for plan in made], False, 0
+    for plan, out in zip(made, outside, strict=True):
+        run = run + 1 if out else 0
+        told |= run >= numbers.fall_ticks
+        assert plan.status.falling is told
+        assert plan.balance.outside == run
+    assert next(plan.time for plan in made if plan.status.falling) < fallen
+    _, made, _ = plans(stand, 0.4)
+    assert not any(plan.status.falling for plan in made)
+
+
+def test_shift_and_delay_are_of_one_landing(stand):
+    """A plan goes on from those of the one before it, until that landing."""
+    _, made, _ = plans(stand, 0.4)
+    moved = [plan for plan in made if np.abs(plan.balance.shift).max() > 0.05]
+    assert {plan.phase.landed for plan in moved} == {2}
+    first = next(plan for plan in made if plan.phase.landed == 3)
+    assert np.abs(first.balance.shift).max() < 1e-3

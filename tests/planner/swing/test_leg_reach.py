@@ -1,0 +1,88 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.ground.terrain import Box, Terrain
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.steps.execution import Execution
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.swing.course import Ground
+from surefoot.planner.swing.leg_reach import LegReach, StepRegion
+from surefoot.planner.types import Footstep
+
+pytestmark = pytest.mark.unit
+
+TREAD = Box(np.array([1.0, 0.0, 0.05]), np.array([0.3, 1.0, 0.05]), np.eye(3))
+LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
+
+
+def way(start, end):
+    return np.linspace(start, end, 50)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("start", "end", "corner"),
+    [
+        ((-0.28, 0.2), (0.28, -0.1), (0.24, 0.115)),
+        ((-0.28, -0.1), (0.28, 0.3), (-0.24, 0.115)),
+        ((0.28, 0.2), (-0.28, -0.1), (-0.24, 0.115)),
+        ((-0.28, 0.2), (0.28, 0.2), None),
+        ((-0.28, 0.2), (0.28, 0.05), None),
+        ((0.25, 0.2), (0.3, -0.1), None),
+    ],
+)
+def test_a_foot_that_crosses_goes_ahead_first_and_comes_back_before_it_passes(side, start, end, corner):
+    mirror = np.array([1.0, side])
+    found = LEGS.corner(way(start, end) * mirror, side)
+    if corner is None:
+        assert found is None
+    else:
+        np.testing.assert_allclose(found, corner * mirror)
+
+
+@pytest.mark.parametrize("turn", [-0.3, 0.1, 0.3])
+def test_a_foot_that_lands_turned_keeps_as_clear_of_its_stance_foot_as_one_that_does_not(turn):
+    """Wherever ahead of or behind it lands, and ahead of it wherever beside."""
+    sole = np.array([0.22, 0.11])
+    legs = replace(LEGS, sole=tuple(sole.tolist()))
+    turned, level = legs.turned(turn), legs.turned(0.0)
+    assert level is legs
+    assert LEGS.turned(turn).near == LEGS.near
+    corners = 0.5 * sole * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]]) @ frame_rotation(turn).T
+    assert turned.near + corners[:, 1].min() == pytest.approx(legs.near - 0.5 * sole[1])
+    assert turned.clear + corners[:, 0].min() == pytest.approx(legs.clear - 0.5 * sole[0])
+    # As a step that is commanded.
+    region = StepRegion(0.5, (0.0, 0.5), tuple(sole.tolist()), gap=legs.near - sole[1])
+    assert turned.near == pytest.approx(region.nearest(turn))
+
+
+@pytest.mark.parametrize("stride", [0.0, 0.36, 0.55, 0.65, 0.75])
+def test_the_body_goes_as_low_as_legs_need_that_span_a_stride(stride):
+    """With a quarter of what straight legs span to spare, as the body is not midway between them."""
+    legs = replace(LEGS, height=0.85, length=0.94)
+    hips = 0.85 - legs.lowering(stride)
+    assert hips == 0.85 if stride < 0.6 else hips < 0.85
+    assert 2.0 * np.sqrt(0.94**2 - hips**2) >= stride / 0.75 - 1e-9
+    assert LEGS.lowering(stride) == 0.0  # of legs whose length nobody knows
+
+
+@pytest.mark.parametrize(("ground", "free"), [(Terrain(), True), (Terrain((TREAD,)), False)])
+def test_the_body_goes_down_where_steps_may_land_anywhere(stand, ground, free):
+    """On stairs its height follows the faces, and knees need what is above them."""
+    legs = replace(LEGS, height=0.85, length=0.94)
+    at_rest = Schedule.start(
+        GaitParameters(steps=1), stand(), Ground(ground, np.array([0.11, 0.055]), PlannerParameters())
+    )
+    execution = Execution(at_rest, 151, legs)
+    while execution.phase.swing_foot is None:
+        execution.advance(stand())
+    stance = execution.schedule.step(0).place
+    landing = Footstep(stance.foot.other, stance.position + np.array([0.7, 0.0, 0.0]), 0.0)
+    for adapted, lowers in ((False, False), (True, free)):
+        execution.adapted = adapted
+        execution.swing_to(landing, 0.02 * execution.clock.now, stand(), False)
+        assert execution.lowering == (pytest.approx(legs.lowering(0.7)) if lowers else 0.0)

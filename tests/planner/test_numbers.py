@@ -1,0 +1,163 @@
+"""Every number of the planner has a unit, a reason, and a test or a sweep that notices it."""
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+import surefoot.planner
+from surefoot.planner.parameters import RecoveryParameters
+
+pytestmark = pytest.mark.unit
+
+PLANNER = Path(surefoot.planner.__file__).parent
+ROOT = Path(__file__).parents[2]
+REASON = re.compile(r"[:;]| (?:as|and|so|which|since|because|beyond|before|where|that|for|what|until|at which|as of) ")
+
+NOTICED = {
+    "ground.terrain._KEPT": "tests/planner/ground/test_room.py",
+    "ground.terrain._SHANK": "tests/planner/ground/test_room.py",
+    "laws.footstep_tvmpc._EXTRA": "tests/planner/laws/test_tvmpc.py",
+    "model.jerk.BLOCK_STARTS": "tests/planner/laws/test_tvmpc.py",
+    "plan._COLUMNS": "tests/planner/test_sampling.py",
+    "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",
+    "swing.limits.PEAK": "tests/planner/swing/test_limits.py",
+    "swing.limits._BRAKING": "tests/planner/swing/test_limits.py",
+    "swing.limits._GAINING": "tests/planner/swing/test_limits.py",
+    "types.GRAVITY": "tests/scenarios/setup/test_leg_model.py",
+}
+"""Test, or folder of tests, that notices a constant when it is changed."""
+
+UNNOTICED = {
+    "check._AT_ONCE",
+    "check._DISTINCT",
+    "ground.blocks.LEVEL_STEPS",
+    "ground.terrain.DEEPER",
+    "ground.terrain.HALF_WIDTH",
+    "ground.tiles.AROUND",
+    "ground.tiles.TILE",
+    "ground.tiles._MIDDLE",
+    "ground.tiles._STREAM",
+    "laws.dcm_feedback._GAIN",
+    "laws.qp._UNBOUNDED",
+    "laws.zmp_preview._JERK_WEIGHT",
+    "laws.zmp_preview._PREVIEW",
+    "model.filter.DESIGN_SAMPLE",
+    "model.leg_chain._BEND",
+    "model.leg_chain._REST",
+    "model.time_scaling.CLOCK_ROUNDING",
+    "model.time_scaling._LOOKED_AT",
+    "model.time_scaling._SLOWEST",
+    "recovery.step_bounds._UNUSED",
+    "references.com_height.BENT_KNEES",
+    "references.com_height._CLIMB_SHARE",
+    "references.com_height._DESCENT_SHARE",
+    "references.com_height._FALL_LIMIT",
+    "references.com_height._IMPULSE_LIMIT",
+    "references.com_height._LEAST_HEIGHT",
+    "references.height_transition._ROUNDING",
+    "steps.commands.MOST_STEPS",
+    "steps.commands._SAME_TIME",
+    "steps.gait.WEIGHT_SHIFT",
+    "steps.execution._LEAST_LEFT",
+    "steps.execution._SAME_GROUND",
+    "steps.execution._SAME_TARGET",
+    "steps.execution._SAME_TIME",
+    "steps.execution._TOLD",
+    "steps.schedule._MORE_STEPS",
+    "steps.source.AWAY",
+    "steps.source._ASTRAY",
+    "steps.source._FAR",
+    "steps.source._LESS",
+    "steps.source._MOST_EQUAL",
+    "steps.source._SHARE",
+    "steps.source._SOFTLY",
+    "steps.source._STRAIGHT",
+    "steps.source._THERE",
+    "steps.step._LOOKED_AT",
+    "steps.step._MEASURED",
+    "swing.course.EDGE_CLEARANCE",
+    "swing.course.EDGE_DISTANCE",
+    "swing.course._APEXES",
+    "swing.course._ENDS",
+    "swing.course._INSTANTS",
+    "swing.course._LEVEL",
+    "swing.course._STARTS",
+    "swing.heel_off.LEVEL_AGAIN",
+    "swing.heel_off._BEGIN",
+    "swing.heel_off._END",
+    "swing.heel_off._LEAST_STEP",
+    "swing.heel_off._MOST",
+    "swing.heel_off._PER_WAY",
+    "swing.heel_off._SHORT",
+    "swing.leg_reach.LANDING_ROUNDING",
+    "swing.trajectory.FEWEST_SWING_SAMPLES",
+    "swing.trajectory.LEAST_GLIDE",
+    "swing.trajectory.TOUCHING",
+    "swing.trajectory._GLIDING",
+}
+"""Constants that no test is known to notice; a new one needs a test."""
+
+
+def is_number(value: ast.expr) -> bool:
+    """Whether an expression is made of numbers alone."""
+    if isinstance(value, ast.Constant):
+        return isinstance(value.value, int | float) and not isinstance(value.value, bool)
+    if isinstance(value, ast.Tuple | ast.List):
+        return bool(value.elts) and all(map(is_number, value.elts))
+    if isinstance(value, ast.BinOp):
+        return is_number(value.left) and is_number(value.right)
+    return isinstance(value, ast.UnaryOp) and is_number(value.operand)
+
+
+def constants() -> Iterator[tuple[str, str]]:
+    """Names of the modules' numbers, from the planner on, and the text below each."""
+    for path in sorted(PLANNER.rglob("*.py")):
+        module = ".".join(path.relative_to(PLANNER).with_suffix("").parts)
+        body = ast.parse(path.read_text()).body
+        for line, following in zip(body, [*body[1:], None], strict=True):
+            if not isinstance(line, ast.Assign) or not is_number(line.value):
+                continue
+            text = following.value if isinstance(following, ast.Expr) else None
+            told = str(text.value) if isinstance(text, ast.Constant) else ""
+            for name in (node.id for target in line.targets for node in ast.walk(target) if isinstance(node, ast.Name)):
+                if name.isupper():
+                    yield f"{module}.{name}", " ".join(told.split())
+
+
+CONSTANTS = dict(constants())
+
+
+def wanting(told: str) -> str:
+    """What a constant's text lacks."""
+    return "a unit" if not re.search(r"\[[^\]]+\]", told) else "" if REASON.search(told) else "a reason"
+
+
+@pytest.mark.parametrize("name", CONSTANTS)
+def test_a_constant_has_a_unit_and_a_reason(name):
+    assert not wanting(CONSTANTS[name]), f"{name} lacks {wanting(CONSTANTS[name])}: {CONSTANTS[name]!r}"
+
+
+def test_a_text_without_unit_or_reason_is_seen():
+    assert wanting("Length of a step.") == "a unit"
+    assert wanting("Length of a step [m].") == "a reason"
+    assert not wanting("Length of a step, as the leg spans it [m].")
+
+
+def test_every_constant_has_a_witness():
+    assert set(CONSTANTS) <= set(NOTICED) | UNNOTICED
+    assert not set(NOTICED) & UNNOTICED
+    missing = {name for name, test in NOTICED.items() if not (ROOT / test).exists()}
+    assert not missing
+
+
+def test_every_number_of_recovery_is_measured():
+    """In the table of what each moves, halved and doubled."""
+    table = (ROOT / "docs" / "recovery.md").read_text().split("## What each number moves")[1].split("\n#")[0]
+    rows = re.findall(r"^\| `(\w+)` \| ([\d.]+) \| (.+?) \|", table, flags=re.M)
+    measured = {(name, float(factor)) for name, factor, _ in rows}
+    assert measured == {(entry.name, factor) for entry in fields(RecoveryParameters) for factor in (0.5, 2.0)}
+    assert all(case for *_, case in rows)

@@ -1,0 +1,36 @@
+"""A fall is known before it comes, and the robot gives way: torques and joints keep to their limits on the way down."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+import surefoot
+from surefoot.planner.laws.profiles import PROFILES
+
+pytestmark = pytest.mark.physics
+
+KEYS = {
+    "gait.steps": 5, "gait.step_length": 0.36, "gait.single_support": 0.5, "gait.double_support": 0.12,
+    "gait.com_height": 0.95, "gait.initial_stand": 0.4,
+    "pushes": [{"step": 3, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse": 1.57, "direction": 0.0}],
+}  # fmt: skip
+
+
+def fallen(out, profile=PROFILES["default"]):
+    return surefoot.run(surefoot.load("walk", KEYS), out=out, planner=profile).verdict.metrics
+
+
+def test_who_is_pushed_over_gives_way(tmp_path):
+    given = fallen(tmp_path / "given")
+    assert given["fell"]
+    assert given["fall_warning"] > 0.2
+    assert given["capture_margin_min"] < 0.0
+    profile = PROFILES["default"]
+    deaf = replace(profile.parameters.recovery, fall_margin=math.inf)
+    stiff = fallen(tmp_path / "stiff", replace(profile, parameters=replace(profile.parameters, recovery=deaf)))
+    assert stiff["fell"]
+    assert stiff["fall_warning"] is None
+    assert given["joint_limit_margin_min"] > stiff["joint_limit_margin_min"] + 0.2
+    assert given["torque_at_limit_fraction"] < 0.5 * stiff["torque_at_limit_fraction"]
+    assert given["joint_speed_ratio_max"] < 0.5 * stiff["joint_speed_ratio_max"]

@@ -1,0 +1,51 @@
+"""Around `walk-fast`: other steps, timings, grounds and starts, with the same margins but for the speed."""
+
+import math
+
+import numpy as np
+import pytest
+from variations import SOUND
+
+from surefoot.scenarios.log import read
+from surefoot.scenarios.run.run import run_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
+
+NOISE = ("start.position_noise=0.001", f"start.angle_noise={math.radians(1.0)}")
+VARIED = (
+    *(f"gait.step_length={v}" for v in (0.45, 0.5, 0.55)),
+    *(f"gait.single_support={v}" for v in (0.38, 0.44, 0.5)),
+    *(f"gait.double_support={v}" for v in (0.08, 0.12, 0.16)),
+    "gait.com_height=0.9", "gait.swing_height=0.03", "gait.swing_height=0.08", "gait.step_width=0.25",
+    "terrain.friction=0.6", "rates.control=1000", "gait.turn=0.03",
+)  # fmt: skip
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("overrides", [*((v,) for v in VARIED), *((*NOISE, f"seed={v}") for v in range(4))], ids=str)
+def test_neighbours_walk(tmp_path, overrides):
+    criteria = (SOUND.replace("footstep_error_max: {max: 0.01}, ", ""), "criteria.speed_mean={min: 0.8}")
+    verdict = run_scenario(load_scenario("walk-fast", [*overrides, *criteria]), tmp_path).verdict
+    assert verdict.reasons == ()
+
+
+@pytest.mark.physics
+def test_heel_off_saves_work_and_torque(tmp_path):
+    (flat, _), (rolled, log) = (_walked(f"gait.heel_off={angle}", tmp_path) for angle in (0.0, 0.6))
+    assert flat.reasons == rolled.reasons == ()
+    assert rolled.metrics["foot_slip_max"] < 0.003
+    assert rolled.metrics["stance_tilt_max"] < 0.02 < log["/reference"].field("roll").max()
+    assert rolled.metrics["cost_of_transport"] < 0.85 * flat.metrics["cost_of_transport"]
+    # The logged reference of a rolling foot is of the sole's centre, as what is measured of it; the foot is where it is
+    # planned half a tick later.
+    planned, stance = log["/reference"].field("swing_position"), log["/reference"].field("stance")
+    later = 0.5 * (planned[:-1] + planned[1:])
+    for foot, name in enumerate(("left_sole", "right_sole")):
+        swings = (stance[:-1] == 1 - foot) & (stance[1:] == 1 - foot)
+        error = (later - log["/truth"].field(name)[:-1, :3])[swings]
+        assert np.linalg.norm(error, axis=1).max() < 0.006
+
+
+def _walked(override, folder):
+    overrides = ("gait.steps=7", "gait.initial_stand=0.2", "criteria.speed_mean={min: 0.8}", override)
+    result = run_scenario(load_scenario("walk-fast", overrides), folder)
+    return result.verdict, read(result.log)

@@ -1,0 +1,89 @@
+"""Forces that go on, and a weight that is not believed in, in full physics: estimated, and walked with."""
+
+import numpy as np
+import pytest
+
+from surefoot.scenarios.log import read
+from surefoot.scenarios.run.run import run_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
+
+NATURAL = (
+    "gait.steps=7", "gait.step_length=0.36", "gait.single_support=0.5", "gait.double_support=0.12",
+    "gait.com_height=0.95", "gait.initial_stand=0.4",
+)  # fmt: skip
+SURVIVED = "criteria={fell: false, steps_taken: steps_planned, wbc_fallbacks: {max: 0}, self_contact_time: {max: 0}}"
+OFF = "sensing.force_estimate=false"
+FORCES = {"forward": [1, 0], "left": [0, 1], "backward": [-1, 0], "right": [0, -1]}
+PHASES = [("double", 0.5), ("single", 0.2), ("single", 0.5), ("single", 0.8)]
+
+
+def walk(folder, scenario, *keys):
+    return run_scenario(load_scenario(scenario, (SURVIVED, *keys)), folder)
+
+
+def pulled(force, direction, phase=("single", 0.5)):
+    x, y = np.multiply(FORCES[direction], force)
+    place = f"step: 3, phase: {phase[0]}, fraction: {phase[1]}"
+    return f"pushes=[{{{place}, duration: 2.0, force: [{x}, {y}, 0]}}]"
+
+
+@pytest.mark.physics
+def test_a_lasting_force_is_found_within_a_tenth_and_walked_with(tmp_path):
+    result = walk(tmp_path, "walk", *NATURAL, pulled(40, "left"))
+    assert result.verdict.reasons == ()
+    log = read(result.log)
+    acting = log["/measurement"].field("external_force")[:, 1]
+    began, ended = np.flatnonzero(acting > 39.0)[[0, -1]]
+    found = log["/estimate"].field("external_force")
+    np.testing.assert_allclose(found[began + 100 : ended, 1], 40.0, atol=4.0)
+    assert np.abs(found[began + 100 : ended, 0]).max() < 4.0
+    assert np.abs(found[:began]).max() == 0.0
+    assert np.abs(found[ended + 100 :]).max() == 0.0
+    # It acts on the torso, some 0.25 m over the CoM.
+    assert np.median(log["/estimate"].field("external_moment")[began + 100 : ended, 0]) == pytest.approx(-9.6, abs=1.0)
+
+
+@pytest.mark.physics
+def test_a_force_that_is_walked_with_fells_it_without_the_estimate(tmp_path):
+    assert walk(tmp_path, "walk", *NATURAL, pulled(60, "left")).verdict.reasons == ()
+    assert walk(tmp_path, "walk", *NATURAL, pulled(60, "left"), OFF, "duration=5").verdict.metrics["fell"]
+
+
+@pytest.mark.physics
+def test_an_undisturbed_walk_is_the_same_to_the_last_digit(tmp_path):
+    logs = [read(walk(tmp_path, "walk", *NATURAL, "gait.steps=2", "duration=2.5", *keys).log) for keys in ((), (OFF,))]
+    np.testing.assert_array_equal(*(log["/truth"].field("q") for log in logs))
+    estimate = logs[0]["/estimate"]
+    assert not estimate.field("external_force").any()
+    assert not estimate.field("external_moment").any()
+    assert len(set(estimate.field("mass"))) == 1
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("scale", [0.75, 1.25])
+def test_the_true_weight_is_found_within_a_hundredth(scale, tmp_path):
+    log = read(walk(tmp_path, "stand", f"errors.mass_scale={scale}", "duration=0.8").log)
+    np.testing.assert_allclose(log["/estimate"].field("mass")[100:], 100.0 / scale, rtol=0.01)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("phase", PHASES)
+@pytest.mark.parametrize("direction", FORCES)
+def test_forces_that_last_two_seconds(direction, phase, tmp_path):
+    keys = (*NATURAL, pulled(40, direction, phase), "start.position_noise=0.0005")
+    assert walk(tmp_path, "walk", *keys).verdict.reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("phase", PHASES)
+@pytest.mark.parametrize("direction", FORCES)
+def test_forces_that_last_on_small_feet(direction, phase, tmp_path):
+    keys = (pulled(25, direction, phase), "gait.initial_stand=0.4", "start.position_noise=0.0005", "duration=18.0")
+    assert walk(tmp_path, "diagonal-walk", *keys).verdict.reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("scenario", ["walk", "diagonal-walk"])
+@pytest.mark.parametrize("scale", [0.75, 0.8, 0.9, 1.1, 1.2, 1.25])
+def test_a_weight_that_is_not_believed_in(scale, scenario, tmp_path):
+    assert walk(tmp_path, scenario, f"errors.mass_scale={scale}").verdict.reasons == ()

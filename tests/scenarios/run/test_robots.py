@@ -1,0 +1,58 @@
+"""Robots of others walk in full physics, with the gains of all robots and the catalogue's criteria for their size."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+import surefoot
+from surefoot.scenarios.run.run import run_scenario
+
+pytestmark = pytest.mark.physics
+
+
+@pytest.mark.parametrize(
+    ("robot", "scenario"),
+    [("talos", "walk-turn"), ("talos", "slope"), ("g1", "walk"), ("g1", "walk-backward")],
+)
+def test_a_scenario_of_the_catalogue_passes(tmp_path: Path, robot: str, scenario: str) -> None:
+    verdict = run_scenario(surefoot.load(scenario, {"robot": robot}), tmp_path).verdict
+    assert verdict.passed, verdict.reasons
+    assert verdict["wbc_fallbacks"] == 0
+
+
+@pytest.mark.parametrize(
+    ("robot", "speed", "gait"),
+    [
+        # A foot that rolls comes level while its shank swings forward: this ankle would else be too slow.
+        ("talos", 0.6, {"single_support": 0.5, "double_support": 0.1, "com_height": 0.84, "heel_off": 0.4}),
+        ("g1", 0.8, {"single_support": 0.39, "double_support": 0.08, "com_height": 0.62, "heel_off": 0.5}),
+    ],
+)
+def test_a_robot_walks_fast(tmp_path: Path, robot: str, speed: float, gait: dict[str, float]) -> None:
+    keys = {f"gait.{key}": value for key, value in {**gait, "step_length": 0.4}.items()}
+    settings = {"robot": robot, "criteria.speed_mean": {"min": speed}, **keys}
+    verdict = run_scenario(surefoot.load("walk-fast", settings), tmp_path).verdict
+    assert verdict.passed, verdict.reasons
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.5 * math.pi])
+def test_talos_stands_a_push_in_mid_single_support(tmp_path: Path, direction: float) -> None:
+    push = {"step": 3, "phase": "single", "fraction": 0.5, "impulse": 0.2, "direction": direction}
+    keys = {"robot": "talos", "gait.steps": 6, "pushes": [push], "criteria": {"fell": False}}
+    verdict = run_scenario(surefoot.load("walk", keys), tmp_path).verdict
+    assert verdict.passed, verdict.reasons
+    assert verdict["step_shift"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("robot", "scenario", "reason"),
+    [
+        ("talos", "stairs-tall", "shank"),
+        ("talos", "walk-fast", "no-load speed"),
+        ("g1", "stairs-down", "right_ankle_pitch_joint"),
+    ],
+)
+def test_what_a_robot_cannot_do_is_refused_before_it_runs(robot: str, scenario: str, reason: str) -> None:
+    with pytest.raises(surefoot.SetupError, match=reason):
+        surefoot.Simulation(surefoot.load(scenario, {"robot": robot}))

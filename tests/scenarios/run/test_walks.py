@@ -1,0 +1,62 @@
+"""Walks in full physics: the catalogue, and variations of one walk with nothing else changed."""
+
+import pytest
+from variations import COMMANDED, COMMANDS, SCENARIO, SOUND, VARIATIONS
+
+from surefoot.scenarios import catalogue
+from surefoot.scenarios.errors import SetupError
+from surefoot.scenarios.run.run import run_scenario
+from surefoot.scenarios.setup.load import load as load_scenario
+
+EVERY_CHANGE = [variation for variation in VARIATIONS if variation.every_change and variation.overrides]
+ON_DEMAND = [variation for variation in VARIATIONS if not variation.every_change]
+LONG_SCENARIOS = ("walk-turn", "walk-curve", "walk-backward", "slope", "blocks", "stairs-tall")
+
+
+def verdict(tmp_path, name, overrides=()):
+    return run_scenario(load_scenario(name, overrides), tmp_path).verdict
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("name", [name for name in catalogue.names() if name not in LONG_SCENARIOS])
+def test_catalogue(tmp_path, name):
+    assert verdict(tmp_path, name).reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", LONG_SCENARIOS)
+def test_long_scenario(tmp_path, name):
+    assert verdict(tmp_path, name).reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("variation", COMMANDS, ids=lambda variation: variation.name)
+def test_commanded_walk(tmp_path, variation):
+    assert verdict(tmp_path, COMMANDED, (*variation.overrides, SOUND)).reasons == ()
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize(("riser", "tread"), [(0.2, 0.3), (0.22, 0.31), (0.235, 0.32)])
+def test_tall_stairs_down(tmp_path, riser, tread):
+    stairs = {"terrain.direction": "down", "terrain.riser": riser, "terrain.tread": tread, "gait.step_length": tread}
+    assert verdict(tmp_path, "stairs-tall", stairs).reasons == ()
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize("heel_off", [0.0, 0.5])
+def test_stairs_down_that_an_ankle_cannot_take_are_refused(tmp_path, heel_off):
+    stairs = {"terrain.direction": "down", "terrain.riser": 0.25, "gait.heel_off": heel_off}
+    with pytest.raises(SetupError, match="ankle_pitch"):
+        verdict(tmp_path, "stairs-tall", stairs)
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("variation", EVERY_CHANGE, ids=lambda variation: variation.name)
+def test_variation(tmp_path, variation):
+    assert verdict(tmp_path, SCENARIO, variation.overrides).reasons == ()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("variation", ON_DEMAND, ids=lambda variation: variation.name)
+def test_further_variation(tmp_path, variation):
+    assert verdict(tmp_path, SCENARIO, variation.overrides).reasons == ()

@@ -1,4 +1,4 @@
-"""What a plan costs: prediction matrices in three forms, and a tick of both axes for every planner profile.
+"""What a plan costs: prediction matrices, and a tick of both axes for every planner profile.
 
     python benchmarks/planner_tick.py [--steps N]
 
@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.planner.model.step_response import cached_response, literal_response, recursive_response
+from surefoot.planner.model.jerk import cached_response
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import walk_pendulum
@@ -38,19 +38,10 @@ def median_time(function: Callable[[], object], tries: int) -> float:
 
 def print_matrices() -> None:
     stiffness = np.random.default_rng(0).uniform(7.0, 13.0, N)
-    A = np.tile([[1.0, T, T * T / 2], [0.0, 1.0, T], [0.0, 0.0, 1.0]], (N, 1, 1))
-    B = np.tile([T**3 / 6, T * T / 2, T], (N, 1))
-    C = np.stack([np.ones(N), np.zeros(N), -1.0 / stiffness], axis=1)
     full, short = cached_response(T, tuple(range(N)), N), cached_response(T, (0, 1), N)
-    rows: tuple[tuple[str, Callable[[], object], int], ...] = (
-        ("literal double sum, any A(k), B(k), C(k)", lambda: literal_response(A, B, C), 3),
-        ("recursion, any A(k), B(k), C(k)", lambda: recursive_response(A, B, C), 50),
-        ("cached P_x - diag(1/λ) P_a, N_c 50", lambda: full.at(stiffness), 2000),
-        ("cached P_x - diag(1/λ) P_a, N_c 2", lambda: short.at(stiffness), 2000),
-    )
     print(f"{'S_x, S_u1, S_u, N_p 50':<42} {'median us':>10}")
-    for name, function, tries in rows:
-        print(f"{name:<42} {median_time(function, tries):>10.1f}")
+    for name, response in (("cached P_x - diag(1/λ) P_a, N_c 50", full), ("cached P_x - diag(1/λ) P_a, N_c 2", short)):
+        print(f"{name:<42} {median_time(lambda response=response: response.at(stiffness), 2000):>10.1f}")
 
 
 def robot_legs() -> LegInertia:

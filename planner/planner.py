@@ -220,9 +220,9 @@ class WalkingPlanner:
         """What a tick has decided, in the world frame."""
         execution, reference, to_world = self._execution, window.reference, support.rotation.T
         count = self.parameters.horizon + 1
-        moving = trajectory(self._prediction, local, window.stiffness[:count], motion.jerk)
+        moved, zmp = trajectory(self._prediction, local, window.stiffness[:count], motion.jerk)
         com = np.empty((3, count, 3))
-        com[:, :, :2] = moving.com @ to_world
+        com[:, :, :2] = moved @ to_world
         com[0, :, :2] += support.origin
         com[:, :, 2] = window.height.height[:, :count]
         point = reference.point[:count] + reference.gain[:count] @ motion.shifts
@@ -232,8 +232,8 @@ class WalkingPlanner:
             com=com[0],
             com_velocity=com[1],
             com_acceleration=com[2],
-            jerk=moving.jerk @ to_world,
-            zmp=(moving.zmp + window.offset[:count]) @ to_world + support.origin,
+            jerk=motion.jerk @ to_world,
+            zmp=(zmp + window.offset[:count]) @ to_world + support.origin,
             zmp_offset=window.offset[:count] @ to_world,
             zmp_reference=point @ to_world + support.origin,
             stiffness=window.stiffness[:count],

@@ -16,8 +16,7 @@ import numpy as np
 from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem
 from surefoot.planner.laws.qp import Qp, QpSolution, solve
 from surefoot.planner.model.dcm import dcm, decays, nominal_dcm, viability_weights
-from surefoot.planner.model.jerk import block_moves
-from surefoot.planner.model.step_response import CachedResponse, cached_response
+from surefoot.planner.model.jerk import CachedResponse, block_moves, cached_response
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.leg_reach import reach_box
 from surefoot.planner.types import Array, SolverStatus
@@ -112,16 +111,16 @@ def build_hard_problem(
     """
     p, n = parameters, parameters.horizon
     last = np.clip(problem.last_jerk, -p.jerk_limit, p.jerk_limit)
-    S = response.at(problem.stiffness[1 : n + 1])
-    moves = S.S_u.shape[1]
-    error = S.S_x @ problem.state.T + np.outer(S.S_u1, last) - point[1 : n + 1]
-    P = 2.0 * (S.S_u.T @ S.S_u)
+    S_x, S_u1, S_u = response.at(problem.stiffness[1 : n + 1])
+    moves = S_u.shape[1]
+    error = S_x @ problem.state.T + np.outer(S_u1, last) - point[1 : n + 1]
+    P = 2.0 * (S_u.T @ S_u)
     P.flat[:: moves + 1] += 2.0 * p.jerk_weight
-    q = 2.0 * (error.T @ S.S_u)
+    q = 2.0 * (error.T @ S_u)
     sums = np.tri(moves)
     limits = np.full((moves, 2), p.jerk_limit)
     box = problem.reference.half_size[1 : n + 1]
-    rows, bounds = [S.S_u, -S.S_u, sums, -sums], [box - error, box + error, limits - last, limits + last]
+    rows, bounds = [S_u, -S_u, sums, -sums], [box - error, box + error, limits - last, limits + last]
     if terminal:
         row, end, half = _terminal(p, response, problem, point, last)
         rows += [row, -row]

@@ -1,4 +1,14 @@
-"""The CoM under a piecewise constant jerk: the one triple integrator, its moves and its prediction matrices."""
+"""The CoM under a piecewise constant jerk: the one triple integrator, its moves and its prediction matrices.
+
+The Δu form Y = S_x x(0) + S_u1 u(-1) + S_u ΔU is eq. (10) and eq. (11) of the paper. Errata of eq. (11):
+
+- Erratum: the first row of S_u is printed as zeros and the second as "S_u1 C(2)B(1)"; here row i, column j <= i is
+  C(i) Σ_k [Π A] B(k) with k from j, because a line break was lost: y(1) depends on Δu(0) as it does on u(-1).
+- Erratum: the products Π A(i) are printed without an order; here later matrices stand on the left, because
+  x(k+1) = A(k) x(k) + B(k) u(k).
+- Erratum: S_u is printed with N_p columns although N_c < N_p moves are announced; here only the columns of samples at
+  which the input may change are kept, "the last controller output is kept".
+"""
 
 from dataclasses import dataclass
 
@@ -14,7 +24,11 @@ BLOCK_STARTS = (0, 1, 2, 4, 7, 11, 16, 22, 29, 37)
 def jerk_model(sample_time: float) -> tuple[Array, Array]:
     """A, shape (3, 3), and B, shape (3,), of the CoM under a jerk that is constant over a sample.
 
-    They are those of eq. (4): x(k+1) = A x(k) + B u(k), eq. (3), integrates the chain of eq. (2) exactly.
+    They are those of eq. (4): x(k+1) = A x(k) + B u(k), eq. (3), integrates the chain of eq. (2) exactly. For one λ they
+    give F and Φ of eq. (6).
+
+    Erratum: eq. (5) writes Y = F x + Φ ΔU, but its printed Φ is the impulse response, which belongs to u(0)..u(N-1);
+    summing the columns of Φ from j on gives column j of S_u.
 
     Args:
         sample_time: T [s].
@@ -56,9 +70,10 @@ def block_moves(starts: tuple[int, ...], horizon: int) -> Array:
 class Prediction:
     """Position, velocity and acceleration over a horizon as linear functions of state and moves.
 
-    The triple integrator of eq. (4) has constant A and B; only C(k) = [1, 0, -1/λ(k)] varies with time (the
-    paper prints -ω² for -1/ω²). The predicted ZMP of eq. (10) is therefore a row scaling,
-    Y = P_x - diag(1/λ) P_a, for the response to the state (S_x) as for the response to the input (S_u).
+    Only C(k) = [1, 0, -1/λ(k)] varies with time. The predicted ZMP of eq. (10) is therefore a row scaling,
+    Y = P_x - diag(1/λ) P_a, for the response to the state as for the response to the input (see `zmp_response`).
+
+    Erratum: C is printed [1 0 -ω²] in eq. (4); here [1 0 -1/ω²], because x'' = ω² (x - p).
 
     Attributes:
         state: response (x, x', x'') to the state, shape (3, N + 1, 3).
@@ -103,32 +118,20 @@ def predict(sample_time: float, basis: Array) -> Prediction:
     return Prediction(state, np.ascontiguousarray(samples @ basis), samples, basis)
 
 
-@dataclass(frozen=True, slots=True)
-class Trajectory:
-    """A predicted motion in the plan frame.
-
-    Attributes:
-        com: position, velocity, acceleration at samples 0..N, shape (3, N + 1, 2).
-        zmp: shape (N + 1, 2) [m].
-        jerk: shape (N, 2) [m/s^3].
-    """
-
-    com: Array
-    zmp: Array
-    jerk: Array
-
-
-def trajectory(prediction: Prediction, state: Array, stiffness: Array, jerk: Array) -> Trajectory:
-    """Motion under a jerk sequence.
+def trajectory(prediction: Prediction, state: Array, stiffness: Array, jerk: Array) -> tuple[Array, Array]:
+    """Motion under a jerk sequence, in the plan frame.
 
     Args:
         prediction: prediction matrices.
         state: CoM position, velocity, acceleration per axis, shape (2, 3).
         stiffness: λ at samples 0..N, shape (N + 1,) [1/s^2].
         jerk: shape (N, 2) [m/s^3].
+
+    Returns:
+        CoM position, velocity, acceleration at samples 0..N, shape (3, N + 1, 2), and the ZMP, shape (N + 1, 2) [m].
     """
     com = prediction.state @ state.T + prediction.samples @ jerk
-    return Trajectory(com, zmp_response(com, stiffness), jerk)
+    return com, zmp_response(com, stiffness)
 
 
 def zmp_response(response: Array, stiffness: Array) -> Array:
@@ -140,3 +143,38 @@ def zmp_response(response: Array, stiffness: Array) -> Array:
     """
     inverse = 1.0 / stiffness
     return np.asarray(response[0] - inverse.reshape(-1, *([1] * (response.ndim - 2))) * response[2])
+
+
+@dataclass(frozen=True, slots=True)
+class CachedResponse:
+    """What of the Δu form of the jerk-driven CoM does not depend on λ.
+
+    Attributes:
+        position: P_x, response of the position to x(0), u(-1) and ΔU side by side, shape (N, 4 + m).
+        acceleration: P_a, likewise, shape (N, 4 + m).
+        last: responses (x, x', x'') at sample N, likewise, shape (3, 4 + m).
+    """
+
+    position: Array
+    acceleration: Array
+    last: Array
+
+    def at(self, stiffness: Array) -> tuple[Array, Array, Array]:
+        """S_x, shape (N, 3), S_u1, shape (N,), and S_u, shape (N, m), for λ at samples 1..N, shape (N,) [1/s^2]."""
+        S = self.position - self.acceleration / stiffness[:, None]
+        return S[:, :3], S[:, 3], S[:, 4:]
+
+
+def cached_response(sample_time: float, starts: tuple[int, ...], horizon: int) -> CachedResponse:
+    """Precompute the parts of eq. (10) and eq. (11) that do not depend on λ.
+
+    Args:
+        sample_time: T [s].
+        starts: samples at which the input may change; the paper's are 0..N_c - 1.
+        horizon: N.
+    """
+    free = predict(sample_time, np.eye(horizon))
+    held = np.flip(np.cumsum(np.flip(free.samples, axis=2), axis=2), axis=2)
+    response = np.concatenate((free.state, held[:, :, :1], held[:, :, list(starts)]), axis=2)
+    position, _, acceleration = np.ascontiguousarray(response[:, 1:])
+    return CachedResponse(position, acceleration, response[:, -1].copy())

@@ -24,8 +24,8 @@ BLOCK_STARTS = (0, 1, 2, 4, 7, 11, 16, 22, 29, 37)
 def jerk_model(sample_time: float) -> tuple[Array, Array]:
     """A, shape (3, 3), and B, shape (3,), of the CoM under a jerk that is constant over a sample.
 
-    They are those of eq. (4): x(k+1) = A x(k) + B u(k), eq. (3), integrates the chain of eq. (2) exactly. For one λ they
-    give F and Φ of eq. (6).
+    They are those of eq. (4): x(k+1) = A x(k) + B u(k), eq. (3), integrates the chain of eq. (2) exactly.
+    With one λ over the horizon they give F and Φ of eq. (6).
 
     Erratum: eq. (5) writes Y = F x + Φ ΔU, but its printed Φ is the impulse response, which belongs to u(0)..u(N-1);
     summing the columns of Φ from j on gives column j of S_u.

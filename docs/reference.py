@@ -17,10 +17,8 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.planner.laws.constraints import StepContext
-from surefoot.planner.laws.law import Motion, MotionProblem
+from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery.step_bounds import StepBounds
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.scenarios.file.schema import (
@@ -149,7 +147,6 @@ HANDED = (
     Handed(MotionProblem, "A law gets it, once per plan."),
     Handed(ZmpReference, "`reference` of it; n is N + M + 1."),
     Handed(StepContext, "`steps` of it."),
-    Handed(StepBounds, "`bounds` of that."),
     Handed(Motion, "A law gives it."),
     Handed(CentroidalState, "A planner gets it, as `state`."),
     Handed(FeetState, "A planner gets it, as `feet`."),

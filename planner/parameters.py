@@ -86,6 +86,21 @@ class StepAdaptation(Enum):
     CROSSING = "crossing"
     """Where and when, and a foot may land beyond its stance foot."""
 
+    @property
+    def places(self) -> bool:
+        """Whether places may change."""
+        return self is not StepAdaptation.NONE
+
+    @property
+    def timing(self) -> bool:
+        """Whether times may change."""
+        return self in (StepAdaptation.TIMING, StepAdaptation.CROSSING)
+
+    @property
+    def crossing(self) -> bool:
+        """Whether a foot may land beyond its stance foot."""
+        return self is StepAdaptation.CROSSING
+
 
 @dataclass(frozen=True, slots=True)
 class LegInertia:

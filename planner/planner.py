@@ -8,8 +8,7 @@ import numpy as np
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations, check_height
 from surefoot.planner.ground.terrain import Terrain, flat
-from surefoot.planner.laws.constraints import StepContext
-from surefoot.planner.laws.law import Motion, MotionProblem
+from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.model.jerk import block_moves, predict, trajectory
 from surefoot.planner.parameters import PlannerParameters
@@ -25,7 +24,8 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import CommandSource
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.swing.leg_reach import LegReach, StepRegion
+from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import (
     Array,
     Balance,
@@ -278,7 +278,7 @@ class WalkingPlanner:
         if swing is not None:
             left, transfer = execution.time_left, schedule.step(phase.step).double * self.parameters.sample_time
         bounds = self._recovery.bounds(increment, here, left, adjusted)
-        return StepContext(increment, (side, -side), execution.free, here, left, transfer, bounds)
+        return StepContext(increment, (side, -side), execution.free, here, left, transfer, *bounds)
 
     def _local_state(self, state: CentroidalState, support: Support) -> Array:
         """Position and velocity as measured, acceleration as the last plan had it for now."""

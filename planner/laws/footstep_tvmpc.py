@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from surefoot.planner.laws.constraints import Constraints, generate_constraints
-from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem
+from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem, StepContext
 from surefoot.planner.laws.qp import Qp, QpSolution, solve
-from surefoot.planner.model.dcm import NominalMotion, jerk_range, no_motion, nominal_motion
+from surefoot.planner.model.dcm import NominalMotion, jerk_range, no_motion, nominal_motion, viability_weights
 from surefoot.planner.model.jerk import Prediction, block_moves, predict, zmp_response
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.leg_offset import softening
@@ -24,7 +23,6 @@ def build_problem(
     parameters: PlannerParameters,
     prediction: Prediction,
     problem: MotionProblem,
-    constraints: Constraints,
     move_range: tuple[Array, Array] | None = None,
 ) -> tuple[Qp, Qp]:
     """The QPs of the plan frame's x and y axis; they share P and G.
@@ -36,48 +34,62 @@ def build_problem(
     The terminal cost is what the best linear feedback would still spend on the squared ZMP error after the horizon;
     without it the optimum prefers a constant ZMP error of millimetres to paying once for its correction.
     All constraints on the motion are soft (the paper's hard ones are infeasible under noise), so that the problem
-    always has a solution.
+    always has a solution. The paper's box (eq. (9)) is printed as an equality that is not centred on the foot; here it
+    is ± foot_margin / 2 of the foot around the moving reference, at samples 1..N (sample 0 has no feed-through).
 
     Args:
         parameters: planner parameters.
         prediction: cached prediction matrices.
         problem: this tick; its last jerk enters only with a finite rate limit.
-        constraints: bounds of this tick.
         move_range: bounds of the moves, shape (axis, m) each [m/s^3]; the jerk limit on both sides by default.
     """
-    errors = _linear_errors(prediction, problem, constraints)
+    errors = _linear_errors(parameters, prediction, problem)
     m = prediction.basis.shape[1]
     P, q = _cost(parameters, errors, m)
-    G, h = _inequalities(constraints, errors, m)
+    G, h = _inequalities(errors, m)
     if np.isfinite(parameters.jerk_rate_limit):
         G, h = _with_rate_limit(G, h, m, parameters.jerk_rate_limit, problem.last_jerk)
-    lower, upper = _bounds(constraints, m, move_range or (-parameters.jerk_limit, parameters.jerk_limit))
+    lower, upper = _bounds(problem.steps, m, move_range or (-parameters.jerk_limit, parameters.jerk_limit))
     x, y = (Qp(P, q[i], G, h[i], lower[i], upper[i]) for i in range(2))
     return x, y
 
 
 @dataclass(frozen=True, slots=True)
 class _Errors:
-    """ZMP error `zmp_rows @ z + zmp` (N, 2) and terminal DCM error `end_row @ z + end` (2,) in moves and shifts z."""
+    """Errors that are linear in moves and shifts z, and what of them is free of cost beyond their weight.
+
+    Attributes:
+        zmp_rows: ZMP error `zmp_rows @ z + zmp` at samples 1..N, shape (N, m + 2).
+        zmp: shape (N, 2) [m].
+        box: half size of the ZMP box there, shape (N, 2) [m].
+        end_row: error `end_row @ z + end` of the DCM at the end of the horizon, shape (m + 2,).
+        end: against that which the known future footholds keep bounded, shape (2,) [m].
+        end_box: half size of the terminal bound, shape (2,) [m].
+    """
 
     zmp_rows: Array
     zmp: Array
+    box: Array
     end_row: Array
     end: Array
+    end_box: Array
 
 
-def _linear_errors(prediction: Prediction, problem: MotionProblem, constraints: Constraints) -> _Errors:
-    n, state, reference = prediction.basis.shape[0], problem.state, problem.reference
-    stiffness = problem.stiffness[1 : n + 1]
+def _linear_errors(parameters: PlannerParameters, prediction: Prediction, problem: MotionProblem) -> _Errors:
+    n, state, reference = parameters.horizon, problem.state, problem.reference
+    stiffness, end_omega = problem.stiffness[1 : n + 1], float(problem.omega[n])
+    weights = viability_weights(problem.stiffness[n:], problem.omega[n:], parameters.sample_time)
     moves = zmp_response(prediction.moves[:, 1:], stiffness)
     free = zmp_response(prediction.state[:, 1:] @ state.T, stiffness)
-    end_state = prediction.state[0, n] + prediction.state[1, n] / constraints.terminal_omega
-    end_moves = prediction.moves[0, n] + prediction.moves[1, n] / constraints.terminal_omega
+    end_state = prediction.state[0, n] + prediction.state[1, n] / end_omega
+    end_moves = prediction.moves[0, n] + prediction.moves[1, n] / end_omega
     return _Errors(
         zmp_rows=np.concatenate((moves, -reference.gain[1 : n + 1]), axis=1),
         zmp=free - reference.point[1 : n + 1],
-        end_row=np.concatenate((end_moves, -constraints.terminal_gain)),
-        end=state @ end_state - constraints.terminal_center,
+        box=reference.half_size[1 : n + 1],
+        end_row=np.concatenate((end_moves, -(weights @ reference.gain[n:]))),
+        end=state @ end_state - weights @ reference.point[n:],
+        end_box=parameters.terminal_margin * reference.half_size[n],
     )
 
 
@@ -92,7 +104,7 @@ def _cost(parameters: PlannerParameters, errors: _Errors, m: int) -> tuple[Array
     return P, q
 
 
-def _inequalities(constraints: Constraints, errors: _Errors, m: int) -> tuple[Array, Array]:
+def _inequalities(errors: _Errors, m: int) -> tuple[Array, Array]:
     """Rows: ZMP box above and below at samples 1..N, terminal DCM bound above and below."""
     n = len(errors.zmp)
     G = np.zeros((2 * n + 2, m + _EXTRA))
@@ -103,10 +115,10 @@ def _inequalities(constraints: Constraints, errors: _Errors, m: int) -> tuple[Ar
     G[2 * n + 1, : m + 2] = -errors.end_row
     G[2 * n :, m + 3] = -1.0
     h = np.empty((2, 2 * n + 2))
-    h[:, :n] = (constraints.half_size - errors.zmp).T
-    h[:, n : 2 * n] = (constraints.half_size + errors.zmp).T
-    h[:, 2 * n] = constraints.terminal_half_size - errors.end
-    h[:, 2 * n + 1] = constraints.terminal_half_size + errors.end
+    h[:, :n] = (errors.box - errors.zmp).T
+    h[:, n : 2 * n] = (errors.box + errors.zmp).T
+    h[:, 2 * n] = errors.end_box - errors.end
+    h[:, 2 * n + 1] = errors.end_box + errors.end
     return G, h
 
 
@@ -117,10 +129,10 @@ def _diagonal_cost(parameters: PlannerParameters, m: int) -> Array:
     return cost
 
 
-def _bounds(constraints: Constraints, m: int, moves: tuple[Array, Array] | tuple[float, float]) -> tuple[Array, Array]:
+def _bounds(steps: StepContext, m: int, moves: tuple[Array, Array] | tuple[float, float]) -> tuple[Array, Array]:
     lower, upper = np.zeros((2, m + _EXTRA)), np.full((2, m + _EXTRA), np.inf)
     lower[:, :m], upper[:, :m] = moves
-    lower[:, m : m + 2], upper[:, m : m + 2] = constraints.steps.lower.T, constraints.steps.upper.T
+    lower[:, m : m + 2], upper[:, m : m + 2] = steps.lower.T, steps.upper.T
     return lower, upper
 
 
@@ -160,10 +172,9 @@ class FootstepTvmpc:
         p = self._parameters
         nominal = self._nominal(problem)
         rest = replace(problem.reference, point=problem.reference.point - nominal.zmp)
-        constraints = generate_constraints(p, rest, problem.stiffness, problem.omega, problem.steps)
         beside = replace(problem, state=problem.state - nominal.com[:, 0].T, reference=rest)
         moves = jerk_range(nominal.jerk[: p.horizon], p.moves, p.jerk_limit)
-        axes = build_problem(p, self._prediction, beside, constraints, moves)
+        axes = build_problem(p, self._prediction, beside, moves)
         return BuiltQps(axes, nominal.jerk[: p.horizon], _UNSHIFTED)
 
     def solve(self, built: BuiltQps) -> tuple[QpSolution, QpSolution]:

@@ -8,10 +8,34 @@ at and tested without the others.
 from dataclasses import dataclass
 from typing import Protocol
 
-from surefoot.planner.laws.constraints import StepContext
 from surefoot.planner.laws.qp import Qp, QpSolution
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import Array, SolverStatus
+
+
+@dataclass(frozen=True, slots=True)
+class StepContext:
+    """The next two footsteps, in the plan frame.
+
+    Attributes:
+        increment: their nominal displacements from the foothold before, shape (2, 2) [m].
+        side: +1 where the step is a left one, -1 where it is a right one, shape (2,).
+        free: whether each of them may be shifted.
+        swing: position of the swing foot from the stance foot, shape (2,) [m], or None when no foot swings.
+        time_left: time until the first of them lands [s].
+        transfer_time: duration of the double support that follows, zero when no foot swings (T_ds) [s].
+        lower: lower bounds of their shifts from these, shape (step, axis) = (2, 2) [m].
+        upper: upper bounds of their shifts, shape (step, axis) = (2, 2) [m].
+    """
+
+    increment: Array
+    side: tuple[float, float]
+    free: tuple[bool, bool]
+    swing: Array | None
+    time_left: float
+    transfer_time: float
+    lower: Array
+    upper: Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from surefoot.planner.laws.qp import Qp, QpSolution, solve
 from surefoot.planner.model.dcm import dcm, decays, nominal_dcm, viability_weights
 from surefoot.planner.model.jerk import CachedResponse, block_moves, cached_response
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.leg_reach import reach_box
+from surefoot.planner.swing.step_region import reach_box
 from surefoot.planner.types import Array, SolverStatus
 
 
@@ -77,7 +77,7 @@ def corrected_shift(problem: MotionProblem, parameters: PlannerParameters) -> Ar
     authority = problem.reference.half_size[0] * (growth - 1.0)
     residual = np.sign(error) * np.maximum(np.abs(error) * growth - authority, 0.0)
     gain = viability_weights(problem.stiffness[k:], problem.omega[k:], t) @ problem.reference.gain[k:, 0]
-    return np.asarray(np.clip(residual / gain, steps.bounds.lower[0], steps.bounds.upper[0]))
+    return np.asarray(np.clip(residual / gain, steps.lower[0], steps.upper[0]))
 
 
 def build_hard_problem(

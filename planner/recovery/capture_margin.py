@@ -18,10 +18,9 @@ import numpy as np
 
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.recovery.step_adjustment import NextStep, StepAdjustment
+from surefoot.planner.recovery.step_adjustment import NextStep
 from surefoot.planner.references.window import Window
-from surefoot.planner.swing.leg_reach import ANYWHERE
-from surefoot.planner.swing.limits import PEAK
+from surefoot.planner.swing.leg_reach import ANYWHERE, PEAK, LegReach
 from surefoot.planner.types import Array
 
 
@@ -48,7 +47,7 @@ class CaptureMargin:
     """How far the DCM is inside what steps that are adjusted capture.
 
     Args:
-        adjustment: what may be done about a step.
+        legs: what they can do.
         parameters: of the planner.
         half_size: half of the sole's length and width, shape (2,) [m].
 
@@ -56,12 +55,12 @@ class CaptureMargin:
         cycle: shortest time from a landing to the next one, in which a foot is swung as far as legs reach [s].
     """
 
-    def __init__(self, adjustment: StepAdjustment, parameters: PlannerParameters, half_size: Array) -> None:
-        legs, numbers = adjustment.legs, parameters.recovery
+    def __init__(self, legs: LegReach, parameters: PlannerParameters, half_size: Array) -> None:
+        numbers = parameters.recovery
         near, far = np.array([-2.0 * legs.radius, legs.near]), legs.allowed(1.0, ANYWHERE, False)[0, 1]
         swung = np.sqrt(PEAK * (far - near) / legs.acceleration * (0.5, 1.0)).max()
         self.cycle = numbers.least_double + max(numbers.least_single, parameters.touchdown_lead + float(swung))
-        self._adjustment, self._numbers, self._radius = adjustment, numbers, legs.radius
+        self._legs, self._timing, self._numbers = legs, parameters.step_adaptation.timing, numbers
         # Columns of four edges each.
         self._half = _edges(-half_size, half_size)[:, None]
         self._hip = _edges(*2 * (np.array([0.0, 0.5 * legs.hip_width]),))[:, None]
@@ -109,7 +108,7 @@ class CaptureMargin:
             com = com + 0.5 * (double - 1.0) * ((single - 1.0) * away - (growth * single - 1.0) * first)
             away = away + single * (1.0 - double) * first
         com, shrunk = com / growth, 1.0 / growth
-        cycle = min(self.cycle, step.cycle) if self._adjustment.timing else step.cycle
+        cycle = min(self.cycle, step.cycle) if self._timing else step.cycle
         captured = self.landed(math.exp(omega * cycle), -step.side, steps)[:, None]
         places, alone = self._places(step, singles, fixed), ((half - away) * shrunk - here)[:, :, None]
         ahead = (((places - away[:, :, None]) * shrunk[:, None]) - here[:, :, None])[..., None]
@@ -117,16 +116,16 @@ class CaptureMargin:
         if not fixed:
             spread = 2.0 / (growth + shrunk)
             under = com + step.side * self._hip
-            spanned = ((self._radius + under - away) * spread - here)[..., None] + captured * spread[:, None]
+            spanned = ((self._legs.radius + under - away) * spread - here)[..., None] + captured * spread[:, None]
             by = 2.0 / np.maximum(growth - shrunk, 1e-9)
-            near = (places + (self._radius - under)[:, :, None]) * by[:, None] - here[:, :, None]
+            near = (places + (self._legs.radius - under)[:, :, None]) * by[:, None] - here[:, :, None]
             ahead = np.minimum(np.minimum(ahead, spanned[:, :, None]), near[..., None])
         ahead[..., 0] = np.maximum(ahead[..., 0], alone)
         return np.asarray(np.maximum.accumulate(ahead.min(axis=0).reshape(-1, steps).max(axis=0)))
 
     def _times(self, step: NextStep, fixed: bool) -> tuple[Array, Array]:
         """Pairs of times of double and single support, the present one last, shape (n,) each [s]."""
-        if fixed or not self._adjustment.timing:
+        if fixed or not self._timing:
             return np.array([step.double]), np.array([step.single])
         numbers = self._numbers
         least, most = min(step.single, max(numbers.least_single, step.shortest)), step.single + numbers.longer
@@ -140,7 +139,7 @@ class CaptureMargin:
         """Edges of where the step may land in times, shape (4, n, boxes) [m]."""
         if fixed:
             return _edges(step.nominal, step.nominal)[:, None, None]
-        legs, limits = self._adjustment.legs.turned(step.turn), self._adjustment.limits
+        legs = self._legs.turned(step.turn)
         boxes = legs.allowed(step.side, step.face, step.crosses)
-        swung = limits.edges(step.swing, step.nominal, singles)
+        swung = legs.edges(step.swing, step.nominal, singles)
         return np.minimum(_edges(boxes[:, 0], boxes[:, 1]).T[:, None], swung[..., None])

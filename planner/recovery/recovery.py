@@ -6,12 +6,12 @@ from surefoot.planner.geometry import signed_distance
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
 from surefoot.planner.recovery.step_adjustment import AdjustedStep, NextStep, StepAdjustment
-from surefoot.planner.recovery.step_bounds import StepBounds
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.adaptation import with_step_in_place, with_steps_repeated
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import room_left
+from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_within
 from surefoot.planner.types import Array, Balance, Foot, PhaseKind
 
 
@@ -30,7 +30,7 @@ class Recovery:
         self._execution, legs = execution, execution.legs
         self._parameters = p = execution.schedule.ground.parameters
         self.adjustment = None if legs is None else StepAdjustment(legs, p)
-        self._movable = None if self.adjustment is None else CaptureMargin(self.adjustment, p, half_size)
+        self._movable = None if legs is None else CaptureMargin(legs, p, half_size)
 
     def steps_out(self, local: Array, window: Window) -> bool:
         """Insert a step of a robot that stands and would fall, or stands astride; says whether."""
@@ -126,7 +126,7 @@ class Recovery:
         execution.adapted |= adjusted is not None
         return adjusted
 
-    def bounds(self, increment: Array, here: Array | None, left: float, adjusted: AdjustedStep | None) -> StepBounds:
+    def bounds(self, increment: Array, here: Array | None, left: float, adjusted: AdjustedStep | None) -> Shifts:
         """Where the next two footsteps may land.
 
         Args:
@@ -136,19 +136,17 @@ class Recovery:
             adjusted: what is made of the next one.
         """
         execution, schedule, landed = self._execution, self._execution.schedule, self._execution.landed
-        stance, free, p = schedule.step(landed).place, execution.free, self._parameters
-        side = stance.foot.other.side
-        if self.adjustment is None:
-            return StepBounds.reachable(p, increment, side, free, here, left)
-        if not execution.adapted:
-            return StepBounds.within(np.stack((increment, increment), axis=1), increment, free)
-        rooms, following = np.zeros((2, 2, 2)), schedule.after(landed)[:2]
-        rooms[: len(following)] = [room_left(step, stance, p.recovery.parallel) for step in following]
-        turns = schedule.turn(landed + 1), schedule.turn(landed + 2)
-        boxes = self.adjustment.boxes(increment, side, turns, rooms)
+        stance, free, legs = schedule.step(landed).place, execution.free, execution.legs
+        if legs is None:
+            return reachable_shifts(self._parameters, increment, stance.foot.other.side, free, here, left)
+        boxes = np.stack((increment, increment), axis=1)
+        for n, step in enumerate(schedule.after(landed)[:2] if execution.adapted else ()):
+            room = increment[n] + room_left(step, stance, self._parameters.recovery.parallel)
+            low, high = legs.turned(schedule.turn(step.number)).beside(increment[n], step.place.foot.side)
+            boxes[n] = np.maximum(low, room[0]), np.minimum(high, room[1])
         if adjusted is not None:
             boxes[0] = adjusted.box
-        return StepBounds.within(boxes, increment, free)
+        return shifts_within(boxes, increment, free)
 
 
 def _dcm(local: Array, window: Window) -> Array:

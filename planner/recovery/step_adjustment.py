@@ -14,8 +14,8 @@ with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, 
 - cop: |c| ≤ cop_share of the ZMP box, and of what both feet have beyond it in double support;
 - reach: p in one of the boxes of `LegReach.allowed`, and within `radius` of its hip then; the other hip is out of
   reach of the stance foot by r;
-- swing: p where the foot can be swung to until then (`SwingLimits`), but for u, on a way around the stance leg that is
-  too long by v;
+- swing: p where the foot can be swung to until then (`LegReach.edges`), but for u, on a way around the stance leg that
+  is too long by v;
 - second: s = e^{ωT} g |p* - p| less what the CoP holds until then, where p* leaves nothing; cross_factor s to a side
   where that step would have to cross;
 - times: T_d = T̄_d + a member of time_changes, not below least_double, and T_s likewise, nor below what body and foot
@@ -36,13 +36,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
-from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import Step, room_left
-from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.swing.limits import PEAK, SwingLimits
+from surefoot.planner.swing.leg_reach import PEAK, LegReach
 from surefoot.planner.types import Array, FeetState, PhaseKind
 
 
@@ -138,15 +137,10 @@ class StepAdjustment:
         legs: what they can do.
         parameters: of the planner.
 
-    Attributes:
-        legs: what they can do.
-        limits: how far a foot can be swung in time.
-        timing: whether times may change.
     """
 
     def __init__(self, legs: LegReach, parameters: PlannerParameters) -> None:
-        self.legs, self.limits = legs, SwingLimits.of(legs, parameters)
-        self.timing = parameters.step_adaptation is not StepAdaptation.LOCATION
+        self._legs, self._timing = legs, parameters.step_adaptation.timing
         self._sample_time, self._numbers = parameters.sample_time, parameters.recovery
         self._authority = np.array(parameters.cop_authority)
         self._changes = np.array(parameters.recovery.time_changes)
@@ -164,20 +158,6 @@ class StepAdjustment:
         nominal = nominal_dcm(window.stiffness, window.omega, window.driving.point, self._sample_time)
         error = dcm - nominal[0]
         return error, bool((np.abs(error) > self._numbers.stand_share * window.driving.half_size[-1]).any())
-
-    def boxes(self, increment: Array, side: float, turns: tuple[float, float], rooms: Array) -> Array:
-        """Where the next two footsteps of an adapted step may land, from the foothold before each, shape (2, 2, 2) [m].
-
-        Args:
-            increment: their nominal displacements from there, shape (2, 2) [m].
-            side: +1 where the first is a left one, -1 where it is a right one.
-            turns: heading of each against the one before it [rad].
-            rooms: least and greatest way by which each stays on its face, shape (2, 2, 2) [m].
-        """
-        found = np.stack([self.legs.turned(turns[n]).beside(increment[n], (side, -side)[n]) for n in (0, 1)])
-        found[:, 0] = np.maximum(found[:, 0], increment + rooms[:, 0])
-        found[:, 1] = np.minimum(found[:, 1], increment + rooms[:, 1])
-        return found
 
     def solve(self, com: Array, dcm: Array, window: Window, step: NextStep) -> AdjustedStep | None:
         """The solution; None where nothing has to be adjusted, or the step has no place to land.
@@ -214,7 +194,7 @@ class StepAdjustment:
 
     def _times(self, step: NextStep, fine: bool) -> tuple[Array, Array]:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
-        if fine or not self.timing:
+        if fine or not self._timing:
             return np.array([step.double]), np.array([step.single])
         numbers = self._numbers
         singles = self._around(step.single, max(numbers.least_single, step.shortest))
@@ -247,8 +227,8 @@ class StepAdjustment:
             means: g, what a shift of the step does to the DCM that stays bounded [-], and half size of what the CoP has
                 of its box, shape (2,) [m].
         """
-        legs, numbers, (double, single), (gain, held) = self.legs.turned(step.turn), self._numbers, times, means
-        swung = self.limits.edges(step.swing, step.nominal, single)
+        legs, numbers, (double, single), (gain, held) = self._legs.turned(step.turn), self._numbers, times, means
+        swung = legs.edges(step.swing, step.nominal, single)
         low, high = -swung[2:].T, swung[:2].T
         # Of each box that the foot may land in, shape (boxes, n).
         boxes = legs.allowed(step.side, step.face, step.crosses)
@@ -266,7 +246,7 @@ class StepAdjustment:
         second[..., 1] *= np.where(step.side * short[..., 1] > 0.0, numbers.cross_factor, 1.0)
         changed = (double - step.double) ** 2 + (single - step.single) ** 2
         stretch = np.maximum(np.hypot(*(com - aside).T) - legs.radius, 0.0)
-        shortfall = self.limits.shortfall(step.swing, step.side, legs, single, places)
+        shortfall = legs.shortfall(step.swing, step.side, single, places)
         cost = numbers.time_weight * changed / step.cycle**2
         cost = cost + numbers.stretch_weight * stretch**2
         cost = cost + numbers.shift_weight * ((places - step.nominal) ** 2).sum(axis=-1)

@@ -11,7 +11,7 @@ import numpy as np
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.steps.gait import WEIGHT_SHIFT, Bout, GaitParameters, Stride
-from surefoot.planner.swing.leg_reach import StepRegion
+from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, Foot, Footstep
 
 MOST_STEPS = 100_000

@@ -7,15 +7,13 @@ import numpy as np
 
 from surefoot.planner.geometry import sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
-from surefoot.planner.parameters import StepAdaptation
 from surefoot.planner.steps.adaptation import aligned, with_heel_lifted
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import StepSource
 from surefoot.planner.swing.heel_off import FootRoll
-from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.swing.limits import around_stance_leg
+from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
 
@@ -70,7 +68,7 @@ class Execution:
         self.clock = TimeScaling(parameters.sample_time)
         # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
         self._wide = schedule.ground.terrain.free_footholds
-        self.adapts = parameters.step_adaptation is not StepAdaptation.NONE and (self._wide or legs is not None)
+        self.adapts = parameters.step_adaptation.places and (self._wide or legs is not None)
         self._parameters, self._size, self._terrain = parameters, parameters.size, schedule.ground.terrain
         self._pose = np.repeat([self._size.length, 1.0], 3)
         self._lead = parameters.touchdown_lead / parameters.sample_time

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, replace
 from itertools import accumulate, chain
 
 from surefoot.errors import ParameterError
-from surefoot.planner.swing.leg_reach import LANDING_ROUNDING, Landing, StepRegion
+from surefoot.planner.swing.step_region import LANDING_ROUNDING, Landing, StepRegion
 from surefoot.planner.types import Foot
 
 

@@ -10,7 +10,7 @@ from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.steps.commands import MOST_STEPS, Pose, Twist, fastest
 from surefoot.planner.steps.footsteps import Path
 from surefoot.planner.steps.gait import GaitParameters, Stride
-from surefoot.planner.swing.leg_reach import StepRegion
+from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 

@@ -12,7 +12,8 @@ from surefoot.planner.steps.footsteps import Path
 from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
 from surefoot.planner.swing.course import Ground, swing_course
 from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
-from surefoot.planner.swing.leg_reach import Landing, check_reach, turned_room
+from surefoot.planner.swing.leg_reach import turned_room
+from surefoot.planner.swing.step_region import Landing, check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, Foot, Footstep
 

@@ -1,114 +1,21 @@
-"""Where a foot may land beside its stance foot: in reach, apart from it, and not crossed."""
+"""What legs can do to catch a body: where a foot may land beside its stance foot, how hard hips swing it there."""
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.errors import ParameterError, at_least, at_most
-from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.parameters import PlannerParameters, RecoveryParameters, StepAdaptation
-from surefoot.planner.types import Array, Foot, Footstep
+from surefoot.planner.geometry import frame_rotation, wrap_angle
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.step_region import soles_apart
+from surefoot.planner.swing.trajectory import SwingTrajectory, detour
+from surefoot.planner.types import Array, Footstep
 
-LANDING_ROUNDING = 1e-9
-"""Places in the region are compared with this tolerance, since they are sums of rounded ways [m, rad]."""
+PEAK = 5.77
+"""Greatest acceleration of a quintic from rest to rest, over way / T²: 10 / √3 [-]."""
 
-
-@dataclass(frozen=True, slots=True)
-class Landing:
-    """Where a foot lands, seen from its stance foot.
-
-    Attributes:
-        ahead: forward distance in the stance foot's frame [m].
-        beside: distance to the foot's own side, negative when the legs cross [m].
-        turn: heading against the stance foot, positive to the left [rad].
-    """
-
-    ahead: float
-    beside: float
-    turn: float
-
-    @classmethod
-    def between(cls, stance: Footstep, place: Footstep) -> "Landing":
-        """That of a footstep."""
-        ahead, left = (place.position - stance.position)[:2] @ frame_rotation(stance.yaw)
-        return cls(float(ahead), float(left if place.foot is Foot.LEFT else -left), place.yaw - stance.yaw)
-
-
-def soles_apart(sole: tuple[float, float], turn: float) -> float:
-    """Distance beside at which a sole just clears the other one, wherever ahead it lands [m].
-
-    Args:
-        sole: length and width of both [m].
-        turn: heading of one against the other [rad].
-    """
-    length, width = sole
-    return 0.5 * (width + (length * abs(math.sin(turn)) + width * abs(math.cos(turn))))
-
-
-class Fault(NamedTuple):
-    """What is wrong with a landing.
-
-    Attributes:
-        what: the fault, in a clause that follows "the foot".
-        right: what would be right.
-    """
-
-    what: str
-    right: str
-
-
-@dataclass(frozen=True, slots=True)
-class StepRegion:
-    """Bounds of a landing.
-
-    Two soles that are `nearest` apart sideways keep the gap whatever the distance ahead, so that a foot neither lands
-    on the other one, nor passes through it, nor crosses over.
-
-    Attributes:
-        length: largest distance ahead or behind [m].
-        width: least and largest distance beside [m].
-        sole: length and width of the soles [m].
-        gap: least distance between two soles side by side [m].
-        turn: largest change of heading; beyond about 0.7 rad the thighs touch [rad].
-        leg_span: largest distance from the point `hip_width` beside the stance foot, where both legs stand upright [m].
-        hip_width: distance between the hips [m].
-    """
-
-    length: float
-    width: tuple[float, float]
-    sole: tuple[float, float]
-    gap: float = RecoveryParameters().sole_gap
-    turn: float = 0.5
-    leg_span: float = math.inf
-    hip_width: float = 0.0
-
-    def nearest(self, turn: float) -> float:
-        """Least distance beside for a foot that lands turned [m]."""
-        return max(self.width[0], soles_apart(self.sole, turn) + self.gap)
-
-    def contains(self, place: Landing) -> bool:
-        """Whether a foot may land there."""
-        return self.why_not(place) is None
-
-    def why_not(self, place: Landing) -> Fault | None:
-        """What is wrong with a landing; None when nothing is."""
-        near, far = self.nearest(place.turn), self.width[1]
-        if abs(place.turn) > self.turn + LANDING_ROUNDING:
-            return Fault(f"turns by {place.turn:.3g} rad against its stance foot", f"{self.turn:g} rad is the most")
-        if place.beside < near - LANDING_ROUNDING:
-            what = "crosses" if place.beside < 0.0 else "would touch"
-            return Fault(f"{what} its stance foot, {place.beside:.3f} m beside it", f"{at_least(near)} m is the least")
-        if place.beside > far + LANDING_ROUNDING:
-            return Fault(f"lands {place.beside:.3f} m beside its stance foot", f"{far:g} m is the most")
-        if abs(place.ahead) > self.length + LANDING_ROUNDING:
-            return Fault(f"lands {place.ahead:.3f} m ahead of its stance foot", f"{self.length:g} m is the most")
-        stretch = math.hypot(place.ahead, place.beside - self.hip_width)
-        if stretch > self.leg_span + LANDING_ROUNDING:
-            what = f"lands {stretch:.3f} m from where the legs stand upright"
-            return Fault(what, f"{at_most(self.leg_span)} m is the most")
-        return None
+_BRAKING, _GAINING = 1.9, 3.9
+"""What a speed takes off that at the end of a quintic to rest, and at its begin, over speed / T: its extremes [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +35,7 @@ class LegReach:
         sole: length and width of the soles; those of points need no more room where they are turned [m].
         height: of the hips over the soles as the robot stands [m].
         length: from a hip to its sole with the knee straight [m].
-        numbers: the planner's, of recovery.
+        parameters: of the planner.
     """
 
     radius: float
@@ -140,14 +47,14 @@ class LegReach:
     sole: tuple[float, float] = (0.0, 0.0)
     height: float = 0.0
     length: float = math.inf
-    numbers: RecoveryParameters = field(default_factory=RecoveryParameters)
+    parameters: PlannerParameters = field(default_factory=PlannerParameters)
 
     def adapting(self, parameters: PlannerParameters) -> "LegReach | None":
         """What of it a planner makes use of by its step adaptation; None where it makes none."""
-        if parameters.step_adaptation is StepAdaptation.NONE:
+        if not parameters.step_adaptation.places:
             return None
-        across = self.across if parameters.step_adaptation is StepAdaptation.CROSSING else None
-        return replace(self, across=across, numbers=parameters.recovery)
+        across = self.across if parameters.step_adaptation.crossing else None
+        return replace(self, across=across, parameters=parameters)
 
     def turned(self, turn: float) -> "LegReach":
         """The same beside and ahead of a stance foot against which the foot that lands is turned.
@@ -157,7 +64,7 @@ class LegReach:
         Args:
             turn: heading of one against the other [rad].
         """
-        if abs(turn) < self.numbers.parallel:
+        if abs(turn) < self.parameters.recovery.parallel:
             return self
         length, width = self.sole
         beside = soles_apart(self.sole, turn) - width
@@ -232,8 +139,65 @@ class LegReach:
         Args:
             stride: distance between the feet [m].
         """
-        span = min(0.5 * stride / self.numbers.spanned, self.length)
+        span = min(0.5 * stride / self.parameters.recovery.spanned, self.length)
         return max(self.height - math.sqrt(self.length**2 - span**2), 0.0)
+
+    def edges(self, swing: Array, nominal: Array, singles: Array) -> Array:
+        """Where a foot can be swung to in times: front, left, minus back and minus right edge, shape (4, n) [m].
+
+        It may always be swung as hard as it nominally is.
+
+        Args:
+            swing: position and velocity of the foot, from its stance foot, shape (2, 2) [m, m/s].
+            nominal: where it lands nominally, shape (2,) [m].
+            singles: times left of it, the last as planned, shape (n,) [s].
+        """
+        time, edges = self._swing_times(singles), []
+        usual, (here, speeds) = float(time[-1]), swing.tolist()
+        for side in (1.0, -1.0):
+            for at, speed, aim, most in zip(here, speeds, nominal.tolist(), self.acceleration, strict=True):
+                hardest = max(most, abs(PEAK * (aim - at) / (usual * usual) - _BRAKING * speed / usual))
+                onward = side * speed
+                edges.append((side * at, hardest, (_BRAKING if onward > 0.0 else _GAINING) * onward))
+        place, hardest, onward = np.array(edges).T[:, :, None]
+        return np.asarray(place + (hardest * time**2 + onward * time) / PEAK)
+
+    def _swing_times(self, singles: Array) -> Array:
+        """Times in which a foot swings of single supports, at whose end it has arrived, shape (n,) [s]."""
+        return np.maximum(singles - self.parameters.touchdown_lead, self.parameters.sample_time)
+
+    def shortfall(self, swing: Array, side: float, singles: Array, places: Array) -> Array:
+        """Way that a foot lacks of places in times since it has to pass around the stance leg, shape (boxes, n) [m].
+
+        Asked of legs that are turned as the foot will land.
+
+        It is bent as that of the swing will be (see `around_stance_leg`), here at nine shares of its time, and
+        lacks the share by which the hips cannot swing it so hard.
+
+        Args:
+            swing: position and velocity of the foot, from its stance foot, shape (2, 2) [m, m/s].
+            side: +1 for a left foot, -1 for a right one.
+            singles: times left of it, shape (n,) [s].
+            places: where it lands, shape (boxes, n, 2) [m].
+        """
+        here, speed = swing
+        crossing = np.where(side * here[1] < 0.0, here[0], np.where(side * places[..., 1] < 0.0, places[..., 0], 0.0))
+        lacking = np.zeros(crossing.shape)
+        which = np.nonzero(crossing)
+        if not len(which[0]):
+            return lacking
+        time = self._swing_times(singles)[which[1], None, None]
+        way, onward = (places[which] - here)[:, None], speed * time
+        passed = here + way * _AT_REST[0][:, None] + onward * _MOVING[0][:, None]
+        met = ((np.abs(passed[..., 0]) < self.clear) & (side * passed[..., 1] < self.near)).any(axis=1)
+        corner = np.stack((np.copysign(self.clear, crossing[which]), np.full(len(met), side * self.near)), axis=1)
+        astray = corner[:, None] - passed
+        rows, best = np.arange(len(met)), np.argmin((astray**2).sum(axis=-1) / _DEARER, axis=1)
+        bend = way * _AT_REST[1][:, None] + onward * _MOVING[1][:, None]
+        bend = bend + astray[rows, best][:, None] * _AROUND[best][..., None]
+        hardest = (np.abs(bend) / (time**2 * self.acceleration)).max(axis=(1, 2))
+        lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
+        return lacking
 
 
 ANYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
@@ -261,36 +225,59 @@ def turned_room(room: Array, angle: float, parallel: float) -> Array:
     return np.array([-half[0], half[1]])
 
 
-def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]:
-    """Where a footstep may land from its stance foot: lower and upper corner in the plan frame, shape (2,) [m].
+def around_stance_leg(
+    swing: SwingTrajectory, stance: Footstep, legs: LegReach, time: float, sample_time: float
+) -> SwingTrajectory:
+    """A swing, that from beyond the stance foot or to there bent to pass around the stance leg.
 
-    It is the paper's reachable area, in which its step law saturates a step.
-
-    Args:
-        parameters: planner parameters.
-        side: +1 for a left step, -1 for a right one.
-    """
-    x = parameters.reach_length
-    near, far = sorted(side * width for width in parameters.reach_width)
-    return np.array([-x, near]), np.array([x, far])
-
-
-def check_reach(number: int, place: Landing, parameters: PlannerParameters) -> None:
-    """Refuse a nominal footstep outside the reach box.
+    A way round that the hips cannot swing the foot in the time left would only make it late: then it goes straight.
 
     Args:
-        number: of the footstep, from 1.
-        place: where it lands.
-        parameters: give the box.
-
-    Raises:
-        ParameterError: it is out of reach; its key is ("footsteps", number - 1, "ahead" or "beside").
+        swing: that of the next footstep.
+        stance: the foot beside which it passes.
+        legs: what they can do.
+        time: now [s].
+        sample_time: of the plans [s].
     """
-    low, high = reach_box(parameters, 1.0)
-    for axis, name in enumerate(("ahead", "beside")):
-        way = getattr(place, name)
-        if not low[axis] - LANDING_ROUNDING <= way <= high[axis] + LANDING_ROUNDING:
-            ahead = "ahead of" if name == "ahead" else name
-            what = f"footstep {number} would land {way:.3f} m {ahead} its stance foot"
-            key = ("footsteps", number - 1, name)
-            raise ParameterError(key, what, f"it must be {low[axis]:g} to {high[axis]:g} m")
+    if swing.bent or time >= swing.glide_end:
+        return swing
+    rotation, origin, side = frame_rotation(stance.yaw), stance.position[:2], swing.foot.side
+    times = np.arange(max(time, swing.start_time), swing.glide_end + 0.5 * sample_time, sample_time)
+    if not (side * ((swing.positions(times[[0, -1]])[:, :2] - origin) @ rotation)[:, 1] < 0.0).any():
+        return swing  # as nearly all of them: beside its stance foot at both ends
+    way = (swing.positions(times)[:, :2] - origin) @ rotation
+    corner = legs.turned(wrap_angle(float(swing.target[3]) - stance.yaw)).corner(way, side)
+    if corner is None:
+        return swing
+    bent = swing.around(origin + rotation @ corner, sample_time)
+    hardest = np.abs([bent.evaluate(instant)[2, :2] @ rotation for instant in times.tolist()]).max(axis=0)
+    return bent if (hardest <= legs.acceleration).all() else swing
+
+
+_SHARES = np.linspace(0.1, 0.9, 9)
+"""Shares of a swing's time at which its way around the stance leg is looked at [-]."""
+
+_DEARER = (_SHARES * (1.0 - _SHARES)) ** 5
+"""What a way round at these is divided by to be compared."""
+
+
+def _unit_ways() -> tuple[Array, Array, Array]:
+    """Quintics to rest in a unit of time and their accelerations at `_SHARES`, shape (2, 9) each.
+
+    One goes a unit of way from rest, one has a unit of speed and goes none; of a way round by a unit at each of these
+    shares the accelerations, shape (9, 9).
+    """
+    u = _SHARES
+    rest = np.stack((u**3 * (10.0 - 15.0 * u + 6.0 * u**2), 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u)))
+    moving = np.stack((u - 6.0 * u**3 + 8.0 * u**4 - 3.0 * u**5, -36.0 * u + 96.0 * u**2 - 60.0 * u**3))
+    order = np.arange(6.0)
+    factors = (order * (order - 1.0))[2:]
+    around = []
+    for share in u.tolist():
+        since = np.where(u <= share, u, u - share)[:, None] ** order[:4] * factors
+        before, after = detour(share, 1.0)
+        around.append(np.where(u <= share, since @ before[2:], since @ after[2:]))
+    return rest, moving, np.array(around)
+
+
+_AT_REST, _MOVING, _AROUND = _unit_ways()

@@ -21,7 +21,7 @@ from surefoot.planner.references.com_height import (
 )
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.swing.leg_reach import StepRegion
+from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, FeetState, FootstepPlan
 from surefoot.scenarios.file.schema import GroundError, Scenario
 from surefoot.scenarios.setup.commands import told_until

@@ -19,7 +19,7 @@ from surefoot.planner.steps.commands import (
     walk_of,
 )
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.swing.leg_reach import StepRegion
+from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Foot, Footstep, PhaseInfo, PhaseKind
 from surefoot.scenarios.file.schema import FootstepSettings, Gait, PushSettings, VelocitySettings
 from surefoot.scenarios.setup.robot import RobotFacts

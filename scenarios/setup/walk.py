@@ -19,7 +19,8 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import HeightProfile
 from surefoot.planner.steps.commands import Pose, TimedCommand
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.swing.leg_reach import LegReach, StepRegion
+from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import GRAVITY, Array, FeetState
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start

@@ -11,7 +11,7 @@ from surefoot.planner.references.com_height import highest_apex
 from surefoot.planner.steps.commands import Twist, fastest
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Stride
-from surefoot.planner.swing.leg_reach import Landing, StepRegion, check_reach, soles_apart
+from surefoot.planner.swing.step_region import Landing, StepRegion, check_reach, soles_apart
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Gait
@@ -147,7 +147,7 @@ def commanded_step_problems(draft: Draft, facts: RobotFacts) -> Iterator[Problem
         for index, stride in enumerate(walk.strides):
             why = region.why_not(stride.landing(walk.step_foot(index + 1)))
             if why is not None:
-                yield Problem((*_FOOTSTEPS, index), f"footstep {index + 1} {why.what}", why.right)
+                yield Problem((*_FOOTSTEPS, index), f"footstep {index + 1} {why[0]}", why[1])
                 return
 
 

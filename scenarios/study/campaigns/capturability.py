@@ -19,7 +19,8 @@ import numpy as np
 from surefoot.errors import ParameterError, PluginError
 from surefoot.planner.geometry import frame_rotation, sole_corners
 from surefoot.planner.parameters import StepAdaptation
-from surefoot.planner.swing.leg_reach import ANYWHERE, reach_box
+from surefoot.planner.swing.leg_reach import ANYWHERE
+from surefoot.planner.swing.step_region import reach_box
 from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario

@@ -3,13 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.planner.laws.constraints import StepContext
-from surefoot.planner.laws.law import MotionProblem
+from surefoot.planner.laws.law import MotionProblem, StepContext
 from surefoot.planner.laws.tvmpc import corrected_shift, paper_shift
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.recovery.step_bounds import StepBounds
 from surefoot.planner.references.zmp_reference import ZmpReference
+from surefoot.planner.swing.step_region import reachable_shifts
 
 pytestmark = pytest.mark.unit
 
@@ -17,7 +16,7 @@ T, W = 0.02, np.sqrt(9.81)
 P = PlannerParameters()
 STEP = np.array([0.2, 0.2])
 HALF = 0.03
-UNBOUNDED = StepBounds(np.full((2, 2), -np.inf), np.full((2, 2), np.inf))
+UNBOUNDED = np.full((2, 2), -np.inf), np.full((2, 2), np.inf)
 
 
 def problem(error=(0.0, 0.0), left=0.6, transfer=0.5, parameters=P, **context):
@@ -30,12 +29,14 @@ def problem(error=(0.0, 0.0), left=0.6, transfer=0.5, parameters=P, **context):
     here = nominal_dcm(stiffness, omega, reference.point, T)[0] + error
     state = np.column_stack((here - 0.1 / W, np.full(2, 0.1), np.zeros(2)))
     steps = StepContext(
-        np.array([STEP, STEP]), (1.0, -1.0), (True, True), np.array([0.1, 0.2]), left, transfer, UNBOUNDED
+        np.array([STEP, STEP]), (1.0, -1.0), (True, True), np.array([0.1, 0.2]), left, transfer, *UNBOUNDED
     )
     steps = replace(steps, **context)
-    bounds = StepBounds.reachable(parameters, steps.increment, 1.0, steps.free, steps.swing, steps.time_left)
+    lower, upper = reachable_shifts(parameters, steps.increment, 1.0, steps.free, steps.swing, steps.time_left)
     zero = np.zeros((50, 2))
-    return MotionProblem(state, stiffness, omega, reference, replace(steps, bounds=bounds), zero[0], zero, np.eye(2))
+    return MotionProblem(
+        state, stiffness, omega, reference, replace(steps, lower=lower, upper=upper), zero[0], zero, np.eye(2)
+    )
 
 
 def test_paper_law_is_the_printed_formula_outside_its_margin_and_inside_the_reach():

@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 import qpsolvers
 
-from surefoot.planner.laws.constraints import StepContext
 from surefoot.planner.laws.footstep_tvmpc import FootstepTvmpc
-from surefoot.planner.laws.law import MotionProblem
+from surefoot.planner.laws.law import MotionProblem, StepContext
 from surefoot.planner.laws.qp import OPTIONS, solve
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.parameters import SOLVERS, PlannerParameters
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.recovery.step_bounds import StepBounds
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.step_region import reachable_shifts
 from surefoot.planner.types import CentroidalState, SolverStatus
 
 pytestmark = pytest.mark.unit
@@ -51,8 +50,8 @@ def tick_of(fallback=None, **parameters):
     stiffness = 9.0 + np.sin(0.1 * np.arange(count))
     reference = ZmpReference(ramp @ [[0.2, 0.1], [0.3, -0.2]], ramp, np.full((count, 2), 0.03), np.zeros(count))
     increment, free = np.full((2, 2), 0.2), (True, True)
-    bounds = StepBounds.reachable(p, increment, 1.0, free, np.zeros(2), 0.4)
-    steps = StepContext(increment, (1.0, -1.0), free, np.zeros(2), 0.4, 0.2, bounds)
+    bounds = reachable_shifts(p, increment, 1.0, free, np.zeros(2), 0.4)
+    steps = StepContext(increment, (1.0, -1.0), free, np.zeros(2), 0.4, 0.2, *bounds)
     fallback = np.zeros((p.horizon, 2)) if fallback is None else fallback
     state, omega = rng.normal(size=(2, 3)), np.sqrt(stiffness) + 0.1
     problem = MotionProblem(state, stiffness, omega, reference, steps, np.zeros(2), fallback, np.eye(2))

@@ -11,13 +11,12 @@ from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
-from surefoot.planner.recovery.step_adjustment import NextStep, StepAdjustment
+from surefoot.planner.recovery.step_adjustment import NextStep
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import ANYWHERE, LegReach
-from surefoot.planner.swing.limits import SwingLimits
 
 pytestmark = pytest.mark.unit
 
@@ -70,7 +69,7 @@ class Law(CaptureMargin):
 
 def margin_of(legs=LEGS, timing=False):
     parameters = replace(P, step_adaptation=StepAdaptation.TIMING if timing else StepAdaptation.LOCATION)
-    return Law(StepAdjustment(legs, parameters), P, HALF)
+    return Law(legs, parameters, HALF)
 
 
 class Program:
@@ -119,7 +118,7 @@ def rests(now, axis, box, steps, together, legs=LEGS):
     program.hold(now.single, -half * one, half * one)
     place = program.variable()
     program.within(place, box[0][axis] * one, box[1][axis] * one)
-    swung = SwingLimits.of(legs, P).edges(now.swing, now.nominal, np.array([now.single]))[:, 0]
+    swung = legs.edges(now.swing, now.nominal, np.array([now.single]))[:, 0]
     program.within(place, -swung[2 + axis] * one, swung[axis] * one)
     hip = program.com + axis * 0.5 * side * legs.hip_width * one
     program.within(place, hip - legs.radius * one, hip + legs.radius * one)

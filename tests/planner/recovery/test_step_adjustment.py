@@ -19,8 +19,7 @@ from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.swing.leg_reach import ANYWHERE, LegReach
-from surefoot.planner.swing.limits import PEAK, SwingLimits
+from surefoot.planner.swing.leg_reach import ANYWHERE, PEAK, LegReach
 from surefoot.planner.types import PhaseKind
 
 pytestmark = pytest.mark.unit
@@ -155,7 +154,7 @@ def test_a_step_is_not_hurried_to_a_place_that_its_foot_cannot_be_swung_to(behin
     """With the DCM far ahead: nobody gets across the stance leg, 0.24 m ahead of it, in the 0.18 s that would do."""
     now = situation((0.25, 0.0), 0.38, swing=((-behind, 0.2), (0.3, 0.0)))
     caught = adjusted(now)
-    front = SwingLimits.of(LEGS, P).edges(now.swing, now.nominal, np.array([caught.left, now.single]))[0, 0]
+    front = LEGS.edges(now.swing, now.nominal, np.array([caught.left, now.single]))[0, 0]
     assert caught.box[0, 0] <= front
 
 

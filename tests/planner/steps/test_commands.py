@@ -21,7 +21,7 @@ from surefoot.planner.steps.commands import (
 )
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.swing.leg_reach import Landing, StepRegion, check_reach
+from surefoot.planner.swing.step_region import Landing, StepRegion, check_reach
 from surefoot.planner.types import FeetState, Foot, Footstep, PhaseKind
 
 pytestmark = pytest.mark.unit

@@ -14,7 +14,7 @@ from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import CommandSource, GaitSource
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.swing.leg_reach import StepRegion
+from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Foot, PhaseKind
 
 pytestmark = pytest.mark.unit

@@ -10,7 +10,7 @@ from surefoot.planner.steps.commands import Command, Pose, Twist
 from surefoot.planner.steps.footsteps import Path
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.source import CommandSource, Request, steps_ordered
-from surefoot.planner.swing.leg_reach import StepRegion
+from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Foot
 
 pytestmark = pytest.mark.unit

@@ -10,7 +10,8 @@ from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.swing.leg_reach import LegReach, StepRegion
+from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Footstep
 
 pytestmark = pytest.mark.unit

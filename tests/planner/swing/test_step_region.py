@@ -9,7 +9,7 @@ from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
-from surefoot.planner.swing.leg_reach import Landing, StepRegion
+from surefoot.planner.swing.step_region import Landing, StepRegion
 from surefoot.planner.types import Foot, Footstep
 
 pytestmark = pytest.mark.unit
@@ -97,6 +97,6 @@ def test_what_is_wrong_with_a_landing(place, what, right):
 def test_legs_reach_a_disc_about_their_own_hip():
     region = StepRegion(0.4, (0.08, 0.4), (0.075, 0.075), leg_span=0.3, hip_width=0.2)
     assert region.contains(Landing(0.3, 0.2, 0.0))
-    fault = region.why_not(Landing(0.25, 0.39, 0.0))
-    assert fault.what.endswith("m from where the legs stand upright")
-    assert fault.right == "0.300 m is the most"
+    what, right = region.why_not(Landing(0.25, 0.39, 0.0))
+    assert what.endswith("m from where the legs stand upright")
+    assert right == "0.300 m is the most"

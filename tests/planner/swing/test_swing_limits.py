@@ -5,7 +5,6 @@ import pytest
 
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.swing.limits import SwingLimits
 from surefoot.planner.swing.trajectory import SwingTimes, start_swing
 from surefoot.planner.types import Foot
 
@@ -20,9 +19,8 @@ LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
 def test_a_way_around_the_stance_leg_lacks_what_hips_cannot_swing_of_it(time, here, place):
     """Held against the swing that is bent so; in a long time it lacks nothing, and beside the leg it never does."""
     here, place = np.array(here), np.array(place)
-    limits, still = SwingLimits.of(LEGS, P), np.zeros(2)
-    swung = np.array([here, still])
-    lacking = limits.shortfall(swung, 1.0, LEGS, np.array([time, 2.0]), np.tile(place, (1, 2, 1)))[0]
+    swung = np.array([here, np.zeros(2)])
+    lacking = LEGS.shortfall(swung, 1.0, np.array([time, 2.0]), np.tile(place, (1, 2, 1)))[0]
     length = time - P.touchdown_lead
     times = SwingTimes(0.0, 0.0, 0.5 * length, length, length)
     pose, target = np.append(here, np.zeros(4)), np.append(place, np.zeros(4))
@@ -33,17 +31,14 @@ def test_a_way_around_the_stance_leg_lacks_what_hips_cannot_swing_of_it(time, he
     expected = (1.0 - 1.0 / max(hardest, 1.0)) * np.hypot(*(place - here))
     np.testing.assert_allclose(lacking, (expected, 0.0), atol=0.03)
     beside = np.array([(0.1, 0.2), (1.0, 0.0)])
-    assert limits.shortfall(beside, 1.0, LEGS, np.array([time]), np.array([[[0.3, 0.3]]]))[0, 0] == 0.0
+    assert LEGS.shortfall(beside, 1.0, np.array([time]), np.array([[[0.3, 0.3]]]))[0, 0] == 0.0
 
 
 @pytest.mark.parametrize("speed", [(0.0, 0.0), (1.5, 0.3), (-0.8, -0.4)])
 def test_a_foot_at_the_edge_is_swung_as_hard_as_the_hips_allow(speed):
     """A quintic to rest there, from where the foot is and as fast as it is, to within a tenth."""
-    limits = SwingLimits.of(LEGS, P)
     here, time = np.array([-0.2, 0.2]), 0.3
-    front, left, back, right = limits.edges(np.array([here, speed]), here, np.array([time + P.touchdown_lead, 5.0]))[
-        :, 0
-    ]
+    front, left, back, right = LEGS.edges(np.array([here, speed]), here, np.array([time + P.touchdown_lead, 5.0]))[:, 0]
     for axis, edge in ((0, front), (1, left), (0, -back), (1, -right)):
         way, moving, u = edge - here[axis], speed[axis] * time, np.linspace(0.0, 1.0, 200)
         bend = way * 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) + moving * (-36.0 * u + 96.0 * u**2 - 60.0 * u**3)

@@ -131,8 +131,9 @@ _TIME_CHANGES = (*np.arange(-0.6, -0.2, 0.1), *np.arange(-0.24, 0.0, 0.04), -0.0
 class RecoveryParameters:
     """Every number of step adjustment, leg reach, capture margin and height transition, for the reference robot.
 
-    They are no keys of a scenario. Those with a unit beside their default follow the robot's size. What each number
-    moves when it is halved or doubled is measured by `benchmarks/recovery_numbers.py` and told in docs/recovery.md.
+    Each is a key ``planner.recovery.*`` of a scenario, described as here. Those with a unit beside their default follow
+    the robot's size. What each moves when it is halved or doubled is measured by the campaign ``recovery-numbers`` and
+    told in docs/recovery.md, with the tests that notice those which move no threshold.
 
     Attributes:
         second_weight: cost of a squared shift of the second step; the other weights count against it [1/m^2].
@@ -145,14 +146,11 @@ class RecoveryParameters:
         cop_share: share of the ZMP box on which an adjusted step counts; the rest corrects what comes later [-].
         landing_share: DCM error at landing, as a share of the CoP's box, that an adjusted step may leave [-].
         landing_spare: the same for long boxes: all of the box but this [m].
-        tolerance: DCM error at landing beyond what the CoP holds at which a step is adjusted [m].
-        unheld_share: the same of feet whose CoP cannot be moved at will, as a share of the ZMP box [-].
+        tolerance: DCM error beyond what the CoP holds at which a step is adjusted, or in a stand its foot chosen [m].
         stand_share: share of the ZMP box of a stand that holds a DCM error without any step [-].
-        least_gain: least gain of a step; a window that ends with the landing would make it zero [-].
         time_changes: changes of the present phase that are tried, close where a swing's reach grows fast [s].
         least_double: time that a double support is not cut below; the load has to go over [s].
         least_single: time that a single support is not cut below; a foot has to lift and land [s].
-        aside: DCM error sideways from which on the foot on that side carries, and the other one steps [m].
         apart: distance of a foot from its place beside the other at which it is brought back there [m].
         calm: DCM error below which a standing robot brings it back; a step at more would be a second push [m].
         margin_times: shares between the shortest and longest single support at which the margin is evaluated [-].
@@ -164,7 +162,7 @@ class RecoveryParameters:
         across: how far beyond its stance foot a foot may land, with the thighs apart [m].
         clear: gap of soles one ahead of the other from which on the foot may cross [m].
         spanned: share of what both legs span at a height that a step makes use of: the body is not midway [-].
-        parallel: angle up to which the room of a footstep is the same in another frame [rad].
+        parallel: angle up to which feet count as parallel, and the room of a footstep as the same in both frames [rad].
         lifting: vertical acceleration of the CoM in a height transition; like gravity the same for all sizes [m/s^2].
         same_height: change of the wanted lowering that begins no height transition [m].
         offset_ticks: plans for which an offset of the legs serves; making it costs more than the rest of one [-].
@@ -182,13 +180,10 @@ class RecoveryParameters:
     landing_share: float = quantity(0.5, "-")
     landing_spare: float = quantity(0.03, "m")
     tolerance: float = quantity(0.02, "m")
-    unheld_share: float = quantity(0.5, "-")
     stand_share: float = quantity(0.85, "-")
-    least_gain: float = quantity(0.05, "-")
     time_changes: tuple[float, ...] = quantity(tuple(map(float, _TIME_CHANGES)), "s")
     least_double: float = quantity(0.06, "s")
     least_single: float = quantity(0.16, "s")
-    aside: float = quantity(0.02, "m")
     apart: float = quantity(0.03, "m")
     calm: float = quantity(0.005, "m")
     margin_times: tuple[float, ...] = quantity((0.0, 0.1, 0.2, 0.3, 0.45, 0.65, 1.0), "-")

@@ -51,7 +51,7 @@ class Recovery:
             return bool(calm)
         # The foot that carries stays, and the other one is brought to it.
         foot = None
-        if standing and abs(error[1]) > numbers.aside:
+        if standing and abs(error[1]) > numbers.tolerance:
             foot = Foot.RIGHT if error[1] > 0.0 else Foot.LEFT
         execution.follow(with_step_in_place(schedule, now, foot))
         return True

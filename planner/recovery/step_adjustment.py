@@ -44,6 +44,9 @@ from surefoot.planner.steps.step import Step, room_left
 from surefoot.planner.swing.leg_reach import PEAK, LegReach
 from surefoot.planner.types import Array, FeetState, PhaseKind
 
+_NO_GAIN = 1e-9
+"""Gain of a step below which it counts as this: one that lands where the window ends does nothing to its DCM [-]."""
+
 
 @dataclass(frozen=True, slots=True)
 class NextStep:
@@ -178,13 +181,12 @@ class StepAdjustment:
         wider[lift:] = 0.0
         future = np.concatenate((reference.point, reference.gain[:, :1], wider), axis=1)
         bounded = nominal_dcm(window.stiffness, window.omega, future, t)
-        gain = max(float(bounded[land, 2]), numbers.least_gain)
+        gain = max(float(bounded[land, 2]), _NO_GAIN)
         # Between the feet on which it stood the CoP has more room than on one.
         more = bounded[0, 3:]
         fade = float(decays(window.stiffness[: land + 1], window.omega[: land + 1], t)[-1])
         own = np.minimum(box, self._authority)
-        missed = np.where(own < box, fade * numbers.unheld_share * box, fade * numbers.tolerance)
-        fine = bool((np.abs(dcm - bounded[0, :2]) <= (1.0 - fade) * own + more + missed).all())
+        fine = bool((np.abs(dcm - bounded[0, :2]) <= (1.0 - fade) * own + more + fade * numbers.tolerance).all())
         if fine and not step.adapted:
             return None
         times, held = self._times(step, fine), numbers.cop_share * own

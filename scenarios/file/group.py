@@ -1,5 +1,6 @@
-"""What groups of scenario keys are made of, names that other packages bring, and the keys wbc.* of the controller."""
+"""What groups of scenario keys are made of, names of other packages, and keys that are made from parameters' fields."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import Field as DataclassField
@@ -18,6 +19,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError, core_schema
 
 from surefoot.errors import ParameterError
+from surefoot.planner.parameters import RecoveryParameters
 from surefoot.plugins import PluginError, Registry
 from surefoot.scenarios.errors import Key, Problem, dotted
 from surefoot.scenarios.file.units import Unit
@@ -196,12 +198,36 @@ def _key(entry: "DataclassField[Any]", value: Any) -> Any:
     if is_dataclass(value):
         inner = _group(f"Wbc{entry.name.title()}", value, f"wbc.{entry.name}, null: the controller's own.")
         return inner | None, Field(default=None, description=f"{entry.name}, null: the controller's own")
+    if "doc" not in entry.metadata:
+        return _planner_key(entry, value)
     doc, unit = entry.metadata["doc"], entry.metadata.get("unit")
     shown = list(value) if isinstance(value, tuple) else value
     key = _annotation(value)
     annotation = Annotated[key, Unit(unit)] if unit and not isinstance(value, tuple) else key
     described = f"{doc}, null: {shown}" + (f" [{unit}]" if isinstance(value, tuple) else "")
     return annotation | None, Field(default=None, description=described)
+
+
+def _planner_key(entry: "DataclassField[Any]", value: Any) -> Any:
+    """One of the planner's, which is told in the docstring of its dataclass and is positive."""
+    doc, unit = _RECOVERY[entry.name]
+    if isinstance(value, tuple):
+        return _annotation(value) | None, Field(default=None, description=f"{doc}, null: the planner's own [{unit}]")
+    least = (
+        Annotated[int, Field(ge=1, le=1000), WHOLE]
+        if isinstance(value, int)
+        else Annotated[Finite, Field(gt=0, le=1e9)]
+    )
+    annotation = Annotated[least, Unit(unit)] if "unit" in entry.metadata else least
+    described = f"{doc}, null: {value}" + (f" [{unit}]" if "unit" not in entry.metadata else "")
+    return annotation | None, Field(default=None, description=described)
+
+
+_RECOVERY = {
+    name: (doc, unit)
+    for name, doc, unit in re.findall(r"(?m)^ +(\w+): (.*) \[(.*)\]\.$", RecoveryParameters.__doc__ or "")
+}
+"""Meaning and unit of each number of the planner's recovery."""
 
 
 def _annotation(value: Any) -> Any:
@@ -238,6 +264,30 @@ else:
             "tasks": (_TASKS, Field(default=(), description="tasks of other packages in its QP, by name")),
         },
     )
+
+
+if TYPE_CHECKING:
+
+    class RecoverySettings(Group):
+        """Numbers of the planner's recovery from pushes, null: the planner's own."""
+
+else:
+    RecoverySettings = _group(
+        "RecoverySettings",
+        RecoveryParameters(),
+        "Numbers of the planner's recovery from pushes, null: the planner's own.",
+    )
+
+
+def recovery_parameters(settings: "RecoverySettings | None", usual: RecoveryParameters) -> RecoveryParameters:
+    """Numbers of the planner's recovery, with what a scenario changes of them.
+
+    Args:
+        settings: the group ``planner.recovery``; None for none.
+        usual: those of this robot.
+    """
+    changed: RecoveryParameters = _changed(usual, settings)
+    return changed
 
 
 def controller_parameters(settings: "ControllerSettings | None", size: Similarity = REFERENCE_SIZE) -> WbcParameters:

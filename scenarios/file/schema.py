@@ -15,6 +15,7 @@ from surefoot.scenarios.file.group import (
     ControllerSettings,
     Group,
     OneOf,
+    RecoverySettings,
     as_tuple,
     estimators,
     profiles,
@@ -230,6 +231,9 @@ class PlannerSettings(Group):
     )
     filter: Literal["none", "kalman", "zmp_only"] | None = Field(
         default=None, description="filter of the planner's state, null: kalman when ZMP or CoM are noisy, else none"
+    )
+    recovery: RecoverySettings | None = Field(
+        default=None, description="numbers of its recovery from pushes, null: as they are"
     )
 
 

@@ -23,6 +23,7 @@ from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, FeetState, FootstepPlan
+from surefoot.scenarios.file.group import recovery_parameters
 from surefoot.scenarios.file.schema import GroundError, Scenario
 from surefoot.scenarios.setup.commands import told_until
 from surefoot.scenarios.setup.gait import (
@@ -260,8 +261,10 @@ class Draft:
             "jerk_rate_limit": keys.jerk_rate_limit,
             "search": self.search,
         }
+        usual = self._widened(self.profile.parameters)
         return replace(
-            self._widened(self.profile.parameters),
+            usual,
+            recovery=recovery_parameters(keys.recovery, usual.recovery),
             sample_time=keys.sample_time,
             reach_length=self.reach,
             step_adaptation=StepAdaptation(keys.step_adaptation),

@@ -17,6 +17,7 @@ from pydantic import BaseModel
 from pydantic_core import PydanticCustomError
 
 from surefoot.errors import ParameterError
+from surefoot.planner.parameters import RecoveryParameters
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
@@ -37,6 +38,9 @@ _TORQUE = "torque_ratio_max"
 
 _RESERVE = 0.05
 """Of its motors' torque, that such a bound leaves a weaker robot at least [-]."""
+
+_APART: tuple[Key, ...] = (("wbc",), ("planner", "recovery"), ("rates",), ("planner", "sample_time"))
+"""Keys whose units are those of parameters, or that follow from the clock."""
 
 _SOLES = ("foot_length", "foot_width")
 """Keys of `robot_options` that another robot has its own of."""
@@ -156,7 +160,10 @@ class _Translation:
         self._group(Scenario, values, ())
         if isinstance(terrain, dict) and len(given) == 2 and given[0] == given[1] is not None:
             gait["step_length"] = terrain["tread"]  # steps from tread to tread stay such
-        self._controller(WbcParameters(), values.get("wbc"), ("wbc",))
+        self._parameters(WbcParameters(), values.get("wbc"), ("wbc",))
+        planner = values.get("planner")
+        recovery = planner.get("recovery") if isinstance(planner, dict) else None
+        self._parameters(RecoveryParameters(), recovery, ("planner", "recovery"))
         for name, bound in values["criteria"].items() if isinstance(values.get("criteria"), dict) else ():
             self._criterion(values["criteria"], name, bound)
         self._rates(values)
@@ -173,7 +180,7 @@ class _Translation:
     def _group(self, model: type[BaseModel], values: Any, key: Key) -> None:
         for name, unit, inner in _entries(model):
             at = (*key, name)
-            if at in (("wbc",), ("rates",), ("planner", "sample_time")) or not isinstance(values, dict):
+            if at in _APART or not isinstance(values, dict):
                 continue
             value = values.get(name)
             if inner is not None:
@@ -183,11 +190,11 @@ class _Translation:
             elif unit:
                 self._put(values, name, at, self._number(value, unit, at))
 
-    def _controller(self, parameters: Any, values: Any, key: Key) -> None:
+    def _parameters(self, parameters: Any, values: Any, key: Key) -> None:
         for entry in fields(parameters) if isinstance(values, dict) else ():
             value, at, own = values.get(entry.name), (*key, entry.name), getattr(parameters, entry.name)
             if is_dataclass(own):
-                self._controller(own, value, at)
+                self._parameters(own, value, at)
             elif "unit" in entry.metadata and entry.name in values:
                 units = entry.metadata["unit"].split(", ")
                 factors = [_against(self.after.size, self.before.size, unit) for unit in units]

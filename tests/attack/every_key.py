@@ -7,8 +7,9 @@ from typing import Any, get_args
 import yaml
 from pydantic import BaseModel
 
+from surefoot.planner.parameters import RecoveryParameters
 from surefoot.scenarios.file.group import Group, controller_parameters
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.schema import PlannerSettings, Scenario
 
 NOT_YET = {f"sensing.{name}" for name in ("encoder_noise", "gyro_noise", "accelerometer_noise", "wrench_noise")}
 NOT_YET |= {"sensing.latency"}
@@ -130,10 +131,12 @@ def given(value: Any, place: str = "") -> Iterator[str]:
 
 
 WBC = _of_controller(controller_parameters(None), next(_groups(Scenario.model_fields["wbc"].annotation)))
+RECOVERY = _of_controller(RecoveryParameters(), next(_groups(PlannerSettings.model_fields["recovery"].annotation)))
 
 SCENARIOS: dict[str, dict[str, Any]] = {
     **{name: yaml.safe_load(text) for name, text in TEXTS.items()},
     "wbc": {"duration": 0.06, "wbc": WBC},
+    "recovery": {"duration": 0.06, "fidelity": "pendulum", "planner": {"recovery": RECOVERY}},
     **{f"wbc-{name}": {"duration": 0.06, "wbc": {name: value}} for name, value in WBC.items()},
 }
 """By name, as plain values."""

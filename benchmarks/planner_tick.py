@@ -53,15 +53,15 @@ def print_margins(steps: int) -> None:
     gait, legs = GaitParameters(steps=steps, step_length=0.2), resolve(load_scenario("walk")).legs
     feet = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
     planner, spent = WalkingPlanner(gait, feet, 0.22, 0.11, legs=legs), []
-    margins = planner._recovery._margins
+    balance = planner._recovery.balance
 
     def timed(*given):
         start = time.perf_counter()
-        found = margins(*given)
+        found = balance(*given)
         spent.append(time.perf_counter() - start)
         return found
 
-    planner._recovery._margins = timed
+    planner._recovery.balance = timed
     walk_pendulum(planner, feet, gait.duration, com=np.array([0.0, 0.0, 1.0]), substeps=2)
     median, p90, p99 = np.percentile(spent, (50, 90, 99)) * 1e6
     print(f"{'capturability margin, of a tick':<42} {median:>10.0f} {p90:>10.0f} {p99:>10.0f}")

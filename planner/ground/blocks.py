@@ -44,7 +44,7 @@ class Blocks:
         return 0.5 * (self.length + self.width) * math.sin(self.angle)
 
     def build(self, site: Site) -> Terrain:
-        """See `GroundShape`; blocks have their tops' centres at footsteps, those of start and end are level."""
+        """The ground at a site; blocks have their tops' centres at footsteps, those of start and end are level."""
         footsteps = site.footsteps()
         scatter = site.rng.uniform(-1.0, 1.0, (footsteps.steps, 3)) * (self.height, self.angle, self.angle)
         scatter[-LEVEL_STEPS:] = 0.0

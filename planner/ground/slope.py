@@ -26,7 +26,7 @@ class Slope:
     before: float
 
     def build(self, site: Site) -> Terrain:
-        """See `GroundShape`; a slope that goes down starts on a platform and meets the ground plane at its end."""
+        """The ground at a site; a slope that goes down starts on a platform and meets the ground plane at its end."""
         heading, rotation = sole_rotation(site.yaw, 0.0, 0.0), sole_rotation(site.yaw, -self.angle, 0.0)
         drop = max(0.0, -self.length * math.sin(self.angle))
         edge = heading @ (self.start, 0.0, 0.0) + (*site.origin, drop)

@@ -53,7 +53,7 @@ class Stairs:
         return np.cumsum([first, *depths], dtype=np.float64), self.riser * np.array(heights, dtype=np.float64)
 
     def build(self, site: Site) -> Terrain:
-        """See `GroundShape`; one that goes down starts on its highest platform."""
+        """The ground at a site; one that goes down starts on its highest platform."""
         rotation = np.eye(3)
         rotation[:2, :2] = frame_rotation(site.yaw)
         edges, heights = self.levels()

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -196,10 +195,3 @@ class Site:
     friction: float
     footsteps: Callable[[], FootstepPlan] = _unknown
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))
-
-
-class GroundShape(Protocol):
-    """The settings of one kind of ground, frozen, which build it; each kind is a file beside this one."""
-
-    def build(self, site: Site) -> Terrain:
-        """The ground at a site."""

@@ -45,7 +45,7 @@ class Tiles:
     side: float = TILE
 
     def build(self, site: Site) -> Terrain:
-        """See `GroundShape`; the feet start on a level box at height 0, and no tile that reaches under it is higher."""
+        """The ground at a site; the feet start on a level box at height 0, and no tile under it is higher."""
         rotation, origin = self._grid(site)
         start = self._start(site)
         boxes = [start]

@@ -3,6 +3,7 @@
 import numpy as np
 
 from surefoot.planner.geometry import signed_distance
+from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
 from surefoot.planner.recovery.step_adjustment import AdjustedStep, NextStep, StepAdjustment
@@ -39,8 +40,9 @@ class Recovery:
         if self.adjustment is None or not stands:
             return False
         numbers, standing = self._parameters.recovery, execution.phase.kind is PhaseKind.STAND
-        error, falls = self.adjustment.topples(_dcm(local, window), window)
-        if not falls:
+        nominal = nominal_dcm(window.stiffness, window.omega, window.driving.point, self._parameters.sample_time)
+        error = _dcm(local, window) - nominal[0]
+        if (np.abs(error) <= numbers.stand_share * window.driving.half_size[-1]).all():
             # Once it is at rest the robot brings its feet side by side again.
             # Feet without a CoP of their own would end in a wide step, since there is no time to shift the weight.
             calm = self._parameters.cop_authority[1] > 0.0 and np.abs(error).max() < numbers.calm
@@ -86,34 +88,23 @@ class Recovery:
             window: references.
             last: the plan before; None for the first.
         """
-        execution = self._execution
-        planned, movable = self._margins(step, local, support, window)
+        execution, p, dcm = self._execution, self._parameters, _dcm(local, window)
+        planned = movable = planned_margin(dcm, window, p.sample_time, p.foot_margin)
+        if step is None:
+            planned = movable = max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm))
+        elif self._movable is not None and execution.adapts:
+            terrain, ahead = execution.schedule.ground.terrain, len(execution.schedule.after(execution.landed))
+            # Where any ground will do, steps are added when there are no more.
+            steps = p.recovery.most_steps if terrain.free_footholds else min(ahead, p.recovery.most_steps)
+            omega, fixed = float(window.omega[0]), not execution.free[0]
+            movable = max(planned, float(self._movable.margins(local[:, 0], dcm, omega, step, steps, fixed)[-1]))
         kept = last is not None and last.phase.landed == execution.landed
         shift, delay = (last.balance.shift, last.balance.delay) if last is not None and kept else (np.zeros(2), 0.0)
         outside = 0 if last is None else last.balance.outside
         # Steps that a law moves of its own accord may save more than the margin says.
         if self._movable is not None or not execution.adapts:
-            outside = outside + 1 if movable < -self._parameters.recovery.fall_margin else 0
+            outside = outside + 1 if movable < -p.recovery.fall_margin else 0
         return Balance(planned, movable, shift, delay, outside)
-
-    def _margins(self, step: NextStep | None, local: Array, support: Support, window: Window) -> tuple[float, float]:
-        """How far the DCM is inside what the CoP alone captures, and with steps moved [m]."""
-        execution, p, dcm = self._execution, self._parameters, _dcm(local, window)
-        planned = planned_margin(dcm, window, p.sample_time, p.foot_margin)
-        if step is None:
-            return (max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm)),) * 2
-        if self._movable is None or not execution.adapts:
-            return planned, planned
-        # Where any ground will do, steps are added when there are no more.
-        most = p.recovery.most_steps
-        steps = (
-            most
-            if execution.schedule.ground.terrain.free_footholds
-            else min(len(execution.schedule.after(execution.landed)), most)
-        )
-        fixed = not execution.free[0]
-        moved = self._movable.margins(local[:, 0], dcm, float(window.omega[0]), step, steps, fixed)
-        return planned, max(planned, float(moved[-1]))
 
     def adjusted(self, step: NextStep | None, local: Array, window: Window) -> AdjustedStep | None:
         """What is made of the next step where the CoP alone does not hold the body."""

@@ -139,7 +139,6 @@ class StepAdjustment:
     Args:
         legs: what they can do.
         parameters: of the planner.
-
     """
 
     def __init__(self, legs: LegReach, parameters: PlannerParameters) -> None:
@@ -147,20 +146,6 @@ class StepAdjustment:
         self._sample_time, self._numbers = parameters.sample_time, parameters.recovery
         self._authority = np.array(parameters.cop_authority)
         self._changes = np.array(parameters.recovery.time_changes)
-
-    def topples(self, dcm: Array, window: Window) -> tuple[Array, bool]:
-        """DCM error of a robot that stands, or will without another step, and whether no CoP can hold it.
-
-        Args:
-            dcm: now, in the plan frame, shape (2,) [m].
-            window: references.
-
-        Returns:
-            The error, shape (2,) [m], and whether it falls.
-        """
-        nominal = nominal_dcm(window.stiffness, window.omega, window.driving.point, self._sample_time)
-        error = dcm - nominal[0]
-        return error, bool((np.abs(error) > self._numbers.stand_share * window.driving.half_size[-1]).any())
 
     def solve(self, com: Array, dcm: Array, window: Window, step: NextStep) -> AdjustedStep | None:
         """The solution; None where nothing has to be adjusted, or the step has no place to land.
@@ -222,12 +207,11 @@ class StepAdjustment:
 
         Args:
             com: at the landing, shape (n, 2) [m].
-            window: references.
-            step: as scheduled.
-            times: left of double and single support, the present ones last, shape (n,) each [s].
-            wanted: p*, where the step would leave nothing to the one after it, shape (n, 2) [m].
-            means: g, what a shift of the step does to the DCM that stays bounded [-], and half size of what the CoP has
-                of its box, shape (2,) [m].
+            window: as of `solve`.
+            step: likewise.
+            times: to choose from.
+            wanted: p*, shape (n, 2) [m].
+            means: g [-], and half size of what the CoP has of its box, shape (2,) [m].
         """
         legs, numbers, (double, single), (gain, held) = self._legs.turned(step.turn), self._numbers, times, means
         swung = legs.edges(step.swing, step.nominal, single)
@@ -285,11 +269,11 @@ def _landing(
     On a foot the DCM goes away from the CoP p as ξ(t) = p + (ξ - p) e^{ωt}, in double support as `moving_cop` says.
 
     Args:
-        com: now, shape (2,) [m].
-        dcm: now, shape (2,) [m].
+        com: now.
+        dcm: now.
         window: references.
         step: as scheduled.
-        times: of double and single support, shape (n,) each [s].
+        times: to choose from.
         bounded: DCM that the steps as planned keep bounded, now, when the foot leaves the ground, and when it lands,
             shape (3, 2) [m].
         means: half sizes of what the CoP has of its box, and by how much the DCM now may be farther off since it has

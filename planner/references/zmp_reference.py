@@ -13,20 +13,6 @@ from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
 
 
 @dataclass(frozen=True, slots=True)
-class SupportTable:
-    """Support points (see `PhaseSamples`) seen from the plan frame, with what each of them does to reference and box.
-
-    Attributes:
-        values: columns x, y [m], gain of the next two footstep shifts [-], box half sizes x, y [m], height [m];
-            shape (m, 7).
-        steps: difference to the next row, zero in the last one, shape (m, 7).
-    """
-
-    values: Array
-    steps: Array
-
-
-@dataclass(frozen=True, slots=True)
 class ZmpReference:
     """ZMP reference and its box over a window, in the plan frame.
 
@@ -51,8 +37,8 @@ class ZmpReference:
 
 def support_table(
     schedule: Schedule, landed: int, free: tuple[bool, bool], half_size: Array, stay: bool = False
-) -> SupportTable:
-    """Tabulate the support points in the plan frame (origin and planned heading of the stance foot).
+) -> Array:
+    """Tabulate the support points (see `PhaseSamples`) in the plan frame, that of the stance foot as planned.
 
     The box of a point is the largest axis-aligned one, of the foot's proportions, inscribed in the foot turned by its
     heading in the plan frame; without turning it is the foot itself. Between two feet it is as much wider as both
@@ -65,6 +51,10 @@ def support_table(
         free: whether the first and the second footstep after it may be shifted.
         half_size: half extents of the (shrunk) foot, shape (2,) [m].
         stay: footsteps stay where they are when the one before them is shifted.
+
+    Returns:
+        Columns x, y [m], gain of the next two footstep shifts [-], box half sizes x, y [m], height [m], and their
+        differences to the next row, zero in the last one, shape (2, m, 7).
     """
     stance, points = schedule.index(landed), schedule.support_points
     position, yaw = schedule.positions, schedule.yaws
@@ -80,22 +70,20 @@ def support_table(
     apart = (position[other[between], :2] - position[one[between], :2]) @ rotation
     values[between, 4:6] = _joint_boxes(values[between, 4:6], 0.5 * np.abs(apart))
     values[:, 6] = points[:, 2]
-    steps = np.zeros_like(values)
-    steps[:-1] = np.diff(values, axis=0)
-    return SupportTable(values, steps)
+    return np.stack((values, np.diff(values, axis=0, append=values[-1:])))
 
 
-def zmp_reference(samples: PhaseSamples, table: SupportTable) -> ZmpReference:
+def zmp_reference(samples: PhaseSamples, table: Array) -> ZmpReference:
     """ZMP reference of a window: the stance foot in single support, linear to the next one in double support.
 
     It is eq. (12) in vector form: the paper's scalar S_L is f_{i+1} - f_i, and its t starts anew at each step.
 
     Args:
         samples: the phases over the window.
-        table: support points in sight.
+        table: support points in sight, as of `support_table`.
     """
-    index, fraction = samples.index, samples.fraction
-    rows = table.values.take(index, axis=0) + fraction[:, None] * table.steps.take(index, axis=0)
+    index, (values, steps) = samples.index, table
+    rows = values.take(index, axis=0) + samples.fraction[:, None] * steps.take(index, axis=0)
     return ZmpReference(rows[:, :2], rows[:, 2:4], rows[:, 4:6], rows[:, 6])
 
 
@@ -148,7 +136,7 @@ class Support:
         key: what it follows from.
         rotation: plan frame to world, shape (2, 2).
         origin: origin of the plan frame, shape (2,) [m].
-        table: support points in sight, in the plan frame.
+        table: support points in sight, in the plan frame, shape (2, m, 7).
         heights: heights of the support points, shape (m,) [m].
         on_left: share of the weight on the left foot at the support points, shape (m,) [-].
         outer: support polygon of the planned soles, shape (v, 2) [m].
@@ -159,7 +147,7 @@ class Support:
     key: SupportKey
     rotation: Array
     origin: Array
-    table: SupportTable
+    table: Array
     heights: Array
     on_left: Array
     outer: Array

@@ -226,10 +226,10 @@ class Schedule:
         order = self.source.order(Request(last.ordinal + 1, last.end * t, before, self._pose, self.gait.period))
         if order is None:
             return None if self.stands else replace(self, stands=True)
-        stop = None
+        (stride, stand), stop = order, None
         if self.stands:
-            stop = Stop.usual(max(in_samples(order.stand, t), now - last.end), self.durations[1])
-        return self.followed(order.stride, stop)
+            stop = Stop.usual(max(in_samples(stand, t), now - last.end), self.durations[1])
+        return self.followed(stride, stop)
 
     def followed(self, stride: Stride, stop: Stop | None, inserted: bool = False) -> "Schedule":
         """The schedule with one more step."""

@@ -34,31 +34,19 @@ class Request:
     period: float
 
 
-@dataclass(frozen=True, slots=True)
-class StepOrder:
-    """A step to come.
-
-    Attributes:
-        stride: what it does to the path.
-        stand: standing before the weight shift to it; of a step that follows another without a stop it says nothing
-            [s].
-    """
-
-    stride: Stride
-    stand: float = 0.0
-
-
 class StepSource(Protocol):
     """Gives the steps of a walk one by one."""
 
-    def order(self, at: Request) -> StepOrder | None:
+    def order(self, at: Request) -> tuple[Stride, float] | None:
         """The next step.
 
         Args:
             at: where the walk is.
 
         Returns:
-            The step; None to stand, in a walk until the next bout, in standing as far as is known for ever.
+            What it does to the path, and the standing before the weight shift to it, which of a step that follows
+            another without a stop says nothing [s]; None to stand, in a walk until the next bout, in standing as far as
+            is known for ever.
         """
 
 
@@ -72,11 +60,11 @@ class GaitSource:
     def __init__(self, gait: GaitParameters) -> None:
         self._strides, self._begins = gait.strides, gait.begins
 
-    def order(self, at: Request) -> StepOrder | None:
+    def order(self, at: Request) -> tuple[Stride, float] | None:
         """See `StepSource`."""
         if at.step > len(self._strides) or (at.before is not None and at.step in self._begins):
             return None
-        return StepOrder(self._strides[at.step - 1], self._begins.get(at.step, 0.0))
+        return self._strides[at.step - 1], self._begins.get(at.step, 0.0)
 
 
 _SOFTLY = 0.4
@@ -142,7 +130,7 @@ class CommandSource:
         """
         return fastest(self.twist, period, self._width, self._region)
 
-    def order(self, at: Request) -> StepOrder | None:
+    def order(self, at: Request) -> tuple[Stride, float] | None:
         """See `StepSource`."""
         before = np.zeros(3) if at.before is None else _way(at.before)
         wanted = self._onward(at) if self.places else _way(self.followed(at.period).stride(at.period, self._width))
@@ -152,7 +140,7 @@ class CommandSource:
         way = np.clip(wanted, backward, forward)
         if not way.any() and not before.any():
             return None
-        return StepOrder(self._admitted(way), self._rest if at.step == 1 else 0.0)
+        return self._admitted(way), self._rest if at.step == 1 else 0.0
 
     def _onward(self, at: Request) -> Array:
         """Length, lateral and turn of the stride to the next place, zero at the last one, shape (3,) [m, rad]."""
@@ -218,7 +206,7 @@ def steps_ordered(source: StepSource, gait: GaitParameters, pose: Pose, most: in
         order = source.order(Request(step, step * gait.period, before, here, gait.period))
         if order is None:
             return step - 1
-        before = order.stride
+        before, _ = order
         path, _ = path.advanced(before, gait.step_foot(step))
     return most
 

@@ -32,7 +32,7 @@ def walked(source, most=200, pose=ORIGIN):
         order = source.order(Request(step, step * PERIOD, before, poses[-1], PERIOD))
         if order is None:
             break
-        before = order.stride
+        before, _ = order
         strides.append(before)
         path, _ = path.advanced(before, Foot.LEFT if step % 2 else Foot.RIGHT)
         poses.append(Pose(float(path.middle[0]), float(path.middle[1]), path.yaw))
@@ -62,7 +62,7 @@ def test_a_velocity_in_reach_is_walked_as_it_is_and_a_stop_closes_the_stance():
     last = []
     before = strides[-1]
     while (order := source.order(Request(9, 9.0, before, Pose(0.0, 0.0, 0.0), PERIOD))) is not None:
-        before = order.stride
+        before, _ = order
         last.append(before)
     assert len(last) == 1
     assert (last[-1].length, last[-1].lateral, last[-1].turn) == (0.0, 0.0, 0.0)
@@ -78,8 +78,8 @@ def test_every_stride_is_in_reach_and_none_is_much_longer_than_the_one_before_or
         order = source.order(Request(9, 9.0, before, Pose(0.0, 0.0, 0.0), PERIOD))
         if order is None:
             break
-        strides.append(order.stride)
-        before = order.stride
+        strides.append(order[0])
+        before, _ = order
     assert all(stride.within(REGION) for stride in strides)
     ways = np.array([[0.0, 0.0, 0.0], *([s.length, s.lateral, s.turn] for s in strides)])
     assert (np.abs(ways[1:]) - np.abs(ways[:-1]) <= np.array([0.4 * 0.5, 0.14, 0.3]) + 1e-9).all()

@@ -20,6 +20,9 @@ _BEND = 0.01
 knee of a straight leg would move infinitely fast. Two per cent cost ordinary walks a millimetre of ZMP; with 0.8 two
 pushes of the paper's gait fell that are survived with one [-]."""
 
+_GUESS = -0.1
+"""Where the middle of the hips is sought at first, from the CoM: below it, as in any walk [m]."""
+
 _OUTWARD = np.array([1.0, -1.0])[:, None, None]
 """Which way is outward for the left and the right leg, along the left [-]."""
 
@@ -168,7 +171,7 @@ class LegChain:
             frame, trunk_mass * np.array(self.trunk) + 2.0 * self.foot_mass * np.array(self.foot_centre)
         )
         middle = np.zeros_like(fixed)
-        middle[:, 2] = -0.1
+        middle[:, 2] = _GUESS
         for _ in range(self._corrections):
             hips = self._hips(middle, ankles, frame)
             knees = self._knees(hips, ankles, ahead)

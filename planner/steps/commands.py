@@ -20,6 +20,9 @@ MOST_STEPS = 100_000
 _SAME_TIME = 1e-6
 """Times are sums of durations and carry rounding [s]."""
 
+_HALVINGS = 40
+"""Of a range in which the fastest velocity is sought, after which rounding is greater [-]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Twist:
@@ -289,7 +292,7 @@ def fastest(twist: Twist, duration: float, width: float, region: StepRegion) -> 
     if inside(1.0):
         return twist
     low, high = 0.0, 1.0
-    for _ in range(40):
+    for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if inside(middle) else (low, middle)
     return twist.scaled(low)

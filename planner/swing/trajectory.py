@@ -22,6 +22,9 @@ LEAST_GLIDE = 0.1
 """A new target is reached by touchdown instead of by the end of the glide when less than this is left of it, of the
 reference robot: a shorter quintic would jerk the foot [s]."""
 
+_MOST_LEAD = 0.25
+"""Share of a single support by which its swing ends before it at most, so that a short one still swings [-]."""
+
 
 @dataclass(frozen=True, slots=True)
 class SwingTrajectory:
@@ -249,7 +252,7 @@ class SwingTimes:
 def swing_times(start: float, samples: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTimes:
     """Times [s] of a swing in a single support of so many samples that begins at `start`."""
     t = parameters.sample_time
-    touchdown = start + samples * t - min(parameters.touchdown_lead, 0.25 * samples * t)
+    touchdown = start + samples * t - min(parameters.touchdown_lead, _MOST_LEAD * samples * t)
     glide_start, apex, glide_end = (
         start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
     )

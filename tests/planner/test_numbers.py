@@ -23,6 +23,7 @@ NOTICED = {
     "laws.footstep_tvmpc._EXTRA": "tests/planner/laws/test_tvmpc.py",
     "model.jerk.BLOCK_STARTS": "tests/planner/laws/test_tvmpc.py",
     "plan._COLUMNS": "tests/planner/test_sampling.py",
+    "recovery.step_adjustment._NO_GAIN": "tests/planner/recovery/test_step_adjustment.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",
     "swing.leg_reach.PEAK": "tests/planner/swing/test_swing_limits.py",
     "swing.leg_reach._BRAKING": "tests/planner/swing/test_swing_limits.py",
@@ -58,7 +59,9 @@ UNNOTICED = {
     "references.com_height._IMPULSE_LIMIT",
     "references.com_height._LEAST_HEIGHT",
     "references.height_transition._ROUNDING",
+    "model.leg_chain._GUESS",
     "steps.commands.MOST_STEPS",
+    "steps.commands._HALVINGS",
     "steps.commands._SAME_TIME",
     "steps.gait.WEIGHT_SHIFT",
     "steps.execution._LEAST_LEFT",
@@ -98,8 +101,53 @@ UNNOTICED = {
     "swing.trajectory.LEAST_GLIDE",
     "swing.trajectory.TOUCHING",
     "swing.trajectory._GLIDING",
+    "swing.trajectory._MOST_LEAD",
 }
 """Constants that no test is known to notice; a new one needs a test."""
+
+
+IN_BODIES = {
+    "check": {1e-9},
+    "geometry": {3.0, 4.0, 6.0, 7.0, 10.0, 15.0},
+    "ground.terrain": {0.8},
+    "laws.dcm_feedback": {6.0},
+    "model.dcm": {4.0, 6.0},
+    "model.jerk": {6.0},
+    "model.leg_chain": {9, 12.0, 1e-6},
+    "model.time_scaling": {6.0},
+    "plan": {1e-6, 6.0},
+    "plants": {1e-9, 3.0, 10, 100.0},
+    "recovery.capture_margin": {1e-9},
+    "recovery.step_adjustment": {1e-9},
+    "references.com_height": {3.0, 6.0, 10.0, 15.0, 30.0, 60.0},
+    "references.height_transition": {6.0},
+    "references.leg_offset": {6.0},
+    "references.zmp_reference": {1e-12},
+    "steps.gait": {1e-9},
+    "swing.heel_off": {64.0, 192.0, 384.0},
+    "swing.leg_reach": {1e-9, 3.0, 6.0, 8.0, 10.0, 15.0, 36.0, 60.0, 96.0},
+    "swing.trajectory": {4.0, 9.0, 16.0, 20.0, 36.0, 60.0, 192.0, 360.0},
+}
+"""Bare numbers in functions: coefficients of polynomials and of differences, roundings, and defaults of arguments."""
+
+PLAIN, LARGEST_SIZE = {0.0, 1.0, 2.0, 0.5}, 7
+"""Numbers that say nothing by themselves, and the largest whole one that is the size of an array."""
+
+
+def bare(node: ast.AST, inside: bool = False) -> Iterator[float]:
+    """Numbers in the functions below a node, without indices, exponents, sizes and plain ones."""
+    if isinstance(node, ast.Constant):
+        value = node.value
+        if inside and type(value) in (int, float) and value not in PLAIN:
+            yield from () if isinstance(value, int) and value <= LARGEST_SIZE else (value,)
+        return
+    inside = inside or isinstance(node, ast.FunctionDef | ast.Lambda)
+    for name, part in ast.iter_fields(node):
+        index = isinstance(node, ast.Subscript) and name == "slice"
+        exponent = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow) and name == "right"
+        for child in () if index or exponent else part if isinstance(part, list) else (part,):
+            if isinstance(child, ast.AST):
+                yield from bare(child, inside)
 
 
 def is_number(value: ast.expr) -> bool:
@@ -145,6 +193,21 @@ def test_a_text_without_unit_or_reason_is_seen():
     assert wanting("Length of a step.") == "a unit"
     assert wanting("Length of a step [m].") == "a reason"
     assert not wanting("Length of a step, as the leg spans it [m].")
+
+
+def test_no_number_hides_in_a_function():
+    """A new one is a constant, with unit and reason, or a field of the parameters; or it is told above why not."""
+    found = {}
+    for path in sorted(PLANNER.rglob("*.py")):
+        numbers = set(bare(ast.parse(path.read_text())))
+        if numbers:
+            found[".".join(path.relative_to(PLANNER).with_suffix("").parts)] = numbers
+    assert found == IN_BODIES
+
+
+def test_a_number_in_a_function_is_seen():
+    text = "def reach(way, gain=0.3):\n    return way[12] ** 4 + 0.07 * np.zeros(6) - 2.0 * (0.5 + 40)"
+    assert set(bare(ast.parse(text))) == {0.3, 0.07, 40}
 
 
 def test_every_constant_has_a_witness():

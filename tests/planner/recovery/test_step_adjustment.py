@@ -207,6 +207,14 @@ def test_a_step_that_stays_on_its_tread_lands_sooner_within_it():
     assert adjusted(situation((0.12, 0.04), 0.5, face=NOMINAL + room, shortest=0.45)).left >= 0.45
 
 
+def test_a_step_that_lands_after_the_window_has_a_place_too():
+    """A shift of it does nothing to any DCM in sight: its place is not divided by that."""
+    with np.errstate(all="raise"):
+        caught = adjusted(situation((0.2, 0.0), single=5.0), timing=False)
+    assert np.isfinite(caught.box).all()
+    assert (caught.box[0] <= caught.box[1]).all()
+
+
 LEVELS = (StepAdaptation.NONE, StepAdaptation.LOCATION, StepAdaptation.TIMING, StepAdaptation.CROSSING)
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.ground.footholds import Faces, FreeGround
 from surefoot.planner.types import FootstepPlan
 
 HALF_WIDTH = 1.0
@@ -15,6 +16,8 @@ HALF_WIDTH = 1.0
 
 DEEPER = 0.05
 """How far tilted solids reach below the ground plane at least, and the lowest blocks rise above it [m]."""
+
+_FREE, _FACES = FreeGround(), Faces()
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +76,9 @@ class Terrain:
         return bool(self.boxes)
 
     @property
-    def free_footholds(self) -> bool:
-        """Whether footsteps may land elsewhere than planned; if not, each was chosen for the face that it lands on."""
-        return self.wide or not self.boxes
+    def footholds(self) -> FreeGround:
+        """What may be done with footsteps: they were chosen for its faces unless these are wide, or there are none."""
+        return _FREE if self.wide or not self.boxes else _FACES
 
     def height(self, x: float, y: float) -> float:
         """Ground height [m] at the world point (x, y)."""
@@ -142,7 +145,7 @@ class Terrain:
         Returns:
             Least and greatest way, shape (2, 2) [m]; without bounds where footsteps may land anywhere.
         """
-        if self.free_footholds:
+        if self.footholds.follow:
             return np.array([[-np.inf] * 2, [np.inf] * 2])
         axes, ways, kept = frame_rotation(yaw).T, length * _WAYS, length * _KEPT
         moved = position[:2] + (np.vstack((-axes, axes))[:, None] * ways[:, None]).reshape(-1, 2)

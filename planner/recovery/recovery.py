@@ -94,8 +94,7 @@ class Recovery:
             planned = movable = max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm))
         elif self._movable is not None and execution.adapts:
             terrain, ahead = execution.schedule.ground.terrain, len(execution.schedule.after(execution.landed))
-            # Where any ground will do, steps are added when there are no more.
-            steps = p.recovery.most_steps if terrain.free_footholds else min(ahead, p.recovery.most_steps)
+            steps = terrain.footholds.counted(ahead, p.recovery.most_steps)
             omega, fixed = float(window.omega[0]), not execution.free[0]
             movable = max(planned, float(self._movable.margins(local[:, 0], dcm, omega, step, steps, fixed)[-1]))
         kept = last is not None and last.phase.landed == execution.landed

@@ -183,7 +183,7 @@ def present_support(
         convex_hull(np.concatenate([sole_corners(foot, scale * half_size) for foot in standing]))
         for scale in (1.0, margin)
     )
-    stay = not schedule.ground.terrain.free_footholds
+    stay = not schedule.ground.terrain.footholds.follow
     return Support(
         key=key,
         rotation=frame_rotation(latest.yaw),

@@ -67,7 +67,7 @@ class Execution:
         self.swing: SwingTrajectory | None = None
         self.clock = TimeScaling(parameters.sample_time)
         # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
-        self._wide = schedule.ground.terrain.free_footholds
+        self._wide = schedule.ground.terrain.footholds.follow
         self.adapts = parameters.step_adaptation.places and (self._wide or legs is not None)
         self._parameters, self._size, self._terrain = parameters, parameters.size, schedule.ground.terrain
         self._pose = np.repeat([self._size.length, 1.0], 3)

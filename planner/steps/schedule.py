@@ -168,16 +168,12 @@ class Schedule:
     def climbs_next(self, clock: float) -> bool:
         """Whether a foot swings, on faces that footsteps were chosen for, and the step after it climbs."""
         present = self.phase(clock)
-        following = self.after(present.step)
-        climbs = present.stance is not None and bool(following) and following[0].climb != 0.0
-        return climbs and not self.ground.terrain.free_footholds
+        following = self.after(present.step)[: present.stance is not None]
+        return any(self.ground.terrain.footholds.edged(step.climb) for step in following)
 
     def may_cross(self, number: int) -> bool:
-        """Whether a step may land beyond its stance foot, as far as the ground is concerned.
-
-        A leg that lets the body down from its face has its knee in the way.
-        """
-        return self.ground.terrain.free_footholds or self.step(number).lift >= 0.0
+        """Whether a step may land beyond its stance foot, as far as the ground is concerned."""
+        return self.ground.terrain.footholds.crossed(self.step(number).lift)
 
     def apart(self, number: int) -> tuple[Array, Array]:
         """Way to where a step landed from where the one before it did, and nominally, shape (2,) each [m]."""
@@ -300,7 +296,7 @@ class Schedule:
         """
         at, terrain = self.index(number), self.ground.terrain
         step, position = self.steps[at], np.array(position)
-        if not terrain.free_footholds:
+        if not terrain.footholds.follow:
             moved = step.landing(position, step.place.normal)
             return replace(self, steps=(*self.steps[:at], moved, *self.steps[at + 1 :]))
         way, places = position[:2] - step.place.position[:2], self.positions[at:].copy()

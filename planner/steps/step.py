@@ -124,10 +124,7 @@ class Step:
             terrain: gives its height and normal there.
         """
         place = self.nominal
-        if not terrain.free_footholds:
-            axes = frame_rotation(place.yaw)
-            shift = axes @ np.clip(shift @ axes, *self.room)
-        xy = place.position[:2] + shift
+        xy = place.position[:2] + terrain.footholds.shifted(shift, place.yaw, self.room)
         return replace(place, position=np.append(xy, terrain.heights(xy[None])), normal=terrain.normals(xy[None])[0])
 
     def retimed(
@@ -225,7 +222,7 @@ def lay(
     to, off, other = (float(one.position[2]) for one in (place, start, stance))
     climb, lift = round(to - off, _MEASURED), round(min(to, other) - min(other, off), _MEASURED)
     swing = unit_swing(single, climb, course, parameters)
-    way, over_edges = math.dist(xy, start.position[:2]), climb != 0.0 and not terrain.free_footholds
+    way = math.dist(xy, start.position[:2])
     lift_off, half_length = lift_off_after(last, stop), float(ground.half_size[0])
     heel_off = gait.heel_off != 0.0 and rolls(start, stance, half_length)
     step = Step(
@@ -241,7 +238,7 @@ def lay(
         room=terrain.free_area(position, path.yaw, ground.half_size, parameters.size.length),
         course=course,
         swing=swing,
-        hardest=_hardest(swing, way) if over_edges else 0.0,
+        hardest=_hardest(swing, way) if terrain.footholds.edged(climb) else 0.0,
         support=last.support + 1 + (stop is not None),
         stop=stop,
         lift_off=lift_off,

@@ -186,8 +186,8 @@ class Draft:
         support hurries after one that lies lower, since waiting for it costs balance.
         """
         usual = self.usual
-        stepped = self.terrain.has_edges and not self.terrain.free_footholds
-        return replace(usual.search, hurry_after=usual.touchdown_lead) if stepped else usual.search
+        free = self.terrain.footholds.follow
+        return usual.search if free else replace(usual.search, hurry_after=usual.touchdown_lead)
 
     @cached_property
     def stance(self) -> FeetState:

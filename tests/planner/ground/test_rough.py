@@ -122,7 +122,7 @@ def test_ground_that_lies_under_footsteps_asks_for_them():
 def test_footholds_are_free_on_wide_faces_and_where_there_are_none(stand):
     """A foot that lands elsewhere takes its successors with it, to the height and the normal of the ground there."""
     ground = Slope(0.17, 0.15, 6.0, 1.0).build(Site(ORIGIN, YAW, 0.7))
-    assert (flat().free_footholds, ground.free_footholds, field(stand)[1].free_footholds) == (True, True, False)
+    assert (flat().footholds.follow, ground.footholds.follow, field(stand)[1].footholds.follow) == (True, True, False)
     assert (flat().has_edges, ground.has_edges) == (False, True)
     feet, on = stand(origin=tuple(ORIGIN), yaw=YAW), Ground(ground, HALF_SOLE, PlannerParameters(reach_length=0.8))
     plan = Schedule.start(GAIT, feet, on).extended(np.inf)

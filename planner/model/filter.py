@@ -38,24 +38,6 @@ class FilterNoise:
     sample_time: float = quantity(DESIGN_SAMPLE, "s")
 
 
-@dataclass(frozen=True, slots=True)
-class Innovation:
-    """What a measurement said beyond the prediction.
-
-    Attributes:
-        value: measured minus predicted, by sensor and axis, shape (m, 2).
-        covariance: S of one axis, shape (m, m).
-    """
-
-    value: Array
-    covariance: Array
-
-    @property
-    def normalised(self) -> Array:
-        """νᵀ S⁻¹ ν of each axis, shape (2,); of a consistent filter its mean is the number of sensors m [-]."""
-        return np.asarray(np.sum(self.value * np.linalg.solve(self.covariance, self.value), axis=0))
-
-
 def sensor_model(stiffness: float) -> Array:
     """C of ZMP, CoM and CoM velocity, shape (3, 3); its first row is that of eq. (4).
 
@@ -79,7 +61,8 @@ class CentroidalFilter:
     Attributes:
         mean: estimate of x, x', x'', shape (3, 2) [m, m/s, m/s^2].
         covariance: of one axis, shape (3, 3).
-        innovation: of the last update, None before it.
+        innovation: of the last update, what the measurement said beyond the prediction: νᵀ S⁻¹ ν of each axis, shape
+            (2,), None before it; of a consistent filter its mean is the number of sensors [-].
 
     Args:
         sample_time: T [s].
@@ -103,7 +86,7 @@ class CentroidalFilter:
         self._sensors: NDArray[np.bool_] = np.array(sensors)
         self.mean = np.array(mean)
         self.covariance = np.diag(np.square(deviation))
-        self.innovation: Innovation | None = None
+        self.innovation: Array | None = None
 
     def predict(self, jerk: Array) -> None:
         """Go on by one sample.
@@ -129,10 +112,10 @@ class CentroidalFilter:
         if not used.any():
             return
         c, r = sensor_model(stiffness)[used], np.diag(self._variance[used])
-        innovation = Innovation(measured[used] - c @ self.mean, c @ self.covariance @ c.T + r)
-        gain = np.linalg.solve(innovation.covariance, c @ self.covariance).T
+        beyond, spread = measured[used] - c @ self.mean, c @ self.covariance @ c.T + r
+        gain = np.linalg.solve(spread, c @ self.covariance).T
         rest = np.eye(3) - gain @ c
-        self.mean = self.mean + gain @ innovation.value
+        self.mean = self.mean + gain @ beyond
         covariance = rest @ self.covariance @ rest.T + gain @ r @ gain.T
         self.covariance = 0.5 * (covariance + covariance.T)
-        self.innovation = innovation
+        self.innovation = np.asarray(np.sum(beyond * np.linalg.solve(spread, beyond), axis=0))

@@ -30,7 +30,6 @@ It is the law of Khadiv et al. (IEEE Transactions on Robotics 2020) with the CoP
 and with the limits of the legs as they are, over a list of times in place of a QP.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,8 +39,8 @@ from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.execution import Execution
-from surefoot.planner.steps.step import Step, room_left
-from surefoot.planner.swing.leg_reach import PEAK, LegReach
+from surefoot.planner.steps.step import room_left, shortest_swing
+from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array, FeetState, PhaseKind
 
 _NO_GAIN = 1e-9
@@ -207,8 +206,7 @@ class StepAdjustment:
 
         Args:
             com: at the landing, shape (n, 2) [m].
-            window: as of `solve`.
-            step: likewise.
+            window, step: as of `solve`.
             times: to choose from.
             wanted: p*, shape (n, 2) [m].
             means: g [-], and half size of what the CoP has of its box, shape (2,) [m].
@@ -269,10 +267,7 @@ def _landing(
     On a foot the DCM goes away from the CoP p as ξ(t) = p + (ξ - p) e^{ωt}, in double support as `moving_cop` says.
 
     Args:
-        com: now.
-        dcm: now.
-        window: references.
-        step: as scheduled.
+        com, dcm, window, step: as of `StepAdjustment.solve`.
         times: to choose from.
         bounded: DCM that the steps as planned keep bounded, now, when the foot leaves the ground, and when it lands,
             shape (3, 2) [m].
@@ -302,14 +297,3 @@ def _landing(
 def _between(places: Array, low: Array, high: Array) -> Array:
     """The places of a box nearest to these, or its upper corner where it is empty: a faster `numpy.clip`."""
     return np.asarray(np.minimum(np.maximum(places, low), high))
-
-
-def shortest_swing(step: Step, legs: LegReach, lifting: float) -> float:
-    """Shortest time in which body and foot can come to the height of a step [s].
-
-    Args:
-        step: the step.
-        legs: give the acceleration of the foot.
-        lifting: vertical acceleration of the body [m/s^2].
-    """
-    return math.sqrt(max(PEAK * abs(step.lift) / lifting, step.hardest / legs.acceleration[0]))

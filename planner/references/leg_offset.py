@@ -17,8 +17,6 @@ c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP less the k
 Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from surefoot.planner.model.dcm import NominalMotion
@@ -39,28 +37,18 @@ def softening(leg: LegInertia) -> float:
     return 1.0 / (1.0 + 2.0 * leg.mass_ratio)
 
 
-@dataclass(frozen=True, slots=True)
-class Feet:
-    """Nominal motion of both feet over n samples, in the plan frame.
+Feet = tuple[Array, Array, Array]
+"""Nominal motion of both feet over n samples, in the plan frame, the left one first.
 
-    Attributes:
-        soles: centres of the left and the right sole as if they were level, shape (2, n, 3) [m].
-        pitch: of the soles about their toe edges, shape (2, n) [rad].
-        heading: of both, shape (2, n) [rad].
-        toe: toe edge from the sole's centre [m].
-    """
-
-    soles: Array
-    pitch: Array
-    heading: Array
-    toe: float
+Soles' centres as if they were level, shape (2, n, 3) [m], their headings, shape (2, n) [rad], and their pitch about
+their toe edges, shape (2, n) [rad].
+"""
 
 
 def nominal_feet(
     samples: PhaseSamples,
     schedule: Schedule,
     frame: tuple[Array, Array],
-    toe: float,
     flown: tuple[SwingTrajectory, float] | None = None,
 ) -> Feet:
     """Nominal feet in the plan frame, but for a swing that does not go as its step was laid.
@@ -69,7 +57,6 @@ def nominal_feet(
         samples: the phases over a window.
         schedule: the steps in sight, landing where they are aimed at.
         frame: the plan frame's rotation to the world, shape (2, 2), and origin, shape (2,) [m].
-        toe: toe edge from the sole's centre [m].
         flown: that swing, and the time now [s].
     """
     (rotation, origin), position = frame, schedule.positions
@@ -95,7 +82,7 @@ def nominal_feet(
     left = np.array([step.place.foot is Foot.LEFT for step in schedule.steps])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
     pitch = rolled * np.stack((~left, left))
-    return Feet(soles[..., :3], pitch, soles[..., 3] - np.arctan2(rotation[1, 0], rotation[0, 0]), toe)
+    return soles[..., :3], soles[..., 3] - np.arctan2(rotation[1, 0], rotation[0, 0]), pitch
 
 
 def _swings(samples: PhaseSamples, schedule: Schedule) -> tuple[Array, Array, Array]:
@@ -132,12 +119,15 @@ def _swing(phase: Phase, schedule: Schedule, elapsed: float) -> tuple[SwingTraje
     return unit_swing(phase.samples - late, step.climb, step.course, schedule.ground.parameters), late
 
 
-def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: HeightPreview, softened: Array) -> Array:
+def zmp_offset(
+    chain: LegChain, feet: Feet, toe: float, motion: NominalMotion, height: HeightPreview, softened: Array
+) -> Array:
     """Offset o of the module's equation over a window, in the plan frame.
 
     Args:
         chain: the body.
         feet: at the sample before the window, at its n samples, and maybe more.
+        toe: toe edge from the sole's centre [m].
         motion: horizontal CoM motion, near the one to be planned.
         height: CoM height.
         softened: λ', shape (n,) [1/s^2].
@@ -151,8 +141,8 @@ def zmp_offset(chain: LegChain, feet: Feet, motion: NominalMotion, height: Heigh
     t = motion.sample_time
     com[0, :2] = _before(motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
     com[0, 2] = _before(height.height[:, 0], t)
-    soles, heading, pitch = feet.soles[:, : n + 1], feet.heading[:, : n + 1], feet.pitch[:, : n + 1]
-    rate = chain.momentum_rate(com, soles, heading, t, pitch, feet.toe)
+    soles, heading, pitch = (motion_of[:, : n + 1] for motion_of in feet)
+    rate = chain.momentum_rate(com, soles, heading, t, pitch, toe)
     pressing = GRAVITY + height.height[2]
     offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]
     offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / pressing[:-1, None])

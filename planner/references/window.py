@@ -243,9 +243,9 @@ class ReferencePreview:
         if table is None or not serves or not table.holds(clock, key, aim, self._numbers.same_swing):
             # No longer than until the robot stands will they serve.
             count += int(min(self._numbers.offset_ticks - 1, max(left, 0.0) + 1))
-            frame, toe = (support.rotation, support.origin), float(self._half_size[0])
+            frame = support.rotation, support.origin
             flown = None if execution.swing is None or aim is None else (execution.swing, time)
-            feet = nominal_feet(samples, execution.aimed, frame, toe, flown)
+            feet = nominal_feet(samples, execution.aimed, frame, flown)
             # While a step is adapted it is made from the last one.
             guess = None
             if table is not None and (aim is not None or not clock.steady):
@@ -267,5 +267,5 @@ class ReferencePreview:
         stiffness, offset = softening(self._leg) * height.stiffness, np.zeros_like(point) if guess is None else guess
         for _ in range(2 if guess is None else 1):
             motion = nominal_motion(position, point - offset, stiffness, self._sample_time)
-            offset = zmp_offset(chain, feet, motion, height, stiffness)
+            offset = zmp_offset(chain, feet, float(self._half_size[0]), motion, height, stiffness)
         return offset

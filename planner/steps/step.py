@@ -12,7 +12,7 @@ from surefoot.planner.steps.footsteps import Path
 from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
 from surefoot.planner.swing.course import Ground, swing_course
 from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
-from surefoot.planner.swing.leg_reach import turned_room
+from surefoot.planner.swing.leg_reach import PEAK, LegReach
 from surefoot.planner.swing.step_region import Landing, check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
 from surefoot.planner.types import Array, Foot, Footstep
@@ -264,6 +264,38 @@ def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
     yaw = step.nominal.yaw
     way = (step.place.position - step.nominal.position)[:2] @ frame_rotation(yaw)
     return turned_room(step.room - way, yaw - stance.yaw, parallel)
+
+
+def turned_room(room: Array, angle: float, parallel: float) -> Array:
+    """The part of a room around a footstep that is a box in another frame.
+
+    Args:
+        room: least and greatest way in the footstep's heading, shape (2, 2) [m].
+        angle: heading of the footstep in that frame [rad].
+        parallel: angle up to which it is the same there [rad].
+
+    Returns:
+        Least and greatest way in that frame, shape (2, 2) [m].
+    """
+    if not np.isfinite(room).all() or abs(angle) < parallel:
+        return room
+    # As far as the room goes along each axis; of the rhombus between these ends the box with half their ways.
+    axes = frame_rotation(angle).T
+    ways = [min(max(low / a, high / a) if abs(a) > 1e-9 else np.inf for a, low, high in zip(axis, *room, strict=True))
+            for axis in (-axes[:, 0], -axes[:, 1], axes[:, 0], axes[:, 1])]  # fmt: skip
+    half = 0.5 * np.array(ways).reshape(2, 2)
+    return np.array([-half[0], half[1]])
+
+
+def shortest_swing(step: Step, legs: LegReach, lifting: float) -> float:
+    """Shortest time in which body and foot can come to the height of a step [s].
+
+    Args:
+        step: the step.
+        legs: give the acceleration of the foot.
+        lifting: vertical acceleration of the body [m/s^2].
+    """
+    return math.sqrt(max(PEAK * abs(step.lift) / lifting, step.hardest / legs.acceleration[0]))
 
 
 def _hardest(swing: SwingTrajectory, way: float) -> float:

@@ -204,27 +204,6 @@ ANYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
 """The face of a foot that may land on any ground: its lower and upper corner [m]."""
 
 
-def turned_room(room: Array, angle: float, parallel: float) -> Array:
-    """The part of a room around a footstep that is a box in another frame.
-
-    Args:
-        room: least and greatest way in the footstep's heading, shape (2, 2) [m].
-        angle: heading of the footstep in that frame [rad].
-        parallel: angle up to which it is the same there [rad].
-
-    Returns:
-        Least and greatest way in that frame, shape (2, 2) [m].
-    """
-    if not np.isfinite(room).all() or abs(angle) < parallel:
-        return room
-    # As far as the room goes along each axis; of the rhombus between these ends the box with half their ways.
-    axes = frame_rotation(angle).T
-    ways = [min(max(low / a, high / a) if abs(a) > 1e-9 else np.inf for a, low, high in zip(axis, *room, strict=True))
-            for axis in (-axes[:, 0], -axes[:, 1], axes[:, 0], axes[:, 1])]  # fmt: skip
-    half = 0.5 * np.array(ways).reshape(2, 2)
-    return np.array([-half[0], half[1]])
-
-
 def around_stance_leg(
     swing: SwingTrajectory, stance: Footstep, legs: LegReach, time: float, sample_time: float
 ) -> SwingTrajectory:

@@ -122,9 +122,7 @@ class PlannerSensing:
         x, v, a = kalman.mean
         given = replace(state, com=np.append(x, com[2]), com_velocity=np.append(v, velocity[2]))
         innovation = kalman.innovation
-        return PlannerState(
-            measured, measured_zmp, given, a, np.full(2, np.nan) if innovation is None else innovation.normalised
-        )
+        return PlannerState(measured, measured_zmp, given, a, np.full(2, np.nan) if innovation is None else innovation)
 
     def _estimate(self, kalman: CentroidalFilter, measured: CentroidalState, zmp: Array, plan: WalkPlan | None) -> None:
         if plan is None:

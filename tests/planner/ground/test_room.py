@@ -6,7 +6,7 @@ import pytest
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site, flat
-from surefoot.planner.swing.leg_reach import turned_room
+from surefoot.planner.steps.step import turned_room
 
 pytestmark = pytest.mark.unit
 

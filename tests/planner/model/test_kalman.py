@@ -44,7 +44,7 @@ def run(rng, count, noise=NOISE, sensors=ALL, stiffness=lambda k: STIFFNESS, mat
         kalman.update(*measured, stiffness(k))
         errors.append(kalman.mean - state)
         covariances.append(kalman.covariance)
-        normalised.append(kalman.innovation.normalised)
+        normalised.append(kalman.innovation)
         kalman.predict(jerk)
         state = a @ state + np.outer(b, jerk)
         if match:
@@ -104,7 +104,7 @@ def test_a_filter_that_trusts_too_much_is_found_out():
     normalised = []
     for _ in range(500):
         kalman.update(*(rng.normal(size=(3, 2)) * [[0.01], [0.002], [0.01]]), STIFFNESS)
-        normalised.append(kalman.innovation.normalised)
+        normalised.append(kalman.innovation)
         kalman.predict(np.zeros(2))
     assert np.mean(normalised) > 15.0
 

@@ -83,9 +83,9 @@ def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch
         parameters = PlannerParameters(leg=LEG, recovery=RecoveryParameters(**numbers))
         return Recorded(WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=legs))
 
-    def counted(samples, schedule, frame, toe, flown):
+    def counted(samples, schedule, frame, flown):
         made.append(flown is not None)
-        return nominal_feet(samples, schedule, frame, toe, flown)
+        return nominal_feet(samples, schedule, frame, flown)
 
     monkeypatch.setattr(window, "nominal_feet", counted)
     usual, push = planner(), PointPush(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0]))

@@ -9,11 +9,10 @@ from surefoot.planner.geometry import sole_pose
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.recovery.step_adjustment import shortest_swing
 from surefoot.planner.steps.adaptation import aligned, with_steps_repeated
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.steps.step import room_left
+from surefoot.planner.steps.step import room_left, shortest_swing
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import PEAK, LegReach
 from surefoot.planner.swing.trajectory import start_swing, swing_times

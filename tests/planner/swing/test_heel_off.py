@@ -68,12 +68,12 @@ def test_only_feet_that_are_left_behind_roll(walk):
 
 
 def test_pitch_over_a_window_is_that_of_the_rolls(walk):
-    feet = nominal_feet(walk.samples, walk.schedule, (np.eye(2), np.zeros(2)), 0.11)
+    *_, pitch = nominal_feet(walk.samples, walk.schedule, (np.eye(2), np.zeros(2)))
     start, end, angle = next(phase.roll for phase in walk.phases if phase.roll is not None)
     roll = FootRoll(Foot.RIGHT, 0.02 * start, 0.02 * end, angle, 0.11)
     for sample in range(int(start), int(end) + 2):
-        assert feet.pitch[Foot.RIGHT, sample] == pytest.approx(roll.evaluate(0.02 * sample)[0], abs=1e-12)
-    assert 0.4 < feet.pitch.max() <= 0.5
+        assert pitch[Foot.RIGHT, sample] == pytest.approx(roll.evaluate(0.02 * sample)[0], abs=1e-12)
+    assert 0.4 < pitch.max() <= 0.5
 
 
 def test_plans_of_a_walk_carry_the_roll_of_the_foot_that_leaves(stand):

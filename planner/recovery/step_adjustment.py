@@ -204,12 +204,8 @@ class StepAdjustment:
     ) -> AdjustedStep | None:
         """The cheapest of all times and boxes, with the part of its box in which the step then may land.
 
-        Args:
-            com: at the landing, shape (n, 2) [m].
-            window, step: as of `solve`.
-            times: to choose from.
-            wanted: p*, shape (n, 2) [m].
-            means: g [-], and half size of what the CoP has of its box, shape (2,) [m].
+        Here `com` is that at the landing, `wanted` is p*, shape (n, 2) each [m], and `means` are g [-] and half size of
+        what the CoP has of its box, shape (2,) [m].
         """
         legs, numbers, (double, single), (gain, held) = self._legs.turned(step.turn), self._numbers, times, means
         swung = legs.edges(step.swing, step.nominal, single)
@@ -265,14 +261,9 @@ def _landing(
     """What no CoP holds of the DCM when the step lands, and the CoM then, shape (n, 2) each [m].
 
     On a foot the DCM goes away from the CoP p as ξ(t) = p + (ξ - p) e^{ωt}, in double support as `moving_cop` says.
-
-    Args:
-        com, dcm, window, step: as of `StepAdjustment.solve`.
-        times: to choose from.
-        bounded: DCM that the steps as planned keep bounded, now, when the foot leaves the ground, and when it lands,
-            shape (3, 2) [m].
-        means: half sizes of what the CoP has of its box, and by how much the DCM now may be farther off since it has
-            more in double support, shape (2,) each [m].
+    Of the arguments `bounded` is the DCM that the steps as planned keep bounded, now, when the foot leaves the ground,
+    and when it lands, shape (3, 2) [m], and `means` are half sizes of what the CoP has of its box, and by how much the
+    DCM now may be farther off since it has more in double support, shape (2,) each [m].
     """
     omega, (present, lift_off, landed), (half, more) = float(window.omega[0]), bounded, means
     doubles, singles = times

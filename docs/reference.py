@@ -6,11 +6,10 @@ Each table stands between two comment lines, `<!-- table: name -->` and `<!-- en
 page between `<!-- value: name -->` and `<!-- end -->`.
 """
 
-import csv
 import inspect
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
@@ -19,7 +18,6 @@ from pydantic.fields import FieldInfo
 
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
-from surefoot.planner.parameters import RecoveryParameters
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import CentroidalState, FeetState
@@ -111,29 +109,11 @@ def tolerance(metric: Metric[Any]) -> str:
     return " + ".join(part for part in parts if part) or "none"
 
 
-def recovery_table() -> str:
-    """Thresholds of the campaign `recovery-numbers`, by number and factor, from its table `thresholds.csv`."""
-    with (FOLDER / "recovery-numbers.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    found = {(row["number"], row["case"]): row["threshold [N·s/kg]"] or f"{row['side']} its range" for row in rows}
-    cases = list(dict.fromkeys(case for _, case in found))
-    usual = [found["as they are", case] for case in cases]
-    lines = [f"| number | times | {' | '.join(cases)} |", "|---" * (2 + len(cases)) + "|"]
-    lines.append(f"| as they are | | {' | '.join(usual)} |")
-    for entry in fields(RecoveryParameters):
-        for change, factor in (("halved", "0.5"), ("doubled", "2")):
-            moved = [found[f"{entry.name} {change}", case] for case in cases]
-            told = ["-" if now == before else now for now, before in zip(moved, usual, strict=True)]
-            lines.append(f"| `{entry.name}` | {factor} | {' | '.join(told)} |")
-    return "\n".join(lines)
-
-
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "keys": ("scenarios.md", keys_table),
     "metrics": ("scenarios.md", metrics_table),
     "channels": ("log.md", channels_table),
     "robot-keys": ("robot-files.md", robot_keys_table),
-    "recovery-numbers": ("recovery.md", recovery_table),
 }
 
 

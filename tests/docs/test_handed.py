@@ -38,7 +38,7 @@ def crossed():
 
         def plan(self, problem):
             motion = self.inner.plan(problem)
-            note(problem, problem.reference, problem.steps, problem.steps.bounds, motion)
+            note(problem, problem.reference, problem.steps, motion)
             return motion
 
     class Planner:

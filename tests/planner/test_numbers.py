@@ -124,6 +124,7 @@ IN_BODIES = {
     "references.leg_offset": {6.0},
     "references.zmp_reference": {1e-12},
     "steps.gait": {1e-9},
+    "steps.step": {1e-9},
     "swing.heel_off": {64.0, 192.0, 384.0},
     "swing.leg_reach": {1e-9, 3.0, 6.0, 8.0, 10.0, 15.0, 36.0, 60.0, 96.0},
     "swing.trajectory": {4.0, 9.0, 16.0, 20.0, 36.0, 60.0, 192.0, 360.0},

@@ -8,8 +8,8 @@ import pytest
 import surefoot
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import read
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.terrain import KINDS
+from surefoot.scenarios.setup.walk import Walk
 
 WALK = {
     "gait": {"steps": 3, "step_length": 0.3, "step_width": 0.22},
@@ -29,7 +29,7 @@ def ditch(documented, importing, monkeypatch):
 
 @pytest.mark.unit
 def test_it_is_two_banks_with_nothing_between_them(ditch):
-    terrain = Draft(surefoot.load("diagonal-walk", {**WALK, "start.yaw": 0.5, "start.x": 2.0})).terrain
+    terrain = Walk(surefoot.load("diagonal-walk", {**WALK, "start.yaw": 0.5, "start.x": 2.0})).ground.terrain
     along = np.array([-0.9, 0.0, 0.07, 0.08, 0.22, 0.23, 0.3, 1.8])
     points = np.array([2.0, 0.0]) + along[:, None] * (np.cos(0.5), np.sin(0.5))
     np.testing.assert_allclose(terrain.heights(points), [0.1, 0.1, 0.1, 0.0, 0.0, 0.1, 0.1, 0.1])

@@ -1,6 +1,10 @@
-"""The robot upright with straight legs, in MuJoCo: what of its masses and shapes bounds a walk."""
+"""What follows from a robot's description alone and bounds its walks: lengths, size, and the joints of its legs.
+
+Masses and shapes are those of the robot upright with straight legs, in MuJoCo.
+"""
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 
 import mujoco
@@ -8,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.models.types import RobotDescription
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 Array = NDArray[np.float64]
 
@@ -16,6 +21,82 @@ HIP_SHARE = 0.67
 
 PITCH, ROLL, YAW = 1, 0, 2
 """Axes of the world about which an upright leg swings forward and sideways, and turns."""
+
+HIPS, SHANKS = 0.2, 0.11
+"""Distance between the hips of the reference robot, and of its soles at which its shanks keep apart [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotFacts:
+    """Numbers of a robot that bound a scenario.
+
+    Attributes:
+        bodies: names of its bodies.
+        leg_length: hip centre to sole with the knee straight [m].
+        hip_width: distance between the hip centres [m].
+        com_above_hip: CoM height over the hip centres, standing straight [m].
+        foot_length: of the soles [m].
+        foot_width: of the soles [m].
+        shank_spacing: lateral distance of the soles at which upright shanks keep apart [m].
+        swing_acceleration: of the sole of a straight leg, forward and sideways, with two thirds of the torque
+            of its hip [m/s^2].
+        ankle_torque: of the joints that pitch and roll the left foot [N m].
+        size: against the reference robot, without what it carries.
+    """
+
+    bodies: tuple[str, ...]
+    leg_length: float
+    hip_width: float
+    com_above_hip: float
+    foot_length: float
+    foot_width: float
+    shank_spacing: float
+    swing_acceleration: tuple[float, float]
+    ankle_torque: tuple[float, float] = (math.inf, math.inf)
+    size: Similarity = REFERENCE_SIZE
+
+
+def facts_of(robot: RobotDescription, payload: float = 0.0) -> RobotFacts:
+    """What of a robot bounds a scenario.
+
+    Args:
+        robot: the robot.
+        payload: mass that it carries by its options, which its size goes without [kg].
+    """
+    return RobotFacts(
+        bodies=robot.bodies,
+        leg_length=robot.leg_length,
+        hip_width=robot.hip_width,
+        com_above_hip=com_height(robot) - robot.leg_length,
+        foot_length=robot.sole_length,
+        foot_width=robot.sole_width,
+        shank_spacing=robot.shank_spacing,
+        swing_acceleration=swing_acceleration(robot),
+        ankle_torque=ankle_torque(robot),
+        size=Similarity.of(robot.leg_length, float(robot.mass) - payload),
+    )
+
+
+def stance_widening(robot: RobotFacts) -> float:
+    """By what a robot has to stand wider than the reference robot, scaled, for its hips or shanks [m]."""
+    length = robot.size.length
+    if robot.size == REFERENCE_SIZE:
+        return 0.0
+    return max(0.0, robot.hip_width - length * HIPS, robot.shank_spacing - length * SHANKS)
+
+
+def knees_straight(robot: RobotDescription) -> tuple[float, ...]:
+    """Angles of the knees with straight legs, in the order of the joints; empty where they are zero [rad]."""
+    joints = zip(robot.joint_names, robot.straight_joint_positions, strict=True)
+    angles = tuple(float(angle) for name, angle in joints if name in robot.roles.knees)
+    return angles if any(angles) else ()
+
+
+def named_roles(robot: RobotDescription) -> dict[str, tuple[str, ...]]:
+    """What the robot's joints and bodies are for, by the names of its description."""
+    roles = robot.roles
+    legs = {"left_leg": roles.left_leg, "right_leg": roles.right_leg}
+    return {"knees": roles.knees, **legs, "torso": (robot.torso_body,)}
 
 
 def com_height(robot: RobotDescription) -> float:

@@ -1,0 +1,122 @@
+"""How the motion of a walk is planned: the planner's formulation, its height law and its parameters."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from surefoot.guard import Guard
+from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.planner.parameters import GroundSearch, PlannerParameters, StepAdaptation
+from surefoot.planner.references.com_height import (
+    BENT_KNEES,
+    BentKneeHeight,
+    HeightProfile,
+    Rise,
+    SmoothHeight,
+)
+from surefoot.scenarios.file.schema import PlannerSettings
+from surefoot.scenarios.setup.gait import longest_landing
+from surefoot.scenarios.setup.parts import profile_guard
+from surefoot.scenarios.setup.terrain.ground import Ground
+from surefoot.similarity import Similarity
+
+SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
+"""Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait, of the
+reference robot as all lengths here [m]."""
+
+FURTHER = 0.1
+"""How much further than the gait's own steps it may be [m]."""
+
+
+def lowered(keys: PlannerSettings, size: Similarity) -> float:
+    """How much lower than the gait says a robot of a size carries its CoM, for knees that are bent [m]."""
+    return BENT_KNEES * size.length if keys.knee == "bent" else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Formulation:
+    """What a scenario says of its planner, for legs without inertia and before the robot's soles are known.
+
+    Attributes:
+        keys: of the planner.
+        ground: the ground, and the gait that comes to it.
+        size: of the robot.
+        wider: by what the robot has to stand wider than the reference robot, scaled [m].
+        usual_rise: support phase in which the CoM climbs unless the scenario says it.
+        given: a profile in place of the one that the scenario names.
+    """
+
+    keys: PlannerSettings
+    ground: Ground
+    size: Similarity
+    wider: float
+    usual_rise: Rise
+    given: Profile | None
+
+    @cached_property
+    def profile(self) -> Profile:
+        """The formulation of the planner."""
+        return self.given or PROFILES[self.keys.profile]
+
+    @property
+    def guard(self) -> Guard:
+        """Stands around the calls of what the profile brings."""
+        return profile_guard(self.profile, given=self.given is not None)
+
+    @property
+    def heights(self) -> HeightProfile:
+        """The law of the CoM height: the profile's own, if it has one and knees are to be stretched."""
+        lower, own = lowered(self.keys, self.size), self.profile.height
+        if own is not None and not lower:
+            return own
+        rise = Rise(self.keys.rise) if self.keys.rise else self.usual_rise
+        return BentKneeHeight(rise, lower) if lower else SmoothHeight(rise)
+
+    @cached_property
+    def usual(self) -> PlannerParameters:
+        """Parameters of a planner for this robot, whatever the scenario says but for its reach."""
+        return self._widened(PlannerParameters())
+
+    def _widened(self, parameters: PlannerParameters) -> PlannerParameters:
+        # Legs that stand wider step as much wider.
+        scaled = self.size.scaled(parameters)
+        near, far = scaled.reach_width
+        return replace(scaled, reach_width=(near, far + self.wider), reach_length=self._reach)
+
+    @property
+    def _reach(self) -> float:
+        """How far ahead of its stance foot the planner may place a footstep: a little beyond the gait's own [m]."""
+        ground, steps, length = self.ground, self.ground.steps, self.size.length
+        if not ground.commanded and steps.steps == 0 and not steps.waypoints:
+            return LONGEST_REACH * length
+        own = longest_landing(ground.gait) if ground.commanded else abs(steps.step_length)
+        return min(max(own + FURTHER * length, SHORTEST_REACH * length), LONGEST_REACH * length)
+
+    @property
+    def _search(self) -> GroundSearch:
+        """How a swing foot that has not felt the ground goes on downwards.
+
+        Where the ground has steps its heights are believed less: a foot that finds no tread by the end of single
+        support hurries after one that lies lower, since waiting for it costs balance.
+        """
+        usual, terrain = self.usual, self.ground.terrain
+        stepped = terrain.has_edges and not terrain.free_footholds
+        return replace(usual.search, hurry_after=usual.touchdown_lead) if stepped else usual.search
+
+    @cached_property
+    def parameters(self) -> PlannerParameters:
+        """The profile's parameters at this size with what the scenario changes of them."""
+        keys = self.keys
+        chosen: dict[str, Any] = {
+            "horizon": keys.horizon,
+            "moves": None if keys.control_horizon is None else tuple(range(keys.control_horizon)),
+            "jerk_limit": keys.jerk_limit,
+            "jerk_rate_limit": keys.jerk_rate_limit,
+        }
+        return replace(
+            self._widened(self.profile.parameters),
+            sample_time=keys.sample_time,
+            search=self._search,
+            step_adaptation=StepAdaptation(keys.step_adaptation),
+            **{name: value for name, value in chosen.items() if value is not None},
+        )

@@ -3,12 +3,14 @@
 from typing import Any
 
 from surefoot.scenarios.errors import Key
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.group import loadable
+from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
 from surefoot.scenarios.judge.metric import TRUTH, Metric
 from surefoot.scenarios.judge.metrics import METRICS, known
 from surefoot.scenarios.setup.checks import AVAILABLE
 from surefoot.scenarios.setup.criteria_checks import comparable
 from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.terrain import KINDS
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -32,6 +34,11 @@ def published() -> dict[str, Any]:
     keys["robot"].pop("type")
     for key, values in AVAILABLE.items():
         _narrow(schema, key, list(values))
+    ground = schema["$defs"]["TerrainSettings"]
+    for kind in loadable(KINDS):
+        own = model_of(TerrainSettings, {"kind": kind}).model_json_schema()
+        ground["properties"] = own["properties"] | ground["properties"]
+        schema["$defs"] = own.get("$defs", {}) | schema["$defs"]
     bounds = {name: _criterion(name, metric) for metric in filter(None, map(known, METRICS)) for name in metric.bounded}
     keys["criteria"] |= {"properties": bounds, "additionalProperties": False}
     schema["$defs"].pop("Bound")

@@ -21,7 +21,7 @@ from surefoot.models.facts import RobotFacts, stance_widening
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario
+from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario, model_of
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metric import Metric
@@ -179,7 +179,7 @@ class _Translation:
             if inner is not None:
                 members = enumerate(value) if isinstance(value, list) else [(None, value)]
                 for index, member in members:
-                    self._group(inner, member, at if index is None else (*at, index))
+                    self._group(model_of(inner, member), member, at if index is None else (*at, index))
             elif unit:
                 self._put(values, name, at, self._number(value, unit, at))
 

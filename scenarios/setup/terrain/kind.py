@@ -29,10 +29,12 @@ class TerrainKind:
     Attributes:
         name: value of ``terrain.kind``.
         keys: keys of ``terrain`` that shape it; friction is of all.
+        settings: model of the group ``terrain``, with the keys that only this kind has, which need no mention above.
     """
 
     name: str
     keys: tuple[str, ...] = ()
+    settings: type[TerrainSettings] = TerrainSettings
 
     def completed(self, keys: TerrainSettings, gait: Gait) -> Gait:
         """The keys of a gait with those that it leaves open and that follow from this ground."""

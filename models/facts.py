@@ -22,6 +22,13 @@ HIP_SHARE = 0.67
 PITCH, ROLL, YAW = 1, 0, 2
 """Axes of the world about which an upright leg swings forward and sideways, and turns."""
 
+CLEAR = 0.04
+"""Lateral room between the shanks, or the soles, of a reference robot that walks straight ahead [m]."""
+
+
+STOPS_OFF = 1e-3
+"""How far from the ends of their ranges joints are held, since a touchdown shakes them past where that is [rad]."""
+
 HIPS, SHANKS = 0.2, 0.11
 """Distance between the hips of the reference robot, and of its soles at which its shanks keep apart [m]."""
 
@@ -83,6 +90,61 @@ def stance_widening(robot: RobotFacts) -> float:
     if robot.size == REFERENCE_SIZE:
         return 0.0
     return max(0.0, robot.hip_width - length * HIPS, robot.shank_spacing - length * SHANKS)
+
+
+def similar_com_height(value: float, before: RobotFacts, after: RobotFacts) -> float:
+    """CoM height at which the legs are bent as much: the hips at the same share of the leg's length [m].
+
+    Args:
+        value: that of the robot before [m].
+        before: facts of it.
+        after: of the other one.
+    """
+    return after.size.length / before.size.length * (value - before.com_above_hip) + after.com_above_hip
+
+
+def similar_step_width(value: float, before: RobotFacts, after: RobotFacts, nearer: float = math.inf) -> float:
+    """Step width for another robot: scaled, and wider by what its shanks or soles need to stay clear of each other [m].
+
+    Feet that may land anywhere keep all the room between them that they have in the scenario as it was written. Those
+    that come by a known way nearer than the width keep `CLEAR` of it: a wider step is not a similar one, its CoM sways
+    further, and the moment about the vertical that the stance sole has to hold while a leg swings grows with it.
+
+    Args:
+        value: that of the robot before [m].
+        before: facts of it.
+        after: of the other one.
+        nearer: how much nearer than that feet land in the walk as it was written; infinite where nobody knows [m].
+    """
+    length = after.size.length / before.size.length
+    wider = 0.0
+    for name in ("shank_spacing", "foot_width"):
+        own, other = getattr(before, name), getattr(after, name)
+        spare = max(0.0, value - nearer - own - CLEAR * before.size.length)
+        wider = max(wider, other - length * (own + spare))
+    return length * value + wider
+
+
+def similar_tread(value: float, before: RobotFacts, after: RobotFacts) -> float:
+    """Depth of a tread for another robot: scaled, and deeper by what its soles are longer than scaled ones [m].
+
+    So no sole lands nearer to an edge; arguments as of `similar_com_height`.
+    """
+    length = after.size.length / before.size.length
+    return length * value + max(0.0, after.foot_length - length * before.foot_length)
+
+
+def safe_range(robot: RobotDescription) -> tuple[Array, Array]:
+    """Least and greatest positions of the joints, a little inside their ranges, each of shape (nj,) [rad].
+
+    Of knees that can bend both ways it is only the one that walks: past straight, what should shorten a leg bends its
+    knee the further the wrong way, into its stop.
+    """
+    off = np.minimum(STOPS_OFF, 0.25 * (robot.position_upper - robot.position_lower))
+    lower, upper = robot.position_lower + off, robot.position_upper - off
+    for knee, bend in zip(robot.joint_indices(robot.roles.knees), robot.roles.knee_bend, strict=True):
+        (lower if bend > 0.0 else upper)[knee] = robot.straight_joint_positions[knee] + bend * off[knee]
+    return lower, upper
 
 
 def knees_straight(robot: RobotDescription) -> tuple[float, ...]:

@@ -25,6 +25,7 @@ from surefoot.scenarios.setup.formulation import LONGEST_REACH
 from surefoot.scenarios.setup.gait import commanded, leg_span, longest_step, step_region, twist_of, uncommanded
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot import Robots, is_known
+from surefoot.scenarios.setup.terrain.ground import uneven_problems
 from surefoot.scenarios.setup.walk import Walk
 
 MOST_SAMPLES = 1_000_000
@@ -150,27 +151,7 @@ def _robot(walk: Walk, robots: Robots) -> Iterator[Problem]:
             yield Problem(key, f"unknown body '{body}' of {walk.keys.robot}", nearest(body, facts.bodies))
     steps = _commanded_step_problems if commanded(walk.keys.gait) else _footstep_problems
     feet = list(_reach(walk, facts)) or list(steps(walk, facts))
-    yield from feet or [*walk.ground.kind.problems(walk.ground, facts), *_unevenness(walk)]
-
-
-MOST_TILES = 1000
-"""Tiles of uneven ground, since every look at it goes through all of them [-]."""
-
-
-def _unevenness(walk: Walk) -> Iterator[Problem]:
-    key, kind = ("errors", "ground_noise"), walk.keys.terrain.kind
-    if walk.ground.tiles is None:
-        return
-    if kind != "flat":
-        right = (
-            "use terrain.height_noise"
-            if "height_noise" in walk.ground.kind.keys and kind != "slope"
-            else "use kind flat"
-        )
-        yield Problem(key, f"errors.ground_noise on terrain.kind {kind}", right)
-    elif walk.asked_gait.steps > MOST_TILES or len(walk.ground.tiles.cells(walk.ground.site)) > MOST_TILES:
-        what = f"errors.ground_noise under {walk.asked_gait.steps} steps needs more than {MOST_TILES} tiles"
-        yield Problem(key, what, "take fewer steps, or leave it out")
+    yield from feet or [*walk.ground.kind.problems(walk.ground, facts), *uneven_problems(walk.ground)]
 
 
 def _reach(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:
@@ -222,7 +203,7 @@ def _without_body(walk: Walk) -> Iterator[Problem]:
 def _walk_problems(walk: Walk) -> Iterator[Problem]:
     """List what cannot be planned whatever the robot."""
     gait, sample_time = walk.keys.gait, walk.keys.planner.sample_time
-    yield from _moves(walk)
+    yield from walk.formulation.problems()
     if walk.gait_duration > MOST_SAMPLES * sample_time:
         what = f"a gait of {walk.gait_duration:.6g} s"
         yield Problem(
@@ -233,24 +214,6 @@ def _walk_problems(walk: Walk) -> Iterator[Problem]:
         yield Problem(("duration",), what, f"use at least {1 / walk.keys.rates.control:g} s")
     if not _swing_too_short(walk):
         yield from _apexes(gait)
-
-
-def _moves(walk: Walk) -> Iterator[Problem]:
-    """List moves of the jerk that the profile has not got, or that begin after the horizon."""
-    profile, settings = walk.formulation.profile, walk.keys.planner
-    if not profile.moves:
-        if settings.control_horizon is not None:
-            what = f"planner.control_horizon with profile {profile.name!r}, which optimises no moves of the jerk"
-            yield Problem(("planner", "control_horizon"), what, "leave it null")
-        return
-    horizon = settings.horizon or profile.parameters.horizon
-    if settings.control_horizon is not None:
-        if settings.control_horizon > horizon:
-            what = f"planner.control_horizon {settings.control_horizon} exceeds the horizon of {horizon} samples"
-            yield Problem(("planner", "control_horizon"), what, f"use at most {horizon}")
-    elif horizon <= profile.parameters.moves[-1]:
-        what = f"planner.horizon {horizon} is shorter than the planner's blocks of moves"
-        yield Problem(("planner", "horizon"), what, f"use at least {profile.parameters.moves[-1] + 1}")
 
 
 def _footstep_problems(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:

@@ -1,12 +1,15 @@
 """How the motion of a walk is planned: the planner's formulation, its height law and its parameters."""
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 from surefoot.guard import Guard
+from surefoot.models.facts import RobotFacts
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.planner.parameters import GroundSearch, PlannerParameters, StepAdaptation
+from surefoot.planner.parameters import GroundSearch, LegInertia, PlannerParameters, StepAdaptation
 from surefoot.planner.references.com_height import (
     BENT_KNEES,
     BentKneeHeight,
@@ -14,11 +17,24 @@ from surefoot.planner.references.com_height import (
     Rise,
     SmoothHeight,
 )
+from surefoot.planner.swing.leg_reach import LegReach, StepRegion
+from surefoot.planner.types import GRAVITY
+from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import PlannerSettings
-from surefoot.scenarios.setup.gait import longest_landing
+from surefoot.scenarios.setup.gait import leg_span, longest_landing, step_region
 from surefoot.scenarios.setup.parts import profile_guard
 from surefoot.scenarios.setup.terrain.ground import Ground
 from surefoot.similarity import Similarity
+
+LEG_SHARE = 0.9
+"""Share of the span of the legs that steps on command make use of: with all of it both are straight at touchdown, and
+at 0.88 m/s a push felled the robot that it took at 0.65 to 0.8 m/s [-]."""
+
+ANKLE_SHARE = 0.85
+"""Share of an ankle's torque that bears the robot with the CoP at the edge of its room; the rest is for shocks [-]."""
+
+LEAST_ROOM = 0.15
+"""Room of the CoP that a planner needs in any case, of the sole to each side [-]."""
 
 SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
 """Least and greatest bound on how far ahead of its stance foot a footstep may be planned, whatever the gait, of the
@@ -120,3 +136,68 @@ class Formulation:
             step_adaptation=StepAdaptation(keys.step_adaptation),
             **{name: value for name, value in chosen.items() if value is not None},
         )
+
+    def problems(self) -> Iterator[Problem]:
+        """List moves of the jerk that the profile has not got, or that begin after the horizon."""
+        profile, keys = self.profile, self.keys
+        if not profile.moves:
+            if keys.control_horizon is not None:
+                what = f"planner.control_horizon with profile {profile.name!r}, which optimises no moves of the jerk"
+                yield Problem(("planner", "control_horizon"), what, "leave it null")
+            return
+        horizon = keys.horizon or profile.parameters.horizon
+        if keys.control_horizon is not None:
+            if keys.control_horizon > horizon:
+                what = f"planner.control_horizon {keys.control_horizon} exceeds the horizon of {horizon} samples"
+                yield Problem(("planner", "control_horizon"), what, f"use at most {horizon}")
+        elif horizon <= profile.parameters.moves[-1]:
+            what = f"planner.horizon {horizon} is shorter than the planner's blocks of moves"
+            yield Problem(("planner", "horizon"), what, f"use at least {profile.parameters.moves[-1] + 1}")
+
+
+def region_of(parameters: PlannerParameters, facts: RobotFacts, com_height: float) -> StepRegion:
+    """Where a step that is commanded while it walks may land: within reach of planner and, with some left, legs."""
+    span, sole = LEG_SHARE * leg_span(com_height, facts), (facts.foot_length, facts.foot_width)
+    return step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
+
+
+def leg_reach(parameters: PlannerParameters, facts: RobotFacts, com_height: float, standing_height: float) -> LegReach:
+    """What the legs can do to catch the body.
+
+    Args:
+        parameters: of the planner.
+        facts: of the robot.
+        com_height: of the gait [m].
+        standing_height: CoM over the soles at which the walk begins and ends [m].
+    """
+    recovery = parameters.recovery
+    return LegReach(
+        radius=0.5 * LEG_SHARE * leg_span(com_height, facts),
+        hip_width=facts.hip_width,
+        near=parameters.reach_width[0],
+        across=recovery.across,
+        clear=facts.foot_length + recovery.clear,
+        acceleration=facts.swing_acceleration,
+        sole=(facts.foot_length, facts.foot_width),
+        height=standing_height - facts.com_above_hip,
+        length=facts.leg_length,
+    )
+
+
+def cop_room(leg: LegInertia, facts: RobotFacts, mass: float) -> tuple[float, float]:
+    """How far from a sole's centre the ankle's torques bear the robot, ahead and behind, and to both sides [m].
+
+    Args:
+        leg: of the robot.
+        facts: of the robot.
+        mass: that it bears [kg].
+    """
+    if leg.chain is None:
+        return math.inf, math.inf
+    levers = [ANKLE_SHARE * torque / (GRAVITY * mass) for torque in facts.ankle_torque]
+    sole = facts.foot_length, facts.foot_width
+    ahead, side = (
+        max(lever - abs(off), LEAST_ROOM * size)
+        for lever, off, size in zip(levers, leg.chain.ankle, sole, strict=False)
+    )
+    return ahead, side

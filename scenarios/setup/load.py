@@ -33,7 +33,7 @@ from surefoot.scenarios.record.provenance import (
     STOPPED,
 )
 from surefoot.scenarios.setup.checks import check
-from surefoot.scenarios.setup.criteria_checks import criteria_problems
+from surefoot.scenarios.setup.criteria import criteria_problems
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
 from surefoot.scenarios.setup.sized import say_for, walk_of
 from surefoot.scenarios.setup.terrain import kind_of

@@ -8,6 +8,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.models.facts import safe_range
 from surefoot.models.legs import leg_masses, point_mass
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
@@ -23,9 +24,6 @@ from surefoot.wbc.model import BodyFrames
 from surefoot.wbc.statics import standing_torque
 
 Array = NDArray[np.float64]
-
-STOPS_OFF = 1e-3
-"""How far from the ends of their ranges joints are held, since a touchdown shakes them past where that is [rad]."""
 
 SOLE_SINKAGE = 1.3e-4
 """How far the reference robot's soles sink into the simulated ground under its weight [m]."""
@@ -60,21 +58,9 @@ def body_of(robot: RobotDescription) -> Body:
         robot=robot,
         model=pinocchio_model(robot),
         frames=frames_of(robot),
-        limits=_limits(robot),
+        limits=JointLimits(robot.torque_limit, robot.velocity_limit, *safe_range(robot)),
         leg_joints=np.isin(robot.joint_names, robot.roles.legs),
     )
-
-
-def _limits(robot: RobotDescription) -> JointLimits:
-    """Limits of the joints, a little inside their ranges; of knees that can bend both ways only the one that walks.
-
-    Past straight, what should shorten a leg bends its knee the further the wrong way, into its stop.
-    """
-    off = np.minimum(STOPS_OFF, 0.25 * (robot.position_upper - robot.position_lower))
-    lower, upper = robot.position_lower + off, robot.position_upper - off
-    for knee, bend in zip(robot.joint_indices(robot.roles.knees), robot.roles.knee_bend, strict=True):
-        (lower if bend > 0.0 else upper)[knee] = robot.straight_joint_positions[knee] + bend * off[knee]
-    return JointLimits(robot.torque_limit, robot.velocity_limit, lower, upper)
 
 
 def frames_of(robot: RobotDescription) -> BodyFrames:

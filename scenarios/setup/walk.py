@@ -18,16 +18,14 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.steps.commands import Command, Pose, TimedCommand, fitted
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import LegReach, StepRegion
-from surefoot.planner.types import GRAVITY, FeetState
+from surefoot.planner.types import FeetState
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
-from surefoot.scenarios.setup.fidelity import FIDELITIES, Fidelity
-from surefoot.scenarios.setup.formulation import Formulation, lowered
+from surefoot.scenarios.setup.formulation import Formulation, cop_room, leg_reach, lowered, region_of
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
     PushPoint,
     gait_of,
-    leg_span,
     push_force,
     step_region,
     there_at,
@@ -35,6 +33,7 @@ from surefoot.scenarios.setup.gait import (
     told_until,
     waypoints_of,
 )
+from surefoot.scenarios.setup.keys import FIDELITIES, Fidelity
 from surefoot.scenarios.setup.parts import guarded_law
 from surefoot.scenarios.setup.robot import describe, true_robot
 from surefoot.scenarios.setup.terrain import kind_of
@@ -45,16 +44,6 @@ from surefoot.wbc.parameters import WbcParameters
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
-
-LEG_SHARE = 0.9
-"""Share of the span of the legs that steps on command make use of: with all of it both are straight at touchdown, and
-at 0.88 m/s a push felled the robot that it took at 0.65 to 0.8 m/s [-]."""
-
-ANKLE_SHARE = 0.85
-"""Share of an ankle's torque that bears the robot with the CoP at the edge of its room; the rest is for shocks [-]."""
-
-LEAST_ROOM = 0.15
-"""Room of the CoP that a planner needs in any case, of the sole to each side [-]."""
 
 LEAST_BELIEVED_FRICTION = 0.05
 """The controller counts on at least this friction, so that its wrench cones keep an inside."""
@@ -232,37 +221,13 @@ class Walk:
 
     @property
     def region(self) -> StepRegion:
-        """Where a step that is commanded while it walks may land: within reach of planner and, with some left, legs."""
-        facts = self.facts
-        span = LEG_SHARE * leg_span(self.gait.com_height, facts)
-        return step_region(self.parameters, self.sole, facts.shank_spacing, span, facts.hip_width)
+        """Where a step that is commanded while it walks may land."""
+        return region_of(self.parameters, self.facts, self.gait.com_height)
 
     @property
     def legs(self) -> LegReach:
         """What the legs can do to catch the body."""
-        facts, recovery = self.facts, self.parameters.recovery
-        return LegReach(
-            radius=0.5 * LEG_SHARE * leg_span(self.gait.com_height, facts),
-            hip_width=facts.hip_width,
-            near=self.parameters.reach_width[0],
-            across=recovery.across,
-            clear=self.robot.sole_length + recovery.clear,
-            acceleration=facts.swing_acceleration,
-            sole=self.sole,
-            height=self.standing_height - facts.com_above_hip,
-            length=facts.leg_length,
-        )
-
-    def _cop_room(self, leg: LegInertia) -> tuple[float, float]:
-        """How far from a sole's centre the ankle's torques bear the robot, ahead and behind, and to both sides [m]."""
-        if leg.chain is None:
-            return math.inf, math.inf
-        levers = [ANKLE_SHARE * torque / (GRAVITY * self.robot.mass) for torque in self.facts.ankle_torque]
-        ahead, side = (
-            max(lever - abs(off), LEAST_ROOM * sole)
-            for lever, off, sole in zip(levers, leg.chain.ankle, self.sole, strict=False)
-        )
-        return ahead, side
+        return leg_reach(self.parameters, self.facts, self.gait.com_height, self.standing_height)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
         """The planner of this walk: the profile's own, or the walking planner with the profile's law.
@@ -276,7 +241,9 @@ class Walk:
             PartError: the profile, of others, fails to make it.
         """
         authority = math.inf, 0.0 if self.robot.roles.feet_lean else math.inf
-        parameters = replace(self.parameters, leg=leg, cop_room=self._cop_room(leg), cop_authority=authority)
+        parameters = replace(
+            self.parameters, leg=leg, cop_room=cop_room(leg, self.facts, self.robot.mass), cop_authority=authority
+        )
         given = (self.gait, feet, *self.sole, self.ground.terrain, parameters, self.formulation.heights)
         profile = guarded_law(self.formulation.profile, self.formulation.guard)
         if profile.planner is not None:

@@ -9,8 +9,7 @@ from surefoot.plugins import Registry
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.setup.terrain.blocks import BlocksKind
-from surefoot.scenarios.setup.terrain.ground import Ground
-from surefoot.scenarios.setup.terrain.kind import TerrainKind
+from surefoot.scenarios.setup.terrain.ground import Ground, TerrainKind
 from surefoot.scenarios.setup.terrain.slope import SlopeKind
 from surefoot.scenarios.setup.terrain.stairs import StairsKind
 

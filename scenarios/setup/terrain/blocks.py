@@ -6,8 +6,7 @@ from surefoot.models.facts import RobotFacts
 from surefoot.planner.ground.blocks import Blocks
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.scenarios.errors import Problem
-from surefoot.scenarios.setup.terrain.ground import Ground
-from surefoot.scenarios.setup.terrain.kind import TerrainKind, climb_problems
+from surefoot.scenarios.setup.terrain.ground import Ground, TerrainKind, climb_problems
 from surefoot.scenarios.setup.terrain.slope import off_face, steepness
 
 BLOCK_GAP = 0.02

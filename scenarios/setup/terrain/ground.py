@@ -1,26 +1,34 @@
-"""The ground of a scenario, and the walk that comes to it: as the planner believes it to be, and as it is."""
+"""The ground of a scenario and the walk that comes to it, what a kind of ground is, and checks that several share."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from surefoot.errors import at_most
+from surefoot.models.facts import RobotFacts
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.ground.tiles import TILE, Tiles
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import Array, FeetState, FootstepPlan
+from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Gait, GroundError, Scenario, Start, TerrainSettings
+from surefoot.scenarios.file.units import meant
 from surefoot.similarity import Similarity
 from surefoot.streams import Stream, generator
 
-if TYPE_CHECKING:
-    from surefoot.models.facts import RobotFacts
-    from surefoot.scenarios.setup.terrain.kind import TerrainKind
+PLATFORM = 1.0
+"""Level ground kept before the first and after the last footstep on a platform, for the reference robot [m]."""
+
+MOST_TILES = 1000
+"""Tiles of uneven ground, since every look at it goes through all of them [-]."""
+
+FOLDED = 0.5
+"""Length of a leg with a deeply bent knee over its length with a straight one [-]."""
 
 MOST_STEPS = 2000
 """Footsteps that are looked at; those after the last stair stand on its platform [-]."""
@@ -121,13 +129,13 @@ class Ground:
         gait = self.gait if self.commanded else replace(self.gait, steps=min(self.gait.steps, MOST_STEPS))
         return plan_footsteps(gait, self.stance, self.terrain)
 
-    def soles(self, facts: "RobotFacts") -> Array:
+    def soles(self, facts: RobotFacts) -> Array:
         """Corners of the soles of a robot on these footsteps, shape (n + 2, 4, 2) [m]."""
         half_size = 0.5 * np.array([facts.foot_length, facts.foot_width])
         rows = range(self.footsteps.steps + 2)
         return np.array([sole_corners(self.footsteps.footstep(row), half_size) for row in rows])
 
-    def edge_margins(self, facts: "RobotFacts") -> Array:
+    def edge_margins(self, facts: RobotFacts) -> Array:
         """Least distance of each of these soles from the edge of its face, negative beyond, shape (n + 2,) [m]."""
         return self.terrain.edge_margins(self.footsteps.position[:, :2], self.soles(facts))
 
@@ -185,3 +193,75 @@ def _top(box: Box) -> float:
 def _raised(box: Box, height: float) -> Box:
     up = np.array([0.0, 0.0, 0.5 * height])
     return replace(box, center=box.center + up, half_size=box.half_size + up)
+
+
+class TerrainKind:
+    """A kind of terrain: how it is built of a scenario's keys, and what makes it impossible.
+
+    To add one is a subclass in a file of its own, and its line in `KINDS`; another package registers an instance under
+    an entry point of the group ``surefoot.terrains``.
+
+    Attributes:
+        name: value of ``terrain.kind``.
+        keys: keys of ``terrain`` that shape it; friction is of all.
+        settings: model of the group ``terrain``, with the keys that only this kind has, which need no mention above.
+    """
+
+    name: str
+    keys: tuple[str, ...] = ()
+    settings: type[TerrainSettings] = TerrainSettings
+
+    def completed(self, keys: TerrainSettings, gait: Gait) -> Gait:
+        """The keys of a gait with those that it leaves open and that follow from this ground."""
+        return gait
+
+    def build(self, ground: Ground) -> Terrain:
+        """The ground as the planner believes it to be."""
+        raise NotImplementedError
+
+    def start_height(self, ground: Ground) -> float:
+        """Height of the ground on which the robot starts [m]."""
+        return ground.terrain.height(ground.start.x, ground.start.y)
+
+    def problems(self, ground: Ground, facts: RobotFacts) -> list[Problem]:
+        """List what makes it impossible for a robot and its gait."""
+        return []
+
+    def notes(self, ground: Ground) -> Iterator[str]:
+        """Tell what of it the walk does not come to, a sentence each."""
+        return iter(())
+
+
+def climb_problems(ground: Ground, facts: RobotFacts, risers: int = 1) -> Iterator[Problem]:
+    """List a terrain.riser of which a step goes up so many at once, which the legs cannot.
+
+    The hips are at their height above the lower foot while the other leg folds on the tread above.
+    """
+    hips, riser = ground.standing_height - facts.com_above_hip, ground.keys.riser
+    highest = (hips - FOLDED * facts.leg_length) / risers
+    if riser > highest:
+        what = f"terrain.riser {riser} m is out of reach of legs {facts.leg_length:.3f} m long"
+        most = max(highest, 0.0)
+        yield Problem(("terrain", "riser"), what, f"use at most {at_most(most)} m{meant(riser, 'm', most)}")
+
+
+def unreached(plan: FootstepPlan, what: str) -> Iterator[Problem]:
+    """Tell a walk that takes steps and leaves off before the ground is anything but level."""
+    if plan.steps and np.ptp(plan.position[:, 2]) == 0.0 and (plan.normal[:, 2] == 1.0).all():
+        said = f"none of {plan.steps} footsteps comes to the {what}, so that the walk is one on level ground"
+        yield Problem(("terrain", "start"), said, "let it begin nearer, take more steps, or use kind flat")
+
+
+def uneven_problems(ground: Ground) -> Iterator[Problem]:
+    """List errors.ground_noise where ground is not level, or under too many steps."""
+    key, kind, steps = ("errors", "ground_noise"), ground.keys.kind, ground.gait.steps
+    if ground.tiles is None:
+        return
+    if kind != "flat":
+        right = (
+            "use terrain.height_noise" if "height_noise" in ground.kind.keys and kind != "slope" else "use kind flat"
+        )
+        yield Problem(key, f"errors.ground_noise on terrain.kind {kind}", right)
+    elif steps > MOST_TILES or len(ground.tiles.cells(ground.site)) > MOST_TILES:
+        what = f"errors.ground_noise under {steps} steps needs more than {MOST_TILES} tiles"
+        yield Problem(key, what, "take fewer steps, or leave it out")

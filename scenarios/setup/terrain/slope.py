@@ -12,8 +12,7 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array, FootstepPlan
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.units import meant
-from surefoot.scenarios.setup.terrain.ground import Ground
-from surefoot.scenarios.setup.terrain.kind import PLATFORM, TerrainKind, unreached
+from surefoot.scenarios.setup.terrain.ground import PLATFORM, Ground, TerrainKind, unreached
 
 STEEPEST = 0.35
 """Inclination beyond which no ground is made; the ankle has to turn as far [rad]."""

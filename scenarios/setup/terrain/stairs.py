@@ -11,8 +11,7 @@ from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Gait, TerrainSettings
-from surefoot.scenarios.setup.terrain.ground import Ground
-from surefoot.scenarios.setup.terrain.kind import PLATFORM, TerrainKind, climb_problems, unreached
+from surefoot.scenarios.setup.terrain.ground import PLATFORM, Ground, TerrainKind, climb_problems, unreached
 
 LANDING_TREADS = 3
 """Depth of a landing whose depth is not given, in treads: the gait keeps its rhythm on it."""

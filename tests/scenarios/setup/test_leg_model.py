@@ -9,8 +9,9 @@ import pytest
 import surefoot
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
+from surefoot.scenarios.setup.formulation import ANKLE_SHARE, LEAST_ROOM
 from surefoot.scenarios.setup.stance import body_of, feet_at, leg_inertia, start_posture
-from surefoot.scenarios.setup.walk import ANKLE_SHARE, LEAST_ROOM, resolve
+from surefoot.scenarios.setup.walk import resolve
 from surefoot.wbc.ik import PostureTarget
 
 pytestmark = pytest.mark.unit

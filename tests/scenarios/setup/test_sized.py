@@ -5,7 +5,10 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from surefoot.models.facts import HIPS, SHANKS
+from surefoot.models.facts import CLEAR, HIPS, SHANKS
+from surefoot.models.facts import similar_com_height as com_height
+from surefoot.models.facts import similar_step_width as step_width
+from surefoot.models.facts import similar_tread as tread
 from surefoot.models.humanoid100 import HUMANOID100
 from surefoot.models.registry import ROBOTS
 from surefoot.models.similar import scaled
@@ -15,7 +18,7 @@ from surefoot.scenarios.file.schema import Rates, RobotSettings
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.notes import notes
-from surefoot.scenarios.setup.posture import CLEAR, com_height, nearer_landings, step_width, tread
+from surefoot.scenarios.setup.posture import nearer_landings
 from surefoot.scenarios.setup.robot import RegisteredRobots
 from surefoot.scenarios.setup.sized import clock
 from surefoot.scenarios.setup.walk import Walk, resolve

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import ValidationError
-from surefoot.scenarios.setup.commands import timed_command
 
 from surefoot.errors import ParameterError
 from surefoot.planner.laws.profiles import Profile
@@ -26,6 +25,7 @@ from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing
 from surefoot.scenarios.run.tick import Tick
+from surefoot.scenarios.setup.gait import timed_command
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.sim.pushes import Push

@@ -80,16 +80,20 @@ def facts_of(robot: RobotDescription, payload: float = 0.0) -> RobotFacts:
         shank_spacing=robot.shank_spacing,
         swing_acceleration=swing_acceleration(robot),
         ankle_torque=ankle_torque(robot),
-        size=Similarity.of(robot.leg_length, float(robot.mass) - payload),
+        size=size_of(robot, payload),
     )
 
 
-def stance_widening(robot: RobotFacts) -> float:
-    """By what a robot has to stand wider than the reference robot, scaled, for its hips or shanks [m]."""
-    length = robot.size.length
-    if robot.size == REFERENCE_SIZE:
+def size_of(robot: RobotDescription, payload: float) -> Similarity:
+    """Size of a robot against the reference robot, without the payload that it carries [kg]."""
+    return Similarity.of(robot.leg_length, float(robot.mass) - payload)
+
+
+def stance_widening(robot: RobotDescription | RobotFacts, size: Similarity) -> float:
+    """By what a robot of a size has to stand wider than the reference robot, scaled, for its hips or shanks [m]."""
+    if size == REFERENCE_SIZE:
         return 0.0
-    return max(0.0, robot.hip_width - length * HIPS, robot.shank_spacing - length * SHANKS)
+    return max(0.0, robot.hip_width - size.length * HIPS, robot.shank_spacing - size.length * SHANKS)
 
 
 def similar_com_height(value: float, before: RobotFacts, after: RobotFacts) -> float:

@@ -50,7 +50,8 @@ def walk_of(scenario: Scenario, robots: Robots) -> Walk:
     facts = None if scenario.robot == REFERENCE else _facts(scenario.robot, RobotSettings(), robots)
     if facts is None or facts.size == REFERENCE_SIZE:
         return Walk(scenario)
-    return Walk(with_defaults(scenario, facts.size, robots), facts.size, stance_widening(facts), facts.foot_length)
+    size = facts.size
+    return Walk(with_defaults(scenario, size, robots), size, stance_widening(facts, size), facts.foot_length)
 
 
 def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:

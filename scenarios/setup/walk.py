@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from surefoot.models.facts import RobotFacts, facts_of, stance_widening
+from surefoot.models.facts import RobotFacts, facts_of, size_of, stance_widening
 from surefoot.planner.check import check_walk
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.parameters import LegInertia, PlannerParameters
@@ -259,7 +259,7 @@ class Walk:
         """As believed."""
         return self.described or describe(self.keys.robot, self.keys.robot_options)
 
-    @cached_property
+    @property
     def facts(self) -> RobotFacts:
         """What of it bounds a walk."""
         return facts_of(self.robot)
@@ -324,9 +324,9 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         ParameterError: a part refuses its parameters.
     """
     robot = robot or describe(scenario.robot, scenario.robot_options)
-    facts = facts_of(robot, scenario.robot_options.payload_mass)
-    own = None if facts.size == REFERENCE_SIZE else float(robot.sole_length)
-    walk = Walk(scenario, facts.size, stance_widening(facts), own, robot, profile)
+    size = size_of(robot, scenario.robot_options.payload_mass)
+    own = None if size == REFERENCE_SIZE else float(robot.sole_length)
+    walk = Walk(scenario, size, stance_widening(robot, size), own, robot, profile)
     for room in (walk, walk.ground, walk.formulation):
         for name, part in vars(type(room)).items():
             if isinstance(part, cached_property):

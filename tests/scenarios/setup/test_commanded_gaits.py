@@ -78,7 +78,7 @@ def test_what_is_just_within_reach_is_accepted_and_reads_back_as_itself(robots, 
         leg_length=0.94,
         roles=SimpleNamespace(feet_lean=False),
     )
-    monkeypatch.setattr("surefoot.scenarios.setup.walk.facts_of", lambda *_: robots.facts("", scenario.robot_options))
+    monkeypatch.setattr("surefoot.scenarios.setup.walk.facts_of", lambda _: robots.facts("", scenario.robot_options))
     walk = resolve(scenario, robot)
     planner = walk.planner(walk.ground.stance, LegInertia())
     assert planner.gait.steps == 8

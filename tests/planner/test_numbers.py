@@ -27,7 +27,6 @@ NOTICED = {
     "swing.limits.PEAK": "tests/planner/swing/test_limits.py",
     "swing.limits._BRAKING": "tests/planner/swing/test_limits.py",
     "swing.limits._GAINING": "tests/planner/swing/test_limits.py",
-    "types.GRAVITY": "tests/scenarios/setup/test_leg_model.py",
 }
 """Test, or folder of tests, that notices a constant when it is changed."""
 
@@ -40,7 +39,6 @@ UNNOTICED = {
     "ground.tiles.AROUND",
     "ground.tiles.TILE",
     "ground.tiles._MIDDLE",
-    "ground.tiles._STREAM",
     "laws.dcm_feedback._GAIN",
     "laws.qp._UNBOUNDED",
     "laws.zmp_preview._JERK_WEIGHT",

@@ -7,10 +7,9 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from surefoot.similarity import GRAVITY as GRAVITY
 
-GRAVITY = 9.81
-"""Gravitational acceleration, as in the simulated world [m/s^2]."""
+Array = NDArray[np.float64]
 
 
 class Foot(IntEnum):

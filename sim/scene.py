@@ -6,10 +6,7 @@ from surefoot.models.types import RobotDescription
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.errors import WorldError
 from surefoot.sim.terrain import add_terrain
-from surefoot.similarity import REFERENCE_SIZE, Similarity
-
-GRAVITY = 9.81
-"""[m/s^2], downwards."""
+from surefoot.similarity import GRAVITY, REFERENCE_SIZE, Similarity
 
 
 def world_mjcf(

@@ -18,6 +18,9 @@ from surefoot.errors import ParameterError
 
 T = TypeVar("T")
 
+GRAVITY = 9.81
+"""Gravitational acceleration, of the simulated world as of the models of planner and controller [m/s^2]."""
+
 REFERENCE = "humanoid100"
 """The robot for which numbers are written down."""
 

@@ -84,7 +84,7 @@ def test_what_a_run_leaves_is_itself(tmp_path):
     assert (again(log["/truth"]).field("com") == log["/truth"].field("com")).all()
     assert again(inspect_log(log)).to_json() == inspect_log(log).to_json()
     walk = resolve(scenario)
-    assert (again(walk).text, again(walk).profile) == (walk.text, walk.profile)
+    assert (again(walk).text, again(walk).formulation.profile) == (walk.text, walk.formulation.profile)
     with surefoot.Simulation(scenario) as sim:
         tick = sim.step()
         assert repr(again(tick)) == repr(tick)

@@ -11,10 +11,9 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from surefoot.similarity import GRAVITY as GRAVITY
 
-GRAVITY = 9.81
-"""Gravitational acceleration [m/s^2] of the model; checked against the Pinocchio model at construction."""
+Array = NDArray[np.float64]
 
 
 class SolveStatus(IntEnum):

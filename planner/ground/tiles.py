@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import sole_rotation
 from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
 from surefoot.planner.types import Array
+from surefoot.streams import Stream
 
 TILE = 0.5
 """Side of a tile, as of a paving slab, for the reference robot [m]."""
@@ -18,8 +19,6 @@ AROUND = 2
 """How many tiles are laid around the one that a footstep is on, to each side [-]."""
 
 _WINDOW = np.array(list(product(range(-AROUND, AROUND + 1), repeat=2)))
-_STREAM = 4
-"""Stream of random numbers of the tiles: others with the same seed have their own [-]."""
 
 _MIDDLE = 2**31
 """Number of the tile at the origin, since streams of random numbers have no negative ones [-]."""
@@ -81,4 +80,4 @@ class Tiles:
 
     def _random(self, *place: int) -> Array:
         """Three numbers from 0 to 1 that belong to the seed and a place."""
-        return np.random.SeedSequence(self.seed, spawn_key=(_STREAM, *place)).generate_state(3) / 2.0**32
+        return np.random.SeedSequence(self.seed, spawn_key=(Stream.TILES, *place)).generate_state(3) / 2.0**32

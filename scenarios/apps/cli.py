@@ -86,7 +86,7 @@ def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocom
 @app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors."""
-    from surefoot.scenarios.setup.published import published
+    from surefoot.scenarios.setup.criteria import published
 
     typer.echo(json.dumps(published(), indent=2))
 

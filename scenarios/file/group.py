@@ -66,7 +66,7 @@ class OneOf:
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """Describe as a literal would; what a broken package has registered is not among the names."""
         names = self._names()
-        return {"enum": _loadable(names) if isinstance(names, Registry) else list(names), "type": "string"}
+        return {"enum": loadable(names) if isinstance(names, Registry) else list(names), "type": "string"}
 
     def _check(self, value: str) -> str:
         if value == self._default or value in (known := list(self._names())):
@@ -77,7 +77,8 @@ class OneOf:
         raise PydanticCustomError("literal_error", "{expected}", {"expected": expected})
 
 
-def _loadable(registry: Registry[Any]) -> list[str]:
+def loadable(registry: Registry[Any]) -> list[str]:
+    """Names of a registry but for what a broken package has registered."""
     found = []
     for name in registry:
         with suppress(PluginError):

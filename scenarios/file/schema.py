@@ -4,10 +4,12 @@ One frozen model per group. Every key has a default, so a scenario file states o
 relates several keys (rates that divide, steps within reach) is checked in ``checks``.
 """
 
-from typing import Annotated, Literal
+from contextlib import suppress
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 
+from surefoot.plugins import PluginError
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import (
     DEFAULTS,
@@ -95,6 +97,27 @@ class TerrainSettings(Group):
     friction: Annotated[float, Field(ge=0, le=10, allow_inf_nan=False)] = Field(
         default=0.8, description="Coulomb coefficient of every surface [-]"
     )
+
+
+def model_of(model: type[BaseModel], values: Any) -> type[BaseModel]:
+    """The model of a group with these values: of the ground, the one that its kind brings if it has keys of its own.
+
+    Args:
+        model: of the group, as the schema has it.
+        values: plain ones, of which any may be wrong.
+    """
+    kind = values.get("kind") if model is TerrainSettings and isinstance(values, dict) else None
+    if not isinstance(kind, str) or kind == DEFAULTS["terrain"]:
+        return model
+    with suppress(LookupError, PluginError):
+        own = terrain_kinds()[kind].settings
+        return own if isinstance(own, type) and issubclass(own, TerrainSettings) else model
+    return model
+
+
+def _by_its_kind(values: Any) -> Any:
+    own = model_of(TerrainSettings, values)
+    return values if own is TerrainSettings else own.model_validate(values)
 
 
 class VelocitySettings(Group):
@@ -397,7 +420,9 @@ class Scenario(Group):
     seed: Annotated[int, Field(ge=0, lt=2**32), WHOLE] = Field(default=0, description="seed of everything random [-]")
     duration: Span | None = Field(default=None, description="simulated time, null: until the gait has ended")
     robot_options: RobotSettings = Field(default=RobotSettings(), description="changes to the robot")
-    terrain: TerrainSettings = Field(default=TerrainSettings(), description="the ground")
+    terrain: Annotated[SerializeAsAny[TerrainSettings], BeforeValidator(_by_its_kind)] = Field(
+        default=TerrainSettings(), description="the ground"
+    )
     gait: Gait = Field(default=Gait(), description="the walk")
     planner: PlannerSettings = Field(default=PlannerSettings(), description="the planner")
     sensing: Sensing = Field(default=Sensing(), description="the sensors")

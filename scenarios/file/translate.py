@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.schema import Scenario, model_of
 from surefoot.scenarios.file.units import meant, unit_of
 
 _EXPECTED = {
@@ -69,14 +69,14 @@ def _problem(detail: ErrorDetails, data: Any, root: type[BaseModel]) -> Problem:
     value, kind, context = detail["input"], detail["type"], detail.get("ctx", {})
     name = dotted(key) or "the file"
     if kind == "extra_forbidden":
-        names = partial(nearest, str(key[-1]), _group(root, key[:-1]).model_fields)
+        names = partial(nearest, str(key[-1]), _group(root, key[:-1], data).model_fields)
         return Problem(key, f"unknown key '{key[-1]}'", names, at_key=True)
     if kind == "missing":
         missing = detail["loc"][-1]
         return Problem(key, f"{name} lacks element {missing}", f"give '{missing}'")
     if kind in _BOUNDS:
         bound, words = _BOUNDS[kind]
-        unit = _unit(root, key)
+        unit = _unit(root, key, data)
         hint = meant(value, unit, abs(context[bound])) if abs(value) > abs(context[bound]) else ""
         return Problem(key, f"{name} is {_short(value)}", f"it must be {words} {context[bound]} {unit}".rstrip() + hint)
     if kind == "quantity":
@@ -103,8 +103,8 @@ def _existing(location: tuple[str | int, ...], data: Any) -> Key:
     return key
 
 
-def _group(root: type[BaseModel], key: Key) -> type[BaseModel]:
-    """The group at a path; below a field of groups by name stands a name."""
+def _group(root: type[BaseModel], key: Key, data: Any) -> type[BaseModel]:
+    """The group at a path into data; below a field of groups by name stands a name."""
     model: Any = root
     parts = iter(key)
     for part in parts:
@@ -115,14 +115,15 @@ def _group(root: type[BaseModel], key: Key) -> type[BaseModel]:
         annotation = model.model_fields[part].annotation
         if get_origin(annotation) is dict:
             next(parts, None)
-        model = next(a for a in (annotation, *getattr(annotation, "__args__", ())) if _is_model(a))
+        data = data.get(part) if isinstance(data, dict) else None
+        model = model_of(next(a for a in (annotation, *getattr(annotation, "__args__", ())) if _is_model(a)), data)
     return cast("type[BaseModel]", model)
 
 
-def _unit(root: type[BaseModel], key: Key) -> str:
+def _unit(root: type[BaseModel], key: Key, data: Any) -> str:
     """SI unit of a key; empty when it has none."""
     *group, last = (part for part in key if isinstance(part, str))
-    field = _group(root, tuple(group)).model_fields.get(last)
+    field = _group(root, tuple(group), data).model_fields.get(last)
     return unit_of(field.annotation, field.metadata) if field is not None else ""
 
 

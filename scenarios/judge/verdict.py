@@ -26,9 +26,9 @@ from surefoot.scenarios.judge.metrics import digest, known, measure
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
-from surefoot.scenarios.setup.checks import notes
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.events import never_act
+from surefoot.scenarios.setup.notes import notes
+from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import Similarity
 
 _SAME_TIME = 1e-8
@@ -212,7 +212,7 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     undone = (*idle, *not_there(measured.values, criteria, size.length))
     reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
-    said = (*skipped, *notes(Draft(scenario, size), run.has("/command")), *_degraded(measured.values), *measured.notes)
+    said = (*skipped, *notes(Walk(scenario, size), run.has("/command")), *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 
@@ -292,7 +292,7 @@ def _unacted(log: Log, scenario: Scenario, size: Similarity) -> list[str]:
     if broke_off:  # in the tick after the last of its log, in which a fault may have acted
         end += _SAME_TIME
     try:
-        return [problem.what for problem in never_act(Draft(scenario, size), end)]
+        return [problem.what for problem in never_act(Walk(scenario, size), end)]
     except ParameterError as fault:
         return [f"when its pushes and faults act cannot be known: {fault}"]
 

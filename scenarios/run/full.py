@@ -20,9 +20,10 @@ from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.run.planning import FaultSchedule, Planning, RunFault, whole_body_reference
-from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator, PlannerSensing
-from surefoot.scenarios.run.skeleton import ClosedLoop, Look
+from surefoot.scenarios.run.planning import FaultSchedule, RunFault, whole_body_reference
+from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator
+from surefoot.scenarios.run.skeleton import ClosedLoop
+from surefoot.scenarios.run.tick import Look
 from surefoot.scenarios.setup.feasible import made_ready
 from surefoot.scenarios.setup.parts import ESTIMATE, TASK, guarded
 from surefoot.scenarios.setup.stance import (
@@ -94,7 +95,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     body = body_of(walk.robot)
     posture, leg = made_ready(walk, body)
     q = pressed(disturbed(posture, walk, body), walk.size.length)
-    world = World(walk.true_robot, walk.true_terrain, walk.rates.physics, walk.pushes, walk.size)
+    world = World(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, walk.pushes, walk.size)
     torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length)
     world.reset(q, torque=torque)
     controller = _controller(walk, body, posture, parts)
@@ -108,9 +109,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
     walker = SimulatedRobot(walk, world, controller, estimator, body.limits, body_recorder, view)
-    faults = FaultSchedule(walk.faults, walk.rates.control)
-    planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands, walk.guard)
-    return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
+    return ClosedLoop.of(walk, walker, planner, recorder)
 
 
 class SimulatedRobot:

@@ -19,9 +19,9 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import PointView
 from surefoot.scenarios.record.walk import PendulumRecorder, WalkRecorder
-from surefoot.scenarios.run.planning import FaultSchedule, Planning, RunFault
-from surefoot.scenarios.run.sensing import PlannerSensing
-from surefoot.scenarios.run.skeleton import ClosedLoop, Look
+from surefoot.scenarios.run.planning import FaultSchedule, RunFault
+from surefoot.scenarios.run.skeleton import ClosedLoop
+from surefoot.scenarios.run.tick import Look
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.pushes import Push
 
@@ -32,11 +32,13 @@ class Plant(Protocol):
     """A point mass that follows plans.
 
     Attributes:
+        can_fall: whether its DCM may get out of reach of any foot.
         position: horizontal position, shape (2,) [m].
         velocity: shape (2,) [m/s].
         zmp: ZMP of the last tick, shape (2,) [m].
     """
 
+    can_fall: bool
     position: Array
     velocity: Array
     zmp: Array
@@ -65,6 +67,8 @@ class PendulumPlant(Pendulum):
         feedback: k [-].
     """
 
+    can_fall = True
+
     def __init__(self, mass: float, position: Array, height_error: float, feedback: float) -> None:
         super().__init__(mass, position, np.zeros(2))
         self._height_error, self._feedback = height_error, feedback
@@ -85,6 +89,8 @@ class CartTablePlant(CartTable):
         position: where it rests at the start, shape (2,) [m].
         height_error: believed minus true CoM height [m].
     """
+
+    can_fall = False
 
     def __init__(self, mass: float, position: Array, height_error: float) -> None:
         super().__init__(mass, position)
@@ -120,14 +126,11 @@ def pendulum_loop(walk: Walk, writer: LogWriter) -> ClosedLoop:
     Raises:
         ValueError: the planner refuses the gait.
     """
-    planner = walk.planner(walk.stance, LegInertia())
+    planner = walk.planner(walk.ground.stance, LegInertia())
     sizes = Sizes(nj=0, nq=0, nv=0, horizon=planner.parameters.horizon)
     point_recorder, recorder = PendulumRecorder(writer, sizes, walk.true_mass), WalkRecorder(writer, sizes)
     view = PointView(writer, walk.sole, walk.rates.control)
-    faults = FaultSchedule(walk.faults, walk.rates.control)
-    planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands, walk.guard)
-    walker = PointMass(walk, point_recorder, view)
-    return ClosedLoop(walker, planning, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
+    return ClosedLoop.of(walk, PointMass(walk, point_recorder, view), planner, recorder)
 
 
 class PointMass:
@@ -146,15 +149,16 @@ class PointMass:
         feet: the ideal feet.
     """
 
+    controller = None
+
     def __init__(self, walk: Walk, recorder: PendulumRecorder, view: PointView) -> None:
         self._recorder, self._view = recorder, view
         self._period, self._height_error = 1.0 / walk.rates.control, walk.height_error
         self._half_size = 0.5 * np.array(walk.sole)
         self._faults = FaultSchedule(walk.faults, walk.rates.control)
         self._pushes = [PointPush(push.time, push.duration, push.force[:2]) for push in walk.pushes]
-        self._feet = IdealFeet(walk.stance)
+        self._feet = IdealFeet(walk.ground.stance)
         self._plant = plant(walk.pendulum, walk.true_mass, start_position(walk), self._height_error)
-        self._can_fall = walk.pendulum.plant == "pendulum"
         self._height, self._climb, self._length = walk.start_com_height, 0.0, walk.size.length
         self._contacts, self._support = (False, False), np.zeros((0, 2))
         self._sample: PlanSample
@@ -200,7 +204,7 @@ class PointMass:
     def fallen(self, sample: PlanSample) -> bool:
         """Whether no foot could catch the mass any more."""
         dcm = self.state.com[:2] + self.state.com_velocity[:2] / sample.omega
-        return self._can_fall and bool(lost(dcm, self._plant.zmp, self._length))
+        return self._plant.can_fall and bool(lost(dcm, self._plant.zmp, self._length))
 
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
         """See `Walker`."""

@@ -3,6 +3,7 @@
 import math
 from collections import deque
 from collections.abc import Callable, Sequence
+from typing import Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,6 @@ from surefoot.errors import ParameterError
 from surefoot.guard import OWN_GUARD, Guard
 from surefoot.planner.geometry import sole_rates, sole_rotation
 from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
-from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.steps.commands import Command, Orders, TimedCommand
 from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, PlannedFootstep
 from surefoot.scenarios.file.schema import Fault, Rates
@@ -27,6 +27,21 @@ ROUNDING = 1e-6
 
 class RunFault(Exception):  # noqa: N818  the event, not a mistake of the caller
     """What ends a run before its time, in words."""
+
+
+class CommandedPlanner(Planner, Protocol):
+    """A planner that hears while the walk goes on what to do, as `surefoot.planner.planner.WalkingPlanner`."""
+
+    @property
+    def orders(self) -> Orders:
+        """What the walk does of what it has been told."""
+
+    def command(self, command: Command) -> None:
+        """Do something else from the next plan on.
+
+        Raises:
+            ParameterError: it cannot do this.
+        """
 
 
 class FaultSchedule:
@@ -118,10 +133,9 @@ class Planning:
         Raises:
             ParameterError: it is a planner that takes no commands, or cannot do this.
         """
-        taking = self._commanded
+        self._commanded  # noqa: B018  refuses before the planner hears what it was to hear earlier
         self._tell(tick)
-        taking.command(command)
-        self._told = True
+        self._say(command)
 
     @property
     def orders(self) -> Orders:
@@ -130,20 +144,25 @@ class Planning:
         Raises:
             ParameterError: it is a planner that takes no commands.
         """
-        return self._commanded.orders
+        with self._guard:
+            return self._commanded.orders
 
     @property
-    def _commanded(self) -> WalkingPlanner:
-        if not isinstance(self.planner, WalkingPlanner):
+    def _commanded(self) -> CommandedPlanner:
+        if not hasattr(self.planner, "command"):
             what = f"a command to {type(self.planner).__name__}, which takes none"
             raise ParameterError(("commands",), what, "use a profile with surefoot's own walking planner")
-        return self.planner
+        return cast("CommandedPlanner", self.planner)
+
+    def _say(self, command: Command) -> None:
+        with self._guard.making:
+            self._commanded.command(command)
+        self._told = True
 
     def _tell(self, tick: int) -> None:
         """Tell the planner what it is to hear at a control tick or was to hear since its last plan."""
         while self._commands and self._commands[0].time * self._rate <= tick + ROUNDING:
-            self._commanded.command(self._commands.popleft().command)
-            self._told = True
+            self._say(self._commands.popleft().command)
 
     def _book(self, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
         """Record a footstep once its swing is over and its foot has touched down, which it may never do.

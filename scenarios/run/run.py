@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from surefoot.errors import PartError
 from surefoot.guard import said, shown
+from surefoot.models.facts import knees_straight, named_roles
 from surefoot.models.mjcf import without_looks
 from surefoot.planner.laws.profiles import Profile
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
@@ -185,13 +186,23 @@ def closed_loop(walk: Walk, writer: LogWriter, parts: "Parts | None" = None) -> 
         SetupError: a part refuses the walk.
     """
     with refusing():
-        if walk.fidelity == "pendulum":
-            from surefoot.scenarios.run.pendulum import pendulum_loop
+        return _LOOPS[walk.fidelity](walk, writer, parts)
 
-            return pendulum_loop(walk, writer)
-        from surefoot.scenarios.run.full import full_loop
 
-        return full_loop(walk, writer, parts)
+def _full(walk: Walk, writer: LogWriter, parts: "Parts | None") -> ClosedLoop:
+    from surefoot.scenarios.run.full import full_loop
+
+    return full_loop(walk, writer, parts)
+
+
+def _pendulum(walk: Walk, writer: LogWriter, _: "Parts | None") -> ClosedLoop:
+    from surefoot.scenarios.run.pendulum import pendulum_loop
+
+    return pendulum_loop(walk, writer)
+
+
+_LOOPS = {"full": _full, "pendulum": _pendulum}
+"""What makes the loop of a fidelity."""
 
 
 def note_parts(writer: LogWriter, given: Mapping[str, object]) -> None:
@@ -238,33 +249,19 @@ def run_constants(walk: Walk) -> RunConstants:
         position_lower=tuple(float(value) for value in robot.position_lower),
         position_upper=tuple(float(value) for value in robot.position_upper),
         velocity_limit=tuple(float(value) for value in robot.velocity_limit),
-        terrain=walk.terrain_kind,
+        terrain=walk.ground.keys.kind,
         plant=walk.pendulum.plant,
-        roles=_roles(robot),
+        roles=named_roles(robot),
         boxes=tuple(
             (*box.center.tolist(), *box.half_size.tolist(), *box.rotation.ravel().tolist())
-            for box in walk.true_terrain.boxes
+            for box in walk.ground.true_terrain.boxes
         ),
-        plane=walk.true_terrain.plane,
+        plane=walk.ground.true_terrain.plane,
         size=(walk.size.length, walk.size.mass),
-        knee_straight=_knee_straight(robot),
+        knee_straight=knees_straight(robot),
         unforeseen=walk.unforeseen,
         waypoints=walk.waypoints,
     )
-
-
-def _knee_straight(robot: "RobotDescription") -> tuple[float, ...]:
-    """Angles of the knees with straight legs, in the order of the joints; empty where they are zero [rad]."""
-    joints = zip(robot.joint_names, robot.straight_joint_positions, strict=True)
-    angles = tuple(float(angle) for name, angle in joints if name in robot.roles.knees)
-    return angles if any(angles) else ()
-
-
-def _roles(robot: "RobotDescription") -> dict[str, tuple[str, ...]]:
-    """What the robot's joints and bodies are for, by the names of its description."""
-    roles = robot.roles
-    legs = {"left_leg": roles.left_leg, "right_leg": roles.right_leg}
-    return {"knees": roles.knees, **legs, "torso": (robot.torso_body,)}
 
 
 def _watched(

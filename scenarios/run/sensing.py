@@ -100,7 +100,7 @@ class PlannerSensing:
         self._deviation = np.repeat([sensing.zmp_noise, com, speed], 2).reshape(3, 2)
         self._rng = np.random.default_rng(np.random.SeedSequence(walk.seed, spawn_key=(_STREAM,)))
         self._filter = _filter(walk)
-        self._ground = float(walk.stance.position[:, 2].mean())
+        self._ground = float(walk.ground.stance.position[:, 2].mean())
 
     def sense(self, state: CentroidalState, zmp: Array, plan: WalkPlan | None) -> PlannerState:
         """Measure, and estimate from all measurements so far.
@@ -140,7 +140,7 @@ def _filter(walk: Walk) -> CentroidalFilter | None:
     if walk.filter == "none":
         return None
     mean = np.zeros((3, 2))
-    mean[0] = walk.stance.position[:, :2].mean(axis=0)
+    mean[0] = walk.ground.stance.position[:, :2].mean(axis=0)
     noise, prior = filter_noise(walk.sensing, walk.size), walk.size.times(_PRIOR, "m, m/s, m/s^2")
     sensors = ZMP_ONLY if walk.filter == "zmp_only" else (True, True, True)
     return CentroidalFilter(walk.parameters.sample_time, noise, mean, prior, sensors)

@@ -20,12 +20,12 @@ from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
 from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED
-from surefoot.scenarios.run.full import Parts, SimulatedRobot
+from surefoot.scenarios.run.full import Parts
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing
 from surefoot.scenarios.run.tick import Tick
-from surefoot.scenarios.setup.commands import timed_command
+from surefoot.scenarios.setup.gait import timed_command
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.sim.pushes import Push
@@ -141,10 +141,10 @@ class Simulation:
         Raises:
             AttributeError: a pendulum has none.
         """
-        walker = self._loop.walker
-        if not isinstance(walker, SimulatedRobot):
+        controller = self._loop.walker.controller
+        if controller is None:
             raise AttributeError("a pendulum has no whole-body controller; simulate with fidelity full")
-        return walker.controller
+        return controller
 
     def step(self) -> Tick:
         """Go through one control tick.

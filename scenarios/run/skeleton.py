@@ -11,17 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import PartError
-from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
+from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.record.provenance import AFTER_FALL
 from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
-from surefoot.scenarios.run.planning import ROUNDING, Planning, RunFault
+from surefoot.scenarios.run.planning import ROUNDING, FaultSchedule, Planning, RunFault
+from surefoot.scenarios.run.sensing import PlannerSensing
+from surefoot.scenarios.run.tick import Look
 from surefoot.scenarios.setup.gait import PushPoint
 from surefoot.scenarios.setup.keys import scenario_problem
-from surefoot.sim.measurement import Measurement
+from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.pushes import Push
-from surefoot.wbc.types import RobotState, WbcReport
+from surefoot.wbc.controller import WholeBodyController
 
 _PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}
 
@@ -91,32 +93,16 @@ def refusing() -> Iterator[None]:
         raise SetupError(scenario_problem(refusal)) from refusal
 
 
-@dataclass(frozen=True, slots=True)
-class Look:
-    """A look at a walker after a step; arrays may be overwritten by the next one.
-
-    Attributes:
-        com: true CoM, shape (3,) [m].
-        com_velocity: shape (3,) [m/s].
-        zmp: true ZMP, shape (2,) [m]; NaN in flight.
-        state: state that the controller was given; None without one, as are the following.
-        report: what the controller did.
-        measurement: what the sensors said.
-    """
-
-    com: NDArray[np.float64]
-    com_velocity: NDArray[np.float64]
-    zmp: NDArray[np.float64]
-    state: RobotState | None = None
-    report: WbcReport | None = None
-    measurement: Measurement | None = None
-
-
 class Walker(Protocol):
     """What walks in a closed loop: a simulated robot under its whole-body controller, or a point mass on ideal feet.
 
     The skeleton calls its verbs in the order in which they stand here, once per control tick.
     """
+
+    @property
+    def controller(self) -> WholeBodyController | None:
+        """Its whole-body controller; None without one."""
+        ...
 
     def sense(self, tick: int, now: float) -> None:
         """Measure.
@@ -237,6 +223,13 @@ class ClosedLoop:
         self.fell = False
         self.done = self._last == 0
         self.fault: RunFault | PartError | None = None
+
+    @classmethod
+    def of(cls, walk: Walk, walker: Walker, planner: Planner, recorder: WalkRecorder) -> "ClosedLoop":
+        """The loop of a walk around what walks it and what plans it, at its start."""
+        faults, guard = FaultSchedule(walk.faults, walk.rates.control), walk.formulation.guard
+        planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands, guard)
+        return cls(walker, planning, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
 
     @property
     def time(self) -> float:

@@ -1,4 +1,4 @@
-"""What a simulation that is stepped from outside says of each of its control ticks."""
+"""What there is to see of a control tick: of what walks, and of a simulation that is stepped from outside."""
 
 from dataclasses import dataclass
 
@@ -11,6 +11,27 @@ from surefoot.sim.measurement import Measurement
 from surefoot.wbc.types import RobotState, WbcReport
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """A look at a walker after a step; arrays may be overwritten by the next one.
+
+    Attributes:
+        com: true CoM, shape (3,) [m].
+        com_velocity: shape (3,) [m/s].
+        zmp: true ZMP, shape (2,) [m]; NaN in flight.
+        state: state that the controller was given; None without one, as are the following.
+        report: what the controller did.
+        measurement: what the sensors said.
+    """
+
+    com: Array
+    com_velocity: Array
+    zmp: Array
+    state: RobotState | None = None
+    report: WbcReport | None = None
+    measurement: Measurement | None = None
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -1,100 +1,112 @@
-"""Checks that relate several keys of a scenario, or keys and the robot, and what to know of one that passes them."""
+"""Checks that relate several keys of a scenario, or keys and the robot."""
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 from surefoot.errors import ParameterError, at_least, at_most
+from surefoot.models.facts import RobotFacts
+from surefoot.planner.ground.terrain import flat
+from surefoot.planner.references.com_height import highest_apex
+from surefoot.planner.steps.commands import Twist, fastest
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import Stride
+from surefoot.planner.swing.step_region import Landing, StepRegion, check_reach, soles_apart
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
-from surefoot.scenarios.file.schema import Gait, PendulumSettings, Rates, Sensing, TerrainSettings
+from surefoot.scenarios.file.schema import Gait, Sensing
 from surefoot.scenarios.file.units import meant
-from surefoot.scenarios.setup.commands import told_problems
-from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.events import cut_off, idle_commands, never_act, slight
-from surefoot.scenarios.setup.gait import EQUAL_STEPS, longest_step, uncommanded
-from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known
-from surefoot.scenarios.setup.sized import clock, default_of
-from surefoot.scenarios.setup.walk_checks import (
-    command_problems,
-    commanded_step_problems,
-    footstep_problems,
-    swing_too_short,
-    walk_problems,
-)
+from surefoot.scenarios.setup.events import cut_off, idle_commands, never_act, slight, told_problems
+from surefoot.scenarios.setup.formulation import LONGEST_REACH
+from surefoot.scenarios.setup.gait import commanded, leg_span, longest_step, step_region, twist_of, uncommanded
+from surefoot.scenarios.setup.keys import scenario_problem
+from surefoot.scenarios.setup.robot import Robots, is_known
+from surefoot.scenarios.setup.terrain.ground import uneven_problems
+from surefoot.scenarios.setup.walk import Walk
+
+MOST_SAMPLES = 1_000_000
+"""Planner samples of a gait."""
+
+_PERIOD = 4
+"""Footsteps after which a gait on flat ground only repeats itself: the first, one of each foot, the last."""
 
 _SENSED = ("source", "zmp_noise", "com_noise", "force_estimate")
 """What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
 
 AVAILABLE: dict[Key, tuple[Any, ...]] = {
-    ("fidelity",): ("full", "pendulum"),
-    **{("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED},
+    ("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED
 }
 """Values of the format's keys that this version has; of other keys it has all."""
 
 _PENDULUM_FAULTS = ("planner_freeze", "state_nan")
 
 
-def check(draft: Draft, robots: Robots) -> list[Problem]:
+def check(walk: Walk, robots: Robots) -> list[Problem]:
     """List what does not fit together."""
-    commands = command_problems(draft)
+    commands = _command_problems(walk)
     if commands:
-        keys = draft.keys.model_copy(update={"gait": uncommanded(draft.keys.gait)})
-        draft = Draft(keys, draft.size, draft.wider, draft.sole)
-    clock = [*_rates(draft), *_pushes(draft)]
+        walk = replace(walk, keys=walk.keys.model_copy(update={"gait": uncommanded(walk.keys.gait)}))
+    clock = [*_rates(walk), *_pushes(walk)]
     return [
         *commands,
         *clock,
-        *_durations(draft),
-        *told_problems(draft),
-        *(() if clock else (*never_act(draft, draft.duration), *cut_off(draft))),
-        *slight(draft),
-        *(() if commands else idle_commands(draft)),
-        *_beliefs(draft),
-        *_controller(draft),
-        *walk_problems(draft),
-        *_robot(draft, robots),
-        *_unavailable(draft),
+        *_durations(walk),
+        *told_problems(walk),
+        *(() if clock else (*never_act(walk, walk.duration), *cut_off(walk))),
+        *slight(walk),
+        *(() if commands else idle_commands(walk)),
+        *_beliefs(walk),
+        *_controller(walk),
+        *_walk_problems(walk),
+        *_robot(walk, robots),
+        *_unavailable(walk),
     ]
 
 
-def _rates(draft: Draft) -> Iterator[Problem]:
-    rates = draft.keys.rates
+def _rates(walk: Walk) -> Iterator[Problem]:
+    rates = walk.keys.rates
     for fast, slow in (("physics", "control"), ("control", "planner")):
         above, below = getattr(rates, fast), getattr(rates, slow)
         if above % below:
             right = f"use a divisor of {above} Hz"
             yield Problem(("rates", slow), f"rates.{slow} {below} Hz does not divide rates.{fast} {above} Hz", right)
-    sample_time = draft.keys.planner.sample_time
+    sample_time = walk.keys.planner.sample_time
     if not math.isclose(rates.planner * sample_time, 1.0, rel_tol=1e-9):
         what = f"planner.sample_time {sample_time} s is not the period of rates.planner {rates.planner} Hz"
         yield Problem(("planner", "sample_time"), what, f"use {1 / rates.planner:.6g} s, or rates.planner to match")
 
 
-def _durations(draft: Draft) -> Iterator[Problem]:
-    if swing_too_short(draft):
-        what = f"gait.single_support {draft.keys.gait.single_support} s is too short for a swing of the foot"
-        right = f"use at least {at_least(FEWEST_SWING_SAMPLES * draft.keys.planner.sample_time)} s"
+def _durations(walk: Walk) -> Iterator[Problem]:
+    if _swing_too_short(walk):
+        what = f"gait.single_support {walk.keys.gait.single_support} s is too short for a swing of the foot"
+        right = f"use at least {at_least(FEWEST_SWING_SAMPLES * walk.keys.planner.sample_time)} s"
         yield Problem(("gait", "single_support"), what, right)
-    double, sample = draft.keys.gait.double_support, draft.keys.planner.sample_time
+    double, sample = walk.keys.gait.double_support, walk.keys.planner.sample_time
     if double < (1.0 - 1e-9) * sample:
         what = f"gait.double_support {double} s is shorter than a sample of the planner"
         yield Problem(("gait", "double_support"), what, f"use at least {at_least(sample, 5)} s")
 
 
-def _pushes(draft: Draft) -> Iterator[Problem]:
-    for index, push in enumerate(draft.keys.pushes):
+def _swing_too_short(walk: Walk) -> bool:
+    """Whether a single support leaves no time for a swing of the foot."""
+    return walk.keys.gait.single_support < (FEWEST_SWING_SAMPLES - 0.5) * walk.keys.planner.sample_time
+
+
+def _pushes(walk: Walk) -> Iterator[Problem]:
+    for index, push in enumerate(walk.keys.pushes):
         key = ("pushes", index)
         by_gait = (push.step, push.phase, push.fraction)
         if push.time is not None and by_gait != (None, None, None):
             yield Problem(key, "a push with both a time and a point of the gait", "give one of them")
         elif push.time is None and (push.step is None or push.phase is None):
             yield Problem(key, "a push without a begin", "give time, or step, phase and fraction")
-        elif push.step is not None and push.step > draft.gait.steps and not draft.told:
-            what = f"a push in step {push.step} of a gait of {draft.gait.steps} steps"
-            yield Problem((*key, "step"), what, f"give a step of at most {draft.gait.steps}")
+        elif push.step is not None and push.step > walk.asked_gait.steps and not walk.told:
+            what = f"a push in step {push.step} of a gait of {walk.asked_gait.steps} steps"
+            yield Problem((*key, "step"), what, f"give a step of at most {walk.asked_gait.steps}")
         if push.impulse is not None and push.force is not None:
             yield Problem((*key, "impulse"), "a push with both a force and an impulse", "give one of them")
         elif push.impulse is None and push.direction is not None:
@@ -103,63 +115,47 @@ def _pushes(draft: Draft) -> Iterator[Problem]:
             )
 
 
-def _beliefs(draft: Draft) -> Iterator[Problem]:
-    height, error = draft.keys.gait.com_height, draft.keys.errors.com_height
+def _beliefs(walk: Walk) -> Iterator[Problem]:
+    height, error = walk.keys.gait.com_height, walk.keys.errors.com_height
     if error > 0.5 * height:
         what = f"errors.com_height {error} m leaves {height - error:.3g} m of gait.com_height {height} m as the truth"
         yield Problem(("errors", "com_height"), what, f"use at most {at_most(0.5 * height)} m")
 
 
-def _controller(draft: Draft) -> Iterator[Problem]:
-    wbc = draft.keys.wbc
-    if wbc is not None and wbc.friction is not None and draft.keys.errors.friction != 0.0:
+def _controller(walk: Walk) -> Iterator[Problem]:
+    wbc = walk.keys.wbc
+    if wbc is not None and wbc.friction is not None and walk.keys.errors.friction != 0.0:
         yield Problem(("wbc", "friction"), "a believed friction beside errors.friction", "give one of them")
     for fault in controller_faults(wbc):
         yield Problem(fault.key, fault.what, fault.right)
 
 
-def _robot(draft: Draft, robots: Robots) -> Iterator[Problem]:
-    if not is_known(draft.keys.robot, robots):
-        yield Problem(("robot",), f"unknown robot '{draft.keys.robot}'", nearest(draft.keys.robot, robots.names()))
+def _robot(walk: Walk, robots: Robots) -> Iterator[Problem]:
+    if not is_known(walk.keys.robot, robots):
+        yield Problem(("robot",), f"unknown robot '{walk.keys.robot}'", nearest(walk.keys.robot, robots.names()))
         return
     try:
-        facts = robots.facts(draft.keys.robot, draft.keys.robot_options)
+        facts = robots.facts(walk.keys.robot, walk.keys.robot_options)
     except ParameterError as error:
-        option = error.key[:1] and error.key[0] in type(draft.keys.robot_options).model_fields
+        option = error.key[:1] and error.key[0] in type(walk.keys.robot_options).model_fields
         yield Problem(("robot_options", *error.key) if option else ("robot",), error.what, error.right)
         return
     except PluginError as error:
         yield Problem(("robot",), error.what, error.right)
         return
-    bodies: list[tuple[Key, str | None]] = [(("pushes", i, "body"), p.body) for i, p in enumerate(draft.keys.pushes)]
-    load = draft.keys.errors.payload
+    bodies: list[tuple[Key, str | None]] = [(("pushes", i, "body"), p.body) for i, p in enumerate(walk.keys.pushes)]
+    load = walk.keys.errors.payload
     bodies += [(("errors", "payload", "body"), load.body)] if load is not None else []
-    for key, body in (*bodies, (("robot_options", "payload_body"), draft.keys.robot_options.payload_body)):
+    for key, body in (*bodies, (("robot_options", "payload_body"), walk.keys.robot_options.payload_body)):
         if body is not None and body not in facts.bodies:
-            yield Problem(key, f"unknown body '{body}' of {draft.keys.robot}", nearest(body, facts.bodies))
-    steps = commanded_step_problems if draft.commanded else footstep_problems
-    feet = list(_reach(draft, facts)) or list(steps(draft, facts))
-    yield from feet or [*draft.kind.problems(draft, facts), *_unevenness(draft)]
+            yield Problem(key, f"unknown body '{body}' of {walk.keys.robot}", nearest(body, facts.bodies))
+    steps = _commanded_step_problems if commanded(walk.keys.gait) else _footstep_problems
+    feet = list(_reach(walk, facts)) or list(steps(walk, facts))
+    yield from feet or [*walk.ground.kind.problems(walk.ground, facts), *uneven_problems(walk.ground)]
 
 
-MOST_TILES = 1000
-"""Tiles of uneven ground, since every look at it goes through all of them [-]."""
-
-
-def _unevenness(draft: Draft) -> Iterator[Problem]:
-    key, kind = ("errors", "ground_noise"), draft.keys.terrain.kind
-    if draft.tiles is None:
-        return
-    if kind != "flat":
-        right = "use terrain.height_noise" if "height_noise" in draft.kind.keys and kind != "slope" else "use kind flat"
-        yield Problem(key, f"errors.ground_noise on terrain.kind {kind}", right)
-    elif draft.gait.steps > MOST_TILES or len(draft.tiles.cells(draft.site)) > MOST_TILES:
-        what = f"errors.ground_noise under {draft.gait.steps} steps needs more than {MOST_TILES} tiles"
-        yield Problem(key, what, "take fewer steps, or leave it out")
-
-
-def _reach(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
-    gait = draft.keys.gait
+def _reach(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:
+    gait = walk.keys.gait
     sideways = (gait.step_width - facts.hip_width) / 2
     if abs(sideways) >= facts.leg_length:
         what = f"gait.step_width {gait.step_width} m is out of reach of the legs"
@@ -173,164 +169,174 @@ def _reach(draft: Draft, facts: RobotFacts) -> Iterator[Problem]:
         yield Problem(
             ("gait", "com_height"), what, f"use less than {at_most(highest)} m{meant(gait.com_height, 'm', highest)}"
         )
-    elif gait.steps and not draft.commanded and abs(gait.step_length) > longest:
+    elif gait.steps and not commanded(walk.keys.gait) and abs(gait.step_length) > longest:
         what = f"gait.step_length {gait.step_length} m is out of reach at com_height {gait.com_height} m"
         right = f"use at most {at_most(longest)} m, or lower gait.com_height{meant(gait.step_length, 'm', longest)}"
         yield Problem(("gait", "step_length"), what, right)
 
 
-def _unavailable(draft: Draft) -> list[Problem]:
+def _unavailable(walk: Walk) -> list[Problem]:
     """List values that the contract allows and this version has not got."""
     found = []
     for key, values in AVAILABLE.items():
-        value: Any = draft.keys
+        value: Any = walk.keys
         for part in key:
             value = getattr(value, str(part))
         if value not in values:
             what = f"{dotted(key)} {value!r} is not available in this version"
             found.append(Problem(key, what, f"available: {', '.join(str(v) for v in values)}"))
-    return [*found, *_without_body(draft)] if draft.keys.fidelity == "pendulum" else found
+    return found if walk.walker.has_body else [*found, *_without_body(walk)]
 
 
-def _without_body(draft: Draft) -> Iterator[Problem]:
+def _without_body(walk: Walk) -> Iterator[Problem]:
     """List what would test nothing on a pendulum."""
-    for index, fault in enumerate(draft.keys.faults):
+    for index, fault in enumerate(walk.keys.faults):
         if fault.kind not in _PENDULUM_FAULTS:
             what = f"fault {fault.kind!r} needs joints, which fidelity pendulum has not got"
             yield Problem(("faults", index, "kind"), what, f"use fidelity full, or {' or '.join(_PENDULUM_FAULTS)}")
-    for index, push in enumerate(draft.keys.pushes):
+    for index, push in enumerate(walk.keys.pushes):
         if push.force is not None and push.force[2] != 0.0:
             what = "a vertical push on a pendulum, whose height is prescribed"
             yield Problem(("pushes", index, "force"), what, "use fidelity full, or [x, y, 0]")
 
 
-_NO_CONTACT = (
-    ("terrain", "friction"),
-    ("terrain", "height_noise"),
-    ("sensing", "force_estimate"),
-    ("gait", "heel_off"),
-    ("start", "angle_noise"),
-    ("errors", "friction"),
-    ("errors", "torso_com"),
-    ("errors", "ground"),
-    ("errors", "ground_noise"),
-)
-"""Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
-
-_POINT_ONLY = tuple(("pendulum", name) for name in PendulumSettings.model_fields)
-"""Keys of the pendulum alone."""
-
-_PLANT_READS = {"pendulum": ("feedback",), "cart_table": ()}
-"""Keys of `pendulum` that each of its plants reads."""
+def _walk_problems(walk: Walk) -> Iterator[Problem]:
+    """List what cannot be planned whatever the robot."""
+    gait, sample_time = walk.keys.gait, walk.keys.planner.sample_time
+    yield from walk.formulation.problems()
+    if walk.gait_duration > MOST_SAMPLES * sample_time:
+        what = f"a gait of {walk.gait_duration:.6g} s"
+        yield Problem(
+            ("gait", "steps"), what, f"it may last {MOST_SAMPLES * sample_time:g} s; use fewer or faster steps"
+        )
+    if walk.keys.duration is not None and walk.keys.duration * walk.keys.rates.control < 1.0:
+        what = f"duration {walk.keys.duration} s is shorter than one control tick"
+        yield Problem(("duration",), what, f"use at least {1 / walk.keys.rates.control:g} s")
+    if not _swing_too_short(walk):
+        yield from _apexes(gait)
 
 
-def notes(draft: Draft, driven: bool = False) -> tuple[str, ...]:
-    """List them, one sentence each.
-
-    Args:
-        draft: the scenario.
-        driven: whether its robot was told by hand how to walk.
-    """
-    still = () if driven or draft.keys.gait.steps or draft.commanded or draft.told else _without_steps(draft)
-    return (*_unlikely(draft), *_without_effect(draft), *_without_occasion(draft), *still, *_cut_short(draft))
-
-
-_LONG = 60.0
-"""Time from which a stand or a push may have been meant in milliseconds [s]."""
-
-
-def _unlikely(draft: Draft) -> Iterator[str]:
-    """Tell times that are what they say and were perhaps meant in another unit."""
-    times = {f"pushes.{index}.duration": push.duration for index, push in enumerate(draft.keys.pushes)}
-    for name, value in {"gait.initial_stand": draft.keys.gait.initial_stand, **times}.items():
-        hint = meant(value, "s", _LONG)
-        if hint:
-            yield f"{name} is {value:g} s{hint}"
-
-
-def _without_effect(draft: Draft) -> Iterator[str]:
-    keys = draft.keys
-    yield from _no_equal_steps(draft)
-    yield from _unshaped(draft)
-    point = keys.fidelity == "pendulum"
-    yield from _not_felt(draft) if point else ()
-    for group, name in _NO_CONTACT if point else _POINT_ONLY:
-        settings = getattr(keys, group)
-        if getattr(settings, name) != default_of(type(settings), name, draft.size):
-            yield f"{group}.{name} has no effect on a {'pendulum' if point else 'whole body'}"
-    if point and keys.wbc is not None:
-        yield "wbc has no effect on a pendulum"
-    if point and keys.rates.physics not in (Rates().physics, clock(Rates(), draft.size.time).physics):
-        yield "rates.physics has no effect on a pendulum"
-
-
-def _no_equal_steps(draft: Draft) -> Iterator[str]:
-    """Tell keys of equal steps in a walk whose steps are given in another way."""
-    gait, commands = draft.keys.gait, draft.keys.commands
-    instead = next((f"gait.{name}" for name in ("velocity", "footsteps", "waypoints") if getattr(gait, name)), None)
-    names: tuple[str, ...] = EQUAL_STEPS
-    if instead is None and not gait.steps and any(not command.live for command in commands):
-        instead, names = "commands and gait.steps 0", EQUAL_STEPS[1:]
-    # Of a walk to a place it is the longest stride.
-    bound = gait.waypoints or any(command.place is not None for command in commands)
-    for name in names if instead else ():
-        if not (bound and name == "step_length") and getattr(gait, name) != default_of(Gait, name, draft.size):
-            yield f"gait.{name} has no effect beside {instead}"
-
-
-def _not_felt(draft: Draft) -> Iterator[str]:
-    """Tell what a pendulum, which is one body, and its plant make nothing of."""
-    pendulum, load = draft.keys.pendulum, draft.keys.errors.payload
-    for name in PendulumSettings.model_fields:
-        read = name == "plant" or name in _PLANT_READS[pendulum.plant]
-        if not read and getattr(pendulum, name) != default_of(PendulumSettings, name, draft.size):
-            yield f"pendulum.{name} has no effect on pendulum.plant {pendulum.plant}"
-    bodies = {f"pushes.{index}.body": push.body for index, push in enumerate(draft.keys.pushes)}
-    bodies["errors.payload.body"] = None if load is None else load.body
-    yield from (f"{name} has no effect on a pendulum" for name, body in bodies.items() if body is not None)
-
-
-_STEPPING = ("step_length", "lateral_step", "turn", "swing_height", "apex_single", "apex_double", "heel_off")
-"""Keys of a gait that say how steps are taken."""
-
-_TIMES = ("single_support", "double_support", "initial_stand")
-"""Those that say when, by which a run lasts that has no duration of its own."""
-
-
-def _without_steps(draft: Draft) -> Iterator[str]:
-    """Tell what a robot that takes no step has no use for."""
-    keys = draft.keys
-    for name in (*_STEPPING, *(() if keys.duration is None else _TIMES)):
-        if getattr(keys.gait, name) != default_of(Gait, name, draft.size):
-            yield f"gait.{name} has no effect on a robot that takes no step"
-
-
-def _without_occasion(draft: Draft) -> Iterator[str]:
-    """Tell keys that shape what this scenario has not got: a climb, a load."""
-    keys, load = draft.keys, draft.keys.errors.payload
-    if keys.planner.rise is not None and keys.terrain.kind == "flat":
-        yield "planner.rise has no effect on level ground"
-    if keys.robot_options.payload_body is not None and keys.robot_options.payload_mass == 0.0:
-        yield "robot_options.payload_body has no effect without robot_options.payload_mass"
-    if load is not None and load.mass == 0.0:
-        yield "errors.payload has no effect without a mass"
-
-
-def _unshaped(draft: Draft) -> Iterator[str]:
-    terrain = draft.keys.terrain
-    try:
-        shaping = ("kind", "friction", *draft.kind.keys)
-        yield from draft.kind.notes(draft)
-    except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
+def _footstep_problems(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:
+    """List footsteps out of reach of the planner, and feet that would touch each other."""
+    gait = walk.keys.gait
+    if gait.step_width < facts.foot_width:
+        what = f"gait.step_width {gait.step_width} m lets feet {facts.foot_width:g} m wide touch"
+        yield Problem(("gait", "step_width"), what, f"use more than {facts.foot_width:g} m")
         return
-    for name in TerrainSettings.model_fields:
-        elsewhere = name not in shaping
-        if elsewhere and getattr(terrain, name) != default_of(TerrainSettings, name, draft.size):
-            yield f"terrain.{name} has no effect on terrain.kind {terrain.kind}"
+    found = (_footstep_problem(walk, facts, *step) for step in _landings(walk))
+    yield from [problem for problem in found if problem is not None][:1]
 
 
-def _cut_short(draft: Draft) -> Iterator[str]:
-    duration = draft.keys.duration
-    whole = draft.gait_duration
-    if duration is not None and duration < whole:
-        yield f"duration {duration:g} s ends before the gait does, which takes {whole:g} s"
+def _landings(walk: Walk) -> Iterator[tuple[int, Landing]]:
+    """Number of each footstep, and where it lands."""
+    gait = replace(walk.asked_gait, steps=min(walk.keys.gait.steps, _PERIOD))
+    footsteps = plan_footsteps(gait, walk.ground.stance, flat())
+    for row in range(2, footsteps.steps + 2):
+        yield row - 1, Landing.between(footsteps.footstep(row - 1), footsteps.footstep(row))
+
+
+def _footstep_problem(walk: Walk, facts: RobotFacts, number: int, place: Landing) -> Problem | None:
+    gait = walk.keys.gait
+    sideways = "lateral_step" if gait.lateral_step else "turn" if gait.turn else "step_width"
+    try:
+        check_reach(number, place, walk.formulation.usual)
+    except ParameterError as fault:
+        name = "step_length" if fault.key[-1] == "ahead" else sideways
+        return Problem(("gait", name), fault.what, f"{fault.right}; change gait.{name}")
+    apart = soles_apart((facts.foot_length, facts.foot_width), place.turn)
+    if place.beside < apart:
+        what = f"footstep {number} would land {place.beside:.3f} m beside its stance foot and touch it"
+        return Problem(("gait", sideways), what, f"keep the feet {at_least(apart)} m apart")
+    return None
+
+
+def _apexes(gait: Gait) -> Iterator[Problem]:
+    """List rises of the CoM in a support phase from which it would fall too fast."""
+    for support in ("single", "double"):
+        duration, apex = getattr(gait, f"{support}_support"), getattr(gait, f"apex_{support}")
+        highest = highest_apex(duration)
+        if apex > highest:
+            what = f"gait.apex_{support} {apex} m within {duration} s asks the CoM to fall faster than the feet allow"
+            right = f"use at most {at_most(highest, 4)} m, or a longer gait.{support}_support"
+            yield Problem(("gait", f"apex_{support}"), what, right)
+
+
+_VELOCITY = ("gait", "velocity")
+_FOOTSTEPS = ("gait", "footsteps")
+
+
+def _command_problems(walk: Walk) -> list[Problem]:
+    """List what makes velocity or footsteps no walk at all, whatever the robot."""
+    gait = walk.keys.gait
+    if gait.velocity and gait.footsteps:
+        return [Problem(_FOOTSTEPS, "footsteps beside gait.velocity", "give one of them", at_key=True)]
+    problems = [*_times(walk), *_feet(gait)]
+    if problems or not commanded(walk.keys.gait):
+        return problems
+    try:
+        _ = walk.asked_gait
+    except ParameterError as fault:
+        return [scenario_problem(fault)]
+    return []
+
+
+def _commanded_step_problems(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:
+    """Name velocities whose steps are out of reach with the fastest possible, or the first footstep that is."""
+    gait = walk.keys.gait
+    sole, span = (facts.foot_length, facts.foot_width), leg_span(gait.com_height, facts)
+    parameters = replace(walk.formulation.usual, reach_length=LONGEST_REACH * walk.size.length)
+    region = step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
+    for index, command in enumerate(gait.velocity):
+        right = _too_fast(gait, twist_of(command), region)
+        if right is not None:
+            stride = twist_of(command).stride(_period(gait), gait.step_width)
+            what = f"gait.velocity.{index} asks for steps of {_step_text(stride)} in {_period(gait):g} s, out of reach"
+            yield Problem((*_VELOCITY, index), what, right)
+    if gait.footsteps:
+        asked = walk.asked_gait
+        for index, stride in enumerate(asked.strides):
+            why = region.why_not(stride.landing(asked.step_foot(index + 1)))
+            if why is not None:
+                yield Problem((*_FOOTSTEPS, index), f"footstep {index + 1} {why[0]}", why[1])
+                return
+
+
+def _times(walk: Walk) -> Iterator[Problem]:
+    commands = walk.keys.gait.velocity
+    for index, (before, command) in enumerate(pairwise(commands), start=1):
+        if command.time <= before.time:
+            what = f"gait.velocity.{index}.time {command.time} s does not come after the command before it"
+            yield Problem((*_VELOCITY, index, "time"), what, f"use more than {before.time} s")
+    if commands and not twist_of(commands[-1]).is_zero:
+        what = "the last velocity command does not stop"
+        yield Problem((*_VELOCITY, len(commands) - 1), what, "end gait.velocity with the time at which to stand alone")
+
+
+def _feet(gait: Gait) -> Iterator[Problem]:
+    for index, (before, after) in enumerate(zip(gait.footsteps, gait.footsteps[1:], strict=False), start=1):
+        if before.foot == after.foot:
+            what = f"gait.footsteps.{index} moves the {after.foot} foot a second time"
+            yield Problem((*_FOOTSTEPS, index, "foot"), what, "left and right must take turns")
+
+
+def _too_fast(gait: Gait, twist: Twist, region: StepRegion) -> str | None:
+    limit = fastest(twist, _period(gait), gait.step_width, region)
+    if limit == twist:
+        return None
+    speeds = ", ".join(f"{name} {_toward_zero(getattr(limit, name)):g}" for name in ("v_x", "v_y", "yaw_rate"))
+    return f"the fastest in this direction is {speeds}; or take faster steps"
+
+
+def _period(gait: Gait) -> float:
+    """Time from one lift-off to the next [s]."""
+    return gait.single_support + gait.double_support
+
+
+def _step_text(stride: Stride) -> str:
+    named = ((stride.length, "m ahead"), (stride.lateral, "m to the left"), (stride.turn, "rad of turn"))
+    return " and ".join(f"{value:.3g} {unit}" for value, unit in named if value)
+
+
+def _toward_zero(value: float) -> float:
+    """Three decimals, never faster."""
+    return math.trunc(1000.0 * value) / 1000.0

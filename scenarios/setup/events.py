@@ -3,15 +3,18 @@
 import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from surefoot.errors import ParameterError
-from surefoot.planner.steps.commands import velocity_bouts
+from surefoot.planner.check import check_durations
+from surefoot.planner.geometry import wrap_angle
+from surefoot.planner.steps.commands import Pose, velocity_bouts
+from surefoot.planner.steps.source import AWAY
 from surefoot.scenarios.errors import Key, Problem
-from surefoot.scenarios.file.schema import Fault, PushSettings, Rates, VelocitySettings
+from surefoot.scenarios.file.schema import CommandSettings, Fault, PushSettings, Rates, VelocitySettings
 from surefoot.scenarios.file.units import meant
-from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.gait import gait_of, push_time, timeline_of, twist_of, uncommanded
+from surefoot.scenarios.setup.gait import gait_of, push_time, timed_command, timeline_of, twist_of, uncommanded
+from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.pushes import physics_window
 
 LEAST = 1e-9
@@ -56,17 +59,17 @@ class FaultWindow:
         return first / rates.control if first < self.end else math.inf
 
 
-def never_act(draft: Draft, end: float) -> Iterator[Problem]:
+def never_act(walk: Walk, end: float) -> Iterator[Problem]:
     """List the promised pushes and the faults that do nothing in a run that ends at this time [s].
 
     Raises:
         ParameterError: the gait cannot be walked, so that its phases have no times.
     """
-    rates = draft.keys.rates
-    for index, push in _promised(draft):
+    rates = walk.keys.rates
+    for index, push in _promised(walk):
         key, name = ("pushes", index), f"pushes.{index}"
         # Whether a walk that is told where to go comes to a step, the run will show.
-        time = 0.0 if draft.told and push.time is None else push_time(draft.gait, push)
+        time = 0.0 if walk.told and push.time is None else push_time(walk.asked_gait, push)
         start, stop = physics_window(time, push.duration, rates.physics)
         if time >= end:
             yield _too_late((*key, "time" if push.time is not None else "step"), f"{name} begins at", time, end)
@@ -75,7 +78,7 @@ def never_act(draft: Draft, end: float) -> Iterator[Problem]:
             yield Problem((*key, "duration"), what, "give it at least 1e-6 s")
         else:
             yield from _weak(key, push)
-    for index, fault in enumerate(draft.keys.faults):
+    for index, fault in enumerate(walk.keys.faults):
         key, name = ("faults", index), f"faults.{index}"
         first = FaultWindow.of(fault, rates.control).first_act(rates)
         if math.isinf(first):
@@ -86,24 +89,24 @@ def never_act(draft: Draft, end: float) -> Iterator[Problem]:
             yield _too_late((*key, "time"), f"{name} acts first at", first, end)
 
 
-def cut_off(draft: Draft) -> Iterator[Problem]:
+def cut_off(walk: Walk) -> Iterator[Problem]:
     """List the promised pushes and the faults that the end of the run cuts off.
 
     Raises:
         ParameterError: the gait cannot be walked, so that its phases have no times.
     """
-    rates = draft.keys.rates
-    end = round(draft.duration * rates.control) / rates.control
+    rates = walk.keys.rates
+    end = round(walk.duration * rates.control) / rates.control
     last = round(end * rates.physics, 6)
-    for index, push in _promised(draft):
-        if push.time is None and draft.told:
+    for index, push in _promised(walk):
+        if push.time is None and walk.told:
             continue
-        start, stop = physics_window(push_time(draft.gait, push), push.duration, rates.physics)
+        start, stop = physics_window(push_time(walk.asked_gait, push), push.duration, rates.physics)
         if start < last < stop:
             room = (last - start) / rates.physics
             hint = meant(push.duration, "s", room)
             yield _cut(("pushes", index, "duration"), stop / rates.physics, end, f"at most {room:.6g} s{hint}")
-    for index, fault in enumerate(draft.keys.faults):
+    for index, fault in enumerate(walk.keys.faults):
         window = FaultWindow.of(fault, rates.control)
         if window.start / rates.control < end < window.end / rates.control < math.inf:
             right = f"at most {end - fault.time:.6g} s, or no duration"
@@ -115,9 +118,9 @@ def _cut(key: Key, stop: float, end: float, right: str) -> Problem:
     return Problem(key, what, f"give it {right}")
 
 
-def _promised(draft: Draft) -> Iterator[tuple[int, PushSettings]]:
+def _promised(walk: Walk) -> Iterator[tuple[int, PushSettings]]:
     """The pushes that are to act, with their numbers; those that were given by hand need not."""
-    return ((index, push) for index, push in enumerate(draft.keys.pushes) if not push.live)
+    return ((index, push) for index, push in enumerate(walk.keys.pushes) if not push.live)
 
 
 def _weak(key: Key, push: PushSettings) -> Iterator[Problem]:
@@ -144,9 +147,9 @@ _SIZES = (
 """Keys of a size that is either 0 or meant to act; a place or a direction may be any number."""
 
 
-def slight(draft: Draft) -> Iterator[Problem]:
+def slight(walk: Walk) -> Iterator[Problem]:
     """List sizes that are not zero and so small that nothing follows from them but rounding."""
-    keys, errors = draft.keys, draft.keys.errors
+    keys, errors = walk.keys, walk.keys.errors
     sizes: list[tuple[Key, float]] = [
         ((group, name), getattr(getattr(keys, group), name) or 0.0) for group, names in _SIZES for name in names
     ]
@@ -163,19 +166,19 @@ def _too_late(key: Key, what: str, time: float, end: float) -> Problem:
     return Problem(key, f"{what} {time:.6g} s and never acts: the run ends at {end:.6g} s", "let it begin before")
 
 
-def idle_commands(draft: Draft) -> Iterator[Problem]:
+def idle_commands(walk: Walk) -> Iterator[Problem]:
     """List the velocity commands without which the walk would be the same, though they ask for a change."""
-    commands = draft.keys.gait.velocity
-    plain = gait_of(uncommanded(draft.keys.gait))
+    commands = walk.keys.gait.velocity
+    plain = gait_of(uncommanded(walk.keys.gait))
 
     def bouts(chosen: Sequence[VelocitySettings]) -> object:
         return velocity_bouts(timeline_of(chosen), plain)
 
     try:
-        walked, walk, found = bouts(commands), draft.gait, 0
+        walked, gait, found = bouts(commands), walk.asked_gait, 0
         times = [command.time for command in commands]
         # One in force as a foot lifts off acts; of the others few do, and each costs a look at the whole walk.
-        used = {bisect_right(times, walk.lift_off(step) + 1e-6) - 1 for step in range(1, walk.steps + 1)}
+        used = {bisect_right(times, gait.lift_off(step) + 1e-6) - 1 for step in range(1, gait.steps + 1)}
         for index, command in enumerate(commands[:-1]):
             if index in used or found == MOST_IDLE:
                 continue
@@ -187,3 +190,99 @@ def idle_commands(draft: Draft) -> Iterator[Problem]:
                 found += 1
     except ParameterError:  # told by the checks of the walk
         return
+
+
+def told_problems(walk: Walk) -> Iterator[Problem]:
+    """List commands and waypoints that say nothing, say two things, or cannot be obeyed."""
+    keys = walk.keys
+    placed = any(command.place is not None and not command.live for command in keys.commands)
+    if (keys.gait.waypoints or placed) and keys.gait.step_length == 0.0:
+        what = f"{'gait.waypoints' if keys.gait.waypoints else 'a place to go to'} with steps of no length"
+        yield Problem(("gait", "step_length"), what, "give the longest step")
+    if keys.gait.waypoints and (keys.gait.velocity or keys.gait.footsteps):
+        what = f"waypoints beside gait.{'velocity' if keys.gait.velocity else 'footsteps'}"
+        yield Problem(("gait", "waypoints"), what, "give one of them", at_key=True)
+        return
+    for index, command in enumerate(keys.commands):
+        yield from _told_problems(walk, ("commands", index), command)
+    yield from _no_way(walk)
+    where: list[Key] = [("gait", "waypoints")] if keys.gait.waypoints else []
+    where += [("commands", index) for index in range(len(keys.commands))]
+    if where and keys.terrain.kind != "flat":
+        what = "commands" if where[0][0] == "commands" else "gait.waypoints"
+        what = f"{what} on terrain.kind {keys.terrain.kind}, where footsteps are laid for the ground"
+        yield Problem(where[0], what, "use kind flat")
+    others = walk.formulation.profile.planner
+    if where and others is not None and not hasattr(others, "command"):
+        what = f"planner.profile {walk.formulation.profile.name}, whose planner takes no commands"
+        yield Problem(("planner", "profile"), what, "use a profile with surefoot's own walking planner")
+    leading = sorted((command for command in keys.commands if _leads(command)), key=lambda command: command.time)
+    if leading and keys.duration is None and not _stops(leading[-1]):
+        yield Problem(("commands",), "commands that do not end with a stop", "end them with v_x: 0, or give duration")
+
+
+def _no_way(walk: Walk) -> Iterator[Problem]:
+    """List waypoints at which the robot is already, where it stands at first or at the waypoint before."""
+    before, where = Pose(0.0, 0.0, 0.0), "the robot starts"
+    for index, to in enumerate(walk.keys.gait.waypoints):
+        place, turn = Pose(to.x, to.y, to.yaw), abs(wrap_angle(to.yaw - before.yaw))
+        if max(math.dist(place[:2], before[:2]) / walk.size.length, turn) <= AWAY:
+            what = f"gait.waypoints.{index} is where {where}, so that no step goes there"
+            yield Problem(("gait", "waypoints", index), what, "give another place or heading, or leave it out")
+        before, where = place, f"gait.waypoints.{index} is"
+
+
+def _told_problems(walk: Walk, key: Key, command: CommandSettings) -> Iterator[Problem]:
+    given = {name for name in type(command).model_fields if getattr(command, name) is not None} - {"time", "live"}
+    name = f"commands.{key[1]}"
+    if not given:
+        yield Problem(key, f"{name} says nothing", "give a velocity, a place, or what of the gait is to change")
+    if "place" in given and given & {"v_x", "v_y", "yaw_rate"}:
+        yield Problem(key, f"{name} has both a place and a velocity", "give one of them")
+    yield from _unheard(walk, key)
+    durations = {entry: getattr(command, entry) for entry in ("single_support", "double_support")}
+    try:
+        given_durations = {entry: value for entry, value in durations.items() if value is not None}
+        check_durations(replace(walk.asked_gait, **given_durations), walk.keys.planner.sample_time)
+    except ParameterError as fault:
+        if durations[str(fault.key[-1])] is not None:
+            yield Problem((*key, fault.key[-1]), f"{name}.{fault.what}", fault.right)
+
+
+def _unheard(walk: Walk, key: Key) -> Iterator[Problem]:
+    """List what of a promised command no plan hears of: it comes after the last one, or is superseded before the next.
+
+    A command is taken by the first plan at or after its time; of two that one plan takes the later one holds.
+    """
+    told, index = walk.keys.commands, int(key[1])
+    command, name = told[index], f"commands.{key[1]}"
+    rate, end = walk.keys.rates.planner, walk.keys.duration
+    heard = plan_of(command, rate)
+    if command.live:
+        return
+    if end is not None and heard / rate >= end - 1e-9:
+        what = f"{name} comes at {command.time:g} s and never acts: "
+        what += f"the run ends at {end:g} s" if command.time >= end else f"no plan comes before the end at {end:g} s"
+        yield Problem((*key, "time"), what, "let it come before")
+        return
+    for number, other in enumerate(told):
+        later = (other.time, number) > (command.time, index) and plan_of(other, rate) == heard
+        for entry in sorted(command.superseded_by(other)) if later and not other.live else ():
+            what = f"{name}.{entry} never acts: commands.{number} supersedes it before the plan at {heard / rate:g} s"
+            yield Problem((*key, entry), what, "leave one of them out, or let a plan come between")
+
+
+def plan_of(command: CommandSettings, rate: int) -> int:
+    """Number of the first plan that hears of a command, where plans come at a rate [Hz]."""
+    return math.ceil(command.time * rate - 1e-6)
+
+
+def _leads(command: CommandSettings) -> bool:
+    """Whether it says where to walk."""
+    return any(getattr(command, name) is not None for name in ("v_x", "v_y", "yaw_rate", "place"))
+
+
+def _stops(command: CommandSettings) -> bool:
+    """Whether it asks to stand."""
+    twist = timed_command(command).command.twist
+    return twist is not None and twist.is_zero

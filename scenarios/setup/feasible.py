@@ -15,9 +15,8 @@ from surefoot.errors import ParameterError
 from surefoot.scenarios.errors import Key, ScenarioError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.keys import scenario_key
-from surefoot.scenarios.setup.legs import leg_inertia
 from surefoot.scenarios.setup.rehearsal import check_legs, check_turns
-from surefoot.scenarios.setup.stance import Body, feet_at, start_posture
+from surefoot.scenarios.setup.stance import Body, feet_at, leg_inertia, start_posture
 from surefoot.scenarios.setup.stances import check_stances
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.scenarios.setup.walk import Walk, resolve
@@ -88,7 +87,10 @@ def proposed(walk: Walk, body: Body, key: Key) -> Proposal | None:
         calm = calm.after(scenario_key(key), climbs=bool(_ground(keys)))
         proposal = calm.proposal(keys, walk)
         try:
-            _fit(resolve(read_scenario(walk.text, walk.name, walk.name, proposal), walk.robot, walk.profile), body)
+            _fit(
+                resolve(read_scenario(walk.text, walk.name, walk.name, proposal), walk.robot, walk.formulation.profile),
+                body,
+            )
         except ParameterError as refusal:
             key = refusal.key
         except ScenarioError:

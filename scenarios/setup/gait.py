@@ -7,25 +7,42 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.errors import ParameterError
+from surefoot.models.facts import RobotFacts
+from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.commands import (
+    Command,
+    Pose,
+    TimedCommand,
     Twist,
     VelocityCommand,
     VelocityTimeline,
-    fitted,
     footstep_bouts,
     leading_foot,
     velocity_bouts,
     walk_of,
 )
 from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.source import CommandSource, steps_ordered
 from surefoot.planner.swing.step_region import StepRegion
-from surefoot.planner.types import Foot, Footstep, PhaseInfo, PhaseKind
-from surefoot.scenarios.file.schema import FootstepSettings, Gait, PushSettings, VelocitySettings
-from surefoot.scenarios.setup.robot import RobotFacts
+from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PhaseKind
+from surefoot.scenarios.file.schema import (
+    CommandSettings,
+    FootstepSettings,
+    Gait,
+    PushSettings,
+    Start,
+    VelocitySettings,
+)
 
 EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
+
+_STOPPING = 3.0
+"""Steps that a robot takes at most after it was told to stop [-]."""
+
+_LARGEST_SOLE = (0.3, 0.15)
+"""Length and width of soles where a scenario says nothing of them; smaller ones do not make strides shorter [m]."""
 
 FINAL_STAND = 2.5
 """Standing after the last double support that ends a run whose duration is not given, of the reference robot [s]."""
@@ -71,11 +88,6 @@ def gait_of(keys: Gait) -> GaitParameters:
     return plain
 
 
-def fitted_to(region: StepRegion, gait: GaitParameters, keys: Gait) -> GaitParameters:
-    """The gait with the widths of a velocity's strides fitted to where feet may land."""
-    return fitted(gait, region) if keys.velocity else gait
-
-
 def longest_landing(gait: GaitParameters) -> float:
     """How far ahead of or behind its stance foot a step lands at most, either foot leading [m]."""
     places = [stride.landing(foot) for stride in gait.strides for foot in Foot]
@@ -99,6 +111,35 @@ def timeline_of(commands: Sequence[VelocitySettings]) -> VelocityTimeline:
 def footsteps_of(footsteps: Sequence[FootstepSettings]) -> list[Footstep]:
     """Footsteps in the planner's terms, in the frame between the start feet."""
     return [Footstep(Foot[step.foot.upper()], np.array([step.x, step.y, 0.0]), step.yaw) for step in footsteps]
+
+
+def timed_command(settings: CommandSettings) -> TimedCommand:
+    """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
+    velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
+    twist = None if velocity == (None, None, None) else Twist(*(value or 0.0 for value in velocity))
+    place = settings.place
+    places = None if place is None else (Pose(place.x, place.y, place.yaw),)
+    gait = (settings.single_support, settings.double_support, settings.swing_height)
+    return TimedCommand(settings.time, Command(twist, places, *gait))
+
+
+def waypoints_of(keys: Gait, start: Start) -> tuple[Pose, ...]:
+    """The places of `gait.waypoints` in the world frame."""
+    origin, rotation = np.array([start.x, start.y]), frame_rotation(start.yaw)
+    places = ((origin + rotation @ (to.x, to.y), to.yaw + start.yaw) for to in keys.waypoints)
+    return tuple(Pose(float(place[0]), float(place[1]), heading) for place, heading in places)
+
+
+def told_until(gait: GaitParameters, command: CommandSettings) -> float:
+    """Time at which the robot stands after a command that lets it stop, or a little later [s]."""
+    return command.time + _STOPPING * gait.period
+
+
+def there_at(gait: GaitParameters, start: Pose, places: tuple[Pose, ...], parameters: PlannerParameters) -> float:
+    """Time at which the robot stands at the last of some places, where nothing comes between, or a little later [s]."""
+    sole = parameters.size.times(_LARGEST_SOLE, "m")
+    source = CommandSource(gait, step_region(parameters, sole, sole[1]), places=places, size=parameters.size)
+    return gait.initial_stand + gait.double_support + (steps_ordered(source, gait, start) + 1) * gait.period
 
 
 def step_region(
@@ -192,6 +233,14 @@ class PushPoint:
     def __str__(self) -> str:
         """In the words of a scenario."""
         return f"fraction {self.fraction:g} of the {self.kind.name.lower()} support of step {self.step}"
+
+
+def push_force(push: PushSettings, mass: float) -> Array:
+    """Force of a push, given directly or by its impulse per mass [kg], shape (3,) [N]."""
+    if push.impulse is None:
+        return np.array(push.force or np.zeros(3))
+    size, direction = mass * push.impulse / push.duration, push.direction or 0.0
+    return size * np.array([math.cos(direction), math.sin(direction), 0.0])
 
 
 def phase_of(gait: GaitParameters, step: int, phase: str) -> tuple[float, float]:

@@ -1,7 +1,11 @@
-"""The one table from the words of the layers below to the keys of a scenario file."""
+"""Tables of keys: what the layers below call them, and which of them each fidelity feels."""
+
+from dataclasses import dataclass
 
 from surefoot.errors import ParameterError
+from surefoot.planner.references.com_height import Rise
 from surefoot.scenarios.errors import Key, Problem
+from surefoot.scenarios.file.schema import PendulumSettings
 
 _NAMES: dict[Key, Key] = {
     ("gait", "apex_ss"): ("gait", "apex_single"),
@@ -38,3 +42,44 @@ def scenario_problem(refusal: ValueError) -> Problem:
     if not isinstance(refusal, ParameterError):
         return Problem((), str(refusal).rstrip("."), "change the scenario so that it fits")
     return Problem(scenario_key(refusal.key), refusal.what, refusal.right)
+
+
+_NO_CONTACT = (
+    ("terrain", "friction"),
+    ("terrain", "height_noise"),
+    ("sensing", "force_estimate"),
+    ("gait", "heel_off"),
+    ("start", "angle_noise"),
+    ("errors", "friction"),
+    ("errors", "torso_com"),
+    ("errors", "ground"),
+    ("errors", "ground_noise"),
+)
+"""Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fidelity:
+    """What walks.
+
+    Attributes:
+        thing: it, in the words of a message.
+        has_body: whether it has masses, joints and contacts.
+        rise: support phase in which its CoM climbs unless the scenario says it. A pendulum can do what the paper does,
+            and climbs in double support; legs cannot, and climb in single support.
+        unfelt: keys, of a group each, without effect on it.
+    """
+
+    thing: str
+    has_body: bool
+    rise: Rise
+    unfelt: tuple[tuple[str, str], ...]
+
+
+FIDELITIES = {
+    "full": Fidelity(
+        "whole body", True, Rise.SINGLE, tuple(("pendulum", name) for name in PendulumSettings.model_fields)
+    ),
+    "pendulum": Fidelity("pendulum", False, Rise.DOUBLE, _NO_CONTACT),
+}
+"""By the values of the key ``fidelity``."""

@@ -33,9 +33,9 @@ from surefoot.scenarios.record.provenance import (
     STOPPED,
 )
 from surefoot.scenarios.setup.checks import check
-from surefoot.scenarios.setup.criteria_checks import criteria_problems
+from surefoot.scenarios.setup.criteria import criteria_problems
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
-from surefoot.scenarios.setup.sized import draft_of, say_for
+from surefoot.scenarios.setup.sized import say_for, walk_of
 from surefoot.scenarios.setup.terrain import kind_of
 
 LOG_ENDING = ".mcap"
@@ -269,7 +269,7 @@ def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     of, walk = (_sound({**one, "robot": name}, robots) for one, name in zip((before, source.value), names, strict=True))
     if of is None or walk is None:
         return
-    from surefoot.scenarios.setup.bend import bent_alike
+    from surefoot.scenarios.setup.posture import bent_alike
 
     with suppress(ParameterError):
         source.value["gait"]["com_height"] = bent_alike(of, walk)
@@ -289,8 +289,9 @@ def _sound(values: dict[str, Any], robots: Robots) -> Scenario | None:
 def _checked(scenario: Scenario, robots: Robots) -> tuple[Scenario, list[Problem]]:
     """The scenario with what follows from its ground, and what of it does not fit together."""
     try:
-        draft = draft_of(kind_of(scenario.terrain.kind).completed(scenario), robots)
-        return draft.keys, check(draft, robots)
+        gait = kind_of(scenario.terrain.kind).completed(scenario.terrain, scenario.gait)
+        walk = walk_of(scenario.model_copy(update={"gait": gait}), robots)
+        return walk.keys, check(walk, robots)
     except PartError as fault:  # of the ground: what is wrong with a robot is among the checks
         return scenario, [Problem(("terrain", "kind"), fault.what, fault.right)]
 

@@ -1,48 +1,21 @@
-"""What of a walk follows from more than a robot's size: its CoM height, how wide it stands, how deep treads are."""
+"""What of a walk follows from more than a robot's size: its CoM height, how wide it stands, how deep treads are.
+
+Another robot carries its CoM on the same walk as high as leaves its knees bent as much where they are straightest.
+Equal legs alone do not say it. Where the CoM is beside the hips, how much of the mass is in the legs, how long the
+soles are and how far apart the hips, all of that moves the hips over the feet, and with them how straight a leg gets
+that is left behind. So both robots stand as they would (see `surefoot.scenarios.setup.stances`), and are compared.
+"""
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from surefoot.errors import ParameterError
+from surefoot.models.facts import RobotFacts, similar_com_height, similar_step_width, similar_tread
 from surefoot.scenarios.errors import Key
-from surefoot.scenarios.setup.robot import RobotFacts
-
-CLEAR = 0.04
-"""Lateral room between the shanks, or the soles, of a reference robot that walks straight ahead [m]."""
-
-
-def com_height(value: float, before: RobotFacts, after: RobotFacts) -> float:
-    """CoM height at which the legs are bent as much: the hips at the same share of the leg's length [m].
-
-    Args:
-        value: that of the robot before [m].
-        before: facts of it.
-        after: of the other one.
-    """
-    return after.size.length / before.size.length * (value - before.com_above_hip) + after.com_above_hip
-
-
-def step_width(value: float, before: RobotFacts, after: RobotFacts, nearer: float = math.inf) -> float:
-    """Step width for another robot: scaled, and wider by what its shanks or soles need to stay clear of each other [m].
-
-    Feet that may land anywhere keep all the room between them that they have in the scenario as it was written. Those
-    that come by a known way nearer than the width keep `CLEAR` of it: a wider step is not a similar one, its CoM sways
-    further, and the moment about the vertical that the stance sole has to hold while a leg swings grows with it.
-
-    Args:
-        value: that of the robot before [m].
-        before: facts of it.
-        after: of the other one.
-        nearer: how much nearer than that feet land in the walk as it was written; infinite where nobody knows [m].
-    """
-    length = after.size.length / before.size.length
-    wider = 0.0
-    for name in ("shank_spacing", "foot_width"):
-        own, other = getattr(before, name), getattr(after, name)
-        spare = max(0.0, value - nearer - own - CLEAR * before.size.length)
-        wider = max(wider, other - length * (own + spare))
-    return length * value + wider
+from surefoot.scenarios.file.schema import Scenario
 
 
 def nearer_landings(gait: Mapping[str, Any], told: bool) -> float:
@@ -61,15 +34,6 @@ def nearer_landings(gait: Mapping[str, Any], told: bool) -> float:
     return abs(aside) if isinstance(aside, int | float) else math.inf
 
 
-def tread(value: float, before: RobotFacts, after: RobotFacts) -> float:
-    """Depth of a tread for another robot: scaled, and deeper by what its soles are longer than scaled ones [m].
-
-    So no sole lands nearer to an edge; arguments as of `com_height`.
-    """
-    length = after.size.length / before.size.length
-    return length * value + max(0.0, after.foot_length - length * before.foot_length)
-
-
 Rule = Callable[[float, RobotFacts, RobotFacts], float]
 """Gives the value of a key for another robot, from the value for one, facts of that one, and facts of the other."""
 
@@ -81,11 +45,58 @@ def rules(nearer: float) -> dict[Key, Rule]:
         nearer: how much nearer than its step width the feet of the walk land (see `nearer_landings`) [m].
     """
     return {
-        ("gait", "com_height"): com_height,
-        ("gait", "step_width"): partial(step_width, nearer=nearer),
-        ("terrain", "tread"): tread,
+        ("gait", "com_height"): similar_com_height,
+        ("gait", "step_width"): partial(similar_step_width, nearer=nearer),
+        ("terrain", "tread"): similar_tread,
     }
 
 
 POSTURE = ("com_height", "step_width")
 """Those of them that every walk has."""
+
+_WAYS = (-0.06, 0.03)
+"""How far lower and higher it is sought, of the leg's length [-]."""
+
+_DECIMALS = 4
+"""Of a height [m]."""
+
+
+def bent_alike(before: Scenario, after: Scenario) -> float:
+    """CoM height with which the straightest knee is bent as that of another robot on its walk [m].
+
+    Args:
+        before: the walk of the other one.
+        after: the same walk of the one in question, at about that height.
+
+    Returns:
+        The height; as it is where no stance is known beforehand, or none near it makes them alike.
+
+    Raises:
+        ParameterError: the other one cannot stand so.
+    """
+    from scipy.optimize import brentq
+
+    from surefoot.scenarios.setup.stance import body_of
+    from surefoot.scenarios.setup.stances import least_bend
+    from surefoot.scenarios.setup.walk import resolve
+
+    of, walk = resolve(before), resolve(after)
+    body, leg, height = body_of(walk.robot), walk.robot.leg_length, walk.gait.com_height
+
+    def bend(tried: float) -> float:
+        """With the CoM at a height; none where the legs do not reach."""
+        gait = after.gait.model_copy(update={"com_height": tried})
+        try:
+            return least_bend(replace(walk, keys=after.model_copy(update={"gait": gait})), body) or 0.0
+        except ParameterError:
+            return 0.0
+
+    wanted = least_bend(of, body_of(of.robot))
+    if wanted is None:
+        return height
+    low, high = (height + leg * way for way in _WAYS)
+    try:
+        found = brentq(lambda tried: bend(tried) - wanted, low, high, xtol=0.5 * 10.0**-_DECIMALS)
+    except ValueError:  # nowhere between them
+        return height
+    return round(float(found), _DECIMALS)

@@ -8,10 +8,10 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from surefoot.errors import ParameterError, at_most
+from surefoot.models.facts import ankle_pitch, pitch_joints, shank_outline, yaw_joint
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
-from surefoot.scenarios.setup.straight import ankle_pitch, pitch_joints, shank_outline, yaw_joint
 from surefoot.scenarios.setup.walk import Walk
 
 if TYPE_CHECKING:
@@ -71,7 +71,11 @@ def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
     """
     chain = leg.chain
     fast, rolls = _fast(walk), walk.gait.heel_off > 0.0
-    if chain is None or walk.profile.planner is not None or not (fast or rolls or walk.terrain.has_edges):
+    if (
+        chain is None
+        or walk.formulation.profile.planner is not None
+        or not (fast or rolls or walk.ground.terrain.has_edges)
+    ):
         return
     way = rehearsed(walk, feet, leg)
     toe = 0.5 * walk.robot.sole_length
@@ -81,7 +85,7 @@ def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
         _check_speeds(walk.robot, angles, way.sample_time)
     if rolls:
         _check_ankles(walk.robot, angles[2], way)
-    if walk.terrain.has_edges:
+    if walk.ground.terrain.has_edges:
         _check_shanks(walk, way, joints)
 
 
@@ -233,11 +237,11 @@ def _edges(walk: Walk, sole: Array, heading: Array) -> Array:
     """Upper edges ahead of a sole that are higher than it, shape (m, 2): ahead and up from its centre [m]."""
     grid = _GRID * walk.size.length
     ahead = np.arange(0.0, 0.6 * walk.robot.leg_length, grid)
-    heights = walk.terrain.heights(sole[:2] + ahead[:, None] * heading) - sole[2]
+    heights = walk.ground.terrain.heights(sole[:2] + ahead[:, None] * heading) - sole[2]
     rises = np.flatnonzero(np.diff(heights) > grid)
     before, behind, upper = ahead[rises], ahead[rises + 1], heights[rises + 1]
     for _ in range(_HALVINGS):
         middle = 0.5 * (before + behind)
-        low = walk.terrain.heights(sole[:2] + middle[:, None] * heading) - sole[2] < upper - 0.5 * grid
+        low = walk.ground.terrain.heights(sole[:2] + middle[:, None] * heading) - sole[2] < upper - 0.5 * grid
         before, behind = np.where(low, middle, before), np.where(low, behind, middle)
     return np.column_stack((behind, upper))

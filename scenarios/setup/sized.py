@@ -17,18 +17,19 @@ from pydantic import BaseModel
 from pydantic_core import PydanticCustomError
 
 from surefoot.errors import ParameterError
+from surefoot.models.facts import RobotFacts, stance_widening
 from surefoot.planner.parameters import RecoveryParameters
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario
+from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario, model_of
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.posture import POSTURE, Rule, nearer_landings, rules
-from surefoot.scenarios.setup.robot import RobotFacts, Robots, is_known, stance_widening
+from surefoot.scenarios.setup.robot import Robots, is_known
+from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
@@ -48,13 +49,13 @@ _SOLES = ("foot_length", "foot_width")
 G = TypeVar("G", bound=BaseModel)
 
 
-def draft_of(scenario: Scenario, robots: Robots) -> Draft:
-    """The draft of a scenario with the defaults of its robot; of one that nobody has, which others tell, as it is."""
+def walk_of(scenario: Scenario, robots: Robots) -> Walk:
+    """What a scenario means with the defaults of its robot; of one that nobody has, which others tell, as it is."""
     facts = None if scenario.robot == REFERENCE else _facts(scenario.robot, RobotSettings(), robots)
     if facts is None or facts.size == REFERENCE_SIZE:
-        return Draft(scenario)
+        return Walk(scenario)
     size = facts.size
-    return Draft(with_defaults(scenario, size, robots), size, stance_widening(facts, size), facts.foot_length)
+    return Walk(with_defaults(scenario, size, robots), size, stance_widening(facts, size), facts.foot_length)
 
 
 def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:
@@ -186,7 +187,7 @@ class _Translation:
             if inner is not None:
                 members = enumerate(value) if isinstance(value, list) else [(None, value)]
                 for index, member in members:
-                    self._group(inner, member, at if index is None else (*at, index))
+                    self._group(model_of(inner, member), member, at if index is None else (*at, index))
             elif unit:
                 self._put(values, name, at, self._number(value, unit, at))
 

@@ -1,26 +1,29 @@
-"""How the robot stands when a run begins: the posture, its noise, and the feet as the planner first sees them."""
+"""How a robot stands: what that takes of its joints, and the posture, its noise and the feet when a run begins."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.models.facts import safe_range
+from surefoot.models.legs import leg_masses, point_mass
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
+from surefoot.planner.model.leg_chain import LegChain, Link
+from surefoot.planner.parameters import LegInertia
 from surefoot.planner.types import FeetState
 from surefoot.scenarios.setup.walk import Walk
+from surefoot.streams import generator
 from surefoot.wbc.ik import PostureIk, PostureTarget
 from surefoot.wbc.leaning import line_centre
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames
+from surefoot.wbc.statics import standing_torque
 
 Array = NDArray[np.float64]
-
-STOPS_OFF = 1e-3
-"""How far from the ends of their ranges joints are held, since a touchdown shakes them past where that is [rad]."""
 
 SOLE_SINKAGE = 1.3e-4
 """How far the reference robot's soles sink into the simulated ground under its weight [m]."""
@@ -55,21 +58,9 @@ def body_of(robot: RobotDescription) -> Body:
         robot=robot,
         model=pinocchio_model(robot),
         frames=frames_of(robot),
-        limits=_limits(robot),
+        limits=JointLimits(robot.torque_limit, robot.velocity_limit, *safe_range(robot)),
         leg_joints=np.isin(robot.joint_names, robot.roles.legs),
     )
-
-
-def _limits(robot: RobotDescription) -> JointLimits:
-    """Limits of the joints, a little inside their ranges; of knees that can bend both ways only the one that walks.
-
-    Past straight, what should shorten a leg bends its knee the further the wrong way, into its stop.
-    """
-    off = np.minimum(STOPS_OFF, 0.25 * (robot.position_upper - robot.position_lower))
-    lower, upper = robot.position_lower + off, robot.position_upper - off
-    for knee, bend in zip(robot.joint_indices(robot.roles.knees), robot.roles.knee_bend, strict=True):
-        (lower if bend > 0.0 else upper)[knee] = robot.straight_joint_positions[knee] + bend * off[knee]
-    return JointLimits(robot.torque_limit, robot.velocity_limit, lower, upper)
 
 
 def frames_of(robot: RobotDescription) -> BodyFrames:
@@ -78,13 +69,21 @@ def frames_of(robot: RobotDescription) -> BodyFrames:
     return BodyFrames(soles=robot.sole_sites, torso=robot.torso_body, leaning=leaning)
 
 
+def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray[np.bool_]) -> LegInertia:
+    """The legs as the planner knows them; arguments as of `surefoot.models.legs.leg_masses`."""
+    given = model, frames.soles, q, leg_joints
+    masses = leg_masses(*given)
+    links = {"thigh": Link(*masses.thigh), "shank": Link(*masses.shank)}
+    return LegInertia(point_mass(*given), LegChain(**{**masses._asdict(), **links}))
+
+
 def start_posture(walk: Walk, body: Body) -> Array:
     """Configuration, shape (nq,), that stands with the CoM at its height over the middle of the feet.
 
     Raises:
         ParameterError: the legs cannot reach that stance.
     """
-    feet, start, height, ground = walk.stance, walk.start, walk.standing_height, walk.start_height
+    feet, start, height, ground = walk.ground.stance, walk.start, walk.standing_height, walk.ground.start_height
     target = PostureTarget(feet.position, feet.yaw, np.array([start.x, start.y, ground + height]), start.yaw)
     robot = body.robot
     q = pin.neutral(body.model)
@@ -113,7 +112,7 @@ def disturbed(q: Array, walk: Walk, body: Body) -> Array:
     start = walk.start
     if start.position_noise == 0.0 and start.angle_noise == 0.0:
         return q
-    rng = np.random.default_rng(walk.seed)
+    rng = generator(walk.seed)
     nv = body.model.nv
     offset = np.zeros(nv)
     offset[:3] = rng.uniform(-start.position_noise, start.position_noise, 3)
@@ -121,7 +120,7 @@ def disturbed(q: Array, walk: Walk, body: Body) -> Array:
     q = pin.integrate(body.model, q, offset)
     feet = feet_at(body, q)
     soles = feet.position.copy()
-    soles[:, 2] = walk.start_height
+    soles[:, 2] = walk.ground.start_height
     result = body.ik(q[7:]).solve(PostureTarget(soles, feet.yaw), q)
     if not result.reached:
         raise ParameterError(
@@ -154,3 +153,50 @@ def _sole_placements(body: Body, q: Array) -> tuple[Array, Array]:
     pin.framesForwardKinematics(body.model, data, q)
     placements = [data.oMf[body.model.getFrameId(name)] for name in body.frames.soles]
     return np.array([p.translation for p in placements]), np.array([p.rotation for p in placements])
+
+
+@dataclass(frozen=True, slots=True)
+class TorqueMargin:
+    """How much of their torque the joints need to hold a posture.
+
+    Attributes:
+        joint: the one that needs most of its own; empty where the posture cannot be taken.
+        share: of its limit [-].
+        needed: its torque [N m].
+    """
+
+    joint: str
+    share: float
+    needed: float
+
+
+def standing(body: Body, side: float) -> tuple[TorqueMargin, Array]:
+    """Torque that standing takes with the CoM at its nominal height, and the configuration, shape (nq,).
+
+    Args:
+        body: that stands, with the feet below its hips or as near as its shanks come.
+        side: where the CoM is: midway (0), over the left sole, which then bears all (1), or the right one (-1).
+    """
+    robot = body.robot
+    half = 0.5 * max(robot.hip_width, robot.shank_spacing)
+    soles = np.array([[0.0, half, 0.0], [0.0, -half, 0.0]])
+    target = PostureTarget(soles, np.zeros(2), np.array([0.0, side * half, robot.com_height]), 0.0)
+    q = pin.neutral(body.model)
+    q[2] = robot.leg_length
+    q[7:] = robot.nominal_joint_positions
+    ik = body.ik(robot.nominal_joint_positions)
+    found = ik.solve(target, q)
+    if not found.reached:  # the pelvis rolls where a hip ends, see `surefoot.wbc.tasks.trunk.HipStops`
+        found = ik.solve(replace(target, rolling=True), found.q)
+    if not found.reached:
+        return TorqueMargin("", math.inf, math.inf), found.q
+    foot = None if side == 0.0 else int(side < 0.0)
+    torque = standing_torque(body.model, body.frames, found.q, foot=foot)
+    shares = np.abs(torque) / robot.torque_limit
+    worst = int(np.argmax(shares))
+    return TorqueMargin(robot.joint_names[worst], float(shares[worst]), float(abs(torque[worst]))), found.q
+
+
+def on_one_foot(body: Body) -> TorqueMargin:
+    """What standing on one foot takes; of the left and the right one the worse."""
+    return max((standing(body, side)[0] for side in (1.0, -1.0)), key=lambda margin: margin.share)

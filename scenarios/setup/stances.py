@@ -150,7 +150,7 @@ def _unreached(walk: Walk, body: Body, stance: Stance, q: Array, error: float) -
 def _refusal(walk: Walk, stance: Stance, what: str, right: str) -> ParameterError:
     if np.any(stance.soles[:, 4:]):
         return ParameterError(("terrain", "angle"), what, "give less steep ground, or another gait.com_height")
-    if walk.terrain.has_edges and abs(float(np.ptp(stance.soles[:, 2]))) > 1e-3:
+    if walk.ground.terrain.has_edges and abs(float(np.ptp(stance.soles[:, 2]))) > 1e-3:
         right = "give lower stairs, another gait.com_height, or feet that roll (gait.heel_off)"
         return ParameterError(("terrain", "riser"), what, right)
     return ParameterError(("gait", "step_length"), what, right)
@@ -159,7 +159,7 @@ def _refusal(walk: Walk, stance: Stance, what: str, right: str) -> ParameterErro
 def _stances(walk: Walk) -> Iterator[Stance]:
     """Both ends of each double support between two steps; of alike ones the first."""
     gait = replace(walk.gait, steps=min(walk.gait.steps, _LOOKED_AT)) if not walk.gait.bouts else walk.gait
-    footsteps = plan_footsteps(gait, walk.stance, walk.terrain)
+    footsteps = plan_footsteps(gait, walk.ground.stance, walk.ground.terrain)
     seen: set[tuple[float, ...]] = set()
     for row in range(2, min(footsteps.steps, _LOOKED_AT) + 2):
         stands, lands, lifted = (footsteps.footstep(one) for one in (row - 1, row, row - 2))

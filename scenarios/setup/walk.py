@@ -1,34 +1,44 @@
-"""A scenario resolved: what it means, computed once, in the terms of the layers below; nobody there sees a scenario."""
+"""What a scenario means, each part derived once, in the terms of the layers below; nobody there sees a scenario."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from operator import index
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import yaml
 
-from surefoot.guard import Guard
+from surefoot.models.facts import RobotFacts, facts_of, size_of, stance_widening
 from surefoot.planner.check import check_walk
-from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.parameters import LegInertia, PlannerParameters
 from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.references.com_height import HeightProfile
-from surefoot.planner.steps.commands import Pose, TimedCommand
+from surefoot.planner.steps.commands import Command, Pose, TimedCommand, fitted
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
-from surefoot.planner.types import GRAVITY, Array, FeetState
+from surefoot.planner.types import FeetState
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
-from surefoot.scenarios.setup.commands import told, waypoints
-from surefoot.scenarios.setup.draft import Draft
-from surefoot.scenarios.setup.gait import PushPoint, leg_span, step_region
-from surefoot.scenarios.setup.parts import guarded_law, profile_guard
-from surefoot.scenarios.setup.robot import describe, facts_of, size_of, stance_widening, true_robot
+from surefoot.scenarios.setup.formulation import Formulation, cop_room, leg_reach, lowered, region_of
+from surefoot.scenarios.setup.gait import (
+    FINAL_STAND,
+    PushPoint,
+    gait_of,
+    push_force,
+    step_region,
+    there_at,
+    timed_command,
+    told_until,
+    waypoints_of,
+)
+from surefoot.scenarios.setup.keys import FIDELITIES, Fidelity
+from surefoot.scenarios.setup.parts import guarded_law
+from surefoot.scenarios.setup.robot import describe, true_robot
+from surefoot.scenarios.setup.terrain import kind_of
+from surefoot.scenarios.setup.terrain.ground import Ground, tiles_of
 from surefoot.sim.pushes import Push
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
@@ -36,153 +46,189 @@ from surefoot.wbc.parameters import WbcParameters
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
 
-LEG_SHARE = 0.9
-"""Share of the span of the legs that steps on command make use of: with all of it both are straight at touchdown, and
-at 0.88 m/s a push felled the robot that it took at 0.65 to 0.8 m/s [-]."""
-
-ANKLE_SHARE = 0.85
-"""Share of an ankle's torque that bears the robot with the CoP at the edge of its room; the rest is for shocks [-]."""
-
-LEAST_ROOM = 0.15
-"""Room of the CoP that a planner needs in any case, of the sole to each side [-]."""
-
 LEAST_BELIEVED_FRICTION = 0.05
 """The controller counts on at least this friction, so that its wrench cones keep an inside."""
 
+_HANDED_ON = ("name", "fidelity", "seed", "rates", "start", "sensing", "faults", "pendulum")
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, eq=False)
 class Walk:
-    """Everything that a run is made of.
+    """Everything that a run is made of, and what the checks look at before anyone knows whether it can be run.
 
-    What "is believed" is what planner and controller are told; the simulated world may differ.
+    What "is believed" is what planner and controller are told; the simulated world may differ. Each part is derived
+    once, when it is first asked for, and raises `ParameterError` where the keys refuse it; of a walk that `resolve`
+    gives all have been.
 
     Attributes:
+        keys: the scenario as the user wrote it; nobody below this room sees it.
+        size: of its robot, without what it carries.
+        wider: by what that has to stand wider than the reference robot, scaled [m].
+        foot_length: of its soles where it is known without the scenario, which that of the reference is not [m].
+        described: a robot in place of the one that the scenario names.
+        given: a profile in place of the planner's profile that it names.
         name: of the scenario.
-        text: the scenario as run, in YAML.
         fidelity: full or pendulum.
         seed: of everything random.
-        duration: simulated time [s].
-        gait_duration: until the end of the last double support [s].
         rates: of the clock.
-        robot: as believed.
-        true_robot: as simulated; the same object when nothing about it is believed wrongly.
-        true_mass: [kg].
-        true_com_height: nominal, above the soles [m].
-        height_error: believed minus true CoM height [m].
-        friction: as believed [-].
-        gait: what is walked.
-        heights: law of the CoM height.
-        standing_height: CoM over the soles at begin and end [m].
-        terrain: the ground as believed.
-        true_terrain: the ground as simulated.
-        terrain_kind: name of its kind.
-        unforeseen: numbers of the boxes of the simulated ground that lie elsewhere than believed, by the key that has
-            put them there.
         start: where the walk starts, with its noises.
-        start_height: of the ground there [m].
-        stance: the feet there, side by side.
-        profile: formulation of the planner.
-        guard: stands around the calls of what the profile brings.
-        parameters: of the planner, for legs without inertia.
-        controller: weights and gains of the whole-body controller.
-        tasks: of other packages in its QP, by name.
         sensing: noises of what is measured.
-        filter: filter of the planner's state: none, kalman or zmp_only.
-        waypoints: places in the world to go to one after another, as the first of the commands says.
-        commands: that the walk hears while it goes on.
-        pushes: on bodies, world frame, that begin at a time.
-        gait_pushes: those that begin at a point of the gait, whenever it is reached.
         faults: injected.
         pendulum: the plant of fidelity pendulum.
     """
 
-    name: str
-    text: str
-    fidelity: str
-    seed: int
-    duration: float
-    gait_duration: float
-    rates: Rates
-    robot: "RobotDescription"
-    true_robot: "RobotDescription"
-    true_mass: float
-    true_com_height: float
-    height_error: float
-    friction: float
-    gait: GaitParameters
-    heights: HeightProfile
-    standing_height: float
-    terrain: Terrain
-    true_terrain: Terrain
-    terrain_kind: str
-    unforeseen: Mapping[str, tuple[int, ...]]
-    start: Start
-    start_height: float
-    stance: FeetState
-    profile: Profile
-    guard: Guard
-    parameters: PlannerParameters
-    controller: WbcParameters
-    tasks: tuple[str, ...]
-    sensing: Sensing
-    filter: str
-    waypoints: tuple[Pose, ...]
-    commands: tuple[TimedCommand, ...]
-    pushes: tuple[Push, ...]
-    gait_pushes: tuple[tuple[PushPoint, Push], ...]
-    faults: tuple[Fault, ...]
-    pendulum: PendulumSettings
+    keys: Scenario
+    size: Similarity = REFERENCE_SIZE
+    wider: float = 0.0
+    foot_length: float | None = None
+    described: "RobotDescription | None" = None
+    given: Profile | None = None
+    name: str = field(init=False)
+    fidelity: str = field(init=False)
+    seed: int = field(init=False)
+    rates: Rates = field(init=False)
+    start: Start = field(init=False)
+    sensing: Sensing = field(init=False)
+    faults: tuple[Fault, ...] = field(init=False)
+    pendulum: PendulumSettings = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Hand on what is as the user wrote it."""
+        for name in _HANDED_ON:
+            object.__setattr__(self, name, getattr(self.keys, name))
+
+    def __reduce__(self) -> tuple[type["Walk"], tuple[Any, ...]]:
+        """Survive the way between processes; what is derived is derived anew."""
+        return type(self), (self.keys, self.size, self.wider, self.foot_length, self.described, self.given)
 
     @property
-    def size(self) -> Similarity:
-        """Of the robot, without what it carries."""
-        return self.parameters.size
+    def text(self) -> str:
+        """The scenario as run, in YAML."""
+        return scenario_yaml(self.keys)
+
+    @property
+    def walker(self) -> Fidelity:
+        """What walks."""
+        return FIDELITIES[self.fidelity]
+
+    @property
+    def told(self) -> bool:
+        """Whether the walk hears while it goes on where to go, so that its steps are not known before."""
+        return bool(self.keys.gait.waypoints or self.keys.commands)
+
+    @cached_property
+    def asked_gait(self) -> GaitParameters:
+        """The gait in the planner's terms, its strides as wide as asked for."""
+        return gait_of(self.keys.gait)
+
+    @cached_property
+    def gait(self) -> GaitParameters:
+        """What is walked: the strides of a velocity are as wide as feet may land."""
+        if not self.keys.gait.velocity:
+            return self.asked_gait
+        return fitted(self.asked_gait, step_region(self.formulation.parameters, self.sole, self.robot.shank_spacing))
+
+    @cached_property
+    def waypoints(self) -> tuple[Pose, ...]:
+        """Places in the world to go to one after another, as the first of the commands says."""
+        return waypoints_of(self.keys.gait, self.start)
+
+    @cached_property
+    def commands(self) -> tuple[TimedCommand, ...]:
+        """All that the walk hears while it goes on, the waypoints at its start."""
+        start = (TimedCommand(0.0, Command(places=self.waypoints)),) if self.waypoints else ()
+        return (*start, *map(timed_command, self.keys.commands))
+
+    @cached_property
+    def gait_duration(self) -> float:
+        """Until the end of the last double support, or until the robot stands after all that it is told [s]."""
+        end = max([self.asked_gait.duration, *(told_until(self.asked_gait, told) for told in self.keys.commands)])
+        if not self.waypoints:
+            return end
+        start = Pose(self.start.x, self.start.y, self.start.yaw)
+        return max(end, there_at(self.asked_gait, start, self.waypoints, self.formulation.parameters))
+
+    @cached_property
+    def duration(self) -> float:
+        """Simulated time: as given, or the gait and a while of standing [s]."""
+        return self.gait_duration + FINAL_STAND * self.size.time if self.keys.duration is None else self.keys.duration
+
+    @cached_property
+    def pushes(self) -> tuple[Push, ...]:
+        """Those on bodies, world frame, that begin at a time."""
+        return tuple(self._push(push) for push in self.keys.pushes if PushPoint.of(push) is None)
+
+    @cached_property
+    def gait_pushes(self) -> tuple[tuple[PushPoint, Push], ...]:
+        """Those that begin at a point of the gait, whenever it is reached; their time means nothing."""
+        pointed = ((PushPoint.of(push), push) for push in self.keys.pushes)
+        return tuple((point, self._push(push)) for point, push in pointed if point is not None)
+
+    def _push(self, push: PushSettings) -> Push:
+        body = push.body or self.robot.torso_body
+        return Push(push.time or 0.0, push.duration, push_force(push, self.true_mass), body)
+
+    @cached_property
+    def ground(self) -> Ground:
+        """The ground, and where the walk begins on it."""
+        keys = self.keys
+        return Ground(
+            kind=kind_of(keys.terrain.kind),
+            keys=keys.terrain,
+            steps=keys.gait,
+            gait=self.asked_gait,
+            start=keys.start,
+            seed=keys.seed,
+            size=self.size,
+            sole=keys.robot_options.foot_length or self.foot_length,
+            standing_height=self.standing_height,
+            tiles=tiles_of(keys, self.size) if self.walker.has_body else None,
+            hidden=keys.errors.ground or (),
+        )
+
+    @property
+    def unforeseen(self) -> Mapping[str, tuple[int, ...]]:
+        """Numbers of the boxes of the simulated ground that lie elsewhere than believed, by the key that does it."""
+        return self.ground.unforeseen if self.walker.has_body else {}
+
+    @property
+    def standing_height(self) -> float:
+        """CoM height over the soles at which the walk begins and ends [m]."""
+        return self.keys.gait.com_height - lowered(self.keys.planner, self.size)
+
+    @cached_property
+    def formulation(self) -> Formulation:
+        """What the scenario says of the planner."""
+        return Formulation(self.keys.planner, self.ground, self.size, self.wider, self.walker.rise, self.given)
 
     @property
     def start_com_height(self) -> float:
         """CoM height in the world at the start [m]."""
-        return self.start_height + self.standing_height
+        return self.ground.start_height + self.standing_height
+
+    @cached_property
+    def parameters(self) -> PlannerParameters:
+        """Of the planner, for legs without inertia. Adaptation leaves at least half the planned gap between soles."""
+        asked = self.formulation.parameters
+        near, far = asked.reach_width
+        apart = max(near, self.robot.sole_width + 0.5 * asked.recovery.sole_gap)
+        return replace(asked, reach_width=(apart, far))
 
     @property
-    def sole(self) -> tuple[float, float]:
-        """Length and width of the soles [m]."""
-        return self.robot.sole_length, self.robot.sole_width
+    def filter(self) -> str:
+        """Filter of the planner's state: none, kalman or zmp_only; the Kalman filter by default if there is noise."""
+        noisy = self.sensing.zmp_noise > 0.0 or self.sensing.com_noise > 0.0
+        return self.keys.planner.filter or ("kalman" if noisy else "none")
 
     @property
     def region(self) -> StepRegion:
-        """Where a step that is commanded while it walks may land: within reach of planner and, with some left, legs."""
-        facts = facts_of(self.robot)
-        span = LEG_SHARE * leg_span(self.gait.com_height, facts)
-        return step_region(self.parameters, self.sole, facts.shank_spacing, span, facts.hip_width)
+        """Where a step that is commanded while it walks may land."""
+        return region_of(self.parameters, self.facts, self.gait.com_height)
 
     @property
     def legs(self) -> LegReach:
         """What the legs can do to catch the body."""
-        facts, apart = facts_of(self.robot), self.parameters.reach_width[0]
-        radius = 0.5 * LEG_SHARE * leg_span(self.gait.com_height, facts)
-        recovery = self.parameters.recovery
-        return LegReach(
-            radius=radius,
-            hip_width=facts.hip_width,
-            near=apart,
-            across=recovery.across,
-            clear=self.robot.sole_length + recovery.clear,
-            acceleration=facts.swing_acceleration,
-            sole=self.sole,
-            height=self.standing_height - facts.com_above_hip,
-            length=facts.leg_length,
-        )
-
-    def _cop_room(self, leg: LegInertia) -> tuple[float, float]:
-        """How far from a sole's centre the ankle's torques bear the robot, ahead and behind, and to both sides [m]."""
-        if leg.chain is None:
-            return math.inf, math.inf
-        levers = [ANKLE_SHARE * torque / (GRAVITY * self.robot.mass) for torque in facts_of(self.robot).ankle_torque]
-        ahead, side = (
-            max(lever - abs(off), LEAST_ROOM * sole)
-            for lever, off, sole in zip(levers, leg.chain.ankle, self.sole, strict=False)
-        )
-        return ahead, side
+        return leg_reach(self.parameters, self.facts, self.gait.com_height, self.standing_height)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
         """The planner of this walk: the profile's own, or the walking planner with the profile's law.
@@ -196,16 +242,75 @@ class Walk:
             PartError: the profile, of others, fails to make it.
         """
         authority = math.inf, 0.0 if self.robot.roles.feet_lean else math.inf
-        parameters = replace(self.parameters, leg=leg, cop_room=self._cop_room(leg), cop_authority=authority)
-        given = (self.gait, feet, *self.sole, self.terrain, parameters, self.heights)
-        profile = guarded_law(self.profile, self.guard)
+        parameters = replace(
+            self.parameters, leg=leg, cop_room=cop_room(leg, self.facts, self.robot.mass), cop_authority=authority
+        )
+        given = (self.gait, feet, *self.sole, self.ground.terrain, parameters, self.formulation.heights)
+        profile = guarded_law(self.formulation.profile, self.formulation.guard)
         if profile.planner is not None:
-            with self.guard.making:
+            with self.formulation.guard.making:
                 planner = profile.planner(*given, profile)
                 index(planner.parameters.horizon)
                 return planner
         check_walk(*given)
         return WalkingPlanner(*given, profile, self.region, self.legs)
+
+    @cached_property
+    def robot(self) -> "RobotDescription":
+        """As believed."""
+        return self.described or describe(self.keys.robot, self.keys.robot_options)
+
+    @property
+    def facts(self) -> RobotFacts:
+        """What of it bounds a walk."""
+        return facts_of(self.robot)
+
+    @property
+    def sole(self) -> tuple[float, float]:
+        """Length and width of the soles [m]."""
+        return self.robot.sole_length, self.robot.sole_width
+
+    @cached_property
+    def _truth(self) -> "RobotDescription":
+        return true_robot(self.keys.errors, self.robot, self.seed)
+
+    @property
+    def true_robot(self) -> "RobotDescription":
+        """As simulated; the same object when nothing about it is believed wrongly."""
+        return self._truth if self.walker.has_body else self.robot
+
+    @property
+    def true_mass(self) -> float:
+        """Of the robot as it is [kg]."""
+        return float(self._truth.mass)
+
+    @property
+    def height_error(self) -> float:
+        """Believed minus true CoM height [m]."""
+        return self.keys.errors.com_height
+
+    @property
+    def true_com_height(self) -> float:
+        """Nominal, above the soles [m]."""
+        return self.keys.gait.com_height - self.height_error
+
+    @property
+    def friction(self) -> float:
+        """Coefficient that the controller counts on [-]."""
+        keys = self.keys
+        if keys.wbc is not None and keys.wbc.friction is not None:
+            return keys.wbc.friction
+        return max(keys.terrain.friction + keys.errors.friction, LEAST_BELIEVED_FRICTION)
+
+    @cached_property
+    def controller(self) -> WbcParameters:
+        """Weights and gains of the whole-body controller."""
+        return controller_parameters(self.keys.wbc, self.size)
+
+    @property
+    def tasks(self) -> tuple[str, ...]:
+        """Of other packages in its QP, by name."""
+        return self.keys.wbc.tasks if self.keys.wbc is not None else ()
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:
@@ -219,98 +324,15 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
     Raises:
         ParameterError: a part refuses its parameters.
     """
-    keys = scenario
-    robot = robot or describe(keys.robot, keys.robot_options)
-    size = size_of(robot, keys.robot_options)
+    robot = robot or describe(scenario.robot, scenario.robot_options)
+    size = size_of(robot, scenario.robot_options.payload_mass)
     own = None if size == REFERENCE_SIZE else float(robot.sole_length)
-    draft = Draft(keys, size, stance_widening(robot, size), own)
-    if profile is not None:
-        draft.profile = profile
-    near, far = draft.parameters.reach_width
-    sole = (robot.sole_length, robot.sole_width)
-    region = draft.region(sole, robot.shank_spacing)
-    apart = max(near, robot.sole_width + 0.5 * region.gap)
-    true = true_robot(keys.errors, robot, keys.seed)
-    timed, pointed = _pushes(draft, robot, float(true.mass))
-    return Walk(
-        name=keys.name,
-        text=scenario_yaml(keys),
-        fidelity=keys.fidelity,
-        seed=keys.seed,
-        duration=draft.duration,
-        gait_duration=draft.gait_duration,
-        rates=keys.rates,
-        robot=robot,
-        true_robot=true if keys.fidelity == "full" else robot,
-        true_mass=float(true.mass),
-        true_com_height=keys.gait.com_height - keys.errors.com_height,
-        height_error=keys.errors.com_height,
-        friction=_friction(keys),
-        gait=draft.fitted_gait(region),
-        heights=draft.heights,
-        standing_height=draft.standing_height,
-        terrain=draft.terrain,
-        true_terrain=draft.true_terrain,
-        terrain_kind=keys.terrain.kind,
-        unforeseen=draft.unforeseen if keys.fidelity == "full" else {},
-        start=keys.start,
-        start_height=draft.start_height,
-        stance=draft.stance,
-        profile=draft.profile,
-        guard=profile_guard(draft.profile, given=profile is not None),
-        # Adaptation leaves at least half the planned gap between soles.
-        parameters=replace(draft.parameters, reach_width=(apart, far)),
-        controller=controller_parameters(keys.wbc, draft.size),
-        tasks=keys.wbc.tasks if keys.wbc is not None else (),
-        sensing=keys.sensing,
-        filter=_filter(draft),
-        waypoints=waypoints(draft),
-        commands=told(draft),
-        pushes=timed,
-        gait_pushes=pointed,
-        faults=keys.faults,
-        pendulum=keys.pendulum,
-    )
-
-
-def _friction(keys: Scenario) -> float:
-    """The friction coefficient that the controller counts on [-]."""
-    if keys.wbc is not None and keys.wbc.friction is not None:
-        return keys.wbc.friction
-    return max(keys.terrain.friction + keys.errors.friction, LEAST_BELIEVED_FRICTION)
-
-
-def _filter(draft: Draft) -> str:
-    """The filter of the planner's state; when the scenario names none, the Kalman filter if there is noise."""
-    sensing = draft.keys.sensing
-    noisy = sensing.zmp_noise > 0.0 or sensing.com_noise > 0.0
-    return draft.keys.planner.filter or ("kalman" if noisy else "none")
-
-
-def _pushes(
-    draft: Draft, robot: "RobotDescription", mass: float
-) -> tuple[tuple[Push, ...], tuple[tuple[PushPoint, Push], ...]]:
-    """The pushes at times and at points of the gait, on a robot of this true mass [kg]; without a body, on the torso.
-
-    Of the latter the time means nothing.
-    """
-    timed, pointed = [], []
-    for settings in draft.keys.pushes:
-        point, body = PushPoint.of(settings), settings.body or robot.torso_body
-        push = Push(settings.time or 0.0, settings.duration, _force(settings, mass), body)
-        if point is None:
-            timed.append(push)
-        else:
-            pointed.append((point, push))
-    return tuple(timed), tuple(pointed)
-
-
-def _force(push: PushSettings, mass: float) -> Array:
-    """Force of a push, given directly or by its impulse per mass, shape (3,) [N]."""
-    if push.impulse is None:
-        return np.array(push.force or np.zeros(3))
-    size, direction = mass * push.impulse / push.duration, push.direction or 0.0
-    return size * np.array([math.cos(direction), math.sin(direction), 0.0])
+    walk = Walk(scenario, size, stance_widening(robot, size), own, robot, profile)
+    for room in (walk, walk.ground, walk.formulation):
+        for name, part in vars(type(room)).items():
+            if isinstance(part, cached_property):
+                getattr(room, name)
+    return walk
 
 
 def scenario_yaml(scenario: Scenario) -> str:

@@ -11,10 +11,9 @@ from mutations import TEXTS, text_of, trial
 
 from surefoot.scenarios.errors import LONGEST_SENTENCE, ScenarioError
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.robot import RegisteredRobots
-from surefoot.scenarios.setup.walk import scenario_yaml
+from surefoot.scenarios.setup.walk import Walk, scenario_yaml
 
 MOST_LINES = 25
 
@@ -40,7 +39,7 @@ def outcome(make, seed):
         assert isinstance(scenario, Scenario)
         again = read_scenario(scenario_yaml(scenario), "f.yaml", "f", (), RegisteredRobots())
         assert again == scenario, f"seed {seed}: the scenario as run is another"
-        assert Draft(again).duration > 0.0, f"seed {seed}"
+        assert Walk(again).duration > 0.0, f"seed {seed}"
         result = "scenario"
     assert time.process_time() - begin < 2.0, f"seed {seed}: took too long"
     return result

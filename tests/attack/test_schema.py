@@ -12,8 +12,7 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.metric import Metric, metric
 from surefoot.scenarios.judge.metrics import METRICS, register, unknown_metrics
 from surefoot.scenarios.setup.checks import AVAILABLE
-from surefoot.scenarios.setup.criteria_checks import criteria_problems
-from surefoot.scenarios.setup.published import published
+from surefoot.scenarios.setup.criteria import criteria_problems, published
 
 pytestmark = pytest.mark.unit
 

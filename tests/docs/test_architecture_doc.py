@@ -50,7 +50,8 @@ def test_a_name_that_is_not_there_is_found_out():
 def test_what_the_picture_names_is_there():
     known = classes()
     words = re.findall(
-        r"\b([A-Z][a-z]\w*[A-Z]\w*|Scenario|Draft|Walk|Walker|World|Planning|Measurement|Log)(?:\.(\w+))?", PICTURE
+        r"\b([A-Z][a-z]\w*[A-Z]\w*|Scenario|Ground|Formulation|Walk|Walker|World|Planning|Measurement|Log)(?:\.(\w+))?",
+        PICTURE,
     )
     assert len(words) > 30
     for word, method in words:

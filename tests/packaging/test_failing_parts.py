@@ -109,7 +109,7 @@ class Ground(TerrainKind):
     def __init__(self, how):
         self.name, self.how = how, how
 
-    def build(self, draft):
+    def build(self, ground):
         return fail(self.how)
 
 

@@ -28,7 +28,6 @@ NOTICED = {
     "swing.leg_reach.PEAK": "tests/planner/swing/test_swing_limits.py",
     "swing.leg_reach._BRAKING": "tests/planner/swing/test_swing_limits.py",
     "swing.leg_reach._GAINING": "tests/planner/swing/test_swing_limits.py",
-    "types.GRAVITY": "tests/scenarios/setup/test_leg_model.py",
 }
 """Test, or folder of tests, that notices a constant when it is changed."""
 
@@ -41,7 +40,6 @@ UNNOTICED = {
     "ground.tiles.AROUND",
     "ground.tiles.TILE",
     "ground.tiles._MIDDLE",
-    "ground.tiles._STREAM",
     "laws.dcm_feedback._GAIN",
     "laws.qp._UNBOUNDED",
     "laws.zmp_preview._JERK_WEIGHT",

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import surefoot
+from surefoot.models.facts import RobotFacts
 from surefoot.scenarios.file.schema import RobotSettings, Scenario
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.run.skeleton import End, Progress
-from surefoot.scenarios.setup.robot import RobotFacts
 from surefoot.scenarios.show.compare.differences import WALL_CLOCK
 
 JOINTS = ("left_hip", "left_knee", "right_hip", "right_knee")

@@ -71,7 +71,7 @@ class Pictures:
     def __init__(self, walk: Walk) -> None:
         robot = walk.true_robot
         self.walk, self.sole = walk, (float(robot.sole_length), float(robot.sole_width))
-        self._mjcf = world_mjcf(robot, walk.true_terrain, 1.0 / walk.rates.physics)
+        self._mjcf = world_mjcf(robot, walk.ground.true_terrain, 1.0 / walk.rates.physics)
         model = mujoco.MjModel.from_xml_string(self._mjcf)
         self._poses, self._surfaces = BodyPoses(model), surfaces(model)
         self._offsets = model.body_ipos[1:].copy()

@@ -12,6 +12,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.models.consistency import EnginePair
+from surefoot.models.facts import facts_of
 from surefoot.models.registry import UnknownRobotError, explain
 from surefoot.models.robot_file.build import Explanation
 from surefoot.models.types import RobotDescription, RobotError
@@ -23,9 +24,7 @@ from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.gait import leg_span
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.robot import facts_of
-from surefoot.scenarios.setup.stance import Body, body_of
-from surefoot.scenarios.setup.standing import TorqueMargin, on_one_foot, standing
+from surefoot.scenarios.setup.stance import Body, TorqueMargin, body_of, on_one_foot, standing
 from surefoot.scenarios.study.campaigns.engine import side_by_side
 
 Array = NDArray[np.float64]

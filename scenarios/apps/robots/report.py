@@ -11,7 +11,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainin
 from surefoot.models.robot_file.build import Explanation
 from surefoot.models.types import RobotDescription
 from surefoot.scenarios.apps.robots.examine import PARITY, CatalogueRow, Examination, Watcher
-from surefoot.scenarios.setup.standing import TorqueMargin
+from surefoot.scenarios.setup.stance import TorqueMargin
 from surefoot.scenarios.show.console import TerminalLine, plain_table
 
 _STYLES = {"walks": "bold green", "fails": "bold red", "refused": "yellow", "accepted": None}

@@ -1,20 +1,17 @@
 """The kinds of terrain that a scenario may name: what their keys mean, and what makes them impossible."""
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from surefoot.guard import Guarded, taken_for
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.plugins import Registry
 from surefoot.scenarios.errors import Problem
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.setup.terrain.blocks import BlocksKind
-from surefoot.scenarios.setup.terrain.kind import TerrainKind
+from surefoot.scenarios.setup.terrain.ground import Ground, TerrainKind
 from surefoot.scenarios.setup.terrain.slope import SlopeKind
 from surefoot.scenarios.setup.terrain.stairs import StairsKind
-
-if TYPE_CHECKING:
-    from surefoot.scenarios.setup.draft import Draft
 
 
 class FlatKind(TerrainKind):
@@ -22,9 +19,9 @@ class FlatKind(TerrainKind):
 
     name = "flat"
 
-    def build(self, draft: "Draft") -> Terrain:
+    def build(self, ground: Ground) -> Terrain:
         """See `TerrainKind`."""
-        return flat(draft.keys.terrain.friction)
+        return flat(ground.keys.friction)
 
 
 _OWN: tuple[TerrainKind, ...] = (FlatKind(), StairsKind(), BlocksKind(), SlopeKind())
@@ -32,7 +29,7 @@ _OWN: tuple[TerrainKind, ...] = (FlatKind(), StairsKind(), BlocksKind(), SlopeKi
 KINDS = Registry("surefoot.terrains", TerrainKind, {kind.name: kind for kind in _OWN})
 """Every kind of terrain by its name: these, and those of other packages (see `surefoot.plugins`)."""
 
-__all__ = ["KINDS", "TerrainKind", "kind_of"]
+__all__ = ["KINDS", "Ground", "TerrainKind", "kind_of"]
 
 
 def kind_of(name: str) -> TerrainKind:
@@ -53,7 +50,7 @@ def _problems(answer: Iterable[Problem], *_: Any) -> list[Problem]:
 
 _TAKEN: dict[str, Callable[..., Any]] = {
     "build": taken_for(Terrain),
-    "completed": taken_for(Scenario),
+    "completed": taken_for(Gait),
     "start_height": lambda height, *_: float(height),
     "problems": _problems,
 }

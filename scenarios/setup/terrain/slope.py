@@ -2,21 +2,17 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from surefoot.errors import at_least, at_most
+from surefoot.models.facts import RobotFacts
 from surefoot.planner.ground.slope import Slope
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.types import Array, FootstepPlan
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.units import meant
-from surefoot.scenarios.setup.robot import RobotFacts
-from surefoot.scenarios.setup.terrain.kind import PLATFORM, TerrainKind, planned_soles, unreached, way
-
-if TYPE_CHECKING:
-    from surefoot.scenarios.setup.draft import Draft
+from surefoot.scenarios.setup.terrain.ground import PLATFORM, Ground, TerrainKind, unreached
 
 STEEPEST = 0.35
 """Inclination beyond which no ground is made; the ankle has to turn as far [rad]."""
@@ -31,27 +27,32 @@ class SlopeKind(TerrainKind):
     name = "slope"
     keys = ("angle", "start", "height_noise")
 
-    def build(self, draft: "Draft") -> Terrain:
+    def build(self, ground: Ground) -> Terrain:
         """See `TerrainKind`."""
-        keys = draft.keys.terrain
-        start = 0.5 * draft.keys.gait.step_length if keys.start is None else keys.start
-        platform = PLATFORM * draft.size.length
-        return Slope(keys.angle, start, way(draft) + platform, platform).build(draft.site)
+        keys = ground.keys
+        start = 0.5 * ground.steps.step_length if keys.start is None else keys.start
+        platform = PLATFORM * ground.size.length
+        return Slope(keys.angle, start, ground.way + platform, platform).build(ground.site)
 
-    def problems(self, draft: "Draft", facts: RobotFacts) -> list[Problem]:
+    def problems(self, ground: Ground, facts: RobotFacts) -> list[Problem]:
         """List what makes a slope impossible for a robot and its gait."""
-        return list(steepness(draft)) or list(_extent(draft)) or list(_edge(draft, facts))
+        if ground.keys.angle == 0.0:
+            what, right = "terrain.angle 0 makes no slope", "use more or less than 0 rad, or kind flat"
+            return [Problem(("terrain", "angle"), what, right)]
+        if steep := list(steepness(ground)):
+            return steep
+        if ground.keys.height_noise > 0.0:
+            what = "terrain.height_noise on a slope, which has one face only"
+            return [Problem(("terrain", "height_noise"), what, "use 0, or kind stairs or blocks")]
+        crossed = "would stand across the edge of the slope", "put the edge between two footsteps"
+        return list(off_face(ground, facts, "start", *crossed)) or list(unreached(ground.footsteps, "slope"))
 
 
-def steepness(draft: "Draft") -> Iterator[Problem]:
-    """List a terrain.angle that makes no such ground, or one that friction does not hold."""
-    terrain = draft.keys.terrain
+def steepness(ground: Ground) -> Iterator[Problem]:
+    """List a terrain.angle that makes no ground, or one that friction does not hold."""
+    terrain = ground.keys
     tilt, key = abs(terrain.angle), ("terrain", "angle")
-    if terrain.kind == "slope" and tilt == 0.0:
-        yield Problem(key, "terrain.angle 0 makes no slope", "use more or less than 0 rad, or kind flat")
-    elif terrain.kind == "blocks" and terrain.angle < 0.0:
-        yield Problem(key, f"terrain.angle {terrain.angle} rad is no half range", "use at least 0 rad")
-    elif tilt > STEEPEST:
+    if tilt > STEEPEST:
         right = f"use at most {STEEPEST} rad{meant(terrain.angle, 'rad', STEEPEST)}"
         yield Problem(key, f"terrain.angle {terrain.angle} rad is too steep", right)
     elif math.tan(tilt) >= terrain.friction:
@@ -59,43 +60,26 @@ def steepness(draft: "Draft") -> Iterator[Problem]:
         yield Problem(key, what, f"use less than {at_most(math.atan(terrain.friction))} rad, or more friction")
 
 
-def first_sole_off_its_face(draft: "Draft", facts: RobotFacts) -> tuple[FootstepPlan, int | None]:
-    """The footsteps, and the row of the first that would not have its whole sole on one face."""
-    plan, corners = planned_soles(draft, facts)
-    margins = draft.terrain.edge_margins(plan.position[:, :2], corners)
-    beyond = np.flatnonzero((margins < -1e-9) | (_buried(draft.terrain, plan, corners) > _FLUSH))
-    return plan, int(beyond[0]) if len(beyond) else None
+def off_face(ground: Ground, facts: RobotFacts, name: str, what: str, right: str) -> Iterator[Problem]:
+    """Tell a walk that would start on a tilted face, or else its first sole that would not be whole on one face.
 
-
-def tilted_start(plan: FootstepPlan, facts: RobotFacts) -> Problem | None:
-    """A walk that would start on a tilted face."""
-    if not np.any(plan.normal[:2, 2] < 1.0):
-        return None
-    right = f"use at least {at_least(0.5 * facts.foot_length)} m, so that both feet stand level"
-    return Problem(("terrain", "start"), "the walk would start on the slope", right)
-
-
-def stander(row: int) -> str:
-    """Who stands at a row of a footstep plan."""
-    return f"footstep {row - 1}" if row > 1 else "a start foot"
-
-
-def _extent(draft: "Draft") -> Iterator[Problem]:
-    if draft.keys.terrain.height_noise > 0.0:
-        what = "terrain.height_noise on a slope, which has one face only"
-        yield Problem(("terrain", "height_noise"), what, "use 0, or kind stairs or blocks")
-
-
-def _edge(draft: "Draft", facts: RobotFacts) -> Iterator[Problem]:
-    plan, row = first_sole_off_its_face(draft, facts)
-    tilted = tilted_start(plan, facts)
-    if tilted is not None:
-        yield tilted
-    elif row is not None:
-        what = f"{stander(row)} would stand across the edge of the slope"
-        yield Problem(("terrain", "start"), what, "put the edge between two footsteps")
-    else:
-        yield from unreached(plan, "slope")
+    Args:
+        ground: tilted in part.
+        facts: of the robot.
+        name: key of the terrain that is at fault for such a sole.
+        what: becomes of the foot.
+        right: what would be right.
+    """
+    plan = ground.footsteps
+    if np.any(plan.normal[:2, 2] < 1.0):
+        least = f"use at least {at_least(0.5 * facts.foot_length)} m, so that both feet stand level"
+        yield Problem(("terrain", "start"), "the walk would start on the slope", least)
+        return
+    buried = _buried(ground.terrain, plan, ground.soles(facts))
+    beyond = np.flatnonzero((ground.edge_margins(facts) < -1e-9) | (buried > _FLUSH))
+    if len(beyond):
+        who = f"footstep {beyond[0] - 1}" if beyond[0] > 1 else "a start foot"
+        yield Problem(("terrain", name), f"{who} {what}", right)
 
 
 def _buried(terrain: Terrain, plan: FootstepPlan, corners: Array) -> Array:

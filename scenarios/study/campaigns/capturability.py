@@ -176,7 +176,7 @@ def moment_of(log: Path, push: int) -> Moment | None:
     try:
         scenario = load(log)
         walk = resolve(scenario)
-        return _moment(scenario, walk, LogView(read(log)), push) if walk.terrain_kind == "flat" else None
+        return _moment(scenario, walk, LogView(read(log)), push) if walk.ground.keys.kind == "flat" else None
     except (ScenarioError, SetupError, ParameterError, PluginError, LogError, MissingError, IndexError):
         return None
 
@@ -240,7 +240,7 @@ def _ways(walk: Walk, view: LogView, swing: Foot, at: tuple[int, float], left: t
 
 def _times(walk: Walk, left: tuple[float, float]) -> tuple[Array, Array]:
     """Double and single support that may be left [s]."""
-    if not walk.profile.catches or walk.parameters.step_adaptation is StepAdaptation.LOCATION:
+    if not walk.formulation.profile.catches or walk.parameters.step_adaptation is StepAdaptation.LOCATION:
         return np.array(left[:1]), np.array(left[1:])
     scale, numbers = walk.size.time, walk.parameters.recovery
     earliest = min(left[0], numbers.least_double), min(left[1], numbers.least_single)
@@ -253,7 +253,7 @@ def _boxes(walk: Walk, side: float) -> list[tuple[Array, Array]]:
     """Boxes, in the frame of the standing foot, in one of which the other may land: lower and upper corners [m]."""
     if walk.parameters.step_adaptation is StepAdaptation.NONE:
         return []
-    legs = walk.legs.adapting(walk.parameters) if walk.profile.catches else None
+    legs = walk.legs.adapting(walk.parameters) if walk.formulation.profile.catches else None
     if legs is None:
         return [reach_box(walk.parameters, side)]
     return [(low, high) for low, high in legs.allowed(side, ANYWHERE, True)]

@@ -7,10 +7,9 @@ import yaml
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.setup.checks import notes
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.walk import scenario_yaml
+from surefoot.scenarios.setup.notes import notes
+from surefoot.scenarios.setup.walk import Walk, scenario_yaml
 
 pytestmark = pytest.mark.unit
 
@@ -121,7 +120,7 @@ def test_bare_numbers_are_what_they_were(robots):
 def test_a_time_that_is_possible_and_unlikely_is_a_note(robots):
     pushes = "[{time: 1, duration: 100, force: [1, 0, 0]}, {time: 2, duration: 1, force: [1, 0, 0]}]"
     text = f"gait: {{initial_stand: 500}}\npushes: {pushes}"
-    assert notes(Draft(load(robots, text))) == (
+    assert notes(Walk(load(robots, text))) == (
         "gait.initial_stand is 500 s; for 500 ms write '500 ms'",
         "pushes.0.duration is 100 s; for 100 ms write '100 ms'",
     )

@@ -1,8 +1,8 @@
 import pytest
 
-from surefoot.scenarios.setup.checks import notes
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.setup.notes import notes
+from surefoot.scenarios.setup.walk import Walk
 
 pytestmark = pytest.mark.unit
 
@@ -21,15 +21,15 @@ _LANDING = "terrain.landing=0.56"
 )
 def test_keys_of_other_terrain_are_noted(name: str, override: str, key: str) -> None:
     scenario = load_scenario(name, [override])
-    assert notes(Draft(scenario)) == (f"terrain.{key} has no effect on terrain.kind {scenario.terrain.kind}",)
+    assert notes(Walk(scenario)) == (f"terrain.{key} has no effect on terrain.kind {scenario.terrain.kind}",)
 
 
 @pytest.mark.parametrize(("name", "idle"), [("stairs-up", True), ("stairs-down", True), ("stairs-up-down", False)])
 def test_a_landing_is_noted_where_stairs_go_one_way(name: str, idle: bool) -> None:
-    told = any(note.startswith("terrain.landing has no") for note in notes(Draft(load_scenario(name, [_LANDING]))))
+    told = any(note.startswith("terrain.landing has no") for note in notes(Walk(load_scenario(name, [_LANDING]))))
     assert told == idle
 
 
 @pytest.mark.parametrize("name", ["walk", "slope", "blocks", "stairs-up", "stairs-up-down", "stair-climbing"])
 def test_the_catalogue_sets_no_idle_key(name: str) -> None:
-    assert notes(Draft(load_scenario(name))) == ()
+    assert notes(Walk(load_scenario(name))) == ()

@@ -147,7 +147,7 @@ def displaced(name: str, seed: int) -> list[dict[str, object]]:
     from surefoot.scenarios.setup.walk import resolve
 
     walk = resolve(surefoot.load(name, ground(name)))
-    steps, rng = plan_footsteps(walk.gait, walk.stance, walk.terrain), np.random.default_rng(seed)
+    steps, rng = plan_footsteps(walk.gait, walk.ground.stance, walk.ground.terrain), np.random.default_rng(seed)
     places = []
     for row in range(2, steps.steps + 2):
         step = steps.footstep(row)

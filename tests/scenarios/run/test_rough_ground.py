@@ -10,9 +10,9 @@ from variations import SOUND_ON_STEPS
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.load import read_scenario
+from surefoot.scenarios.setup.walk import Walk
 
 FAST = "robot_options: {foot_length: 0.22, foot_width: 0.11}\n"
 GAIT = "gait: {steps: 6, step_length: 0.3, com_height: 0.94%s}\n"
@@ -56,20 +56,22 @@ def test_what_cannot_be_walked_is_refused_with_the_reason(robots, text):
 def test_a_walk_starts_on_level_ground_at_its_height(robots):
     for text in (SLOPE % "", (SLOPE % "").replace("0.17", "-0.17"), BLOCKS % ""):
         scenario = read_scenario(text, "f.yaml", "f", (), robots)
-        terrain = Draft(scenario).terrain
-        np.testing.assert_allclose(terrain.heights(np.array([[0.0, 0.1], [0.1, -0.1]])), Draft(scenario).start_height)
+        terrain = Walk(scenario).ground.terrain
+        np.testing.assert_allclose(
+            terrain.heights(np.array([[0.0, 0.1], [0.1, -0.1]])), Walk(scenario).ground.start_height
+        )
         np.testing.assert_array_equal(terrain.normal(0.0, 0.1), [0.0, 0.0, 1.0])
 
 
 @pytest.mark.unit
 def test_the_seed_is_that_of_the_blocks(robots):
     scenario = read_scenario(BLOCKS % "", "f.yaml", "f", (), robots)
-    fields = [Draft(scenario.model_copy(update={"seed": seed})).terrain for seed in (0, 0, 1)]
+    fields = [Walk(scenario.model_copy(update={"seed": seed})).ground.terrain for seed in (0, 0, 1)]
     tops = [[box.center.tolist() for box in field.boxes] for field in fields]
     assert tops[0] == tops[1] != tops[2]
     noisy = read_scenario(BLOCKS % ", height_noise: 0.01", "f.yaml", "f", (), robots)
-    points = np.array([box.center[:2] for box in Draft(noisy).terrain.boxes])
-    wrong = Draft(noisy).true_terrain.heights(points) - Draft(noisy).terrain.heights(points)
+    points = np.array([box.center[:2] for box in Walk(noisy).ground.terrain.boxes])
+    wrong = Walk(noisy).ground.true_terrain.heights(points) - Walk(noisy).ground.terrain.heights(points)
     assert wrong[0] == 0.0
     assert 0.0 < np.abs(wrong).max() < 0.0105
 

@@ -41,7 +41,7 @@ class Booked:
 
 def planned_touchdown(walk):
     """When the first foot is to land [s], and the planner's period [s]."""
-    planner = walk.planner(walk.stance, LegInertia())
+    planner = walk.planner(walk.ground.stance, LegInertia())
     period = planner.parameters.sample_time
     return walk.gait.lift_off(1) + walk.gait.single_support, period
 
@@ -49,9 +49,13 @@ def planned_touchdown(walk):
 def booked(landing, until, offset=OFFSET):
     """Footsteps booked of a first swing whose foot touches at a time, at an offset from its reference, and stays."""
     walk = resolve(load_scenario("diagonal-walk", SHORT))
-    planner, rows = walk.planner(walk.stance, LegInertia()), Booked()
+    planner, rows = walk.planner(walk.ground.stance, LegInertia()), Booked()
     planning = Planning(planner, PlannerSensing(walk), rows, FaultSchedule((), 100), walk.rates)
-    feet, com, velocity = walk.stance, np.append(walk.stance.position[:, :2].mean(axis=0), 1.0), np.zeros(3)
+    feet, com, velocity = (
+        walk.ground.stance,
+        np.append(walk.ground.stance.position[:, :2].mean(axis=0), 1.0),
+        np.zeros(3),
+    )
     period, landed = planner.parameters.sample_time, None
     for k in range(round(until / period)):
         now = k * period
@@ -59,7 +63,7 @@ def booked(landing, until, offset=OFFSET):
         planning.update(tick, round(now * 1e9), CentroidalState(now, com, velocity), feet.position[0, :2], feet)
         plan = planning.plan
         com, velocity = plan.com[1], plan.com_velocity[1]
-        position, contact = walk.stance.position.copy(), [True, True]
+        position, contact = walk.ground.stance.position.copy(), [True, True]
         after = now + period
         if plan.swing is not None and plan.phase.step == 1 and (landed is None or after < landing):
             landed = plan.swing.foot, plan.swing.evaluate(after)[0][:3]

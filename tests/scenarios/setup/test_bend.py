@@ -2,8 +2,8 @@
 
 import pytest
 
-from surefoot.scenarios.setup.bend import bent_alike
 from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.posture import bent_alike
 from surefoot.scenarios.setup.stance import body_of
 from surefoot.scenarios.setup.stances import least_bend
 from surefoot.scenarios.setup.walk import resolve

@@ -11,10 +11,9 @@ from surefoot.planner.parameters import LegInertia
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.types import Foot
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.setup.checks import notes
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.walk import resolve, scenario_yaml
+from surefoot.scenarios.setup.notes import notes
+from surefoot.scenarios.setup.walk import Walk, resolve, scenario_yaml
 
 pytestmark = pytest.mark.unit
 
@@ -69,7 +68,7 @@ def test_what_cannot_be_walked_is_refused_with_one_message(robots, text):
 )
 def test_what_is_just_within_reach_is_accepted_and_reads_back_as_itself(robots, twist, monkeypatch):
     scenario = read(robots, FAST + VELOCITY % twist)
-    assert Draft(scenario).gait.steps == 8
+    assert Walk(scenario).asked_gait.steps == 8
     assert read(robots, scenario_yaml(scenario)) == scenario
     robot = SimpleNamespace(
         sole_length=0.22,
@@ -81,14 +80,14 @@ def test_what_is_just_within_reach_is_accepted_and_reads_back_as_itself(robots, 
     )
     monkeypatch.setattr("surefoot.scenarios.setup.walk.facts_of", lambda _: robots.facts("", scenario.robot_options))
     walk = resolve(scenario, robot)
-    planner = walk.planner(walk.stance, LegInertia())
+    planner = walk.planner(walk.ground.stance, LegInertia())
     assert planner.gait.steps == 8
 
 
 def test_footsteps_are_relative_to_the_start_stance(robots):
     text = FOOTSTEPS % "{foot: right, x: 0.2, y: -0.1, yaw: -0.2}, {foot: left, x: 0.3, y: 0.1}"
     scenario = read(robots, text + "\nstart: {x: 5, y: 2, yaw: 1.5707963267948966}")
-    steps = plan_footsteps(Draft(scenario).gait, Draft(scenario).stance, flat())
+    steps = plan_footsteps(Walk(scenario).asked_gait, Walk(scenario).ground.stance, flat())
     assert steps.feet[2:] == (Foot.RIGHT, Foot.LEFT)
     np.testing.assert_allclose(steps.position[2:, :2], [[5.1, 2.2], [4.9, 2.3]], atol=1e-12)
     np.testing.assert_allclose(steps.yaw[2:], [np.pi / 2 - 0.2, np.pi / 2])
@@ -96,8 +95,8 @@ def test_footsteps_are_relative_to_the_start_stance(robots):
 
 def test_keys_of_equal_steps_beside_a_command_are_noted(robots):
     scenario = read(robots, "gait: {steps: 7, velocity: [{time: 0, v_x: 0.1}, {time: 3}]}")
-    assert notes(Draft(scenario)) == ("gait.steps has no effect beside gait.velocity",)
-    assert notes(Draft(read(robots, "gait: {steps: 7}"))) == ()
+    assert notes(Walk(scenario)) == ("gait.steps has no effect beside gait.velocity",)
+    assert notes(Walk(read(robots, "gait: {steps: 7}"))) == ()
 
 
 def test_a_push_by_step_counts_the_commanded_steps(robots):

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from surefoot.planner.references.com_height import BENT_KNEES
 from surefoot.scenarios.file.schema import Gait, PushSettings, Scenario
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
     longest_step,
@@ -16,7 +15,7 @@ from surefoot.scenarios.setup.gait import (
     push_time,
 )
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.walk import resolve
+from surefoot.scenarios.setup.walk import Walk, resolve
 
 pytestmark = pytest.mark.unit
 
@@ -43,7 +42,7 @@ def test_who_walks_with_bent_knees_goes_down_less_for_a_long_step():
 
 
 def test_phases_follow_each_other():
-    gait = Draft(Scenario()).gait
+    gait = Walk(Scenario()).asked_gait
     assert phase_of(gait, 1, "double")[0] == gait.initial_stand
     assert phase_of(gait, 1, "single")[0] == gait.initial_stand + 2 * gait.double_support
     for step in range(1, 5):
@@ -53,7 +52,7 @@ def test_phases_follow_each_other():
 
 
 def test_pushes_by_point_of_the_gait():
-    gait = Draft(Scenario()).gait
+    gait = Walk(Scenario()).asked_gait
     push = PushSettings(step=2, phase="single", fraction=0.5)
     assert push_time(gait, push) == pytest.approx(1.0 + 1.0 + 2.0 + 0.75)
     assert push_time(gait, PushSettings(time=2.2)) == 2.2
@@ -62,6 +61,6 @@ def test_pushes_by_point_of_the_gait():
 
 
 def test_a_run_lasts_until_the_robot_has_stood():
-    assert Draft(Scenario()).duration == pytest.approx(1.0 + 1.0 + 5 * 2.0 + FINAL_STAND)
-    assert Draft(Scenario(duration=3.0)).duration == 3.0
-    assert Draft(Scenario(gait=Gait(steps=0))).duration == 1.0 + FINAL_STAND
+    assert Walk(Scenario()).duration == pytest.approx(1.0 + 1.0 + 5 * 2.0 + FINAL_STAND)
+    assert Walk(Scenario(duration=3.0)).duration == 3.0
+    assert Walk(Scenario(gait=Gait(steps=0))).duration == 1.0 + FINAL_STAND

@@ -7,11 +7,10 @@ from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.record.provenance import RECORD, RunConstants
 from surefoot.scenarios.run.run import run_constants
-from surefoot.scenarios.setup.checks import notes
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.walk import resolve
+from surefoot.scenarios.setup.notes import notes
+from surefoot.scenarios.setup.walk import Walk, resolve
 
 pytestmark = pytest.mark.unit
 
@@ -23,28 +22,28 @@ def scenario(robots, more="", gait="{steps: 4}"):
 
 
 def test_the_first_footstep_lands_in_the_middle_of_the_first_tread(robots):
-    ground = Draft(scenario(robots)).terrain
+    ground = Walk(scenario(robots)).ground.terrain
     assert [ground.height(x, 0.0) for x in (0.0, 0.099, 0.101, 0.299, 0.301, 0.51, 1.0)] == pytest.approx(
         [0.0, 0.0, 0.1, 0.1, 0.2, 0.3, 0.3]
     )
 
 
 def test_a_walk_down_starts_on_the_highest_platform(robots):
-    assert Draft(scenario(robots, ", direction: down")).start_height == pytest.approx(0.3)
+    assert Walk(scenario(robots, ", direction: down")).ground.start_height == pytest.approx(0.3)
 
 
 def test_truth_differs_from_belief_by_the_noise_but_not_where_the_robot_starts(robots):
     noisy = scenario(robots, ", direction: down, height_noise: 0.02")
-    belief, truth = Draft(noisy).terrain, Draft(noisy).true_terrain
+    belief, truth = Walk(noisy).ground.terrain, Walk(noisy).ground.true_terrain
     points = np.array([[0.0, 0.0], [0.2, 0.0], [0.4, 0.0]])
     difference = truth.heights(points) - belief.heights(points)
     assert difference[0] == 0.0
     assert 0.0 < np.abs(difference[1:]).max() <= 0.02
     other = noisy.model_copy(update={"seed": 1})
-    assert not np.array_equal(Draft(other).true_terrain.heights(points), truth.heights(points))
+    assert not np.array_equal(Walk(other).ground.true_terrain.heights(points), truth.heights(points))
     assert (
-        Draft(scenario(robots)).true_terrain.boxes[0].center.tolist()
-        == Draft(scenario(robots)).terrain.boxes[0].center.tolist()
+        Walk(scenario(robots)).ground.true_terrain.boxes[0].center.tolist()
+        == Walk(scenario(robots)).ground.terrain.boxes[0].center.tolist()
     )
 
 
@@ -54,22 +53,22 @@ ALIVE = "criteria={fell: false}"
 
 @pytest.mark.parametrize("name", ["walk", "diagonal-walk", "walk-curve", "walk-sideways", "walk-backward"])
 def test_level_ground_is_uneven_in_truth_alone_and_under_every_footstep(name):
-    draft = Draft(load_scenario(name, [UNEVEN]))
-    assert draft.terrain == flat()
-    footsteps = draft.level_footsteps.position[:, :2]
-    heights = draft.true_terrain.heights(footsteps)
+    walk = Walk(load_scenario(name, [UNEVEN]))
+    assert walk.ground.terrain == flat()
+    footsteps = walk.ground.level_footsteps.position[:, :2]
+    heights = walk.ground.true_terrain.heights(footsteps)
     np.testing.assert_array_equal(heights[:2], 0.0)
     assert heights.min() < 0.0
-    assert np.abs(heights).max() <= 0.01 == -draft.true_terrain.plane
-    assert heights.min() > draft.true_terrain.plane
-    assert len(draft.true_terrain.boxes) < 150
+    assert np.abs(heights).max() <= 0.01 == -walk.ground.true_terrain.plane
+    assert heights.min() > walk.ground.true_terrain.plane
+    assert len(walk.ground.true_terrain.boxes) < 150
 
 
 def test_uneven_ground_is_that_of_the_seed_and_bears_hidden_steps_as_level_ground_does():
     points = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 2))
     step = "errors.ground=[{x: 0.5, length: 0.2, height: 0.03}]"
     one, same, other, stepped = (
-        Draft(load_scenario("walk", [UNEVEN, *more])).true_terrain.heights(points)
+        Walk(load_scenario("walk", [UNEVEN, *more])).ground.true_terrain.heights(points)
         for more in (["seed=1"], ["seed=1", "gait.step_length=0.2"], ["seed=2"], ["seed=1", step])
     )
     np.testing.assert_array_equal(one, same)
@@ -81,8 +80,8 @@ def test_uneven_ground_is_that_of_the_seed_and_bears_hidden_steps_as_level_groun
 
 @pytest.mark.parametrize("level", ["errors.ground_noise=0", "errors.ground_noise=null", "seed=3"])
 def test_ground_without_noise_is_what_is_believed(level):
-    draft = Draft(load_scenario("walk", [level]))
-    assert draft.true_terrain is draft.terrain
+    walk = Walk(load_scenario("walk", [level]))
+    assert walk.ground.true_terrain is walk.ground.terrain
 
 
 def test_a_log_says_where_the_plane_lies_only_where_it_lies_lower():
@@ -111,9 +110,9 @@ def test_ground_that_cannot_be_uneven_is_refused_with_the_key_that_is_right(sett
 
 
 def test_a_pendulum_is_told_that_it_does_not_feel_the_ground():
-    draft = Draft(load_scenario("walk", ["fidelity=pendulum", UNEVEN, ALIVE]))
-    assert "errors.ground_noise has no effect on a pendulum" in notes(draft)
-    assert draft.true_terrain is draft.terrain
+    walk = Walk(load_scenario("walk", ["fidelity=pendulum", UNEVEN, ALIVE]))
+    assert "errors.ground_noise has no effect on a pendulum" in notes(walk)
+    assert walk.ground.true_terrain is walk.ground.terrain
 
 
 @pytest.mark.parametrize(

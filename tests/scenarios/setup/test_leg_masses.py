@@ -7,11 +7,10 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from surefoot.models.facts import facts_of
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.scenarios.setup.legs import leg_inertia
-from surefoot.scenarios.setup.robot import facts_of
-from surefoot.scenarios.setup.stance import body_of
+from surefoot.scenarios.setup.stance import body_of, leg_inertia
 from surefoot.wbc.ik import PostureTarget
 
 pytestmark = pytest.mark.unit

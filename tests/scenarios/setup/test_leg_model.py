@@ -9,9 +9,9 @@ import pytest
 import surefoot
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.scenarios.setup.legs import leg_inertia
-from surefoot.scenarios.setup.stance import body_of, feet_at, start_posture
-from surefoot.scenarios.setup.walk import ANKLE_SHARE, LEAST_ROOM, resolve
+from surefoot.scenarios.setup.formulation import ANKLE_SHARE, LEAST_ROOM
+from surefoot.scenarios.setup.stance import body_of, feet_at, leg_inertia, start_posture
+from surefoot.scenarios.setup.walk import resolve
 from surefoot.wbc.ik import PostureTarget
 
 pytestmark = pytest.mark.unit
@@ -22,7 +22,7 @@ STEP = 0.01
 def cop_room(body, share=1.0):
     """Of a walk of a robot with this share of its torques, as its planner is told."""
     walk = resolve(surefoot.load("walk"))
-    walk = replace(walk, robot=replace(walk.robot, torque_limit=share * walk.robot.torque_limit))
+    walk = replace(walk, described=replace(walk.robot, torque_limit=share * walk.robot.torque_limit))
     posture = start_posture(walk, body)
     leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)
     return walk, leg.chain.ankle, walk.planner(feet_at(body, posture), leg).parameters.cop_room

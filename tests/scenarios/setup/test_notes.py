@@ -7,9 +7,9 @@ import pytest
 
 from surefoot.scenarios.file.schema import PendulumSettings
 from surefoot.scenarios.run.pendulum import plant
-from surefoot.scenarios.setup.checks import notes
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import read_scenario
+from surefoot.scenarios.setup.notes import notes
+from surefoot.scenarios.setup.walk import Walk
 
 pytestmark = pytest.mark.unit
 
@@ -31,7 +31,7 @@ BODY = "pushes: [{time: 1, impulse: 0.01, body: pelvis}]\nerrors: {payload: {mas
     ],
 )
 def test_what_the_plant_does_not_read_is_told(robots, text, words):
-    assert list(notes(Draft(read_scenario(text, "f.yaml", "f", (), robots)))) == words
+    assert list(notes(Walk(read_scenario(text, "f.yaml", "f", (), robots)))) == words
 
 
 EQUAL = "steps: 0, step_length: 0.22, lateral_step: 0.01, turn: 0.1"
@@ -57,7 +57,7 @@ LENGTH = "gait.step_length has no effect beside commands and gait.steps 0"
 )
 def test_keys_of_equal_steps_are_told_where_steps_come_from_commands(robots, gait, commands, words):
     text = f"gait: {{{gait}}}\ncommands: [{commands}]\nduration: 90\n"
-    assert list(notes(Draft(read_scenario(text, "f.yaml", "f", (), robots)))) == words
+    assert list(notes(Walk(read_scenario(text, "f.yaml", "f", (), robots)))) == words
 
 
 @pytest.mark.parametrize("kind", get_args(PendulumSettings.model_fields["plant"].annotation))
@@ -67,5 +67,5 @@ def test_a_plant_reads_a_key_or_it_is_told(robots, kind, key):
     changed = usual.model_copy(update={key: getattr(usual, key) + 1})
     unread = str(vars(plant(usual, 80.0, np.zeros(2), 0.0))) == str(vars(plant(changed, 80.0, np.zeros(2), 0.0)))
     text = f"{POINT}pendulum: {{plant: {kind}, {key}: {getattr(changed, key)}}}"
-    told = any(f"pendulum.{key}" in note for note in notes(Draft(read_scenario(text, "f.yaml", "f", (), robots))))
+    told = any(f"pendulum.{key}" in note for note in notes(Walk(read_scenario(text, "f.yaml", "f", (), robots))))
     assert told == unread

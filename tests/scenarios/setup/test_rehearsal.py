@@ -7,11 +7,10 @@ import pytest
 
 import surefoot
 from surefoot.errors import ParameterError
+from surefoot.models.facts import pitch_joints, shank_outline
 from surefoot.planner.types import Foot
-from surefoot.scenarios.setup.legs import leg_inertia
 from surefoot.scenarios.setup.rehearsal import _edges, check_legs, joint_angles, rehearsed
-from surefoot.scenarios.setup.stance import body_of, feet_at, start_posture
-from surefoot.scenarios.setup.straight import pitch_joints, shank_outline
+from surefoot.scenarios.setup.stance import body_of, feet_at, leg_inertia, start_posture
 from surefoot.scenarios.setup.walk import Walk, resolve
 
 pytestmark = pytest.mark.unit
@@ -28,7 +27,7 @@ def legs_of(walk: Walk):
 
 def slowed(walk: Walk, share: float) -> Walk:
     """The walk of a robot whose joints are slower."""
-    return replace(walk, robot=replace(walk.robot, velocity_limit=share * walk.robot.velocity_limit))
+    return replace(walk, described=replace(walk.robot, velocity_limit=share * walk.robot.velocity_limit))
 
 
 @pytest.fixture(scope="module")
@@ -120,7 +119,8 @@ def test_a_shank_so_near_to_the_riser_that_it_may_meet_it_is_refused(monkeypatch
 def test_an_ankle_that_would_come_to_its_end_before_the_foot_rolls_is_named(brisk):
     """A walk whose feet roll is refused where the ankles have just less range than its first steps take."""
     walk, feet, leg = brisk
-    rolls = replace(walk, gait=replace(walk.gait, heel_off=0.3))
+    gait = walk.keys.gait.model_copy(update={"heel_off": 0.3})
+    rolls = replace(walk, keys=walk.keys.model_copy(update={"gait": gait}))
     check_legs(rolls, feet, leg)
     way = rehearsed(rolls, feet, leg)
     joints = leg.chain.joints(way.com, way.soles, way.heading, way.pitch, 0.11)
@@ -131,10 +131,10 @@ def test_an_ankle_that_would_come_to_its_end_before_the_foot_rolls_is_named(bris
         lower[ankles] = -bent - more
         robot = replace(walk.robot, position_lower=lower)
         if not named:
-            check_legs(replace(rolls, robot=robot), feet, leg)
+            check_legs(replace(rolls, described=robot), feet, leg)
             continue
         with pytest.raises(
             ParameterError, match=r"joint '\w+_ankle_pitch' of robot 'humanoid100' would come to -0\.\d+ rad"
         ):
-            check_legs(replace(rolls, robot=robot), feet, leg)
-        check_legs(replace(walk, robot=robot), feet, leg)
+            check_legs(replace(rolls, described=robot), feet, leg)
+        check_legs(replace(walk, described=robot), feet, leg)

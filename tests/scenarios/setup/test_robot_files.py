@@ -9,14 +9,14 @@ import pytest
 
 import surefoot
 from surefoot.models import RobotOptions, describe
+from surefoot.models.facts import facts_of
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
 from surefoot.scenarios.run.run import run_constants
-from surefoot.scenarios.setup.legs import leg_inertia
+from surefoot.scenarios.setup.criteria import published
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.published import published
-from surefoot.scenarios.setup.robot import RegisteredRobots, facts_of
-from surefoot.scenarios.setup.stance import body_of, feet_at, start_posture
+from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.stance import body_of, feet_at, leg_inertia, start_posture
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit

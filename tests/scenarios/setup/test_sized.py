@@ -5,6 +5,10 @@ from dataclasses import dataclass, replace
 
 import pytest
 
+from surefoot.models.facts import CLEAR, HIPS, SHANKS
+from surefoot.models.facts import similar_com_height as com_height
+from surefoot.models.facts import similar_step_width as step_width
+from surefoot.models.facts import similar_tread as tread
 from surefoot.models.humanoid100 import HUMANOID100
 from surefoot.models.registry import ROBOTS
 from surefoot.models.similar import scaled
@@ -12,13 +16,12 @@ from surefoot.models.types import Robot, RobotOptions
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Rates, RobotSettings
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.setup.checks import notes
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load, read_scenario
-from surefoot.scenarios.setup.posture import CLEAR, com_height, nearer_landings, step_width, tread
-from surefoot.scenarios.setup.robot import HIPS, SHANKS, RegisteredRobots
+from surefoot.scenarios.setup.notes import notes
+from surefoot.scenarios.setup.posture import nearer_landings
+from surefoot.scenarios.setup.robot import RegisteredRobots
 from surefoot.scenarios.setup.sized import clock
-from surefoot.scenarios.setup.walk import resolve
+from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.similarity import Similarity
 
 pytestmark = pytest.mark.unit
@@ -139,8 +142,8 @@ def test_a_log_of_another_robot_runs_again(tmp_path):
     original = load("diagonal-walk", short)
     log = run_scenario(original, tmp_path).log
     assert load(str(log)) == original
-    draft = Draft(original, QUARTER)
-    assert not any("no effect" in note for note in notes(draft))
+    walk = Walk(original, QUARTER)
+    assert not any("no effect" in note for note in notes(walk))
 
 
 def test_a_fault_is_told_with_the_value_as_it_is_written():

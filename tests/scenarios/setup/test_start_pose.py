@@ -4,10 +4,11 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from surefoot.models.facts import STOPS_OFF
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.scenarios.file.schema import Gait, Scenario, Start
-from surefoot.scenarios.setup.stance import SOLE_SINKAGE, STOPS_OFF, body_of, disturbed, feet_at, pressed, start_posture
+from surefoot.scenarios.setup.stance import SOLE_SINKAGE, body_of, disturbed, feet_at, pressed, start_posture
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit

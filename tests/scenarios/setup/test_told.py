@@ -4,9 +4,9 @@ import pytest
 
 from surefoot.planner.steps.commands import Pose, Twist
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.setup.commands import timed_command, waypoints
-from surefoot.scenarios.setup.draft import Draft
+from surefoot.scenarios.setup.gait import timed_command
 from surefoot.scenarios.setup.load import read_scenario
+from surefoot.scenarios.setup.walk import Walk
 
 pytestmark = pytest.mark.unit
 
@@ -37,7 +37,7 @@ def test_it_is_refused_with_its_place(robots, text):
 
 def test_a_run_lasts_until_the_robot_stands(robots):
     def duration(text):
-        return Draft(read_scenario(text, "f.yaml", "f", (), robots)).duration
+        return Walk(read_scenario(text, "f.yaml", "f", (), robots)).duration
 
     near, far = (duration(f"gait: {{waypoints: [{{x: {x}, y: 0}}]}}") for x in (0.5, 3.0))
     assert far > near + 10.0
@@ -52,5 +52,5 @@ def test_velocities_are_told_from_their_time_on_and_the_rest_is_zero(robots):
     first, second = (timed_command(settings) for settings in scenario.commands)
     assert (first.time, first.command.twist) == (1.0, Twist(0.0, 0.1, 0.0))
     assert (second.command.twist, second.command.swing_height) == (None, 0.06)
-    placed = Draft(read_scenario(text + "\ngait: {waypoints: [{x: 1, y: 2, yaw: 0.5}]}", "f.yaml", "f", (), robots))
-    assert waypoints(placed) == (pytest.approx(Pose(-1.0, 1.0, 2.0707963)),)
+    placed = Walk(read_scenario(text + "\ngait: {waypoints: [{x: 1, y: 2, yaw: 0.5}]}", "f.yaml", "f", (), robots))
+    assert placed.waypoints == (pytest.approx(Pose(-1.0, 1.0, 2.0707963)),)

@@ -6,10 +6,9 @@ import pytest
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.setup.checks import notes
-from surefoot.scenarios.setup.draft import Draft
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.walk import resolve
+from surefoot.scenarios.setup.notes import notes
+from surefoot.scenarios.setup.walk import Walk, resolve
 
 pytestmark = pytest.mark.unit
 
@@ -74,7 +73,7 @@ def test_the_pendulum_has_the_true_mass(setting, mass, tmp_path):
 
 def test_what_a_pendulum_does_not_feel_is_told():
     settings = ("errors.torso_com=[0.01, 0, 0]", "errors.link_mass_noise=0.1", "errors.payload={mass: 6}")
-    told = [note for note in notes(Draft(load("walk", [*settings, *POINT]))) if "no effect" in note]
+    told = [note for note in notes(Walk(load("walk", [*settings, *POINT]))) if "no effect" in note]
     assert told == ["errors.torso_com has no effect on a pendulum"]
 
 
@@ -96,7 +95,7 @@ def test_impossible_errors_are_refused_with_their_place(setting, words):
 def test_a_controller_counts_on_the_friction_that_it_is_given_whatever_the_ground_has():
     for friction in (0.4, 1.2):
         found = walk("wbc.friction=0.7", f"terrain.friction={friction}")
-        assert (found.friction, found.true_terrain.friction) == (0.7, friction)
+        assert (found.friction, found.ground.true_terrain.friction) == (0.7, friction)
     relative = walk("terrain.friction=0.5", "errors.friction=0.3")
     assert relative.friction == pytest.approx(0.8)
     with pytest.raises(ScenarioError, match=r"a believed friction beside errors\.friction; give one of them"):

@@ -204,9 +204,8 @@ def test_the_state_is_that_before_the_push_which_need_not_begin_with_a_tick(tmp_
 
 def adapting(log, adaptation):
     """The moment of a run, had its steps been adapted so."""
-    scenario = load(log)
+    scenario = load(log, {"planner.step_adaptation": adaptation.value})
     walk = resolve(scenario)
-    walk = replace(walk, parameters=replace(walk.parameters, step_adaptation=adaptation))
     return _moment(scenario, walk, LogView(read(log)), 0)
 
 

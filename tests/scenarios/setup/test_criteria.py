@@ -9,7 +9,7 @@ from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.judge.metric import metric
 from surefoot.scenarios.judge.metrics import METRICS, OWN, register
 from surefoot.scenarios.judge.verdict import missed
-from surefoot.scenarios.setup.criteria_checks import criteria_problems
+from surefoot.scenarios.setup.criteria import criteria_problems
 from surefoot.scenarios.setup.load import load, read_scenario
 
 pytestmark = pytest.mark.unit

@@ -1,17 +1,16 @@
-"""The legs of a robot as the planner knows them: lengths and masses of a reduced body, from the whole one."""
+"""Lengths and masses of a robot's legs: a trunk on two legs of thigh, shank and foot, from the whole body."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.models.joints import meeting_point, world_axis
-from surefoot.planner.model.leg_chain import LegChain, Link, Vector
-from surefoot.planner.parameters import LegInertia
-from surefoot.wbc.model import BodyFrames
 
 Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
 
 _ON_THE_LINE = 1e-9
 """A link's CoM that is nearer to the line between its joints, in lengths of the link, lies on it [-]."""
@@ -23,8 +22,34 @@ _IN_PLANE = 1e-6
 """An axis of roll that is nearer to the plane of the leg and to its hip goes through it [m]."""
 
 
-def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray[np.bool_]) -> LegInertia:
-    """The legs' inertia, from a standing configuration; both legs alike.
+class LinkMasses(NamedTuple):
+    """A link between two joints of a leg; its numbers are those of `surefoot.planner.model.leg_chain.Link`."""
+
+    length: float
+    mass: float
+    centre: float
+    inertia: float
+    ahead: float
+    outward: float
+
+
+class LegMasses(NamedTuple):
+    """Both legs, alike; the numbers are those of `surefoot.planner.model.leg_chain.LegChain`."""
+
+    hip_half_width: float
+    trunk: Vector
+    thigh: LinkMasses
+    shank: LinkMasses
+    foot_mass: float
+    foot_centre: Vector
+    ankle: Vector
+    foot_outward: float
+    rolls_first: bool
+    hip_lever: tuple[float, float]
+
+
+def leg_masses(model: pin.Model, soles: tuple[str, str], q: Array, leg_joints: NDArray[np.bool_]) -> LegMasses:
+    """The legs' lengths and masses, from a standing configuration.
 
     The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
     the thigh, what is below the next joint to the foot; hip and ankle are where the axes there come nearest to
@@ -33,7 +58,7 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
 
     Args:
         model: the robot.
-        frames: its soles, left and right.
+        soles: frames of its left and right sole.
         q: standing configuration, shape (nq,), soles level and side by side.
         leg_joints: which joints are leg joints, bool, shape (nj,).
     """
@@ -43,14 +68,14 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
     com = pin.centerOfMass(model, data, q)
     heading = data.oMi[1].rotation[:, 0]
     R = np.column_stack((heading, np.cross([0.0, 0.0, 1.0], heading), (0.0, 0.0, 1.0)))
-    total, joints = pin.computeTotalMass(model), 6 + np.flatnonzero(leg_joints)
-    left, right = (_leg(model, data, name, leg_joints, R) for name in frames.soles)
+    total = pin.computeTotalMass(model)
+    left, right = (_leg(model, data, name, leg_joints, R) for name in soles)
     legs = left.thigh.mass + left.shank.mass + left.foot.mass
     below = sum(part.mass * part.lever for leg in (left, right) for part in (leg.thigh, leg.shank, leg.foot))
     trunk = (total * com - below) / (total - 2.0 * legs)
     plane, middle = left.plane, 0.5 * (left.plane.rolling + right.plane.rolling)
     lever = plane.axes.T @ (plane.hip - plane.rolling)
-    chain = LegChain(
+    return LegMasses(
         hip_half_width=0.5 * float(np.linalg.norm(plane.rolling - right.plane.rolling)),
         trunk=_mirrored((trunk - middle) @ R),
         thigh=_link(left.thigh, plane.hip, plane.knee, plane.axes, total),
@@ -62,7 +87,12 @@ def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDAr
         rolls_first=left.rolls_first,
         hip_lever=(float(lever[1]), float(lever[2])),
     )
-    return LegInertia(float(np.mean([_point_mass(model, name, q, joints) for name in frames.soles])), chain)
+
+
+def point_mass(model: pin.Model, soles: tuple[str, str], q: Array, leg_joints: NDArray[np.bool_]) -> float:
+    """Mass over the total mass of one leg reduced to a point mass at its sole [-]; arguments as of `leg_masses`."""
+    joints = 6 + np.flatnonzero(leg_joints)
+    return float(np.mean([_point_mass(model, name, q, joints) for name in soles]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +183,7 @@ def _lumped(model: pin.Model, data: pin.Data, joints: list[int]) -> pin.Inertia:
     return total
 
 
-def _link(part: pin.Inertia, upper: Array, lower: Array, R: Array, total: float) -> Link:
+def _link(part: pin.Inertia, upper: Array, lower: Array, R: Array, total: float) -> LinkMasses:
     """A link between two joints, seen from the side of a body whose axes are the columns of R."""
     line, pitch = lower - upper, R[:, 1]
     along = line - (line @ pitch) * pitch
@@ -162,7 +192,7 @@ def _link(part: pin.Inertia, upper: Array, lower: Array, R: Array, total: float)
     centre, ahead = float(lever @ along) / length**2, float(lever @ np.cross(along, pitch)) / length**2
     inertia = float(pitch @ part.inertia @ pitch) / total
     outward = _measured((lever - centre * line) @ pitch)
-    return Link(length, part.mass / total, centre, inertia, ahead if abs(ahead) > _ON_THE_LINE else 0.0, outward)
+    return LinkMasses(length, part.mass / total, centre, inertia, ahead if abs(ahead) > _ON_THE_LINE else 0.0, outward)
 
 
 def _measured(distance: float) -> float:

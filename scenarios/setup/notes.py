@@ -1,0 +1,127 @@
+"""What to know of a scenario that passes the checks: keys that have no effect in it, and times that look mistaken."""
+
+from collections.abc import Iterator
+
+from surefoot.plugins import PluginError
+from surefoot.scenarios.file.schema import Gait, PendulumSettings, Rates, TerrainSettings
+from surefoot.scenarios.file.units import meant
+from surefoot.scenarios.setup.gait import EQUAL_STEPS, commanded
+from surefoot.scenarios.setup.sized import clock, default_of
+from surefoot.scenarios.setup.walk import Walk
+
+_PLANT_READS = {"pendulum": ("feedback",), "cart_table": ()}
+"""Keys of `pendulum` that each of its plants reads."""
+
+
+def notes(walk: Walk, driven: bool = False) -> tuple[str, ...]:
+    """List them, one sentence each.
+
+    Args:
+        walk: the scenario.
+        driven: whether its robot was told by hand how to walk.
+    """
+    still = () if driven or walk.keys.gait.steps or commanded(walk.keys.gait) or walk.told else _without_steps(walk)
+    return (*_unlikely(walk), *_without_effect(walk), *_without_occasion(walk), *still, *_cut_short(walk))
+
+
+_LONG = 60.0
+"""Time from which a stand or a push may have been meant in milliseconds [s]."""
+
+
+def _unlikely(walk: Walk) -> Iterator[str]:
+    """Tell times that are what they say and were perhaps meant in another unit."""
+    times = {f"pushes.{index}.duration": push.duration for index, push in enumerate(walk.keys.pushes)}
+    for name, value in {"gait.initial_stand": walk.keys.gait.initial_stand, **times}.items():
+        hint = meant(value, "s", _LONG)
+        if hint:
+            yield f"{name} is {value:g} s{hint}"
+
+
+def _without_effect(walk: Walk) -> Iterator[str]:
+    keys = walk.keys
+    yield from _no_equal_steps(walk)
+    yield from _unshaped(walk)
+    walker = walk.walker
+    yield from () if walker.has_body else _not_felt(walk)
+    for group, name in walker.unfelt:
+        settings = getattr(keys, group)
+        if getattr(settings, name) != default_of(type(settings), name, walk.size):
+            yield f"{group}.{name} has no effect on a {walker.thing}"
+    if walker.has_body:
+        return
+    if keys.wbc is not None:
+        yield "wbc has no effect on a pendulum"
+    if keys.rates.physics not in (Rates().physics, clock(Rates(), walk.size.time).physics):
+        yield "rates.physics has no effect on a pendulum"
+
+
+def _no_equal_steps(walk: Walk) -> Iterator[str]:
+    """Tell keys of equal steps in a walk whose steps are given in another way."""
+    gait, commands = walk.keys.gait, walk.keys.commands
+    instead = next((f"gait.{name}" for name in ("velocity", "footsteps", "waypoints") if getattr(gait, name)), None)
+    names: tuple[str, ...] = EQUAL_STEPS
+    if instead is None and not gait.steps and any(not command.live for command in commands):
+        instead, names = "commands and gait.steps 0", EQUAL_STEPS[1:]
+    # Of a walk to a place it is the longest stride.
+    bound = gait.waypoints or any(command.place is not None for command in commands)
+    for name in names if instead else ():
+        if not (bound and name == "step_length") and getattr(gait, name) != default_of(Gait, name, walk.size):
+            yield f"gait.{name} has no effect beside {instead}"
+
+
+def _not_felt(walk: Walk) -> Iterator[str]:
+    """Tell what a pendulum, which is one body, and its plant make nothing of."""
+    pendulum, load = walk.keys.pendulum, walk.keys.errors.payload
+    for name in PendulumSettings.model_fields:
+        read = name == "plant" or name in _PLANT_READS[pendulum.plant]
+        if not read and getattr(pendulum, name) != default_of(PendulumSettings, name, walk.size):
+            yield f"pendulum.{name} has no effect on pendulum.plant {pendulum.plant}"
+    bodies = {f"pushes.{index}.body": push.body for index, push in enumerate(walk.keys.pushes)}
+    bodies["errors.payload.body"] = None if load is None else load.body
+    yield from (f"{name} has no effect on a pendulum" for name, body in bodies.items() if body is not None)
+
+
+_STEPPING = ("step_length", "lateral_step", "turn", "swing_height", "apex_single", "apex_double", "heel_off")
+"""Keys of a gait that say how steps are taken."""
+
+_TIMES = ("single_support", "double_support", "initial_stand")
+"""Those that say when, by which a run lasts that has no duration of its own."""
+
+
+def _without_steps(walk: Walk) -> Iterator[str]:
+    """Tell what a robot that takes no step has no use for."""
+    keys = walk.keys
+    for name in (*_STEPPING, *(() if keys.duration is None else _TIMES)):
+        if getattr(keys.gait, name) != default_of(Gait, name, walk.size):
+            yield f"gait.{name} has no effect on a robot that takes no step"
+
+
+def _without_occasion(walk: Walk) -> Iterator[str]:
+    """Tell keys that shape what this scenario has not got: a climb, a load."""
+    keys, load = walk.keys, walk.keys.errors.payload
+    if keys.planner.rise is not None and keys.terrain.kind == "flat":
+        yield "planner.rise has no effect on level ground"
+    if keys.robot_options.payload_body is not None and keys.robot_options.payload_mass == 0.0:
+        yield "robot_options.payload_body has no effect without robot_options.payload_mass"
+    if load is not None and load.mass == 0.0:
+        yield "errors.payload has no effect without a mass"
+
+
+def _unshaped(walk: Walk) -> Iterator[str]:
+    terrain = walk.keys.terrain
+    try:
+        shaping = ("kind", "friction", *walk.ground.kind.keys)
+        yield from walk.ground.kind.notes(walk.ground)
+    except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
+        return
+    for name in TerrainSettings.model_fields:
+        elsewhere = name not in shaping
+        if elsewhere and getattr(terrain, name) != default_of(TerrainSettings, name, walk.size):
+            yield f"terrain.{name} has no effect on terrain.kind {terrain.kind}"
+
+
+def _cut_short(walk: Walk) -> Iterator[str]:
+    duration = walk.keys.duration
+    whole = walk.gait_duration
+    if duration is not None and duration < whole:
+        yield f"duration {duration:g} s ends before the gait does, which takes {whole:g} s"

@@ -114,15 +114,14 @@ def run(told: RunOptions) -> None:
     from surefoot.scenarios.run.run import run_scenario
     from surefoot.scenarios.setup.load import load, locate
     from surefoot.scenarios.show.console import ProgressLine, print_result
-    from surefoot.scenarios.show.replay import command as replay
-    from surefoot.scenarios.show.replay.content import ReplayWindow
+    from surefoot.scenarios.show.replay.live import LiveView, check
 
     overrides = [*(told.set_ or ()), *([f"seed={told.seed}"] if told.seed is not None else [])]
     loaded = load(told.scenario, overrides)
     if told.video or told.view:
-        replay.check(loaded.fidelity, video=told.video, view=told.view, replace=told.force)
+        check(loaded.fidelity, video=told.video, view=told.view, replace=told.force)
     progress = ProgressLine(loaded.name)
-    with replay.LiveView(progress) as live:
+    with LiveView(progress) as live:
         try:
             with progress:
                 result = run_scenario(loaded, told.out, live if told.view else progress, on_begin=live.begin)
@@ -136,7 +135,9 @@ def run(told: RunOptions) -> None:
             typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
             raise typer.Exit(INTERRUPTED)
         if told.video:
-            replay.video(result.log, told.video, ReplayWindow(), replace=told.force)
+            from surefoot.scenarios.show.replay.video import write_video
+
+            write_video(result.log, told.video, replace=told.force)
         live.wait()
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 

@@ -32,6 +32,7 @@ from surefoot.scenarios.show.options import (
     Seed,
     Settings,
     keys_from,
+    overrides,
     scenarios_from,
     with_options,
 )
@@ -158,8 +159,8 @@ def run(told: RunOptions) -> None:
     from surefoot.scenarios.show.console import ProgressLine, print_result
     from surefoot.scenarios.show.replay.live import LiveView, check
 
-    overrides = [*(told.set_ or ()), *([f"seed={told.seed}"] if told.seed is not None else [])]
-    loaded = load(told.scenario, overrides)
+    asked = overrides(told.set_, told.seed)
+    loaded = load(told.scenario, asked)
     if told.video or told.view:
         check(loaded.fidelity, video=told.video, view=told.view, replace=told.force)
     progress = ProgressLine(loaded.name)
@@ -168,7 +169,7 @@ def run(told: RunOptions) -> None:
             with progress:
                 result = run_scenario(loaded, told.out, live if told.view else progress, on_begin=live.begin)
         except SetupError as refusal:
-            raise locate(told.scenario, overrides, refusal) from None
+            raise locate(told.scenario, asked, refusal) from None
         if told.as_json:
             typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
         else:

@@ -105,8 +105,8 @@ def compare(
 ) -> None:
     """Show two logs side by side, and where their channels part."""
     from surefoot.scenarios.output import refuse_existing
-    from surefoot.scenarios.show.compare.compare import TOLERANCE, draw, print_comparison
-    from surefoot.scenarios.show.compare.compare import compare as compare_logs
+    from surefoot.scenarios.show.compare import TOLERANCE, draw, print_comparison
+    from surefoot.scenarios.show.compare import compare as compare_logs
 
     if out is not None:
         refuse_existing(out, force)

@@ -19,9 +19,8 @@ from surefoot.scenarios.run.simulation import Tick
 from surefoot.scenarios.setup.stance import frames_of
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.scenarios.show.logview import FOOT_NAMES, seen_from
-from surefoot.scenarios.show.replay.content import Array, Replay, Track
+from surefoot.scenarios.show.replay.content import PUSH_SHOWN, Array, Facts, Replay, Track, sole_corners, tracks
 from surefoot.scenarios.show.replay.extract import surfaces
-from surefoot.scenarios.show.replay.overlays import PUSH_SHOWN, Facts, sole_corners, tracks
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.scene import world_mjcf
 from surefoot.wbc.model import RobotTerms

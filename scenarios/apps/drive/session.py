@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
-from queue import Empty, SimpleQueue
+from queue import SimpleQueue
 from typing import Any, Protocol
 
 from surefoot.errors import ParameterError
@@ -222,12 +222,8 @@ class Session:
             self._over, self._note = True, _ending(robot.end)
 
     def _take_inputs(self) -> None:
-        while True:
-            try:
-                given = self._inputs.get_nowait()
-            except Empty:
-                return
-            self._take(given)
+        while not self._inputs.empty():  # nobody else takes them
+            self._take(self._inputs.get_nowait())
 
     def _take(self, given: Input) -> None:
         if isinstance(given, Twist):

@@ -17,8 +17,19 @@ from surefoot.scenarios.log import Log
 from surefoot.scenarios.palette import FEET, Color
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.show.logview import FOOT_NAMES, rows_at
-from surefoot.scenarios.show.replay.content import Array, Footprint, Frames, Replay, ReplayWindow, Surface
-from surefoot.scenarios.show.replay.overlays import PUSH_SHOWN, Facts, SoleSize, sole_corners, tracks
+from surefoot.scenarios.show.replay.content import (
+    PUSH_SHOWN,
+    Array,
+    Facts,
+    Footprint,
+    Frames,
+    Replay,
+    ReplayWindow,
+    SoleSize,
+    Surface,
+    sole_corners,
+    tracks,
+)
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.shapes import Shape, drawn_shapes
 

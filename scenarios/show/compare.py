@@ -12,7 +12,8 @@ from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
-from surefoot.scenarios.show.compare.differences import (
+from surefoot.scenarios.show.console import number, plain_console, plain_table
+from surefoot.scenarios.show.differences import (
     ChannelDifference,
     Difference,
     FirstDifference,
@@ -24,7 +25,6 @@ from surefoot.scenarios.show.compare.differences import (
     unreadable,
     version_differences,
 )
-from surefoot.scenarios.show.console import number, plain_console, plain_table
 from surefoot.scenarios.show.logview import LogView
 
 TOLERANCE = 1e-6

@@ -24,7 +24,7 @@ from surefoot.scenarios.run.simulation import Simulation, Tick
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.scenarios.show.replay.content import Array
 from surefoot.scenarios.show.replay.gate import LOCALHOST, VIEWER, Gate, serving
-from surefoot.scenarios.show.replay.page import CHARTS, filled, taken_in
+from surefoot.scenarios.show.replay.page import CHARTS, beside, filled, taken_in
 from surefoot.scenarios.show.replay.scene import SEE_THROUGH, ViserScene, rgb
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 
@@ -303,7 +303,7 @@ def _page(viewer: str, walk: Walk) -> str:
     text = files(__package__).joinpath("drive.html").read_text(encoding="utf-8")
     head, column = text.split("<!-- the column -->")
     title = html.escape(f"{walk.name}, seed {walk.seed}")
-    controls = filled(column, data, title=title, channel=CHANNEL, drawn=DRAWN)
+    controls = filled(beside(column), data, title=title, channel=CHANNEL, drawn=DRAWN)
     return taken_in(viewer, filled(head, title=title), controls)
 
 

@@ -159,12 +159,17 @@ def column(replay: Replay, layers: tuple[str, ...], charts: Sequence[Mapping[str
     time = replay.time.round(4).tolist()
     legend = (f'<span><b style="background:{hexadecimal(c)}"></b>{name}</span>' for name, c in replay.legend().items())
     return filled(
-        files(__package__).joinpath("column.html").read_text(encoding="utf-8"),
+        beside(files(__package__).joinpath("column.html").read_text(encoding="utf-8")),
         {"time": time, "layers": layers, "charts": charts},
         title=html.escape(replay.title),
         span=f"{time[0]:.1f} s to {time[-1]:.1f} s",
         legend="".join(legend),
     )
+
+
+def beside(column: str) -> str:
+    """The template of a column beside a picture, with what all columns share in front of it."""
+    return files(__package__).joinpath("beside.html").read_text(encoding="utf-8").replace("@", "@@") + column
 
 
 class _Template(Template):

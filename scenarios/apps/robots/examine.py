@@ -1,7 +1,7 @@
 """What a described robot is worth, measured and told: engines, legs, soles, and torque in standing."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -213,7 +213,7 @@ def _touching(robot: RobotDescription, q: Array) -> tuple[tuple[str, str], ...]:
 def print_examination(console: Console, explained: Explanation, found: Examination) -> None:
     """Print what the robot is, what was derived and what was measured."""
     robot = explained.description
-    _print_pairs(console, _facts(robot), "robot", robot.name)
+    console.print(plain_table("robot", robot.name, rows=_facts(robot)))
     for title, lines in (
         ("derived", explained.derived),
         ("note", (*explained.notes, *found.notes)),
@@ -221,14 +221,7 @@ def print_examination(console: Console, explained: Explanation, found: Examinati
     ):
         for line in lines:
             console.print(f"{title}: {line}", style="bold red" if title == "fault" else None)
-    _print_pairs(console, _measured(found), "measured", "value")
-
-
-def _print_pairs(console: Console, pairs: Iterable[tuple[str, str]], *columns: str) -> None:
-    table = plain_table(*columns)
-    for pair in pairs:
-        table.add_row(*pair)
-    console.print(table)
+    console.print(plain_table("measured", "value", rows=_measured(found)))
 
 
 def _facts(robot: RobotDescription) -> Iterator[tuple[str, str]]:

@@ -14,7 +14,7 @@ from recoveries import NATURAL
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.show.replay.extract import Window
+from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.sim.render import Camera
 
 PICTURE = Path(__file__).parent / "front.webp"
@@ -26,7 +26,7 @@ PUSH = "{step: 3, phase: single, fraction: 0.5, duration: 0.1, impulse: 0.5, dir
 """To the right while the left foot swings: it lands 12 cm beyond the right one."""
 
 SHOT = Shot(
-    Window(1.7, 6.1, frame_rate=EVERY * RATE),
+    ReplayWindow(1.7, 6.1, frame_rate=EVERY * RATE),
     (720, 405),
     Camera(distance=2.6, azimuth=165.0, elevation=-20.0),
     lower=0.12,

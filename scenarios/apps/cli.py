@@ -4,21 +4,26 @@ Exit codes: 0 criteria met, 1 missed, 2 bad input or usage or no room for output
 SIGHUP, Ctrl-C and SIGTERM, 141 nobody reads the output any more.
 """
 
+import io
 import json
+import os
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer._click.exceptions import NoArgsIsHelpError, NoSuchOption, UsageError
+from typer.core import TyperGroup
 
 from surefoot.errors import PluginError
 from surefoot.scenarios.apps.drive import command as drive
 from surefoot.scenarios.apps.robots import command as robots
-from surefoot.scenarios.apps.terminal import BAD_INPUT, Commands, set_up_streams
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.output import reason
 from surefoot.scenarios.show import commands as shown
 from surefoot.scenarios.show.options import (
     INTERRUPTED,
@@ -26,10 +31,50 @@ from surefoot.scenarios.show.options import (
     AsJson,
     Seed,
     Settings,
+    keys_from,
+    overrides,
     scenarios_from,
     with_options,
 )
 from surefoot.scenarios.study import commands as studies
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+    from typer._click.core import Context
+
+DEFECT, BAD_INPUT, UNREAD = 70, 2, 141
+
+
+@contextmanager
+def _one_sentence() -> Iterator[None]:
+    """Say what is wrong with the words of a command as of any other bad input: what, where, and what would be right."""
+    try:
+        yield
+    except NoArgsIsHelpError:
+        raise
+    except UsageError as error:
+        path = error.ctx.command_path if error.ctx else "surefoot"
+        what = error.format_message().rstrip(".")
+        right = f"`{path} -h` tells what there is"
+        if isinstance(error, NoSuchOption) and path.endswith(" run"):
+            key = error.option_name.lstrip("-").replace("-", "_")
+            right = f"a key of the scenario is given as --set {key}=VALUE" if key in keys_from(key) else right
+        raise ScenarioError([f"{path}: {what[:1].lower()}{what[1:]}; {right}"]) from None
+
+
+class Commands(TyperGroup):
+    """All commands."""
+
+    def parse_args(self, ctx: "Context", args: list[str]) -> list[str]:
+        """Find the command."""
+        with _one_sentence():
+            return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: "Context") -> Any:
+        """Give it its words and run it."""
+        with _one_sentence():
+            return super().invoke(ctx)
+
 
 app = typer.Typer(
     name="surefoot",
@@ -40,8 +85,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-
-DEFECT = 70
 
 
 def _print_version(wanted: bool) -> None:
@@ -114,20 +157,19 @@ def run(told: RunOptions) -> None:
     from surefoot.scenarios.run.run import run_scenario
     from surefoot.scenarios.setup.load import load, locate
     from surefoot.scenarios.show.console import ProgressLine, print_result
-    from surefoot.scenarios.show.replay import command as replay
-    from surefoot.scenarios.show.replay.content import ReplayWindow
+    from surefoot.scenarios.show.replay.live import LiveView, check
 
-    overrides = [*(told.set_ or ()), *([f"seed={told.seed}"] if told.seed is not None else [])]
-    loaded = load(told.scenario, overrides)
+    asked = overrides(told.set_, told.seed)
+    loaded = load(told.scenario, asked)
     if told.video or told.view:
-        replay.check(loaded.fidelity, video=told.video, view=told.view, replace=told.force)
+        check(loaded.fidelity, video=told.video, view=told.view, replace=told.force)
     progress = ProgressLine(loaded.name)
-    with replay.LiveView(progress) as live:
+    with LiveView(progress) as live:
         try:
             with progress:
                 result = run_scenario(loaded, told.out, live if told.view else progress, on_begin=live.begin)
         except SetupError as refusal:
-            raise locate(told.scenario, overrides, refusal) from None
+            raise locate(told.scenario, asked, refusal) from None
         if told.as_json:
             typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
         else:
@@ -136,14 +178,16 @@ def run(told: RunOptions) -> None:
             typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
             raise typer.Exit(INTERRUPTED)
         if told.video:
-            replay.video(result.log, told.video, ReplayWindow(), replace=told.force)
+            from surefoot.scenarios.show.replay.video import write_video
+
+            write_video(result.log, told.video, replace=told.force)
         live.wait()
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 
 
 for product in (drive, shown, studies):
     app.add_typer(product.app)
-app.add_typer(robots.app, name="robot")
+app.add_typer(robots.app, name="robot", cls=Commands)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -190,3 +234,38 @@ def _code(arguments: Sequence[str] | None) -> int | str | None:
         traceback.print_exc()
         return DEFECT
     return 0
+
+
+class _Stream(io.FileIO):
+    """Standard output or error, whose end ends the program and is no defect: a pipe is closed, a disk is full."""
+
+    ended = False
+
+    def write(self, data: "ReadableBuffer") -> int:
+        """Write, unless there is no use in it any more."""
+        size = memoryview(data).nbytes
+        if self.ended:
+            return size
+        try:
+            return super().write(data) or 0
+        except OSError as error:
+            self.ended = True
+            if isinstance(error, BrokenPipeError):
+                raise SystemExit(UNREAD) from None
+            if self.fileno() == 1:
+                typer.echo(f"standard output: cannot be written, {reason(error)}; give it more room", err=True)
+            raise SystemExit(BAD_INPUT) from None
+
+
+def set_up_streams() -> None:
+    """Set up standard output and error; a name that is no text is shown escaped."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed by whoever has started the program
+            setattr(sys, name, Path(os.devnull).open("w"))  # noqa: SIM115  as long as the program
+        elif stream is getattr(sys, f"__{name}__") and isinstance(stream, io.TextIOWrapper):
+            stream.flush()
+            raw = io.BufferedWriter(_Stream(stream.fileno(), "w", closefd=False))
+            on_screen = name == "stderr" or stream.isatty()
+            safe = io.TextIOWrapper(raw, stream.encoding, "backslashreplace", line_buffering=on_screen)
+            setattr(sys, name, safe)

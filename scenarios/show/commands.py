@@ -105,8 +105,8 @@ def compare(
 ) -> None:
     """Show two logs side by side, and where their channels part."""
     from surefoot.scenarios.output import refuse_existing
-    from surefoot.scenarios.show.compare.compare import TOLERANCE, draw, print_comparison
-    from surefoot.scenarios.show.compare.compare import compare as compare_logs
+    from surefoot.scenarios.show.compare import TOLERANCE, draw, print_comparison
+    from surefoot.scenarios.show.compare import compare as compare_logs
 
     if out is not None:
         refuse_existing(out, force)
@@ -163,15 +163,20 @@ def replay(told: ReplayOptions) -> None:
         raise typer.BadParameter("give one of --html FILE, --video FILE and --live")
     if told.video is None and (told.speed, told.camera, told.size) != (1.0, "follow", "1280x720"):
         raise typer.BadParameter("--speed, --camera and --size are of a video; give them with --video FILE")
-    from surefoot.scenarios.show.replay import command
     from surefoot.scenarios.show.replay.content import ReplayWindow
 
     window = ReplayWindow(told.start, told.end)
     if told.html is not None:
-        command.html_page(told.log, told.html, window, told.force)
+        from surefoot.scenarios.show.replay.page import write_page
+
+        write_page(told.log, told.html, window, told.force)
         typer.echo(str(told.html))
     elif told.video is not None:
-        command.video(told.log, told.video, window, command.Filming(told.speed, told.camera, told.size), told.force)
+        from surefoot.scenarios.show.replay.video import Film, write_video
+
+        write_video(told.log, told.video, window, Film.of(told.speed, told.camera, told.size), told.force)
         typer.echo(str(told.video))
     else:
-        command.serve(told.log, window, typer.echo)
+        from surefoot.scenarios.show.replay.live import serve
+
+        serve(told.log, window, typer.echo)

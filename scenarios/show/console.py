@@ -4,7 +4,7 @@ import csv
 import importlib
 import io
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -100,10 +100,8 @@ def print_inspection(found: Inspection) -> None:
         console.print(f"health: {line}")
     _print_verdict(console, found.scenario, found.verdict)
     console.print(_metric_table(found.verdict, tuple(found.verdict.metrics)))
-    topics = plain_table("topic", "messages", "rate [Hz]")
-    for topic in found.topics:
-        topics.add_row(topic.topic, str(topic.messages), f"{topic.rate:.1f}")
-    console.print(topics)
+    topics = ((one.topic, str(one.messages), f"{one.rate:.1f}") for one in found.topics)
+    console.print(plain_table("topic", "messages", "rate [Hz]", rows=topics))
 
 
 def _health_lines(health: Sequence[Finding]) -> list[str]:
@@ -161,11 +159,13 @@ def number(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value).lower()
 
 
-def plain_table(*columns: str) -> Table:
+def plain_table(*columns: str, rows: Iterable[Sequence[str]] = ()) -> Table:
     """A table without lines, whose cells are not wrapped."""
     table = Table(box=None, pad_edge=False)
     for column in columns:
         table.add_column(column, no_wrap=True)
+    for row in rows:
+        table.add_row(*row)
     return table
 
 

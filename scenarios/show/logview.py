@@ -125,13 +125,11 @@ class LogView:
             MissingError: the log does not tell where the feet stand.
         """
         clock, planned = self.time("/reference"), self.time("/footsteps")
-        foot = _last_alone(self.field("/reference", "stance"))[_at_or_before(clock, times)]
-        rows = _at_or_before(planned, times)
+        foot = _last_alone(self.field("/reference", "stance"))[rows_at(clock, times)]
+        rows = rows_at(planned, times)
         left, right = (self.field("/footsteps", f"current_{name}", 4)[rows] for name in FOOT_NAMES)
         pose = np.select([foot[:, None] == 0, foot[:, None] == 1], [left, right], (left + right) / 2)
-        sine, cosine = np.sin(pose[:, 3]), np.cos(pose[:, 3])
-        x, y = (points - pose[:, :2]).T
-        seen = np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
+        seen = seen_from(pose, points)
         seen[1:][np.diff(foot) != 0] = np.nan
         return seen
 
@@ -149,8 +147,20 @@ class LogView:
         return rows
 
 
-def _at_or_before(clock: Array, times: Array) -> NDArray[np.intp]:
-    """Row of a clock that holds at each time, shape (n,)."""
+def seen_from(poses: Array, points: Array) -> Array:
+    """Points of the ground plane ahead and to the left of poses, shape (n, 2) [m].
+
+    Args:
+        poses: x y z yaw, shape (n, 4) or (4,) [m, rad].
+        points: in the world, shape (n, 2) [m].
+    """
+    sine, cosine = np.sin(poses[..., 3]), np.cos(poses[..., 3])
+    x, y = (points - poses[..., :2]).T
+    return np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
+
+
+def rows_at(clock: Array, times: Array) -> NDArray[np.intp]:
+    """Row of a clock that holds at each time, the first one before it begins, shape (n,)."""
     return np.asarray(np.maximum(np.searchsorted(clock, times + 1e-9, side="right") - 1, 0))
 
 

@@ -60,6 +60,11 @@ def settings(what: str) -> Any:
     return typer.Option("--set", metavar="KEY=VALUE", help=f"{what}; repeatable.", autocompletion=_settings_from)
 
 
+def overrides(set_: list[str] | None, seed: int | None) -> list[str]:
+    """What ``--set`` and ``--seed`` say, as settings of keys."""
+    return [*(set_ or ()), *([] if seed is None else [f"seed={seed}"])]
+
+
 From = Annotated[float | None, typer.Option("--from", metavar="T", help="From this time on [s].", callback=_finite)]
 To = Annotated[float | None, typer.Option("--to", metavar="T", help="Up to this time [s].", callback=_finite)]
 Replace = Annotated[bool, typer.Option("--force", "-f", help="Replace the file if it exists.")]

@@ -12,7 +12,7 @@ from surefoot.scenarios.errors import ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.show.compare.differences import WALL_CLOCK
+from surefoot.scenarios.show.differences import WALL_CLOCK
 
 FEET = "robot_options: {foot_length: 0.22, foot_width: 0.11}\n"
 PACE = "single_support: 0.4, double_support: 0.1, com_height: 0.99, initial_stand: 0.1"

@@ -23,7 +23,7 @@ from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.recover import recover
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.show.compare.differences import WALL_CLOCK
+from surefoot.scenarios.show.differences import WALL_CLOCK
 
 TRIALS = int(os.environ.get("SUREFOOT_TRIALS", "2000"))
 SLOWEST, MOST = 10.0, 300 << 10

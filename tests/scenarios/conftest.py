@@ -15,7 +15,7 @@ from surefoot.scenarios.file.schema import RobotSettings, Scenario
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.run.skeleton import End, Progress
-from surefoot.scenarios.show.compare.differences import WALL_CLOCK
+from surefoot.scenarios.show.differences import WALL_CLOCK
 
 JOINTS = ("left_hip", "left_knee", "right_hip", "right_knee")
 SIZES = channels.Sizes(nj=4, nq=11, nv=10, horizon=50)

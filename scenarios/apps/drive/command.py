@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.show.options import INTERRUPTED, Seed, Settings, scenarios_from
+from surefoot.scenarios.show.options import INTERRUPTED, Seed, Settings, overrides, scenarios_from
 
 if TYPE_CHECKING:
     from surefoot.scenarios.apps.drive.session import Input
@@ -45,12 +45,12 @@ def drive(
 
     require("viser", "replay", "surefoot drive")
     reference = scenario or str(OWN)
-    overrides = [LONGEST, *(set_ or ()), *([f"seed={seed}"] if seed is not None else [])]
-    loaded = load(reference, overrides)
+    asked = [LONGEST, *overrides(set_, seed)]
+    loaded = load(reference, asked)
     try:
         drive_scenario(loaded, out, port, typer.echo)
     except SetupError as refusal:
-        raise locate(reference, overrides, refusal) from None
+        raise locate(reference, asked, refusal) from None
     typer.echo("ended; the logs are whole", err=True)
     raise typer.Exit(INTERRUPTED)
 

@@ -15,23 +15,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from surefoot.errors import ParameterError
+from surefoot.planner.steps.commands import Twist
 from surefoot.scenarios import palette
 from surefoot.scenarios.apps.drive.channel import DRAWN, PageChannel
 from surefoot.scenarios.apps.drive.picture import Picture, Pictures
-from surefoot.scenarios.apps.drive.session import DriveStatus, GaitInput, Input, PaceInput, PushInput, Reset, Velocity
-from surefoot.scenarios.run.simulation import Tick
+from surefoot.scenarios.apps.drive.session import DriveStatus, GaitInput, Input, PaceInput, PushInput, Reset
+from surefoot.scenarios.run.simulation import Simulation, Tick
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.scenarios.show.kit.viewer import filled, taken_in
 from surefoot.scenarios.show.replay.content import Array
 from surefoot.scenarios.show.replay.gate import LOCALHOST, VIEWER, Gate, serving
-from surefoot.scenarios.show.replay.page import AXES, BALANCE, FEET_NAMES, MARGINS
+from surefoot.scenarios.show.replay.page import CHARTS, beside, filled, taken_in
 from surefoot.scenarios.show.replay.scene import SEE_THROUGH, ViserScene, rgb
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 if TYPE_CHECKING:
     import viser
 
-LIMITS = Velocity(0.6, 0.25, 0.6)
+LIMITS = Twist(0.6, 0.25, 0.6)
 """Greatest velocities that the page asks for, either way; numbers here are the reference robot's [m/s, rad/s]."""
 
 GAIT_RANGES = {"single_support": (0.35, 1.2), "double_support": (0.08, 0.6), "swing_height": (0.02, 0.12)}
@@ -88,7 +88,7 @@ class DrivePage:
         self._pushed: dict[str, Any] | None = None
         self._pictures: Pictures
         self._scene: ViserScene | None = None
-        self._channel = PageChannel(self._take, lambda: inputs.put(Velocity()))
+        self._channel = PageChannel(self._take, lambda: inputs.put(Twist()))
         gate.page, gate.sockets = _SOON, {CHANNEL: self._channel.serve}
 
     @property
@@ -96,8 +96,8 @@ class DrivePage:
         """Where the page is."""
         return self._gate.address
 
-    def begin(self, robot: Any) -> None:
-        """See `session.DriveView`; the robot is a `Simulation`, and the same for all runs."""
+    def begin(self, robot: Simulation) -> None:
+        """See `session.DriveView`; the robot is the same for all runs."""
         self._robot, self._pushed = robot, None
         if self._scene is None:
             self._pictures, self._size = Pictures(robot.walk), robot.walk.size
@@ -139,9 +139,9 @@ class DrivePage:
 
     def _followed(self) -> Any:
         try:
-            return self._robot.orders.followed or Velocity()
+            return self._robot.orders.followed or Twist()
         except ParameterError:  # of a planner that takes no commands
-            return Velocity()
+            return Twist()
 
     def _staged(self, picture: Picture) -> ViserScene:
         """The scene, whose robot can be clicked on and dragged."""
@@ -209,9 +209,9 @@ class DrivePage:
             self._inputs.put(read_input(kind, given, self._size))
 
 
-def _limits(size: Similarity) -> Velocity:
+def _limits(size: Similarity) -> Twist:
     """Fastest velocity that a robot of a size is asked for."""
-    return Velocity(*size.times(tuple(asdict(LIMITS).values()), "m/s, m/s, 1/s"))
+    return Twist(*size.times(tuple(asdict(LIMITS).values()), "m/s, m/s, 1/s"))
 
 
 def _gait_ranges(size: Similarity) -> dict[str, tuple[float, float]]:
@@ -226,7 +226,7 @@ def read_input(kind: Any, given: Mapping[str, Any], size: Similarity = REFERENCE
         ValueError: there is no such input, or a value is not of its kind.
     """
     if kind == "velocity":
-        return Velocity(**{key: _number(given, key, -most, most) for key, most in asdict(_limits(size)).items()})
+        return Twist(**{key: _number(given, key, -most, most) for key, most in asdict(_limits(size)).items()})
     if kind == "gait":
         ranges = _gait_ranges(size)
         return GaitInput(**{key: _number(given, key, *ranges[key]) for key in ranges if key in given})
@@ -292,16 +292,8 @@ def _page(viewer: str, walk: Walk) -> str:
     """Viser's page with the controls beside it."""
     size, ranges = walk.size, _gait_ranges(walk.size)
     gait = {key: float(getattr(walk.gait, key)) for key in ranges}
-    feet = tuple((name, color, False) for name, color in zip(FEET_NAMES, palette.FEET, strict=True))
-    curves, margins, forces = (
-        [{"name": name, "color": palette.hexadecimal(color), "planned": dashed} for name, color, dashed, *_ in drawn]
-        for drawn in (BALANCE, MARGINS, feet)
-    )
     data = {
-        "charts": [
-            {"label": label, "digits": digits, "curves": drawn}
-            for (label, digits), drawn in zip(AXES, (curves, curves, margins, forces), strict=True)
-        ],
+        "charts": [chart.told() for chart in CHARTS],
         "limits": _numbers(_limits(size)),
         "gait": {key: [*ranges[key], value] for key, value in gait.items()},
         "speeds": SPEEDS,
@@ -311,7 +303,7 @@ def _page(viewer: str, walk: Walk) -> str:
     text = files(__package__).joinpath("drive.html").read_text(encoding="utf-8")
     head, column = text.split("<!-- the column -->")
     title = html.escape(f"{walk.name}, seed {walk.seed}")
-    controls = filled(column, data, title=title, channel=CHANNEL, drawn=DRAWN)
+    controls = filled(beside(column), data, title=title, channel=CHANNEL, drawn=DRAWN)
     return taken_in(viewer, filled(head, title=title), controls)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.planner.plan import WalkPlan
@@ -17,17 +18,9 @@ from surefoot.scenarios.record.body import contact_points
 from surefoot.scenarios.run.simulation import Tick
 from surefoot.scenarios.setup.stance import frames_of
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.scenarios.show.logview import FOOT_NAMES
-from surefoot.scenarios.show.replay.content import Array, Replay, Track
+from surefoot.scenarios.show.logview import FOOT_NAMES, seen_from
+from surefoot.scenarios.show.replay.content import PUSH_SHOWN, Array, Facts, Replay, Track, sole_corners, tracks
 from surefoot.scenarios.show.replay.extract import surfaces
-from surefoot.scenarios.show.replay.overlays import (
-    PUSH_SHOWN,
-    BalanceMarks,
-    footsteps_ahead,
-    push_arrow,
-    sole_corners,
-    sole_forces,
-)
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.scene import world_mjcf
 from surefoot.wbc.model import RobotTerms
@@ -126,12 +119,9 @@ class Pictures:
         if plan.phase.stance is not None:
             self._alone = plan.phase.stance
         feet = plan.footholds if self._alone is None else (plan.footholds[self._alone],)
-        place = np.mean([foot.position[:2] for foot in feet], axis=0)
-        yaw = float(np.mean([foot.yaw for foot in feet]))
-        cosine, sine = math.cos(yaw), math.sin(yaw)
-        x, y = (points - place).T
-        ahead, left, balance = cosine * x + sine * y, cosine * y - sine * x, plan.balance
-        return ahead.tolist(), left.tolist(), [balance.planned, balance.movable], measurement.wrench[:, 2].tolist()
+        ahead, left = seen_from(np.mean([_pose(foot) for foot in feet], axis=0), points).T
+        margins = [plan.balance.planned, plan.balance.movable]
+        return ahead.tolist(), left.tolist(), margins, measurement.wrench[:, 2].tolist()
 
     @property
     def alone(self) -> int:
@@ -139,41 +129,46 @@ class Pictures:
         return -1 if self._alone is None else int(self._alone)
 
     def _tracks(self, tick: Tick) -> Iterator[Track]:
-        measurement, plan, now = tick.measurement, tick.plan, tick.reference
+        """Marks as in a replay, and the footprints, which come and go here."""
+        measurement, plan, now, terms = tick.measurement, tick.plan, tick.reference, self._terms
         assert measurement is not None
-        terms = self._terms
         zmp, cop = contact_points(measurement.wrench[None], terms.sole_position[None], terms.sole_rotation[None])
-        yield from BalanceMarks(
-            com=tick.com[None],
-            dcm=_dcm(tick)[None],
-            zmp=zmp,
-            planned_com=now.com[None],
-            planned_dcm=now.dcm[None],
-            planned_zmp=now.zmp[None],
-            polygon=_eight(plan.support_polygon)[None],
-            contacts=np.array([now.contacts]),
-            soles=terms.sole_pose[None],
-        ).tracks()
         steps = [planned.footstep for planned in plan.footsteps]
-        ahead = [_pose(step) for step in steps] + [_NO_STEP] * (3 - len(steps))
-        feet = [int(step.foot) for step in steps] + [-1] * (3 - len(steps))
-        yield from footsteps_ahead(np.array([ahead]), np.array([feet]), self.sole)
-        yield from sole_forces(terms.sole_pose[None], cop, measurement.wrench[None, :, :3])
-        yield self._push_track(tick.time)
+        free = 3 - len(steps)
+        push, pushed = self._push_at(tick.time)
+        yield from tracks(
+            Facts(
+                com=tick.com[None],
+                dcm=_dcm(tick)[None],
+                zmp=zmp,
+                planned_com=now.com[None],
+                planned_dcm=now.dcm[None],
+                planned_zmp=now.zmp[None],
+                polygon=_eight(plan.support_polygon)[None],
+                contacts=np.array([now.contacts]),
+                soles=terms.sole_pose[None],
+                cop=cop,
+                force=measurement.wrench[None, :, :3],
+                ahead=np.array([[_pose(step) for step in steps] + [_NO_STEP] * free]),
+                ahead_foot=np.array([[int(step.foot) for step in steps] + [-1] * free]),
+                push=push[None],
+                pushed=pushed[None],
+                sole=self.sole,
+            )
+        )
         for foot, name in enumerate(FOOT_NAMES):
             corners = [*self._taken[foot], *[_NOWHERE] * FOOTPRINTS][:FOOTPRINTS]
             for number, sole in enumerate(corners):
                 yield Track("Taken footprints", f"{name} {number}", "outline", palette.FEET[foot], 0.003, sole[None])
 
-    def _push_track(self, time: float) -> Track:
+    def _push_at(self, time: float) -> tuple[Array, Array]:
+        """Force of the push that is to be seen [N], and where it acts, shape (3,) each [m]."""
         if self._push is None or time >= self._push[0]:
-            return push_arrow(np.zeros((1, 3)), np.zeros((1, 3)))
+            return np.zeros(3), np.zeros(3)
         _, force, body = self._push
         index = self._poses.names.index(body)
-        w, x, y, z = self._poses.quaternion[index]
-        axis, offset = np.array([x, y, z]), self._offsets[index]
-        turned = offset + 2.0 * np.cross(axis, np.cross(axis, offset) + w * offset)
-        return push_arrow((self._poses.position[index] + turned)[None], force[None])
+        turned = Rotation.from_quat(self._poses.quaternion[index], scalar_first=True).apply(self._offsets[index])
+        return force, self._poses.position[index] + turned
 
     def _follow(self, base: Array, time: float) -> None:
         if self._look_at is None:

@@ -6,22 +6,14 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
-from queue import Empty, SimpleQueue
+from queue import SimpleQueue
 from typing import Any, Protocol
 
 from surefoot.errors import ParameterError
+from surefoot.planner.steps.commands import Twist
 from surefoot.scenarios.run.planning import RunFault
-from surefoot.scenarios.run.simulation import Tick
+from surefoot.scenarios.run.simulation import Simulation, Tick
 from surefoot.scenarios.run.skeleton import End
-
-
-@dataclass(frozen=True, slots=True)
-class Velocity:
-    """How the robot shall walk, in the frame of its path's heading [m/s, rad/s]."""
-
-    v_x: float = 0.0
-    v_y: float = 0.0
-    yaw_rate: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +46,7 @@ class Reset:
     """End this run and begin another one."""
 
 
-Input = Velocity | GaitInput | PushInput | PaceInput | Reset
+Input = Twist | GaitInput | PushInput | PaceInput | Reset
 
 PUSH_TIME = 0.1
 """How long a push acts, simulated [s]."""
@@ -81,46 +73,6 @@ _PACE_SPAN = 2.0
 _SLOW_SHOWN = 4.0
 
 
-class DrivenRobot(Protocol):
-    """What is driven: a `Simulation`, to which nothing is done but between two of its control ticks."""
-
-    @property
-    def time(self) -> float:
-        """Simulated time of the next tick [s]."""
-
-    @property
-    def done(self) -> bool:
-        """Whether there is nothing more to step."""
-
-    @property
-    def end(self) -> End:
-        """How the run ended."""
-
-    def advance(self) -> None:
-        """Go through one control tick."""
-
-    def look(self) -> Tick:
-        """The last tick."""
-
-    def push(self, force: Any, duration: float = ..., body: str | None = ...) -> None:
-        """Push it."""
-
-    def command(
-        self,
-        v_x: float | None = ...,
-        v_y: float | None = ...,
-        yaw_rate: float | None = ...,
-        *,
-        single_support: float | None = ...,
-        double_support: float | None = ...,
-        swing_height: float | None = ...,
-    ) -> None:
-        """Tell it how to walk."""
-
-    def close(self) -> None:
-        """End the run and make its log whole."""
-
-
 @dataclass(frozen=True, slots=True)
 class DriveStatus:
     """What is to be told beside a picture.
@@ -142,7 +94,7 @@ class DriveStatus:
     pace: float
     paused: bool
     over: bool
-    wanted: Velocity
+    wanted: Twist
     note: str
 
 
@@ -153,7 +105,7 @@ class DriveView(Protocol):
     def drawn(self) -> bool:
         """Whether all that was shown has been drawn where somebody looks."""
 
-    def begin(self, robot: Any) -> None:
+    def begin(self, robot: Simulation) -> None:
         """A run begins."""
 
     def pushed(self, push: PushInput, time: float) -> None:
@@ -169,7 +121,7 @@ class Session:
     Control ticks are never left out; pictures are, where the ticks leave no time for them.
 
     Args:
-        begin: makes the simulation of the next run.
+        begin: makes the simulation of the next run, to which nothing is done but between two of its control ticks.
         page: shows it.
         inputs: of any thread; each takes effect before the next control tick.
         clock: wall-clock time [s].
@@ -177,7 +129,7 @@ class Session:
 
     def __init__(
         self,
-        begin: Callable[[], DrivenRobot],
+        begin: Callable[[], Simulation],
         page: DriveView,
         inputs: "SimpleQueue[Input]",
         clock: Callable[[], float] = time.perf_counter,
@@ -186,7 +138,7 @@ class Session:
         self._speed, self._paused = 1.0, False
         self._gait = GaitInput()
         self._runs = 0
-        self._robot: DrivenRobot
+        self._robot: Simulation
         self._shown_at = -math.inf
         self._begin()
 
@@ -226,7 +178,7 @@ class Session:
     def _begin(self) -> None:
         self._robot = self._make()
         self._runs += 1
-        self._wanted = self._sent = Velocity()
+        self._wanted = self._sent = Twist()
         self._sent_gait, self._sent_at = GaitInput(), -math.inf
         self._over, self._note = False, ""
         self._slow_at = self._shown_at = -math.inf
@@ -270,15 +222,11 @@ class Session:
             self._over, self._note = True, _ending(robot.end)
 
     def _take_inputs(self) -> None:
-        while True:
-            try:
-                given = self._inputs.get_nowait()
-            except Empty:
-                return
-            self._take(given)
+        while not self._inputs.empty():  # nobody else takes them
+            self._take(self._inputs.get_nowait())
 
     def _take(self, given: Input) -> None:
-        if isinstance(given, Velocity):
+        if isinstance(given, Twist):
             self._wanted = given
         elif isinstance(given, GaitInput):
             self._gait = replace(self._gait, **{key: v for key, v in asdict(given).items() if v is not None})
@@ -302,7 +250,7 @@ class Session:
 
     def _send(self) -> None:
         """Command what has changed, before a control tick."""
-        wanted, stop = self._wanted, self._wanted == Velocity()
+        wanted, stop = self._wanted, self._wanted.is_zero
         if (wanted, self._gait) == (self._sent, self._sent_gait):
             return
         if self._robot.time - self._sent_at < COMMAND_PERIOD - 1e-9 and not (stop and wanted != self._sent):

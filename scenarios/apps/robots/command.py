@@ -6,10 +6,9 @@ from typing import Annotated
 
 import typer
 
-from surefoot.scenarios.apps.terminal import Commands
 from surefoot.scenarios.show.options import INTERRUPTED, MISSED, AsJson, Jobs
 
-app = typer.Typer(cls=Commands, help="Check a robot of one's own, or write a first file for it.", no_args_is_help=True)
+app = typer.Typer(help="Check a robot of one's own, or write a first file for it.", no_args_is_help=True)
 
 
 @app.command()
@@ -24,8 +23,8 @@ def check(
     as_json: AsJson = False,
 ) -> None:
     """Say what was derived of a robot, measure it, and which scenarios it takes."""
-    from surefoot.scenarios.apps.robots import report
-    from surefoot.scenarios.apps.robots.examine import chosen, examine, known, rows
+    from surefoot.scenarios.apps.robots.examine import examine, known, print_examination, to_json
+    from surefoot.scenarios.apps.robots.taken import CatalogueBar, chosen, rows, summary
     from surefoot.scenarios.show.console import plain_console
     from surefoot.scenarios.study.campaigns.sweep import cores
 
@@ -33,17 +32,18 @@ def check(
     explained = known(robot)
     found = examine(explained.description)
     if not as_json:
-        report.print_examination(console, explained, found)
+        print_examination(console, explained, found)
     try:
-        with report.CatalogueBar(None if as_json else console, names) as bar:
-            table = rows(robot, names, walk, jobs or cores(), out, bar)
+        with CatalogueBar(None if as_json else console, names) as bar:
+            table = bar.shown(rows(robot, names, walk, jobs or cores(), out, bar.begun))
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
     if as_json:
-        typer.echo(json.dumps(report.to_json(explained, found, table), allow_nan=False))
+        told = {**to_json(explained, found), "scenarios": [row.to_json() for row in table]}
+        typer.echo(json.dumps(told, allow_nan=False))
     else:
-        typer.echo(report.summary(table))
+        typer.echo(summary(table))
     sound = not found.faults and any(row.outcome in ("walks", "accepted") for row in table)
     raise typer.Exit(0 if sound and not any(row.outcome == "fails" for row in table) else MISSED)
 

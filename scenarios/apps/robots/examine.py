@@ -1,15 +1,15 @@
-"""What a described robot is worth, standing and walking: engines, legs, soles, torque, and which scenarios it takes."""
+"""What a described robot is worth, measured and told: engines, legs, soles, and torque in standing."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Literal, NamedTuple
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import mujoco
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
+from rich.console import Console
 
 from surefoot.models.consistency import EnginePair
 from surefoot.models.facts import facts_of
@@ -17,15 +17,10 @@ from surefoot.models.registry import UnknownRobotError, explain
 from surefoot.models.robot_file.build import Explanation
 from surefoot.models.types import RobotDescription, RobotError
 from surefoot.plugins import PluginError
-from surefoot.scenarios import catalogue
-from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
-from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.run.simulation import Simulation
+from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.setup.gait import leg_span
-from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.stance import Body, TorqueMargin, body_of, on_one_foot, standing
-from surefoot.scenarios.study.campaigns.engine import side_by_side
+from surefoot.scenarios.show.console import plain_table
 
 Array = NDArray[np.float64]
 
@@ -214,117 +209,68 @@ def _touching(robot: RobotDescription, q: Array) -> tuple[tuple[str, str], ...]:
     return tuple(dict.fromkeys(found))
 
 
-CatalogueOutcome = Literal["accepted", "walks", "fails", "refused"]
+def print_examination(console: Console, explained: Explanation, found: Examination) -> None:
+    """Print what the robot is, what was derived and what was measured."""
+    robot = explained.description
+    console.print(plain_table("robot", robot.name, rows=_facts(robot)))
+    for title, lines in (
+        ("derived", explained.derived),
+        ("note", (*explained.notes, *found.notes)),
+        ("fault", found.faults),
+    ):
+        for line in lines:
+            console.print(f"{title}: {line}", style="bold red" if title == "fault" else None)
+    console.print(plain_table("measured", "value", rows=_measured(found)))
 
 
-@dataclass(frozen=True, slots=True)
-class CatalogueRow:
-    """A scenario and what a robot makes of it.
-
-    Attributes:
-        scenario: name in the catalogue.
-        outcome: accepted (it may be run, and was not), walks (it ran and met every criterion), fails (it ran and did
-            not), or refused before any run.
-        why: it fails or is refused, one sentence each.
-        log: of the run, None where there was none.
-        duration: simulated time of the run, also of one that is still to come; 0 where it is refused [s].
-    """
-
-    scenario: str
-    outcome: CatalogueOutcome
-    why: tuple[str, ...] = ()
-    log: Path | None = None
-    duration: float = 0.0
+def _facts(robot: RobotDescription) -> Iterator[tuple[str, str]]:
+    yield "mass", f"{robot.mass:.2f} kg"
+    yield "joints", f"{len(robot.joint_names)}, {len(robot.roles.legs)} of them in the legs"
+    for side, leg in (("left", robot.roles.left_leg), ("right", robot.roles.right_leg)):
+        yield f"{side} leg", ", ".join(leg)
+    yield "knees", ", ".join(robot.roles.knees)
+    yield "waist", ", ".join(robot.roles.waist) or "none"
+    yield "arm swing", ", ".join(robot.roles.arm_swing or ()) or "none"
+    yield "pelvis, torso", f"{robot.pelvis_body}, {robot.torso_body}"
+    yield "leg length, hip width", f"{robot.leg_length:.3f} m, {robot.hip_width:.3f} m"
+    yield "soles", f"{robot.sole_length:.3f} x {robot.sole_width:.3f} m"
+    yield "CoM height in walking", f"{robot.com_height:.3f} m"
 
 
-class Watcher:
-    """Is told how far the catalogue is; this one does nothing with it."""
-
-    def begun(self, runs: int, duration: float) -> None:
-        """So many runs of so much simulated time in all [s] are to come."""
-
-    def done(self, row: CatalogueRow) -> None:
-        """A row is known for good."""
-
-
-class _Looked(NamedTuple):
-    """A row before any run, and the scenario that a run takes; None where it is refused."""
-
-    row: CatalogueRow
-    scenario: Scenario | None
+def _measured(found: Examination) -> Iterator[tuple[str, str]]:
+    yield "MuJoCo against Pinocchio", f"{found.parity:.1e}, at most {PARITY:.0e}"
+    yield (
+        "soles in the nominal posture",
+        f"{1e3 * found.sole_height:.2f} mm apart in height, tilted by at most {math.degrees(found.sole_tilt):.3f} deg",
+    )
+    yield "torque on both feet", _margin(found.both_feet)
+    yield "torque on one foot", _margin(found.one_foot)
+    yield "longest step with flat soles", f"{found.longest_step:.2f} m"
+    yield "touching in the stance", ", ".join(" and ".join(pair) for pair in found.touching) or "none"
 
 
-def chosen(names: Sequence[str]) -> tuple[str, ...]:
-    """Those of the catalogue that are named, in its order; all where none is.
-
-    Raises:
-        ScenarioError: the catalogue has no such scenario.
-    """
-    for name in names:
-        if name not in catalogue.OWN:
-            raise catalogue.unknown(name, "no such catalogue name")
-    return tuple(name for name in catalogue.OWN if not names or name in names)
+def _margin(margin: TorqueMargin) -> str:
+    if not margin.joint:
+        return "no such stance"
+    return f"{margin.share:.0%} of its limit in '{margin.joint}', {margin.needed:.1f} N m"
 
 
-def rows(
-    robot: str, names: Sequence[str], walk: bool, jobs: int, out: Path, watcher: Watcher | None = None
-) -> tuple[CatalogueRow, ...]:
-    """Scenarios of the catalogue on a robot.
-
-    Each is looked at once. The longest runs come first, so that no process waits for the others at the end.
-
-    Args:
-        robot: name or path of its file.
-        names: of the scenarios.
-        walk: whether to run what it accepts.
-        jobs: runs at once.
-        out: directory of the logs.
-        watcher: is told how far it is.
-
-    Returns:
-        a row for each scenario, in the given order.
-    """
-    watcher = watcher or Watcher()
-    found: dict[str, CatalogueRow] = {}
-    for row in _walked(robot, names, jobs, out, watcher) if walk else (_look(name, robot).row for name in names):
-        found[row.scenario] = row
-        watcher.done(row)
-    return tuple(found[name] for name in names)
+def to_json(explained: Explanation, found: Examination) -> dict[str, Any]:
+    """What was derived and measured as one object; what could not be measured is null."""
+    return {
+        "robot": explained.description.name,
+        "facts": dict(_facts(explained.description)),
+        "derived": list(explained.derived),
+        "notes": [*explained.notes, *found.notes],
+        "faults": list(found.faults),
+        "measured": _finite(asdict(found)),
+    }
 
 
-def _walked(robot: str, names: Sequence[str], jobs: int, out: Path, watcher: Watcher) -> Iterator[CatalogueRow]:
-    """Rows as they come: what is refused, then the runs."""
-    looked = list(side_by_side(_look, [(name, robot) for name in names], jobs, _unseen))
-    runs = sorted((one for one in looked if one.scenario is not None), key=lambda one: -one.row.duration)
-    watcher.begun(len(runs), sum(one.row.duration for one in runs))
-    yield from (one.row for one in looked if one.scenario is None)
-    if runs:
-        yield from side_by_side(_run, [(*one, out) for one in runs], jobs, _lost)
-
-
-def _look(name: str, robot: str) -> _Looked:
-    try:
-        scenario = load(name, {"robot": robot})
-        with Simulation(scenario) as simulation:
-            return _Looked(CatalogueRow(name, "accepted", duration=simulation.walk.duration), scenario)
-    except (ScenarioError, SetupError) as refusal:
-        return _Looked(CatalogueRow(name, "refused", tuple(str(refusal).splitlines())), None)
-
-
-def _run(row: CatalogueRow, scenario: Scenario, out: Path) -> CatalogueRow:
-    try:
-        result = run_scenario(scenario, out)
-    except (ScenarioError, SetupError) as refusal:
-        return replace(row, outcome="refused", why=tuple(str(refusal).splitlines()))
-    except LogError as error:
-        return replace(row, outcome="fails", why=(str(error),))
-    outcome: CatalogueOutcome = "walks" if result.verdict.passed else "fails"
-    return replace(row, outcome=outcome, why=tuple(result.verdict.reasons), log=result.log)
-
-
-def _unseen(name: str, robot: str, why: str) -> _Looked:
-    return _Looked(CatalogueRow(name, "fails", (why,)), None)
-
-
-def _lost(row: CatalogueRow, scenario: Scenario, out: Path, why: str) -> CatalogueRow:
-    return replace(row, outcome="fails", why=(why,))
+def _finite(value: Any) -> Any:
+    """The same without numbers that JSON has not."""
+    if isinstance(value, dict):
+        return {name: _finite(inner) for name, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(inner) for inner in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

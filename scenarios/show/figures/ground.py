@@ -1,6 +1,9 @@
 """Figures of the ground: the walk from above, where the soles are pressed, how far from slipping and from the plan."""
 
-from itertools import pairwise
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import partial
+from itertools import pairwise, zip_longest
 from typing import Any
 
 import numpy as np
@@ -17,31 +20,23 @@ from surefoot.scenarios.judge.body import headings, level_corners, rotations
 from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.palette import BLACK, COM, FEET, FOOTSTEP, GREY, SUPPORT, ZMP
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
-from surefoot.scenarios.show.kit.figures import (
-    Area,
-    curve,
-    heading,
-    kept_of_path,
-    legend,
-    or_say,
-    time_axes,
-)
-from surefoot.scenarios.show.kit.shading import Background
-from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED, LogView, MissingError
+from surefoot.scenarios.show.kit.figures import Area, curve, heading, kept_of_path, legend, note, or_say
+from surefoot.scenarios.show.kit.shading import Background, Panel, draw_panels
+from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED, LogView, MissingError, seen_from
 
 Array = NDArray[np.float64]
 
-SOLES_TITLE = "Centres of pressure in the soles, and landings off the plan"
+SoleSize = tuple[float, float]
+"""Length and width of a sole [m]."""
 
 _MOST_POINTS = 4000
 """Centres of pressure that are drawn for each foot."""
 
 
-def draw_soles(area: Area, view: LogView, background: Background) -> None:
+def draw_soles(area: Area, view: LogView, _: Background) -> None:
     """Draw the centres of pressure in the outline of each sole, and where the feet landed beside the plan."""
-    del background  # there is no time in this figure
     left, right, landings = area.subplots(1, 3)
-    heading(area, SOLES_TITLE)
+    heading(area, "Centres of pressure in the soles, and landings off the plan")
     for foot, one in enumerate((left, right)):
         one.set_xlabel(f"to the left [m], {FOOT_NAMES[foot]} sole")
         with or_say(one):
@@ -81,9 +76,7 @@ def landing_errors(view: LogView) -> tuple[Array, NDArray[np.intp], Array]:
     """Landings off the plan, along and across the planned foot, shape (k, 2) [m]; foot and number of each step."""
     planned, actual = (view.field("/footstep", name, 4) for name in ("planned", "actual"))
     feet, numbers = view.field("/footstep", "foot"), view.field("/footstep", "index")
-    x, y = (actual - planned)[:, :2].T
-    sine, cosine = np.sin(planned[:, 3]), np.cos(planned[:, 3])
-    errors = np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
+    errors = seen_from(planned, actual[:, :2])
     sound = np.isfinite(errors).all(axis=1) & np.isin(feet, (0, 1))
     return errors[sound], feet[sound].astype(int), numbers[sound]
 
@@ -109,31 +102,31 @@ def _landings(axes: Axes, view: LogView) -> None:
     legend(axes, 1)
 
 
-GRIP_TITLE = "Grip: friction and yaw moment in percent of what the ground holds"
-
 _MOST_PERCENT = 200.0
 """Beyond it a foot slips anyway; shown as this much."""
 
 
-def draw_grip(area: Area, view: LogView, background: Background) -> None:
+def draw_grip(area: Area, view: LogView, behind: Background) -> None:
     """Draw how much of the friction each foot uses along the ground, and about the vertical."""
-    friction, moment = axes = time_axes(area, view, GRIP_TITLE, (1.0, 1.0))
-    background.shade(axes)
-    friction.set_ylabel("friction [%]")
-    moment.set_ylabel("yaw moment,\nsingle support [%]")
-    for one, used in ((friction, friction_used), (moment, yaw_moment_used)):
-        with or_say(one):
-            coefficient = _coefficient(view)
-            sole = (view.number("foot_length"), view.number("foot_width"))
-            for foot, name in enumerate(FOOT_NAMES):
-                wrench = loaded_wrench(view, foot)
-                percent = np.minimum(100.0 * used(wrench, coefficient, sole), _MOST_PERCENT)
-                if one is moment:  # a sole on its edge is no patch of ground
-                    percent[~bears_alone(view, foot, view.time("/measurement"))] = np.nan
-                curve(one, view.time("/measurement"), percent, f"{name} foot", FEET[foot])
-            one.axhline(100.0, color=BLACK, linewidth=0.9, linestyle="--", label="slips")
-            one.set_ylim(bottom=0.0)
-    legend(friction, 3)
+    panels = (
+        Panel("friction [%]", partial(_grip, used=friction_used), columns=3),
+        # A sole on its edge is no patch of ground.
+        Panel("yaw moment,\nsingle support [%]", partial(_grip, used=yaw_moment_used, alone=True)),
+    )
+    draw_panels(area, view, behind, "Grip: friction and yaw moment in percent of what the ground holds", panels)
+
+
+def _grip(axes: Axes, view: LogView, used: Callable[[Array, float, SoleSize], Array], alone: bool = False) -> None:
+    """Draw a share of what the ground holds, of each foot; only where it bears alone, if so."""
+    coefficient, sole = _coefficient(view), (view.number("foot_length"), view.number("foot_width"))
+    clock = view.time("/measurement")
+    for foot, name in enumerate(FOOT_NAMES):
+        percent = np.minimum(100.0 * used(loaded_wrench(view, foot), coefficient, sole), _MOST_PERCENT)
+        if alone:
+            percent[~bears_alone(view, foot, clock)] = np.nan
+        curve(axes, clock, percent, f"{name} foot", FEET[foot])
+    axes.axhline(100.0, color=BLACK, linewidth=0.9, linestyle="--", label="slips")
+    axes.set_ylim(bottom=0.0)
 
 
 def _coefficient(view: LogView) -> float:
@@ -163,20 +156,19 @@ def loaded_wrench(view: LogView, foot: int) -> Array:
     return wrench
 
 
-def friction_used(wrench: Array, coefficient: float, sole: tuple[float, float]) -> Array:
+def friction_used(wrench: Array, coefficient: float, sole: SoleSize) -> Array:
     """Tangential over normal force over the coefficient, shape (n,) [-].
 
     Args:
         wrench: at the sole's centre in its frame, force first, shape (n, 6).
         coefficient: of friction [-].
-        sole: its length and width, on which this does not depend [m].
+        sole: its size, on which this does not depend.
     """
-    del sole
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.hypot(wrench[:, 0], wrench[:, 1]) / (coefficient * wrench[:, 2]))
 
 
-def yaw_moment_used(wrench: Array, coefficient: float, sole: tuple[float, float]) -> Array:
+def yaw_moment_used(wrench: Array, coefficient: float, sole: SoleSize) -> Array:
     """Yaw moment over the one at which the sole turns with these other forces and moments, shape (n,) [-].
 
     Caron, Pham and Nakamura, "Stability of surface contacts for humanoid robots", ICRA 2015, eqs. (10) to (12).
@@ -191,27 +183,22 @@ def yaw_moment_used(wrench: Array, coefficient: float, sole: tuple[float, float]
         return np.asarray(np.where(limit <= 0.0, np.inf, np.abs(tz) / limit))
 
 
-TOP_VIEW_TITLE = "Top view"
 WIDE = 2.2
 """Length over width of a walk beyond which the page gives it a row of its own."""
 
 _MOST_POLYGONS = 200
 
 
-def draw_top_view(area: Area, view: LogView, background: Background) -> None:
+def draw_top_view(area: Area, view: LogView, _: Background) -> None:
     """Draw everything on the ground plane; a long strip of it in rows below each other."""
-    del background  # there is no time in this figure
     rows = _rows(view)
     axes: list[Axes] = list(area.subplots(max(len(rows), 1), 1, squeeze=False)[:, 0])
-    heading(area, TOP_VIEW_TITLE)
-    stretches: list[tuple[float, float] | None] = [*rows] or [None]
-    for one, stretch in zip(axes, stretches, strict=True):
+    heading(area, "Top view")
+    for one, stretch in zip_longest(axes, rows):
         one.set_ylabel("y [m]")
-        drawn = [_supports(one, view), _footprints(one, view), _paths(one, view)]
-        handles = [handle for part in drawn for handle in part]
+        handles = [*_supports(one, view), *_footprints(one, view), *_paths(one, view)]
         if not handles:
-            with or_say(one):
-                raise MissingError("/truth, /contact, /reference")
+            note(one, "not in this log: /truth, /contact, /reference")
         one.margins(0.04)
         one.set_aspect("equal", adjustable="box" if stretch else "datalim")
         if stretch:
@@ -232,8 +219,7 @@ def _rows(view: LogView) -> list[tuple[float, float]]:
     x = view.field("/truth", "com", 3)[:, 0]
     first, last = float(np.nanmin(x)) - 0.3, float(np.nanmax(x)) + 0.3
     count = int(np.clip(np.ceil((last - first) / ROW), 1, MOST_ROWS))
-    bounds = np.linspace(first, last, count + 1).tolist()
-    return list(pairwise(bounds))
+    return list(pairwise(np.linspace(first, last, count + 1).tolist()))
 
 
 def strip_height(view: LogView, width: float) -> float:
@@ -269,6 +255,10 @@ def _supports(axes: Axes, view: LogView) -> list[Artist]:
     return [Patch(alpha=0.2, label="planned support", **style)]
 
 
+_Print = tuple[int, Array, str]
+"""Foot, x y and a heading last [m, rad], and what stands beside it."""
+
+
 def _footprints(axes: Axes, view: LogView) -> list[Artist]:
     """Where the soles stood at the window's begin and landed since, and where they were last planned to land."""
     try:
@@ -276,12 +266,12 @@ def _footprints(axes: Axes, view: LogView) -> list[Artist]:
     except MissingError:
         return []
     entries: list[Artist] = []
-    for foot, pose, label in [*_first_feet(view), *_touchdowns(view, "actual")]:
+    for foot, pose, label in (*_first_feet(view), *_touchdowns(view, "actual")):
         (corners,) = level_corners(pose[None], length, width)
         axes.fill(*corners.T, facecolor=FEET[foot], edgecolor=FEET[foot], alpha=0.55, linewidth=0.8, zorder=2)
         below: dict[str, Any] = {"textcoords": "offset points", "ha": "right", "va": "top"}
         axes.annotate(label, corners[2], (-2, -2), fontsize=6.5, zorder=5, annotation_clip=True, **below)
-    for _, pose, _ in [*_touchdowns(view, "planned"), *_ahead(view)]:
+    for _, pose, _ in (*_touchdowns(view, "planned"), *_ahead(view)):
         (corners,) = level_corners(pose[None], length, width)
         axes.fill(*corners.T, facecolor="none", edgecolor=FOOTSTEP, linestyle="--", linewidth=0.9, zorder=3)
         entries = [Patch(facecolor="none", edgecolor=FOOTSTEP, linestyle="--", label="footstep planned")]
@@ -289,48 +279,36 @@ def _footprints(axes: Axes, view: LogView) -> list[Artist]:
     return [*soles, *entries]
 
 
-def _first_feet(view: LogView) -> list[tuple[int, Array, str]]:
+def _first_feet(view: LogView) -> Iterator[_Print]:
     """Soles on the ground when the window begins; a foot in the air leaves no print."""
-    feet = []
     for foot, name in enumerate(FOOT_NAMES):
-        try:
-            if not view.field("/contact", "felt", 2)[0, foot]:
-                continue
-            pose = view.field("/truth", f"{name}_sole", 7)[0]
-        except MissingError:
-            continue
-        feet.append((foot, np.array([*pose[:2], headings(pose[3:])]), ""))
-    return feet
+        with suppress(MissingError):
+            if view.field("/contact", "felt", 2)[0, foot]:
+                pose = view.field("/truth", f"{name}_sole", 7)[0]
+                yield foot, np.array([*pose[:2], headings(pose[3:])]), ""
 
 
-def _touchdowns(view: LogView, name: str) -> list[tuple[int, Array, str]]:
-    try:
+def _touchdowns(view: LogView, name: str) -> Iterator[_Print]:
+    with suppress(MissingError):
         poses, feet = view.field("/footstep", name, 4), view.field("/footstep", "foot")
         numbers = view.field("/footstep", "index")
-    except MissingError:
-        return []
-    sound = np.isfinite(poses).all(axis=1) & np.isin(feet, (0, 1))
-    rows = zip(feet[sound], poses[sound], numbers[sound], strict=True)
-    return [(int(foot), pose, f"{number:.0f}") for foot, pose, number in rows]
+        sound = np.isfinite(poses).all(axis=1) & np.isin(feet, (0, 1))
+        for foot, pose, number in zip(feet[sound], poses[sound], numbers[sound], strict=True):
+            yield int(foot), pose, f"{number:.0f}"
 
 
-def _ahead(view: LogView) -> list[tuple[int, Array, str]]:
+def _ahead(view: LogView) -> Iterator[_Print]:
     """Footsteps that were still to come when the window ends."""
-    try:
+    with suppress(MissingError):
         poses, feet = view.field("/footsteps", "next", 3, 4)[-1], view.field("/footsteps", "next_foot", 3)[-1]
-    except MissingError:
-        return []
-    return [(int(foot), pose, "") for foot, pose in zip(feet, poses, strict=True) if np.isfinite(pose).all()]
+        for foot, pose in zip(feet, poses, strict=True):
+            if np.isfinite(pose).all():
+                yield int(foot), pose, ""
 
 
-def _paths(axes: Axes, view: LogView) -> list[Artist]:
-    entries: list[Artist] = []
+def _paths(axes: Axes, view: LogView) -> Iterator[Artist]:
     for topic, name, label, color in (("/contact", "zmp", "ZMP measured", ZMP), ("/truth", "com", "CoM true", COM)):
-        try:
+        with suppress(MissingError):
             path = view.field(topic, name, 3)[:, :2]
-        except MissingError:
-            continue
-        rows = kept_of_path(path)
-        axes.plot(*path[rows].T, color=color, linewidth=1.0, zorder=4)
-        entries.append(Line2D([], [], color=color, label=label))
-    return entries
+            axes.plot(*path[kept_of_path(path)].T, color=color, linewidth=1.0, zorder=4)
+            yield Line2D([], [], color=color, label=label)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from textwrap import shorten
 from typing import Any
@@ -13,23 +14,13 @@ from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import refuse_existing, shown
-from surefoot.scenarios.palette import BLACK, BLUE, VERMILION, Color
+from surefoot.scenarios.palette import BLACK, BLUE, VERMILION
 from surefoot.scenarios.record.provenance import ABSENT
 from surefoot.scenarios.show.figures.effort import draw_joints, draw_solver, draw_torques
 from surefoot.scenarios.show.figures.ground import draw_grip, draw_soles, draw_top_view, is_wide, strip_height
 from surefoot.scenarios.show.figures.motion import draw_balance, draw_feet, draw_height, strips
-from surefoot.scenarios.show.kit.figures import (
-    Area,
-    canvas,
-    curve,
-    format_of,
-    in_style,
-    legend,
-    or_say,
-    save,
-    time_axes,
-)
-from surefoot.scenarios.show.kit.shading import Background, background
+from surefoot.scenarios.show.kit.figures import DASHED, Area, canvas, curve, format_of, in_style, legend, save
+from surefoot.scenarios.show.kit.shading import NOTHING, Background, Panel, background, draw_panels
 from surefoot.scenarios.show.logview import LogView, MissingError
 
 DrawFigure = Callable[[Area, LogView, Background], None]
@@ -73,51 +64,46 @@ FIGURES: dict[str, Family] = {
 """The families of figures by name."""
 
 
-@dataclass(frozen=True, slots=True)
-class PageRow:
-    """A row of the page: its height [in] and the figures in it."""
-
-    height: float
-    names: tuple[str, ...]
-
-
 _COMPACT = (
-    PageRow(6.0, ("balance",)),
-    PageRow(3.6, ("top-view", "height")),
-    PageRow(3.9, ("feet", "torques")),
-    PageRow(3.3, ("soles", "grip")),
-    PageRow(3.9, ("joints",)),
-    PageRow(3.3, ("solver",)),
+    (6.0, ("balance",)),
+    (3.6, ("top-view", "height")),
+    (3.9, ("feet", "torques")),
+    (3.3, ("soles", "grip")),
+    (3.9, ("joints",)),
+    (3.3, ("solver",)),
 )
+"""Rows of the page: height [in] and the figures in it."""
+
 _WIDE = (
-    PageRow(5.7, ("balance",)),
-    PageRow(0.9, ("top-view",)),
-    PageRow(3.1, ("height", "feet")),
-    PageRow(3.3, ("soles", "grip")),
-    PageRow(3.3, ("torques",)),
-    PageRow(3.9, ("joints",)),
-    PageRow(3.1, ("solver",)),
+    (5.7, ("balance",)),
+    (0.9, ("top-view",)),
+    (3.1, ("height", "feet")),
+    (3.3, ("soles", "grip")),
+    (3.3, ("torques",)),
+    (3.9, ("joints",)),
+    (3.1, ("solver",)),
 )
+"""Likewise, of a walk whose top view is a strip."""
 
 
 def page(view: LogView, header: str) -> Figure:
-    """DrawFigure all figures on one page, A3 wide."""
+    """Draw all figures on one page, A3 wide."""
     rows = _WIDE if is_wide(view) else _COMPACT
-    heights = [_HEADER, *(row.height + max(FIGURES[name].more(view) for name in row.names) for row in rows)]
+    heights = [_HEADER, *(height + max(FIGURES[name].more(view) for name in names) for height, names in rows)]
     if rows is _WIDE:
         heights[2] += strip_height(view, _A3)
     with in_style():
         figure, areas = canvas(_A3, heights)
         behind = background(view)
         _head(areas[0], header, behind, 11.0)
-        for area, row in zip(areas[1:], rows, strict=True):
-            for part, name in zip(area.subfigures(1, len(row.names), squeeze=False)[0], row.names, strict=True):
+        for area, (_, names) in zip(areas[1:], rows, strict=True):
+            for part, name in zip(area.subfigures(1, len(names), squeeze=False)[0], names, strict=True):
                 FIGURES[name].draw(part, view, behind)
     return figure
 
 
 def single(view: LogView, header: str, name: str) -> Figure:
-    """DrawFigure one figure by name.
+    """Draw one figure by name.
 
     Raises:
         LogError: there is no such figure.
@@ -127,7 +113,7 @@ def single(view: LogView, header: str, name: str) -> Figure:
     with in_style():
         width, tall = FIGURES[name].size
         figure, (top, area) = canvas(width, (_HEADER, tall + FIGURES[name].more(view)))
-        behind = background(view) if FIGURES[name].over_time else Background((), (), None)
+        behind = background(view) if FIGURES[name].over_time else NOTHING
         _head(top, header, behind, 9.0)
         FIGURES[name].draw(area, view, behind)
     return figure
@@ -165,7 +151,7 @@ def plot(
     end: float | None = None,
     replace: bool = False,
 ) -> Plotted:
-    """DrawFigure the figures of a log.
+    """Draw the figures of a log.
 
     Args:
         log_path: a log, also a truncated one.
@@ -219,18 +205,18 @@ def _notes(log: Log) -> tuple[str, ...]:
     return (*truncated, *dict.fromkeys(log.damage))
 
 
-_CURVES = (
+_BOTH = (
     ("ZMP x [m]", "/contact", "zmp", 0),
     ("ZMP y [m]", "/contact", "zmp", 1),
     ("CoM x [m]", "/truth", "com", 0),
     ("CoM y [m]", "/truth", "com", 1),
     ("CoM z [m]", "/truth", "com", 2),
 )
-_HEIGHTS = (0.5, 9.5)
+"""What is drawn of two runs: label, topic, field and its component."""
 
 
 def overlay(a: LogView, b: LogView, header: str, divergence: float | None) -> Figure:
-    """DrawFigure both runs on one page.
+    """Draw both runs on one page.
 
     Args:
         a: first run.
@@ -238,32 +224,30 @@ def overlay(a: LogView, b: LogView, header: str, divergence: float | None) -> Fi
         header: says which they are.
         divergence: time at which they part [s], None when they do not.
     """
+
+    def both(axes: Axes, _: LogView, topic: str, name: str, axis: int) -> None:
+        """Draw a channel of both runs; one that has not got it is left out, and named when neither has."""
+        styles: dict[str, dict[str, Any]] = {
+            "A": {"color": BLUE, "linewidth": 1.8},
+            "B": {"color": VERMILION, "linewidth": 1.0, "linestyle": DASHED},
+        }
+        missing = []
+        for view, (label, style) in zip((a, b), styles.items(), strict=True):
+            try:
+                curve(axes, view.time(topic), view.field(topic, name, 3)[:, axis], label, **style)
+            except MissingError as absent:
+                missing.append(absent)
+        if len(missing) == len(styles):
+            raise missing[0]
+
+    panels = [Panel(label, partial(both, topic=topic, name=name, axis=axis)) for label, topic, name, axis in _BOTH]
     with in_style():
-        figure, (top, area) = canvas(_A3, _HEIGHTS)
+        figure, (top, area) = canvas(_A3, (0.5, 9.5))
         top.text(0.01, 0.9, header, ha="left", va="top", fontsize=9, linespacing=1.4)
-        axes = time_axes(area, a, "Measured ZMP and true CoM of both runs", (1.0,) * len(_CURVES))
+        axes = draw_panels(area, a, NOTHING, "Measured ZMP and true CoM of both runs", panels)
         axes[-1].set_xlim(min(a.start, b.start), max(a.end, b.end, a.start + 1e-3))
-        for one, (label, topic, name, axis) in zip(axes, _CURVES, strict=True):
-            one.set_ylabel(label)
-            with or_say(one):
-                _both(one, (a, b), topic, name, axis)
+        for one in axes:
             if divergence is not None:
                 one.axvline(divergence, color=BLACK, linewidth=0.8, linestyle=":", label="first divergence")
         legend(axes[0])
     return figure
-
-
-def _both(axes: Axes, views: tuple[LogView, LogView], topic: str, name: str, axis: int) -> None:
-    """DrawFigure a channel of both runs; one that has not got it is left out, and named when neither has."""
-    styles: tuple[tuple[str, Color, dict[str, Any]], ...] = (
-        ("A", BLUE, {"linewidth": 1.8}),
-        ("B", VERMILION, {"linewidth": 1.0, "linestyle": (0, (4, 2))}),
-    )
-    missing = []
-    for view, (label, color, style) in zip(views, styles, strict=True):
-        try:
-            curve(axes, view.time(topic), view.field(topic, name, 3)[:, axis], label, color, **style)
-        except MissingError as absent:
-            missing.append(absent)
-    if len(missing) == len(views):
-        raise missing[0]

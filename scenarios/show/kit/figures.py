@@ -8,6 +8,7 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Color
-from surefoot.scenarios.show.logview import LogView, MissingError
+from surefoot.scenarios.show.logview import MissingError
 
 Area = Figure | SubFigure
 
@@ -95,30 +96,6 @@ def panels(
     return figure, every[:count]
 
 
-def time_axes(
-    area: Area, view: LogView, title: str, heights: tuple[float, ...], stretch: tuple[float, float] | None = None
-) -> list[Axes]:
-    """Axes below each other over one axis of time.
-
-    Args:
-        area: to fill.
-        view: gives the window.
-        title: of the family; none if empty.
-        heights: relative heights of the axes, top first.
-        stretch: of time to show, the whole window by default [s].
-    """
-    rows = area.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=list(heights))
-    axes: list[Axes] = list(rows[:, 0])
-    if title:
-        heading(area, title)
-    start, end = stretch or (view.start, view.end)
-    margin = 1e-3 if end <= start else 0.0
-    axes[-1].set_xlim(start - margin, end + margin)
-    axes[-1].set_xlabel("time [s]")
-    area.align_ylabels(axes)
-    return axes
-
-
 def heading(area: Area, title: str) -> None:
     """Name a family of figures."""
     area.suptitle(title, x=0.01, ha="left", fontsize=10, fontweight="bold")
@@ -158,12 +135,11 @@ def reference_curve(
     curve(axes, time, values, label, color, buckets, linestyle=DASHED, linewidth=0.7, zorder=3)
 
 
-def legend(axes: Axes, columns: int = 4, handles: list[Any] | None = None) -> None:
+def legend(axes: Axes, columns: int = 4, handles: Sequence[Artist] = ()) -> None:
     """Put the legend above the axes, outside the data."""
     found, labels = axes.get_legend_handles_labels()
-    every = [*found, *(handles or [])]
-    names = [*labels, *(str(handle.get_label()) for handle in handles or [])]
-    if every:
+    if every := [*found, *handles]:
+        names = [*labels, *(str(handle.get_label()) for handle in handles)]
         axes.legend(every, names, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns)
 
 

@@ -1,6 +1,6 @@
-"""What every axis of time shows behind its curves: single and double support, pushes, a fall."""
+"""Axes of time: panels below each other, and behind all curves what happened: supports, pushes, a fall."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import SINGLE_SUPPORT, RunView
 from surefoot.scenarios.judge.walking import fall_time
 from surefoot.scenarios.palette import BLACK, PUSH
+from surefoot.scenarios.show.kit.figures import Area, heading, legend, or_say
 from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError
 
 _DOUBLE_SUPPORT = 1
@@ -91,6 +92,66 @@ class Background:
             axes.text(
                 middle, 0.985, name, transform=place, ha="center", va="top", fontsize=6.5, color="#6E6E6E", clip_on=True
             )
+
+
+NOTHING = Background((), (), None)
+"""Behind axes that are not of the time of one run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """One of several axes below each other over one axis of time.
+
+    Attributes:
+        label: of its values, with their unit.
+        draw: draws into it; what the log has not got is written there instead.
+        columns: of its legend; 0 for none.
+        height: over that of the others [-].
+        handles: of its legend, beside those of its curves.
+    """
+
+    label: str
+    draw: Callable[[Axes, LogView], None]
+    columns: int = 0
+    height: float = 1.0
+    handles: tuple[Patch, ...] = ()
+
+
+def draw_panels(
+    area: Area,
+    view: LogView,
+    behind: Background,
+    title: str,
+    panels: Sequence[Panel],
+    stretch: tuple[float, float] | None = None,
+) -> list[Axes]:
+    """Draw panels; gives their axes, top first.
+
+    Args:
+        area: to fill.
+        view: gives the window.
+        behind: what happened in it.
+        title: of the family; none if empty.
+        panels: top first.
+        stretch: of time to show, the whole window by default [s].
+    """
+    heights = [panel.height for panel in panels]
+    axes: list[Axes] = list(area.subplots(len(panels), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0])
+    if title:
+        heading(area, title)
+    start, end = stretch or (view.start, view.end)
+    margin = 1e-3 if end <= start else 0.0
+    axes[-1].set_xlim(start - margin, end + margin)
+    axes[-1].set_xlabel("time [s]")
+    area.align_ylabels(axes)
+    behind.shade(axes)
+    for one, panel in zip(axes, panels, strict=True):
+        one.set_ylabel(panel.label)
+        with or_say(one):
+            panel.draw(one, view)
+        if panel.columns:
+            legend(one, panel.columns, panel.handles)
+    return axes
 
 
 def background(view: LogView) -> Background:

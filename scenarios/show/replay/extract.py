@@ -1,5 +1,7 @@
 """From a log to what a replay shows of it: which frames, where the bodies are in them, and what they look like."""
 
+from collections.abc import Iterator
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -7,20 +9,28 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial.transform import Rotation
 
-from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.body import torso
 from surefoot.scenarios.judge.digest import RunView
+from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.log import Log
-from surefoot.scenarios.palette import Color
+from surefoot.scenarios.palette import FEET, Color
 from surefoot.scenarios.record.provenance import WORLD_FILE
-from surefoot.scenarios.show.replay.content import Array, Frames, Replay, ReplayWindow, Surface
-from surefoot.scenarios.show.replay.overlays import (
-    balance,
-    contact_forces,
-    planned_footprints,
-    push,
-    taken_footprints,
+from surefoot.scenarios.show.logview import FOOT_NAMES, rows_at
+from surefoot.scenarios.show.replay.content import (
+    PUSH_SHOWN,
+    Array,
+    Facts,
+    Footprint,
+    Frames,
+    Replay,
+    ReplayWindow,
+    SoleSize,
+    Surface,
+    sole_corners,
+    tracks,
 )
+from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.shapes import Shape, drawn_shapes
 
 
@@ -46,56 +56,11 @@ def choose_frames(run: RunView, window: ReplayWindow) -> Frames:
     if not len(numbers):
         raise LogError(f"{run.log.path}: no control tick from {start:g} s to {end:g} s; choose another part")
     time = start + numbers / window.frame_rate
-    rows = np.maximum(np.searchsorted(ticks, time + 1e-9, side="right") - 1, 0)
+    rows = rows_at(ticks, time)
     sound = np.isfinite(run.field("/truth", "q")[rows]).all(axis=1)
     if not sound.any():
         raise LogError(f"{run.log.path}: the robot's state is never finite; there is nothing to replay")
     return Frames(time[sound], rows[sound])
-
-
-def world_text(log: Log) -> str:
-    """MJCF text of the world that was simulated.
-
-    Raises:
-        LogError: the log has none.
-    """
-    try:
-        return log.attachments[WORLD_FILE].decode()
-    except (KeyError, UnicodeDecodeError):
-        raise LogError(f"{log.path}: holds no readable {WORLD_FILE}; replay needs a log of fidelity full") from None
-
-
-def compile_world(log: Log) -> mujoco.MjModel:
-    """Compile the world of a log.
-
-    Raises:
-        LogError: the log has no world, or it is damaged.
-    """
-    try:
-        return mujoco.MjModel.from_xml_string(world_text(log))
-    except ValueError as error:
-        reason = str(error).splitlines()[0]
-        raise LogError(f"{log.path}: {WORLD_FILE} is damaged, {reason}; replay needs an intact one") from None
-
-
-def body_poses(model: mujoco.MjModel, configurations: Array) -> tuple[Array, Array]:
-    """Poses of the bodies.
-
-    Args:
-        model: the world.
-        configurations: in Pinocchio's convention, shape (n, nq).
-
-    Returns:
-        positions, shape (n, bodies, 3) [m], and quaternions w x y z, shape (n, bodies, 4).
-    """
-    data, rest = mujoco.MjData(model), np.zeros(model.nv)
-    positions = np.empty((len(configurations), model.nbody, 3))
-    quaternions = np.empty((len(configurations), model.nbody, 4))
-    for q, position, quaternion in zip(configurations, positions, quaternions, strict=True):
-        pinocchio_to_mujoco(q, rest, data.qpos, data.qvel)
-        mujoco.mj_kinematics(model, data)
-        position[:], quaternion[:] = data.xpos, data.xquat
-    return positions, quaternions
 
 
 def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
@@ -108,38 +73,113 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
     Raises:
         LogError: the log does not describe such a run, or has nothing in that window.
     """
-    run = RunView(log)
+    run, window = RunView(log), window or ReplayWindow()
     if run.constants.fidelity == "pendulum":
         raise LogError(f"{log.path}: a pendulum has no body to replay; run the scenario with fidelity full")
-    model = compile_world(log)
+    mjcf, model = _world(log)
     log.load("/truth", "/measurement", "/estimate", "/contact", "/reference")
-    frames = choose_frames(run, window or ReplayWindow())
+    frames = choose_frames(run, window)
     configurations = run.field("/truth", "q")[frames.rows]
     if configurations.shape[1] != model.nq:
         raise LogError(f"{log.path}: /truth and world.xml are of different robots; replay needs an intact log")
-    position, quaternion = body_poses(model, configurations)
+    position, quaternion = _body_poses(model, configurations)
     names = tuple(model.body(body).name for body in range(model.nbody))
-    com = position + Rotation.from_quat(quaternion, scalar_first=True).apply(
-        np.broadcast_to(model.body_ipos, position.shape)
-    )
+    pushed = names.index(body) if (body := _pushed_body(log, run)) in names else 0
+    turned = Rotation.from_quat(quaternion[:, pushed], scalar_first=True).apply(model.body_ipos[pushed])
+    facts = _facts(run, frames, position[:, pushed] + turned)
     return Replay(
         title=run.constants.scenario,
-        frame_rate=(window or ReplayWindow()).frame_rate,
+        frame_rate=window.frame_rate,
         time=frames.time,
         configuration=configurations,
         body_names=names,
         body_position=position,
         body_quaternion=quaternion,
         surfaces=surfaces(model),
-        tracks=(
-            *balance(run, frames).tracks(),
-            *planned_footprints(run, frames),
-            *contact_forces(run, frames),
-            push(log, run, frames, names, com),
-        ),
-        footprints=tuple(taken_footprints(run, frames)),
-        mjcf=world_text(log),
+        tracks=tuple(tracks(facts)),
+        footprints=tuple(_taken_footprints(run, frames, facts.sole)),
+        mjcf=mjcf,
     )
+
+
+def _world(log: Log) -> tuple[str, mujoco.MjModel]:
+    """The world that was simulated, as MJCF and compiled.
+
+    Raises:
+        LogError: the log has none, or it is damaged.
+    """
+    try:
+        text = log.attachments[WORLD_FILE].decode()
+    except (KeyError, UnicodeDecodeError):
+        raise LogError(f"{log.path}: holds no readable {WORLD_FILE}; replay needs a log of fidelity full") from None
+    try:
+        return text, mujoco.MjModel.from_xml_string(text)
+    except ValueError as error:
+        reason = str(error).splitlines()[0]
+        raise LogError(f"{log.path}: {WORLD_FILE} is damaged, {reason}; replay needs an intact one") from None
+
+
+def _body_poses(model: mujoco.MjModel, configurations: Array) -> tuple[Array, Array]:
+    """Positions, shape (n, bodies, 3) [m], and quaternions w x y z of the bodies, the world first."""
+    poses, count = BodyPoses(model), len(configurations)
+    positions, quaternions = np.zeros((count, model.nbody, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (count, model.nbody, 1))
+    for q, position, quaternion in zip(configurations, positions, quaternions, strict=True):
+        poses.update(q)
+        position[1:], quaternion[1:] = poses.position, poses.quaternion
+    return positions, quaternions
+
+
+def _pushed_body(log: Log, run: RunView) -> str:
+    """Body that the pushes of the scenario act on; the torso when they name several or none."""
+    try:
+        bodies = {settings.body for settings in scenario_of(log).pushes}
+    except LogError:
+        bodies = set()
+    named = next(iter(bodies)) if len(bodies) == 1 else None
+    return named or torso(run.constants.roles)
+
+
+def _facts(run: RunView, frames: Frames, pushed: Array) -> Facts:
+    """What the marks tell; the push is the strongest of the last moments, at a place of shape (n, 3) [m]."""
+    rows, count = frames.rows, len(frames.rows)
+    ahead, ahead_foot = np.empty((count, 0, 4)), np.empty((count, 0))
+    if run.has("/footsteps"):
+        planned = run.log["/footsteps"]
+        then = rows_at(planned.time, frames.time)
+        ahead, ahead_foot = planned.field("next")[then], planned.field("next_foot")[then]
+    push = run.field("/measurement", "external_force")
+    return Facts(
+        com=run.field("/truth", "com")[rows],
+        dcm=run.field("/estimate", "dcm")[rows],
+        zmp=run.field("/contact", "zmp")[rows],
+        planned_com=run.field("/reference", "com")[rows],
+        planned_dcm=run.field("/reference", "dcm")[rows],
+        planned_zmp=run.field("/reference", "zmp")[rows],
+        polygon=run.field("/reference", "support")[rows],
+        contacts=run.field("/contact", "planned")[rows] != 0,
+        soles=run.soles[rows],
+        cop=np.stack([run.field("/contact", f"cop_{side}")[rows] for side in FOOT_NAMES], axis=1),
+        force=np.stack([run.field("/measurement", f"wrench_{side}")[rows, :3] for side in FOOT_NAMES], axis=1),
+        ahead=ahead,
+        ahead_foot=ahead_foot,
+        push=push[frames.strongest(np.linalg.norm(push, axis=1), run.time, PUSH_SHOWN)],
+        pushed=pushed,
+        sole=(run.constants.foot_length, run.constants.foot_width),
+    )
+
+
+def _taken_footprints(run: RunView, frames: Frames, sole: SoleSize) -> Iterator[Footprint]:
+    """Where the feet stood at first, and every touchdown until the last frame."""
+    if run.has("/footsteps"):
+        first = run.log["/footsteps"]
+        for color, name in zip(FEET, FOOT_NAMES, strict=True):
+            yield Footprint(color, sole_corners(first.field(f"current_{name}")[:1], sole)[0], float(first.time[0]))
+    if run.has("/footstep"):
+        taken = run.log["/footstep"]
+        corners = sole_corners(taken.field("actual"), sole)
+        for time, foot, place in zip(taken.time.tolist(), taken.field("foot").tolist(), corners, strict=True):
+            if time <= frames.time[-1] and np.isfinite(place).all():
+                yield Footprint(FEET[foot == 1], place, time)
 
 
 Faces = NDArray[np.int64]
@@ -156,14 +196,10 @@ def surfaces(model: mujoco.MjModel) -> tuple[Surface, ...]:
     """Every visible geom but the endless ground, geoms of one body and one colour merged."""
     groups: dict[tuple[int, Color], list[Triangles]] = {}
     for shape in drawn_shapes(model):
-        groups.setdefault((shape.body, shape.color[:3]), []).append(_placed(shape))
+        vertices, faces = _triangles(shape)
+        placed = vertices @ shape.rotation.T + shape.position, faces
+        groups.setdefault((shape.body, shape.color[:3]), []).append(placed)
     return tuple(Surface(body, color, *_merged(parts)) for (body, color), parts in groups.items())
-
-
-def _placed(shape: Shape) -> Triangles:
-    """Triangles of a shape in the frame of its body."""
-    vertices, faces = _triangles(shape)
-    return vertices @ shape.rotation.T + shape.position, faces
 
 
 def _merged(parts: list[Triangles]) -> Triangles:
@@ -176,12 +212,13 @@ def _triangles(shape: Shape) -> Triangles:
     radius, _, half_length = shape.half_size
     if shape.mesh is not None:
         return creased(shape.mesh.vertices, shape.mesh.faces)
-    if shape.kind == "box":
-        return box(shape.half_size)
-    if shape.kind == "cylinder":
-        return cylinder(radius, half_length)
-    if shape.kind == "capsule":
-        return capsule(radius, half_length)
+    match shape.kind:
+        case "box":
+            return box(shape.half_size)
+        case "cylinder":
+            return cylinder(radius, half_length)
+        case "capsule":
+            return capsule(radius, half_length)
     return ellipsoid(shape.half_size)
 
 

@@ -1,15 +1,19 @@
 """The page: a recording of the scene in viser's own viewer, with charts beside it that follow its timeline."""
 
 import html
-from collections.abc import Iterable, Iterator
+import json
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from string import Template
 from typing import Any
 
 import numpy as np
 
-from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.log import read
+from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.palette import (
     COM,
     COM_PLANNED,
@@ -21,28 +25,34 @@ from surefoot.scenarios.palette import (
     Color,
     hexadecimal,
 )
-from surefoot.scenarios.show.kit.viewer import filled, taken_in
-from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError
-from surefoot.scenarios.show.replay.content import Array, Replay
+from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError, rows_at
+from surefoot.scenarios.show.replay.content import Array, Replay, ReplayWindow
+from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.gate import serving
 from surefoot.scenarios.show.replay.scene import ViserScene
 
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A quantity over the frames of a replay.
+    """A quantity of a chart, and where a log has it.
 
     Attributes:
         name: what it is.
         color: of the line.
+        topic: of its channel.
+        field: of that.
+        size: of the field.
+        component: of the field.
         planned: whether it is what should be, which is drawn dashed.
-        values: by frame, NaN where there is none, shape (n,).
     """
 
     name: str
     color: Color
-    planned: bool
-    values: Array
+    topic: str
+    field: str
+    size: int
+    component: int
+    planned: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,89 +62,83 @@ class Chart:
     Attributes:
         label: of the axis, with its unit.
         digits: that a value is shown with, after the point.
-        curves: on it; none where the log lacks what they need.
+        curves: on it.
+        from_stance: whether they are of points that are seen from the stance foot.
     """
 
     label: str
     digits: int
     curves: tuple[Curve, ...]
+    from_stance: bool = False
+
+    def values(self, view: LogView, time: Array) -> dict[Curve, Array]:
+        """The curves that a log has, at the times of the frames, shape (n,) each, NaN where there is nothing."""
+        found = {}
+        for curve in self.curves:
+            with suppress(MissingError):
+                rows = rows_at(view.time(curve.topic), time)
+                values = view.field(curve.topic, curve.field, curve.size)[rows]
+                points = view.from_stance(time, values[:, :2]) if self.from_stance else values
+                found[curve] = points[:, curve.component]
+        return found
+
+    def told(self, values: Mapping[Curve, Array] | None = None) -> dict[str, Any]:
+        """The chart for a script, as JSON: the curves with their values, or all of them without any."""
+        curves = []
+        for curve in self.curves if values is None else values:
+            told = {"name": curve.name, "color": hexadecimal(curve.color), "planned": curve.planned}
+            if values is not None:
+                rounded = values[curve].round(4).tolist()
+                told["values"] = [value if abs(value) < np.inf else None for value in rounded]
+            curves.append(told)
+        return {"label": self.label, "digits": self.digits, "curves": curves}
 
 
-BALANCE = (
-    ("ZMP", ZMP, False, "/contact", "zmp", 3),
-    ("CoM", COM, False, "/truth", "com", 3),
-    ("DCM", DCM, False, "/estimate", "dcm", 2),
-    ("ZMP planned", ZMP_PLANNED, True, "/reference", "zmp", 2),
-    ("CoM planned", COM_PLANNED, True, "/reference", "com", 3),
-    ("DCM planned", DCM_PLANNED, True, "/reference", "dcm", 2),
+def _balance(axis: int) -> tuple[Curve, ...]:
+    """Points of balance along an axis, as they are and as planned."""
+    return (
+        Curve("ZMP", ZMP, "/contact", "zmp", 3, axis),
+        Curve("CoM", COM, "/truth", "com", 3, axis),
+        Curve("DCM", DCM, "/estimate", "dcm", 2, axis),
+        Curve("ZMP planned", ZMP_PLANNED, "/reference", "zmp", 2, axis, planned=True),
+        Curve("CoM planned", COM_PLANNED, "/reference", "com", 3, axis, planned=True),
+        Curve("DCM planned", DCM_PLANNED, "/reference", "dcm", 2, axis, planned=True),
+    )
+
+
+_MARGINS = (
+    Curve("steps as planned", DCM_PLANNED, "/plan", "capture_margin", 2, 0, planned=True),
+    Curve("steps moved", DCM, "/plan", "capture_margin", 2, 1),
 )
-"""Points seen from the stance foot: name, colour, whether planned, topic, field and its size."""
-
-MARGINS = (("steps as planned", DCM_PLANNED, True), ("steps moved", DCM, False))
-"""The columns of ``/plan.capture_margin``: name, colour, whether dashed."""
-
-AXES = (
-    ("forward of the stance foot [m]", 3),
-    ("left of the stance foot [m]", 3),
-    ("DCM inside what is captured [m]", 3),
-    ("normal force [N]", 0),
+_FORCES = tuple(
+    Curve(f"{name} foot", FEET[foot], "/contact", "normal_force", 2, foot) for foot, name in enumerate(FOOT_NAMES)
 )
-"""Label of each chart, and digits after the point."""
-
-FEET_NAMES = tuple(f"{name} foot" for name in FOOT_NAMES)
-
-
-def charts(view: LogView, time: Array) -> tuple[Chart, ...]:
-    """Balance seen from the stance foot, its margins, and the forces under the feet, at the times of the frames."""
-    forward, left = [], []
-    for name, color, planned, topic, field, size in BALANCE:
-        try:
-            seen = view.from_stance(time, _sampled(view, topic, field, size, time)[:, :2])
-        except MissingError:
-            continue
-        forward.append(Curve(name, color, planned, seen[:, 0]))
-        left.append(Curve(name, color, planned, seen[:, 1]))
-    drawn = (forward, left, _margins(view, time), _forces(view, time))
-    return tuple(Chart(label, digits, tuple(curves)) for (label, digits), curves in zip(AXES, drawn, strict=True))
+CHARTS = (
+    Chart("forward of the stance foot [m]", 3, _balance(0), from_stance=True),
+    Chart("left of the stance foot [m]", 3, _balance(1), from_stance=True),
+    Chart("DCM inside what is captured [m]", 3, _MARGINS),
+    Chart("normal force [N]", 0, _FORCES),
+)
+"""Beside the picture of every replay and of a robot that is driven."""
 
 
-def _margins(view: LogView, time: Array) -> Iterator[Curve]:
-    try:
-        margins = _sampled(view, "/plan", "capture_margin", 2, time)
-    except MissingError:
-        return
-    for (name, color, dashed), values in zip(MARGINS, margins.T, strict=True):
-        yield Curve(name, color, dashed, values)
-
-
-def _forces(view: LogView, time: Array) -> Iterator[Curve]:
-    try:
-        force = _sampled(view, "/contact", "normal_force", 2, time)
-    except MissingError:
-        return
-    for foot, name in enumerate(FEET_NAMES):
-        yield Curve(name, FEET[foot], False, force[:, foot])
-
-
-def _sampled(view: LogView, topic: str, field: str, size: int, time: Array) -> Array:
-    """What a field was at the times of the frames, shape (n, size)."""
-    values, clock = view.field(topic, field, size), view.time(topic)
-    return np.asarray(values[np.maximum(np.searchsorted(clock, time + 1e-9, side="right") - 1, 0)])
-
-
-def write_page(replay: Replay, path: Path, beside: Iterable[Chart] = (), replace: bool = False) -> None:
-    """Write the page.
+def write_page(log: Path, out: Path, window: ReplayWindow | None = None, replace: bool = False) -> None:
+    """Write the page of a log; errors as of `extract`.
 
     Raises:
         MissingExtraError: viser is not installed.
-        LogError: the file exists, and shall not be replaced, or cannot be written.
+        LogError: the log cannot be read; the file exists, and shall not be replaced, or cannot be written.
     """
-    with write_whole(path, replace) as temporary:
-        temporary.write_text(page(replay, beside), encoding="utf-8")
+    refuse_existing(out, replace)
+    opened = read(log)
+    replay, view = extract(opened, window), LogView(opened)
+    charts = [chart.told(chart.values(view, replay.time)) for chart in CHARTS]
+    with write_whole(out, replace) as temporary:
+        temporary.write_text(page(replay, charts), encoding="utf-8")
 
 
-def page(replay: Replay, beside: Iterable[Chart] = ()) -> str:
-    """The page as text.
+def page(replay: Replay, charts: Sequence[Mapping[str, Any]] = ()) -> str:
+    """The page as text, with charts as of `Chart.told` beside the picture.
 
     Raises:
         MissingExtraError: viser is not installed.
@@ -147,31 +151,46 @@ def page(replay: Replay, beside: Iterable[Chart] = ()) -> str:
             scene.show(frame)
         recorded: str = recorder.as_html()
         layers = scene.moving_layers
-    return taken_in(recorded, f"<title>{html.escape(replay.title)}</title>", column(replay, layers, beside))
+    return taken_in(recorded, f"<title>{html.escape(replay.title)}</title>", column(replay, layers, charts))
 
 
-def column(replay: Replay, layers: tuple[str, ...], beside: Iterable[Chart]) -> str:
+def column(replay: Replay, layers: tuple[str, ...], charts: Sequence[Mapping[str, Any]]) -> str:
     """What stands beside the picture: title, legend, charts, and the room for viser's switches of the layers."""
     time = replay.time.round(4).tolist()
-    data = {"time": time, "layers": layers, "charts": [_chart(chart) for chart in beside]}
     legend = (f'<span><b style="background:{hexadecimal(c)}"></b>{name}</span>' for name, c in replay.legend().items())
     return filled(
-        files(__package__).joinpath("column.html").read_text(encoding="utf-8"),
-        data,
+        beside(files(__package__).joinpath("column.html").read_text(encoding="utf-8")),
+        {"time": time, "layers": layers, "charts": charts},
         title=html.escape(replay.title),
         span=f"{time[0]:.1f} s to {time[-1]:.1f} s",
         legend="".join(legend),
     )
 
 
-def _chart(chart: Chart) -> dict[str, Any]:
-    curves = [
-        {
-            "name": curve.name,
-            "color": hexadecimal(curve.color),
-            "planned": curve.planned,
-            "values": [value if abs(value) < np.inf else None for value in curve.values.round(4).tolist()],
-        }
-        for curve in chart.curves
-    ]
-    return {"label": chart.label, "digits": chart.digits, "curves": curves}
+def beside(column: str) -> str:
+    """The template of a column beside a picture, with what all columns share in front of it."""
+    return files(__package__).joinpath("beside.html").read_text(encoding="utf-8").replace("@", "@@") + column
+
+
+class _Template(Template):
+    delimiter = "@"  # JavaScript has other uses for the usual one
+
+
+def filled(template: str, data: Any = None, **names: str) -> str:
+    """A template of a page with its names filled in.
+
+    Args:
+        template: text, in which ``@name`` stands for a name, and ``@data`` for the data.
+        data: for a script, as JSON; what is no finite number cannot be in it.
+        names: HTML by name.
+    """
+    # An end of the script inside a text would end it.
+    told = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    return _Template(template).substitute(names, data=told)
+
+
+def taken_in(page: str, head: str, column: str) -> str:
+    """A viewer's own page with elements before all in its head, and others behind all in its body."""
+    before, inside = page.split("<head>", 1)
+    top, after = inside.rsplit("</body>", 1)
+    return f"{before}<head>{head}{top}{column}</body>{after}"

@@ -14,49 +14,32 @@ if TYPE_CHECKING:
 
 
 class MarkNode:
-    """A node that follows a track; `layer/name` is its place in the scene tree."""
+    """A node that follows a track; `layer/name` is its place in the scene tree, where it is not yet in sight."""
 
-    def __init__(self, node: Any) -> None:
-        self._node, self._last = node, np.empty(0)
-        node.visible = False
+    def __init__(self, scene: "viser.SceneApi", track: Track) -> None:
+        name, color, size = f"/{track.layer}/{track.name}", rgb(track.color), track.size
+        self._kind, self._last = track.kind, np.empty(0)
+        self._node: Any
+        if track.kind == "point":
+            self._node = scene.add_icosphere(name, radius=size, color=color, subdivisions=2)
+        elif track.kind == "arrow":
+            look: dict[str, Any] = {"shaft_radius": size, "head_radius": 2.2 * size, "head_length": 5.0 * size}
+            self._node = scene.add_arrows(name, np.zeros((1, 2, 3)), _linear(color), **look)
+        else:
+            nowhere = np.zeros((track.vertices.shape[1], 2, 3))
+            self._node = scene.add_line_segments(name, nowhere, color, thickness=2 * size)
+        self._node.visible = False
 
     def show(self, track: Track, frame: int) -> None:
         """Move to a frame of its track, or out of sight."""
         shown, vertices = track.shown(frame), track.vertices[frame]
         if shown and not np.array_equal(vertices, self._last):
-            self._move(vertices)
+            if self._kind == "point":
+                self._node.position = vertices[0]
+            else:
+                self._node.points = vertices[None] if self._kind == "arrow" else closed(vertices)
             self._last = vertices.copy()
         self._node.visible = shown
-
-    def _move(self, vertices: Array) -> None:
-        raise NotImplementedError
-
-
-class _PointNode(MarkNode):
-    def _move(self, vertices: Array) -> None:
-        self._node.position = vertices[0]
-
-
-class _ArrowNode(MarkNode):
-    def _move(self, vertices: Array) -> None:
-        self._node.points = vertices[None]
-
-
-class _OutlineNode(MarkNode):
-    def _move(self, vertices: Array) -> None:
-        self._node.points = closed(vertices)
-
-
-def make_mark(scene: "viser.SceneApi", track: Track) -> MarkNode:
-    """Add the node of a track, not yet in sight."""
-    name, color, size = f"/{track.layer}/{track.name}", rgb(track.color), track.size
-    if track.kind == "point":
-        return _PointNode(scene.add_icosphere(name, radius=size, color=color, subdivisions=2))
-    if track.kind == "arrow":
-        head: dict[str, Any] = {"head_radius": 2.2 * size, "head_length": 5.0 * size}
-        return _ArrowNode(scene.add_arrows(name, np.zeros((1, 2, 3)), _linear(color), shaft_radius=size, **head))
-    nowhere = np.zeros((track.vertices.shape[1], 2, 3))
-    return _OutlineNode(scene.add_line_segments(name, nowhere, color, thickness=2 * size))
 
 
 def _linear(color: tuple[int, int, int]) -> tuple[int, int, int]:
@@ -151,7 +134,7 @@ class ViserScene:
         self._bodies = tuple(self._add_bodies(replay))
         for name in (*(track.layer for track in replay.tracks), "Taken footprints", "Paths"):
             self._add_layer(name)
-        self._marks = tuple(make_mark(self._scene, track) for track in replay.tracks)
+        self._marks = tuple(MarkNode(self._scene, track) for track in replay.tracks)
         self._footprints: list[Any] = []
         self.replace(replay)
         self.show(0)

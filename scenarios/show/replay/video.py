@@ -1,6 +1,7 @@
 """A replay as a video: marks for MuJoCo's pictures, cameras, and the encoding."""
 
 import itertools
+import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -14,9 +15,13 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 
 from surefoot.scenarios.errors import LogError, MissingExtraError, require
-from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.log import read
+from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.palette import WHITE, Color
+from surefoot.scenarios.run.skeleton import Progress
+from surefoot.scenarios.show.console import ProgressLine
 from surefoot.scenarios.show.replay.content import Array, Replay, ReplayWindow, Track
+from surefoot.scenarios.show.replay.extract import extract
 from surefoot.sim.gl import RenderingUnavailableError
 from surefoot.sim.marks import Mark
 from surefoot.sim.render import Camera, Image, Quality, render_frames
@@ -88,12 +93,12 @@ class Film:
 
     Attributes:
         speed: of the video over that of the run.
-        camera: name of a camera, or azimuth, elevation [deg] and distance [m] of one that follows.
+        camera: that looks at the robot.
         size: width and height, both even, since H.264 halves them for the colours [px].
     """
 
     speed: float = 1.0
-    camera: str = "follow"
+    camera: Camera = CAMERA
     size: tuple[int, int] = (1280, 720)
 
     @classmethod
@@ -110,70 +115,73 @@ class Film:
             raise LogError(f"--size {size}: give width and height in pixels, such as 1280x720")
         if any(side % 2 or not SMALLEST <= side <= LARGEST for side in (int(width), int(height))):
             raise LogError(f"--size {size}: give even numbers from {SMALLEST} to {LARGEST}, such as 1280x720")
-        film = cls(speed, camera, (int(width), int(height)))
-        film.view()
-        return film
-
-    def view(self) -> Camera:
-        """The camera.
-
-        Raises:
-            LogError: there is none of that name, and it is no direction either.
-        """
-        if self.camera in CAMERAS:
-            return CAMERAS[self.camera]
-        try:
-            azimuth, elevation, distance = (float(number) for number in self.camera.split(","))
-        except ValueError:
-            known = f"choose {', '.join(CAMERAS)}, or azimuth,elevation,distance such as 130,-12,2.7"
-            raise LogError(f"--camera {self.camera}: {known}") from None
-        if not (abs(azimuth) <= 360.0 and abs(elevation) < 90.0 and 0.3 <= distance <= 100.0):
-            raise LogError(
-                f"--camera {self.camera}: azimuth goes from -360 to 360 and elevation from -89 to 89 degrees, "
-                "distance from 0.3 to 100 m"
-            )
-        return Camera(distance, azimuth, elevation)
+        return cls(speed, _camera(camera), (int(width), int(height)))
 
     def window(self, window: ReplayWindow) -> ReplayWindow:
         """The window with as many frames per simulated second as the speed needs."""
         return replace(window, frame_rate=FRAME_RATE / self.speed)
 
 
-OnFrame = Callable[[int], None]
+def _camera(asked: str) -> Camera:
+    """A camera by name, or by azimuth, elevation [deg] and distance [m]; that one follows.
+
+    Raises:
+        LogError: there is none of that name, and it is no direction either.
+    """
+    if asked in CAMERAS:
+        return CAMERAS[asked]
+    try:
+        azimuth, elevation, distance = (float(number) for number in asked.split(","))
+    except ValueError:
+        known = f"choose {', '.join(CAMERAS)}, or azimuth,elevation,distance such as 130,-12,2.7"
+        raise LogError(f"--camera {asked}: {known}") from None
+    if not (abs(azimuth) <= 360.0 and abs(elevation) < 90.0 and 0.3 <= distance <= 100.0):
+        raise LogError(
+            f"--camera {asked}: azimuth goes from -360 to 360 and elevation from -89 to 89 degrees, "
+            "distance from 0.3 to 100 m"
+        )
+    return Camera(distance, azimuth, elevation)
 
 
 def write_video(
-    replay: Replay, path: Path, on_frame: OnFrame | None = None, film: Film | None = None, replace: bool = False
+    log: Path, out: Path, window: ReplayWindow | None = None, film: Film | None = None, replace: bool = False
 ) -> None:
-    """Write an mp4 file.
+    """Write an mp4 file of a log, with a progress line; errors as of `extract`.
 
     Args:
-        replay: what to show, in a window of the film.
-        path: of the file.
-        on_frame: is told the number of each frame that is done.
+        log: to show.
+        out: the file.
+        window: what part of the log; all by default.
         film: how; at the speed of the run, following, by default.
         replace: an existing file.
 
     Raises:
         MissingExtraError: PyAV or an off-screen OpenGL is not installed.
-        LogError: the file exists or cannot be written.
+        LogError: the log cannot be read; the file exists or cannot be written.
     """
-    av = require("av", "video", "video")
     film = film or Film()
-    with write_whole(path, replace) as temporary:
+    refuse_existing(out, replace)
+    shown, begin = extract(read(log), film.window(window or ReplayWindow())), time.monotonic()
+    av, length = require("av", "video", "video"), len(shown) / FRAME_RATE
+    with ProgressLine(out.name) as line, write_whole(out, replace) as temporary:
+
+        def note(frames: int) -> None:
+            done = frames / FRAME_RATE
+            line(Progress(done, length, "drawn", done / max(time.monotonic() - begin, 1e-9)))
+
         try:
-            encode(av, _pictures(replay, film), temporary, film.size, on_frame or (lambda _: None))
+            _encode(av, _pictures(shown, film), temporary, film.size, note)
         except RenderingUnavailableError as error:
             raise MissingExtraError(str(error)) from None
 
 
 def _pictures(replay: Replay, film: Film) -> Iterator[Image]:
     marks = (marks_of(replay, frame) for frame in range(len(replay)))
-    camera, look_at = stand(replay, film.view())
+    camera, look_at = stand(replay, film.camera)
     caption = Caption(replay, film.size, film.speed)
     drawn = render_frames(replay.mjcf, replay.configuration, *film.size, camera, QUALITY, marks, look_at)
-    for time, picture in zip(replay.time.tolist(), drawn, strict=True):
-        yield caption.drawn_on(picture, time)
+    for instant, picture in zip(replay.time.tolist(), drawn, strict=True):
+        yield caption.drawn_on(picture, instant)
 
 
 def stand(replay: Replay, camera: Camera) -> tuple[Camera, Array]:
@@ -186,7 +194,9 @@ def stand(replay: Replay, camera: Camera) -> tuple[Camera, Array]:
     return replace(camera, distance=camera.distance + WIDER * way), np.broadcast_to(middle, followed.shape)
 
 
-def encode(av: Any, pictures: Iterable[Image], path: Path, size: tuple[int, int], on_frame: OnFrame) -> None:
+def _encode(
+    av: Any, pictures: Iterable[Image], path: Path, size: tuple[int, int], on_frame: Callable[[int], None]
+) -> None:
     """Encode pictures of one size, shape (height, width, 3), as H.264 in an mp4 file; `av` is PyAV."""
     with av.open(str(path), "w", format="mp4", options={"movflags": "+faststart"}) as container:
         stream = container.add_stream("libx264", rate=Fraction(FRAME_RATE), options=CODEC)

@@ -10,7 +10,7 @@ from surefoot.scenarios.log import read
 from surefoot.scenarios.run.pendulum import mean_force
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.show.compare.differences import WALL_CLOCK
+from surefoot.scenarios.show.differences import WALL_CLOCK
 
 pytestmark = pytest.mark.unit
 

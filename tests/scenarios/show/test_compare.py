@@ -11,7 +11,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, LogWriter, read
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.show.compare.compare import compare
+from surefoot.scenarios.show.compare import compare
 from surefoot.scenarios.show.figures.page import plot
 
 pytestmark = pytest.mark.unit

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
-from surefoot.scenarios.show.compare.differences import compare_channels
+from surefoot.scenarios.show.differences import compare_channels
 
 pytestmark = pytest.mark.unit
 

@@ -15,7 +15,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.show.figures.effort import _angles, _speeds, groups, stretch_extremes
+from surefoot.scenarios.show.figures.effort import angles, groups, speeds, stretch_extremes
 from surefoot.scenarios.show.figures.ground import (
     friction_used,
     is_wide,
@@ -137,11 +137,11 @@ def test_every_joint_is_drawn_against_its_range_and_its_speed(body):
     figure = single(view, "header", "joints")
     words = texts(figure)
     assert {"Joint angles in percent of half their range", "Joint speeds in percent of their limits"} <= set(words)
-    names, _ = _angles(view)
+    names, _ = angles(view)
     assert names == tuple(constants["joint_names"])
     log.metadata["run"]["position_upper"] = json.dumps(log["/measurement"].field("joint_position")[0].tolist())
-    np.testing.assert_allclose(_angles(LogView(log))[1][0], 100.0)
-    np.testing.assert_allclose(_speeds(view)[1], 50.0 * view.field("/measurement", "joint_velocity", -1))
+    np.testing.assert_allclose(angles(LogView(log))[1][0], 100.0)
+    np.testing.assert_allclose(speeds(view)[1], 50.0 * view.field("/measurement", "joint_velocity", -1))
     log.metadata["run"]["velocity_limit"] = "[]"
     assert texts(single(LogView(log), "header", "joints")).count("not in this log: a speed limit for each joint") == 3
 

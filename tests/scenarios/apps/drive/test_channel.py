@@ -13,10 +13,11 @@ import pytest
 from strangers import ask, let_in, listening
 
 import surefoot
+from surefoot.planner.steps.commands import Twist
 from surefoot.scenarios.apps.drive.channel import DRAWN, LONGEST_INPUT, PageChannel, read_object
 from surefoot.scenarios.apps.drive.command import drive_scenario
 from surefoot.scenarios.apps.drive.page import CHANNEL, GREATEST_IMPULSE, DrivePage, opened
-from surefoot.scenarios.apps.drive.session import Input, PaceInput, Reset, Velocity
+from surefoot.scenarios.apps.drive.session import Input, PaceInput, Reset
 from surefoot.scenarios.show.replay.gate import Gate, serving
 
 pytestmark = pytest.mark.unit
@@ -155,7 +156,7 @@ def test_every_bad_input_gets_an_answer_and_none_acts(page: tuple[DrivePage, "Si
         socket.send('{"kind": "reset"}')
         assert eventually(lambda: not inputs.empty())
         assert inputs.get() == Reset()
-    assert inputs.get(timeout=10) == Velocity()  # who leaves, stops it
+    assert inputs.get(timeout=10) == Twist()  # who leaves, stops it
     assert capfd.readouterr() == ("", "")
 
 
@@ -200,7 +201,7 @@ def attack(made: DrivePage, inputs: "SimpleQueue[Input]", sockets: int, requests
         if isinstance(given, PaceInput):
             assert given.paused in (None, True, False)
             assert given.speed is None or 0.1 <= given.speed <= 1.0
-        if isinstance(given, Velocity):
+        if isinstance(given, Twist):
             assert abs(given.v_x) <= 0.6
     assert made._impulse is None or 0.0 < made._impulse <= GREATEST_IMPULSE
 

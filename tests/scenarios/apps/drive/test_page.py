@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 import surefoot
+from surefoot.planner.steps.commands import Twist
 from surefoot.scenarios.apps.drive.page import LIMITS, read_input
 from surefoot.scenarios.apps.drive.picture import Pictures
-from surefoot.scenarios.apps.drive.session import GaitInput, PaceInput, PushInput, Reset, Velocity
+from surefoot.scenarios.apps.drive.session import GaitInput, PaceInput, PushInput, Reset
 from surefoot.scenarios.show.logview import LogView
 from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
-from surefoot.scenarios.show.replay.page import charts
+from surefoot.scenarios.show.replay.page import CHARTS
 from surefoot.similarity import Similarity
 
 pytestmark = pytest.mark.unit
@@ -21,14 +22,14 @@ BRIEF = {"duration": 0.6, "gait.initial_stand": 0.1, "gait.single_support": 0.4,
 
 
 def test_inputs_are_read_and_bent_into_what_may_be_asked_for():
-    assert read_input("velocity", {"v_x": 0.3, "v_y": -9, "yaw_rate": 0}) == Velocity(0.3, -LIMITS.v_y, 0.0)
+    assert read_input("velocity", {"v_x": 0.3, "v_y": -9, "yaw_rate": 0}) == Twist(0.3, -LIMITS.v_y, 0.0)
     assert read_input("gait", {"swing_height": 0.07}) == GaitInput(swing_height=0.07)
     assert read_input("pace", {"paused": True}) == PaceInput(paused=True)
     assert read_input("pace", {"speed": 0.25}) == PaceInput(speed=0.25)
     assert read_input("pace", {"speed": 0.01}) == PaceInput(speed=0.1)
     assert read_input("reset", {}) == Reset()
     small = Similarity(0.25, 0.02)
-    assert read_input("velocity", {"v_x": 9, "v_y": 0, "yaw_rate": 9}, small) == Velocity(0.3, 0.0, 1.2)
+    assert read_input("velocity", {"v_x": 9, "v_y": 0, "yaw_rate": 9}, small) == Twist(0.3, 0.0, 1.2)
     assert read_input("gait", {"swing_height": 0.07}, small) == GaitInput(swing_height=0.03)
 
 
@@ -84,7 +85,10 @@ def test_a_picture_shows_what_a_replay_of_the_log_shows(tmp_path):
                     track.vertices[0], tracks[track.layer, track.name][frame], atol=1e-6, err_msg=str(track)
                 )
     assert np.isfinite(tracks["Pushes", "push"][-1]).all()
-    drawn = charts(LogView(opened), replay.time)
-    for frame in (-2, -1):
-        for chart, values in zip(drawn, seen[frame][1], strict=True):
-            assert [curve.values[frame] for curve in chart.curves] == pytest.approx(values, abs=1e-6)
+    view = LogView(opened)
+    for number, chart in enumerate(CHARTS):
+        drawn = chart.values(view, replay.time)
+        assert tuple(drawn) == chart.curves
+        for frame in (-2, -1):
+            expected = seen[frame][1][number]
+            assert [values[frame] for values in drawn.values()] == pytest.approx(expected, abs=1e-6)

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from surefoot.errors import ParameterError
+from surefoot.planner.steps.commands import Twist
 from surefoot.scenarios.apps.drive.session import (
     COMMAND_PERIOD,
     PUSH_TIME,
@@ -18,7 +19,6 @@ from surefoot.scenarios.apps.drive.session import (
     PushInput,
     Reset,
     Session,
-    Velocity,
 )
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.skeleton import End
@@ -196,23 +196,23 @@ def test_a_command_is_given_once_between_ticks_and_no_more_often_than_may_be():
     drive = Drive()
     drive.go_on(1.0)
     for speed in range(40):
-        drive.inputs.put(Velocity(0.01 * speed))
+        drive.inputs.put(Twist(0.01 * speed))
         drive.go_on(0.02)
     drive.go_on(1.0)
     times = [time for time, *_ in drive.robot.told]
     assert len(times) <= 10
     assert all(b - a >= COMMAND_PERIOD - 1e-9 for a, b in itertools.pairwise(times))
     assert drive.robot.told[-1][2] == {"v_x": 0.39, "v_y": 0.0, "yaw_rate": 0.0}
-    drive.inputs.put(Velocity(0.39))
+    drive.inputs.put(Twist(0.39))
     drive.go_on(1.0)
     assert len(drive.robot.told) == len(times)
 
 
 def test_a_stop_does_not_wait():
     drive = Drive()
-    drive.inputs.put(Velocity(0.3))
+    drive.inputs.put(Twist(0.3))
     drive.go_on(0.03)
-    drive.inputs.put(Velocity())
+    drive.inputs.put(Twist())
     drive.go_on(0.03)
     (first, *_), (second, _, keys) = drive.robot.told
     assert second - first < COMMAND_PERIOD
@@ -230,9 +230,9 @@ def test_the_gait_alone_leaves_the_velocity_as_it_is():
 
 def test_a_gait_that_is_refused_does_not_take_a_stop_with_it():
     drive = Drive()
-    drive.inputs.put(Velocity(0.3))
+    drive.inputs.put(Twist(0.3))
     drive.go_on(0.5)
-    for given in (GaitInput(single_support=0.05), Velocity()):
+    for given in (GaitInput(single_support=0.05), Twist()):
         drive.inputs.put(given)
     drive.go_on(0.5)
     assert [keys["v_x"] for _, _, keys in drive.robot.told] == [0.3, 0.0]
@@ -266,14 +266,14 @@ def test_what_is_refused_is_said_and_not_shown_as_done():
     drive.go_on(0.1)
     assert drive.status.note == "unknown body 'nobody'; push another one"
     assert drive.page.pushes == []
-    drive.inputs.put(Velocity(0.1))
+    drive.inputs.put(Twist(0.1))
     drive.go_on(0.1)
     assert drive.status.note == ""
 
 
 def test_a_reset_ends_the_run_and_begins_another_that_stands_with_the_gait_as_it_was_set():
     drive = Drive()
-    for given in (Velocity(0.3), GaitInput(swing_height=0.07)):
+    for given in (Twist(0.3), GaitInput(swing_height=0.07)):
         drive.inputs.put(given)
     drive.go_on(1.0)
     drive.inputs.put(Reset())
@@ -291,7 +291,7 @@ def test_a_reset_ends_the_run_and_begins_another_that_stands_with_the_gait_as_it
 def test_after_a_fall_it_waits_for_a_reset():
     drive = Drive(falls_at=0.5)
     drive.go_on(2.0)
-    drive.inputs.put(Velocity(0.3))
+    drive.inputs.put(Twist(0.3))
     drive.inputs.put(PushInput((1.0, 0.0, 0.0), "torso"))
     drive.go_on(1.0)
     assert drive.robot.time == pytest.approx(0.5)

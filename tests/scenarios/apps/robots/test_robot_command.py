@@ -11,8 +11,8 @@ from surefoot.models.humanoid100 import HUMANOID100
 from surefoot.models.types import Robot, RobotDescription, RobotOptions
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.apps import cli
-from surefoot.scenarios.apps.robots import examine
-from surefoot.scenarios.apps.robots.examine import CatalogueRow, Watcher, rows
+from surefoot.scenarios.apps.robots import taken
+from surefoot.scenarios.apps.robots.taken import CatalogueBar, CatalogueRow, rows
 
 pytestmark = pytest.mark.unit
 
@@ -83,7 +83,7 @@ def test_what_fails_is_told_with_its_reasons(surefoot, monkeypatch: pytest.Monke
         CatalogueRow("walk", "fails", ("fell is true",)),
         CatalogueRow("stairs-tall", "refused", ("too tall",)),
     )
-    monkeypatch.setattr(examine, "rows", lambda *given: [given[-1].done(row) for row in told] and told)
+    monkeypatch.setattr(taken, "rows", lambda *_: told)
     code, out, _ = surefoot("robot", "check", "humanoid100", "--walk")
     assert code == 1
     assert "- fell is true" in out and "- too tall" in out
@@ -92,7 +92,7 @@ def test_what_fails_is_told_with_its_reasons(surefoot, monkeypatch: pytest.Monke
 
 def test_what_cannot_be_taken_is_refused_before_any_run(few: tuple[str, ...], tmp_path) -> None:
     """A payload that no catalogue scenario asks for is none of its business; a scenario with a fault is."""
-    found = rows("nobody", few, walk=True, jobs=1, out=tmp_path)
+    found = list(rows("nobody", few, True, 1, tmp_path, lambda *_: None))
     assert [row.outcome for row in found] == ["refused"] * 3
     assert all("nobody" in row.why[0] for row in found)
     assert list(tmp_path.iterdir()) == []
@@ -110,19 +110,6 @@ def test_a_scenario_that_the_catalogue_has_not_got_is_bad_input(surefoot) -> Non
     assert err.count("\n") == 1 and "did you mean 'walk'?" in err
 
 
-class Noting(Watcher):
-    """Writes down what it is told."""
-
-    def __init__(self) -> None:
-        self.told: list[str] = []
-
-    def begun(self, runs: int, duration: float) -> None:
-        self.told.append(f"{runs} runs of {duration:.2f} s")
-
-    def done(self, row: CatalogueRow) -> None:
-        self.told.append(f"{row.scenario} {row.outcome}")
-
-
 def test_each_scenario_is_looked_at_once_and_the_longest_run_comes_first(monkeypatch, tmp_path) -> None:
     """What is refused is known before any run, and how much there is to run, too."""
     durations = {"stand": 1.0, "stairs-tall": 0.0, "walk": 2.0, "slope": 3.0}
@@ -134,13 +121,22 @@ def test_each_scenario_is_looked_at_once_and_the_longest_run_comes_first(monkeyp
     def look(name: str, robot: str):
         looked.append(name)
         outcome = "accepted" if durations[name] else "refused"
-        return examine._Looked(CatalogueRow(name, outcome, duration=durations[name]), name if durations[name] else None)
+        return taken._Looked(CatalogueRow(name, outcome, duration=durations[name]), name if durations[name] else None)
 
-    monkeypatch.setattr(examine, "side_by_side", alone)
-    monkeypatch.setattr(examine, "_look", look)
-    monkeypatch.setattr(examine, "_run", lambda row, scenario, out: replace(row, outcome="walks"))
-    noting = Noting()
-    found = rows("humanoid100", tuple(durations), walk=True, jobs=2, out=tmp_path, watcher=noting)
+    monkeypatch.setattr(taken, "side_by_side", alone)
+    monkeypatch.setattr(taken, "_look", look)
+    monkeypatch.setattr(taken, "_run", lambda row, scenario, out: replace(row, outcome="walks"))
+    told: list[str] = []
+
+    def begun(runs: int, duration: float) -> None:
+        told.append(f"{runs} runs of {duration:.2f} s")
+
+    names = tuple(durations)
+    found = []
+    for row in rows("humanoid100", names, True, 2, tmp_path, begun):
+        told.append(f"{row.scenario} {row.outcome}")
+        found.append(row)
     assert looked == list(durations)
-    assert noting.told == ["3 runs of 6.00 s", "stairs-tall refused", "slope walks", "walk walks", "stand walks"]
-    assert [row.scenario for row in found] == list(durations)
+    assert told == ["3 runs of 6.00 s", "stairs-tall refused", "slope walks", "walk walks", "stand walks"]
+    with CatalogueBar(None, names) as bar:
+        assert [row.scenario for row in bar.shown(found)] == list(durations)

@@ -11,10 +11,10 @@ from strangers import ask, exchange, let_in, listening
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import Log
-from surefoot.scenarios.show.replay.command import serve
 from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.gate import LONGEST_MESSAGE, Gate, is_heard, serving
+from surefoot.scenarios.show.replay.live import serve
 
 pytestmark = pytest.mark.unit
 
@@ -238,7 +238,7 @@ def test_bad_frames_and_noise_leave_the_terminal_alone_and_the_page_open(recwarn
 def test_what_a_page_sends_does_not_end_a_live_view(log: Log):
     from types import SimpleNamespace
 
-    from surefoot.scenarios.show.replay.command import Player
+    from surefoot.scenarios.show.replay.live import Player
 
     with serving() as server:
         player = Player(server, extract(log))

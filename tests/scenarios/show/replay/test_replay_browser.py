@@ -11,10 +11,7 @@ from browser import Browser
 from invented_log import write
 from PIL import Image
 
-from surefoot.scenarios.log import read
-from surefoot.scenarios.show.logview import LogView
-from surefoot.scenarios.show.replay.extract import extract
-from surefoot.scenarios.show.replay.page import charts, write_page
+from surefoot.scenarios.show.replay.page import write_page
 
 pytestmark = [
     pytest.mark.physics,
@@ -51,9 +48,7 @@ HIDE_NOTICE = (
 def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     pytest.importorskip("viser")
     folder = tmp_path_factory.mktemp("browser")
-    log = read(write(folder / "log.mcap", speed=SPEED))
-    replay = extract(log)
-    write_page(replay, folder / "walk.html", charts(LogView(log), replay.time))
+    write_page(write(folder / "log.mcap", speed=SPEED), folder / "walk.html")
     with Browser(folder / "walk.html", folder / "profile", (760, 400)) as opened:
         opened.wait_for("return document.querySelector('input') && document.querySelector('canvas') && true")
         opened.wait_for("return document.querySelector('[data-playback-scene-tree]') && true")

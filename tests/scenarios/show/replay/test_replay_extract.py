@@ -14,9 +14,8 @@ from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
-from surefoot.scenarios.show.replay.content import Replay, ReplayWindow, Track
+from surefoot.scenarios.show.replay.content import CONTACT_SCALE, PUSH_SCALE, PUSH_SHOWN, Replay, ReplayWindow, Track
 from surefoot.scenarios.show.replay.extract import extract
-from surefoot.scenarios.show.replay.overlays import CONTACT_SCALE, PUSH_SCALE, PUSH_SHOWN
 from surefoot.scenarios.show.replay.video import marks_of
 
 pytestmark = pytest.mark.unit

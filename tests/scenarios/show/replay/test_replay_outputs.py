@@ -11,14 +11,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from surefoot.scenarios import errors, palette
+from surefoot.scenarios import errors
 from surefoot.scenarios.apps import cli
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
-from surefoot.scenarios.show.replay.page import Chart, Curve, column
+from surefoot.scenarios.show.replay.page import column
 from surefoot.scenarios.show.replay.scene import rgb
 from surefoot.scenarios.show.replay.video import CAMERAS, Caption, Film, marks_of, stand
 from surefoot.sim import gl
@@ -65,9 +65,9 @@ def test_a_page_is_whole_and_alone(surefoot, log_path, tmp_path):
 
 
 def test_a_page_with_a_hostile_name_stays_one_script(log):
-    curve = Curve("</script>$x", palette.COM, False, np.zeros(1))
-    text = column(replace(extract(log, ReplayWindow(end=0.0)), title="<b>"), ("/a",), [Chart("[m]", 1, (curve,))])
-    assert text.count("</script>") == 2
+    chart = {"label": "[m]", "digits": 1, "curves": [{"name": "</script>$x", "values": [0.0]}]}
+    text = column(replace(extract(log, ReplayWindow(end=0.0)), title="<b>"), ("/a",), [chart])
+    assert text.count("</script>") == 3
     assert "&lt;b&gt;" in text
     assert "$x" in text
 
@@ -126,9 +126,9 @@ def test_a_fixed_camera_sees_the_whole_way_and_another_goes_along(log):
 
 def test_a_film_is_what_was_asked_for():
     film = Film.of(0.5, "90,-5,3", "640x360")
-    assert (film.size, film.view()) == ((640, 360), Camera(3.0, 90.0, -5.0))
+    assert (film.size, film.camera) == ((640, 360), Camera(3.0, 90.0, -5.0))
     assert film.window(ReplayWindow(1.0, 2.0)) == ReplayWindow(1.0, 2.0, 60.0)
-    assert Film().view() == CAMERAS["follow"]
+    assert Film().camera == CAMERAS["follow"]
 
 
 @pytest.mark.parametrize(
@@ -236,8 +236,8 @@ def test_a_failure_leaves_the_older_file(tmp_path):
 
 def test_a_live_view_plays_and_follows_a_growing_log(log_path, tmp_path):
     pytest.importorskip("viser")
-    from surefoot.scenarios.show.replay.command import Player
     from surefoot.scenarios.show.replay.gate import serving
+    from surefoot.scenarios.show.replay.live import Player
 
     growing = tmp_path / "growing.mcap"
     growing.write_bytes(log_path.read_bytes()[: log_path.stat().st_size // 2])
@@ -285,6 +285,6 @@ def server_time(server) -> float:
 def test_importing_the_command_needs_no_extra(monkeypatch):
     for name in ("viser", "av"):
         monkeypatch.setitem(sys.modules, name, None)
-    for name in ("command", "video"):
+    for name in ("live", "page", "video"):
         importlib.reload(importlib.import_module(f"surefoot.scenarios.show.replay.{name}"))
     assert ReplayWindow().frame_rate == 30.0

@@ -184,11 +184,9 @@ class _Earliest:
 
     def point(self, times_ns: NDArray[np.int64]) -> FirstDifference | None:
         """Give it with its time."""
-        return (
-            None
-            if self._row is None
-            else FirstDifference(float(times_ns[self._row]) * 1e-9, self._field, *self._values)
-        )
+        if self._row is None:
+            return None
+        return FirstDifference(float(times_ns[self._row]) * 1e-9, self._field, *self._values)
 
 
 def _bits_differ(a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:
@@ -222,8 +220,6 @@ def _layout_differences(a: ChannelData, b: ChannelData) -> Iterator[str]:
 VERSIONS_RECORD = "versions"
 """Metadata record of what made a log, by which two runs may differ and still be the same."""
 
-_AXES = ("x", "y", "z")
-
 
 @dataclass(frozen=True, slots=True)
 class Difference:
@@ -246,26 +242,22 @@ class Difference:
         return float(self.b - self.a) if numbers else None
 
 
-def version_differences(a: Log, b: Log) -> tuple[Difference, ...]:
-    """Versions that are not the same."""
-    return _differences(*(dict(log.metadata.get(VERSIONS_RECORD, {})) for log in (a, b)))
+def differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[Difference, ...]:
+    """Values by name that are not the same in both."""
+    return tuple(pair for pair in _pairs(a, b) if pair.a != pair.b)
 
 
-def setting_differences(a: Log, b: Log) -> tuple[Difference, ...]:
-    """Settings of the attached scenarios, or of the run's constants, that are not the same."""
-    return _differences(*(_settings(log) for log in (a, b)))
+def parted(a: Mapping[str, Any], b: Mapping[str, Any], but: str) -> tuple[str, ...]:
+    """Names of files or records that are not the same in both, but for one."""
+    return tuple(name for name in sorted((a.keys() | b.keys()) - {but}) if a.get(name) != b.get(name))
 
 
-def file_differences(a: Log, b: Log) -> tuple[str, ...]:
-    """Attached files other than the scenario that are not the same in both."""
-    names = sorted((a.attachments.keys() | b.attachments.keys()) - {SCENARIO_FILE})
-    return tuple(name for name in names if a.attachments.get(name) != b.attachments.get(name))
-
-
-def record_differences(a: Log, b: Log) -> tuple[str, ...]:
-    """Metadata records other than the versions that are not the same: constants, pushes, how the run ended."""
-    names = sorted((a.metadata.keys() | b.metadata.keys()) - {VERSIONS_RECORD})
-    return tuple(name for name in names if a.metadata.get(name) != b.metadata.get(name))
+def settings(log: Log) -> Mapping[str, Any]:
+    """Settings of the attached scenario by dotted key; the run's constants where there is none."""
+    try:
+        return _flat(parse(log.attachments[SCENARIO_FILE].decode(), SCENARIO_FILE).value)
+    except (KeyError, UnicodeDecodeError, ScenarioError):
+        return log.metadata.get(RECORD, {})
 
 
 def metric_pairs(a: Log, b: Log) -> tuple[tuple[Difference, ...], tuple[str, ...]]:
@@ -279,23 +271,13 @@ def metric_pairs(a: Log, b: Log) -> tuple[tuple[Difference, ...], tuple[str, ...
             values.append({})
             notes.append(f"{name} has no metrics: {error}")
         else:
-            values.append(_flat(measured.values, names=_AXES))
+            values.append(_flat(measured.values, names=("x", "y", "z")))
             notes += [f"{name}: {note}" for note in measured.notes]
-    first, second = values
-    return tuple(Difference(name, first.get(name), second.get(name)) for name in {**first, **second}), tuple(notes)
+    return _pairs(*values), tuple(notes)
 
 
-def _settings(log: Log) -> dict[str, Any]:
-    try:
-        text = log.attachments[SCENARIO_FILE].decode()
-        return _flat(parse(text, SCENARIO_FILE).value)
-    except (KeyError, UnicodeDecodeError, ScenarioError):
-        return dict(log.metadata.get(RECORD, {}))
-
-
-def _differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[Difference, ...]:
-    pairs = (Difference(name, a.get(name), b.get(name)) for name in {**a, **b})
-    return tuple(pair for pair in pairs if pair.a != pair.b)
+def _pairs(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[Difference, ...]:
+    return tuple(Difference(name, a.get(name), b.get(name)) for name in {**a, **b})
 
 
 def _flat(value: Any, prefix: str = "", names: tuple[str, ...] = ()) -> dict[str, Any]:

@@ -12,19 +12,20 @@ from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
-from surefoot.scenarios.show.compare.differences import (
+from surefoot.scenarios.record.provenance import SCENARIO_FILE
+from surefoot.scenarios.show.console import number, plain_console, plain_table
+from surefoot.scenarios.show.differences import (
+    VERSIONS_RECORD,
     ChannelDifference,
     Difference,
     FirstDifference,
     compare_channels,
-    file_differences,
+    differences,
     metric_pairs,
-    record_differences,
-    setting_differences,
+    parted,
+    settings,
     unreadable,
-    version_differences,
 )
-from surefoot.scenarios.show.console import number, plain_console, plain_table
 from surefoot.scenarios.show.logview import LogView
 
 TOLERANCE = 1e-6
@@ -108,7 +109,7 @@ class Comparison:
             "tolerance": self.tolerance,
             "first_divergence": None if self.first is None else _plain(asdict(self.first)),
             "versions": [asdict(one) for one in self.versions],
-            "settings": [_plain(asdict(one)) for one in self.settings],
+            "settings": _plain([asdict(one) for one in self.settings]),
             "files": list(self.files),
             "records": list(self.records),
             "metrics": {one.name: {"a": one.a, "b": one.b, "difference": one.delta} for one in self.metrics},
@@ -143,10 +144,10 @@ def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[C
         a=str(a.path),
         b=str(b.path),
         tolerance=tolerance,
-        versions=version_differences(a, b),
-        settings=setting_differences(a, b),
-        files=file_differences(a, b),
-        records=record_differences(a, b),
+        versions=differences(*(log.metadata.get(VERSIONS_RECORD, {}) for log in (a, b))),
+        settings=differences(settings(a), settings(b)),
+        files=parted(a.attachments, b.attachments, but=SCENARIO_FILE),
+        records=parted(a.metadata, b.metadata, but=VERSIONS_RECORD),
         metrics=metrics,
         channels=compare_channels(a, b, tolerance),
         only_a=tuple(topic for topic in topics_a if topic not in b),
@@ -188,12 +189,6 @@ def describe(channel: ChannelDifference) -> str:
     return f"{channel.topic} {at.field} at {at.time:.3f} s: {at.a!r} and {at.b!r}"
 
 
-def timed(name: str) -> bool:
-    """Whether a metric's element differs between any two runs."""
-    metric = known(name)
-    return metric is not None and not metric.repeatable
-
-
 def _own(log: Log) -> tuple[str, ...]:
     """Topics of a log, less those for viewers, which derive from the others."""
     return tuple(topic for topic in log.topics if topic not in DERIVED_TOPICS)
@@ -221,32 +216,25 @@ def print_comparison(found: Comparison) -> None:
     console.print(f"A: {found.a}\nB: {found.b}")
     for note in (*found.notes, *found.unread):
         console.print(f"note: {note}")
-    for title, differences in (("version", found.versions), ("setting", found.settings)):
-        console.print(_settings(title, differences) if differences else f"{title}s: the same")
+    for title, pairs in (("version", found.versions), ("setting", found.settings)):
+        rows = ((one.name, number(one.a), number(one.b)) for one in pairs)
+        console.print(plain_table(title, "A", "B", rows=rows) if pairs else f"{title}s: the same")
     if found.files:
         console.print(f"attached files that differ: {', '.join(found.files)}")
     if found.records:
         console.print(f"metadata records that differ: {', '.join(found.records)}")
-    console.print(_metrics(found.metrics))
+    console.print(plain_table("metric", "A", "B", "B - A", rows=map(_metric, found.metrics)))
     console.print(_channels(found.channels, found.tolerance))
     for name, topics in (("A", found.only_a), ("B", found.only_b)):
         if topics:
             console.print(f"only in {name}: {', '.join(topics)}")
 
 
-def _settings(title: str, differences: tuple[Difference, ...]) -> Table:
-    rows = plain_table(title, "A", "B")
-    for one in differences:
-        rows.add_row(one.name, number(one.a), number(one.b))
-    return rows
-
-
-def _metrics(metrics: tuple[Difference, ...]) -> Table:
-    rows = plain_table("metric", "A", "B", "B - A")
-    for one in metrics:
-        delta = "" if one.delta in (None, 0.0) else f"{one.delta:+.3g}"
-        rows.add_row(one.name, number(one.a), number(one.b), f"{delta} (wall clock)" if timed(one.name) else delta)
-    return rows
+def _metric(one: Difference) -> tuple[str, ...]:
+    metric = known(one.name)
+    clock = " (wall clock)" if metric is not None and not metric.repeatable else ""
+    delta = "" if one.delta in (None, 0.0) else f"{one.delta:+.3g}"
+    return one.name, number(one.a), number(one.b), f"{delta}{clock}"
 
 
 def _channels(channels: tuple[ChannelDifference, ...], tolerance: float) -> Table:
@@ -258,14 +246,10 @@ def _channels(channels: tuple[ChannelDifference, ...], tolerance: float) -> Tabl
         counts = " / ".join(str(count) for count in dict.fromkeys(one.messages))
         times = ("identical", "-") if one.same else (_time(one.exact), _time(one.tolerated))
         rows.add_row(one.topic, counts, *times, *values)
-        for remark in _remarks(one):
+        alone = [] if one.only_one is None else [f"in one log only at {one.only_one:.3f} s"]
+        for remark in (*alone, *one.layout):
             rows.add_row("", "", "", "", remark)
     return rows
-
-
-def _remarks(channel: ChannelDifference) -> list[str]:
-    alone = [] if channel.only_one is None else [f"in one log only at {channel.only_one:.3f} s"]
-    return [*alone, *channel.layout]
 
 
 def _time(point: FirstDifference | None) -> str:

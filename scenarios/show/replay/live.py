@@ -1,4 +1,4 @@
-"""The commands that show a log in 3D, and a run while it goes on."""
+"""A replay that goes along: of a log that may still grow, and beside a run while it goes on."""
 
 import contextlib
 import math
@@ -6,7 +6,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +15,7 @@ from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.log import read
 from surefoot.scenarios.output import reason, refuse_existing
 from surefoot.scenarios.run.skeleton import OnProgress, Progress
-from surefoot.scenarios.show.console import ProgressLine
-from surefoot.scenarios.show.logview import LogView
+from surefoot.scenarios.show.logview import rows_at
 from surefoot.scenarios.show.replay.content import Replay, ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.gate import Gate, serving
@@ -25,43 +23,6 @@ from surefoot.scenarios.show.replay.scene import ViserScene
 
 if TYPE_CHECKING:
     import viser
-
-
-def html_page(log: Path, out: Path, window: ReplayWindow, replace: bool = False) -> None:
-    """Write a page; errors as of `extract` and `write_page`."""
-    from surefoot.scenarios.show.replay.page import charts, write_page
-
-    refuse_existing(out, replace)
-    opened = read(log)
-    replay = extract(opened, window)
-    write_page(replay, out, charts(LogView(opened), replay.time), replace)
-
-
-@dataclass(frozen=True, slots=True)
-class Filming:
-    """How a video is asked for: speed, camera and size, as of `Film.of`."""
-
-    speed: float = 1.0
-    camera: str = "follow"
-    size: str = "1280x720"
-
-
-def video(log: Path, out: Path, window: ReplayWindow, filming: Filming | None = None, replace: bool = False) -> None:
-    """Write a video, with a progress line; errors as of `extract`, `Film.of` and `write_video`."""
-    from surefoot.scenarios.show.replay.video import FRAME_RATE, Film, write_video
-
-    filming = filming or Filming()
-    film = Film.of(filming.speed, filming.camera, filming.size)
-    refuse_existing(out, replace)
-    recorded, begin = extract(read(log), film.window(window)), time.monotonic()
-    length = len(recorded) / FRAME_RATE
-    with ProgressLine(out.name) as line:
-
-        def note(frames: int) -> None:
-            done = frames / FRAME_RATE
-            line(Progress(done, length, "drawn", done / max(time.monotonic() - begin, 1e-9)))
-
-        write_video(recorded, out, note, film, replace)
 
 
 def check(fidelity: str, *, video: Path | None, view: bool, replace: bool = False) -> None:
@@ -233,5 +194,5 @@ class Player:
             self._now = self._now if self._now <= times[-1] else float(times[0])
         if self._playing.value or self._following.value:
             self._slider.value = round(self._now, 3)
-        frame = int(np.clip(np.searchsorted(times, self._now + 1e-9, side="right") - 1, 0, len(times) - 1))
+        frame = int(rows_at(times, np.array(self._now)))
         self._scene.show(frame, follow=self._camera.value)

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from surefoot.scenarios.show.kit.viewer import filled, taken_in
+from surefoot.scenarios.show.replay.page import filled, taken_in
 
 pytestmark = pytest.mark.unit
 

@@ -15,7 +15,7 @@ from surefoot.errors import ParameterError
 from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.group import unknown
+from surefoot.scenarios.file.names import unknown
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import decoded, parse
 from surefoot.scenarios.file.translate import without

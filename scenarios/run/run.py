@@ -18,6 +18,7 @@ from surefoot.scenarios.judge.verdict import Verdict, judge
 from surefoot.scenarios.log import AttachedFile, LogWriter, read
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import (
+    AGENDA_RECORD,
     END_RECORD,
     LOG_NAME,
     PARTS_RECORD,
@@ -211,7 +212,11 @@ def open_log(path: Path, walk: Walk) -> LogWriter:
     Raises:
         LogError: it cannot be written.
     """
-    metadata = {RECORD: run_constants(walk).to_metadata(), "versions": versions()}
+    metadata = {
+        RECORD: run_constants(walk).to_metadata(),
+        AGENDA_RECORD: walk.agenda.to_metadata(),
+        "versions": versions(),
+    }
     attachments = [
         AttachedFile(SCENARIO_FILE, "application/yaml", walk.text.encode()),
         AttachedFile("robot.xml", "application/xml", without_looks(walk.robot.mjcf).encode()),

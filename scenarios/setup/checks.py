@@ -49,7 +49,7 @@ def check(draft: Draft, robots: Robots) -> list[Problem]:
         *clock,
         *_durations(draft),
         *told_problems(draft),
-        *(() if clock else (*never_act(draft, draft.duration), *cut_off(draft))),
+        *(() if clock else (*never_act(draft), *cut_off(draft))),
         *slight(draft),
         *(() if commands else idle_commands(draft)),
         *_beliefs(draft),

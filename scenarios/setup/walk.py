@@ -1,7 +1,7 @@
 """A scenario resolved: what it means, computed once, in the terms of the layers below; nobody there sees a scenario."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from operator import index
 from typing import TYPE_CHECKING
@@ -23,8 +23,11 @@ from surefoot.planner.swing.leg_reach import LegReach, StepRegion
 from surefoot.planner.types import GRAVITY, Array, FeetState
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
+from surefoot.scenarios.record.provenance import Agenda
+from surefoot.scenarios.setup.checks import notes
 from surefoot.scenarios.setup.commands import told, waypoints
 from surefoot.scenarios.setup.draft import Draft
+from surefoot.scenarios.setup.events import events
 from surefoot.scenarios.setup.gait import PushPoint, leg_span, step_region
 from surefoot.scenarios.setup.parts import guarded_law, profile_guard
 from surefoot.scenarios.setup.robot import describe, facts_of, size_of, stance_widening, true_robot
@@ -93,6 +96,7 @@ class Walk:
         gait_pushes: those that begin at a point of the gait, whenever it is reached.
         faults: injected.
         pendulum: the plant of fidelity pendulum.
+        agenda: what is to happen, as its log tells it.
     """
 
     name: str
@@ -131,6 +135,7 @@ class Walk:
     gait_pushes: tuple[tuple[PushPoint, Push], ...]
     faults: tuple[Fault, ...]
     pendulum: PendulumSettings
+    agenda: Agenda
 
     @property
     def size(self) -> Similarity:
@@ -269,6 +274,18 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
         gait_pushes=pointed,
         faults=keys.faults,
         pendulum=keys.pendulum,
+        agenda=_agenda(draft, [push.body for push in (*timed, *(push for _, push in pointed))]),
+    )
+
+
+def _agenda(draft: Draft, bodies: Iterable[str]) -> Agenda:
+    """What is to happen, on a robot whose pushes act on these bodies."""
+    said, driven = notes(draft), notes(draft, driven=True)
+    return Agenda(
+        events=events(draft),
+        bodies=tuple(dict.fromkeys(bodies)),
+        notes=said,
+        standing=tuple(note for note in said if note not in driven),
     )
 
 

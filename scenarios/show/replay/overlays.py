@@ -10,7 +10,7 @@ from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import level_corners, rotations, torso
 from surefoot.scenarios.judge.digest import RunView
-from surefoot.scenarios.judge.verdict import scenario_of
+from surefoot.scenarios.judge.verdict import agenda_of, scenario_of
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.show.logview import FOOT_NAMES
 from surefoot.scenarios.show.replay.content import Array, Footprint, Frames, Track
@@ -209,13 +209,12 @@ def push_arrow(head: Array, force: Array) -> Track:
 
 
 def _pushed_body(log: Log, run: RunView) -> str:
-    """Body that the pushes of the scenario act on; the torso when they name several or none."""
+    """Body that the pushes of the run act on; the torso when they act on several or on none that is known."""
     try:
-        bodies = {settings.body for settings in scenario_of(log).pushes}
+        bodies = agenda_of(log, scenario_of(log)).bodies
     except LogError:
-        bodies = set()
-    named = next(iter(bodies)) if len(bodies) == 1 else None
-    return named or torso(run.constants.roles)
+        bodies = ()
+    return bodies[0] if len(bodies) == 1 else torso(run.constants.roles)
 
 
 def _arrow(tail: Array, force: Array, scale: float) -> Array:

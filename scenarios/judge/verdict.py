@@ -18,8 +18,7 @@ from surefoot.scenarios.file.names import unknown
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import decoded, parse
 from surefoot.scenarios.file.translate import without
-from surefoot.scenarios.judge.acted import idle_commands, not_there, unmet_ground
-from surefoot.scenarios.judge.agreement import contradictions
+from surefoot.scenarios.judge.acted import contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import Digest, RunView
 from surefoot.scenarios.judge.metrics import digest, known, measure
 from surefoot.scenarios.log import Log

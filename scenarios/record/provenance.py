@@ -58,11 +58,6 @@ def run_folders(out: Path, scenario: str, seed: int) -> Iterator[Path]:
     yield from (out / f"{scenario}-{seed}-{number}" for number in itertools.count(2))
 
 
-def taken_folders(out: Path, scenario: str, seed: int) -> Iterator[Path]:
-    """Folders of the runs of a scenario's name and seed that there are."""
-    return itertools.takewhile(Path.exists, run_folders(out, scenario, seed))
-
-
 _GREATEST = 1e6
 """No mass, size or rate of a run is greater."""
 

@@ -8,7 +8,7 @@ from google.protobuf.timestamp_pb2 import Timestamp
 
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.log.rows import RowLayout
-from surefoot.scenarios.log.template import NANOS, SECONDS, Template, slot
+from surefoot.scenarios.log.spec import NANOS, SECONDS, Template, slot
 from surefoot.scenarios.record.body import contact_points
 from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
 

@@ -9,7 +9,7 @@ Nothing is imported before the name is asked for. Whatever such an object does, 
 """
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import redirect_stdout
 from functools import lru_cache
 from importlib import metadata
@@ -23,6 +23,7 @@ from surefoot.guard import OWN_GUARD, OWN_PACKAGE, Guard, said
 __all__ = ["OWN_PACKAGE", "PluginError", "Registry", "entry_points", "package_of"]
 
 T = TypeVar("T")
+S = TypeVar("S")
 
 
 class Registry(Mapping[str, T]):
@@ -34,15 +35,28 @@ class Registry(Mapping[str, T]):
     Args:
         group: group of entry points, such as ``surefoot.profiles``.
         kind: class that every object must be an instance of; None for what is called, a function or a class.
-        own: the objects of this package.
+        own: the objects of this package; their names alone where a room above brings the objects by `filled`.
     """
 
-    def __init__(self, group: str, kind: type[T] | None, own: Mapping[str, T]) -> None:
+    def __init__(self, group: str, kind: type[T] | None, own: Mapping[str, T] | Sequence[str]) -> None:
         self.group = group
         self._kind = kind
-        self._own = dict(own)
+        self._names = tuple(own)
+        self._own: dict[str, T] = dict(own) if isinstance(own, Mapping) else {}
         self._added: dict[str, T] = {}
         self._loaded: dict[str, T] = {}
+
+    def filled(self, kind: type[S] | None, own: Mapping[str, S]) -> "Registry[S]":
+        """The same registry with the objects of its own names, and of which kind all are.
+
+        Raises:
+            ValueError: these are not its own names.
+        """
+        if tuple(own) != self._names:
+            raise ValueError(f"{self.group} has of its own {', '.join(self._names)}, not {', '.join(own)}")
+        made = cast("Registry[S]", self)
+        made._kind, made._own = kind, dict(own)
+        return made
 
     def add(self, name: str, thing: T) -> T:
         """Register an object for the running process, over one of the same name that was added before.
@@ -50,7 +64,7 @@ class Registry(Mapping[str, T]):
         Raises:
             PluginError: the name is taken by this package, or the object is of another kind.
         """
-        if name in self._own:
+        if name in self._names:
             raise PluginError(f"'{name}' of {self.group} is surefoot's own", "choose another name")
         self._added[name] = self._checked(thing, f"'{name}'")
         return thing
@@ -80,23 +94,23 @@ class Registry(Mapping[str, T]):
 
     def __iter__(self) -> Iterator[str]:
         found = {entry.name for entry in entry_points(group=self.group)} | set(self._added)
-        return iter((*self._own, *sorted(found - set(self._own))))
+        return iter((*self._names, *sorted(found - set(self._names))))
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
 
     def __contains__(self, name: object) -> bool:
-        return any(name in known for known in (self._own, self._added, self._loaded)) or name in list(self)
+        return any(name in known for known in (self._names, self._added, self._loaded)) or name in list(self)
 
     def package(self, name: str) -> str:
         """Which package brings a name; empty for what was registered by code, both where two bring it."""
-        if name in self._own:
+        if name in self._names:
             return OWN_PACKAGE
         return "" if name in self._added else " and ".join(map(package_of, self._entries(name)))
 
     def guard(self, name: str) -> Guard:
         """What stands around the calls of the object of a name, which is one of those that there are."""
-        if name in self._own:
+        if name in self._names:
             return OWN_GUARD
         package = self.package(name)
         kind = self.group.removeprefix(f"{OWN_PACKAGE}.").removesuffix("s")
@@ -111,7 +125,7 @@ class Registry(Mapping[str, T]):
 
         The name goes on meaning surefoot's; the other thing is never looked at.
         """
-        found = [entry for entry in entry_points(group=self.group) if entry.name in self._own]
+        found = [entry for entry in entry_points(group=self.group) if entry.name in self._names]
         return {
             entry.name: PluginError(
                 f"'{entry.name}' of package {package_of(entry)} in {self.group} has the name of one of surefoot's own",
@@ -119,6 +133,21 @@ class Registry(Mapping[str, T]):
             )
             for entry in found
         }
+
+    def refusal(self, name: str) -> PluginError | None:
+        """Why a name cannot be used as it is; None where nothing is wrong with it, or there is none.
+
+        Its package cannot be used, or has something else under a name of surefoot's own.
+        """
+        if name in self._names:
+            return self.clashes().get(name)
+        try:
+            _ = self[name]
+        except KeyError:
+            return None
+        except PluginError as refusal:
+            return refusal
+        return None
 
     def _entries(self, name: str) -> list[EntryPoint]:
         return [entry for entry in entry_points(group=self.group) if entry.name == name]

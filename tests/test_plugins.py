@@ -9,7 +9,7 @@ import pytest
 from surefoot import plugins
 from surefoot.models.registry import ROBOTS
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.plugins import PluginError, Registry
+from surefoot.plugins import OWN_PACKAGE, PluginError, Registry
 from surefoot.scenarios.catalogue import SCENARIOS
 from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.run.sensing import ESTIMATORS
@@ -149,3 +149,20 @@ def test_every_registry_of_surefoot_has_a_row_in_the_documentation():
     for group in groups:
         assert f"| `{group}` |" in page
         assert f'[project.entry-points."{group}"]' in page
+
+
+def test_a_room_below_knows_the_names_whose_objects_a_room_above_brings():
+    names: Registry = Registry("surefoot.nothing", object, ("one", "two"))
+    assert list(names) == ["one", "two"]
+    assert "one" in names and names.package("one") == OWN_PACKAGE
+    assert names.refusal("one") is None and names.refusal("three") is None
+    with pytest.raises(PluginError, match="surefoot's own"):
+        names.add("one", 1)
+    with pytest.raises(ValueError, match="one, two, not one"):
+        names.filled(int, {"one": 1})
+    filled = names.filled(int, {"one": 1, "two": 2})
+    assert dict(filled) == dict(names) == {"one": 1, "two": 2}
+    with pytest.raises(PluginError, match="it must be a int"):
+        filled.add("three", "3")
+    filled.add("three", 3)
+    assert names["three"] == 3

@@ -2,19 +2,14 @@
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-Number = Annotated[float, Field(allow_inf_nan=False)]
+from surefoot.scenarios.file.group import Group, as_tuple
 
-
-def _numbers(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
+Limit = Annotated[float | tuple[float, ...], BeforeValidator(as_tuple)]
 
 
-Limit = Annotated[Number | tuple[Number, ...], BeforeValidator(_numbers)]
-
-
-class Bound(BaseModel):
+class Bound(Group):
     """Bounds on one metric; a list-valued metric is bounded element by element.
 
     Attributes:
@@ -23,11 +18,9 @@ class Bound(BaseModel):
         equals: the value itself, or the name of another metric that it must equal.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
-
     min: Limit | None = Field(default=None, description="least value allowed")
     max: Limit | None = Field(default=None, description="greatest value allowed")
-    equals: bool | Number | str | None = Field(default=None, description="the value, or another metric's name")
+    equals: bool | float | str | None = Field(default=None, description="the value, or another metric's name")
 
     @model_validator(mode="before")
     @classmethod

@@ -1,4 +1,4 @@
-"""Whether what a scenario asks for came to act in its run: commands, places to go to, ground not as believed."""
+"""Whether a log says one thing, and whether what its scenario asks for came to act: commands, places, ground."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -10,9 +10,10 @@ from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import CommandSettings
 from surefoot.scenarios.judge.body import headings
-from surefoot.scenarios.judge.digest import Array, Mask, RunView
+from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, Mask, RunView
 from surefoot.scenarios.judge.feet import terrain_of
-from surefoot.scenarios.judge.walking import runs_of
+from surefoot.scenarios.judge.walking import fall_time, runs_of
+from surefoot.scenarios.record.provenance import END_RECORD
 
 AT_PLACE = 0.02
 """Distance from the place where the robot was told to go within which it is there, if no criterion says it [m]."""
@@ -183,3 +184,49 @@ def _touches(soles: Array, half: Array, box: Box) -> Mask:
     apart_by_sole = np.abs(np.einsum("nij,nj->ni", own, between)) > half + across @ size
     apart_by_box = np.abs(between @ axes.T) > size + np.einsum("nij,i->nj", across, half)
     return np.asarray(~(apart_by_sole.any(axis=1) | apart_by_box.any(axis=1)))
+
+
+def contradictions(run: RunView) -> tuple[str, ...]:
+    """Say where the record of a run's end, the clock and the data of a whole log do not go together."""
+    if not run.has("/truth"):
+        return ("the log shows no motion: /truth has no messages",)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        return (*_clock(run), *_numbers(run), *_end(run))
+
+
+def _clock(run: RunView) -> Iterator[str]:
+    """Every tick has its message on every channel of the control rate, one period after the other."""
+    stamps, period = run.log["/truth"].time_ns, 1e9 / run.constants.control_rate
+    uneven = np.flatnonzero(np.abs(np.diff(stamps) - period) > 1.0)
+    if len(uneven):
+        yield f"the ticks of the log are not {1e-6 * period:g} ms apart at {1e-9 * stamps[uneven[0]]:.3f} s"
+    for topic in CONTROL_TOPICS:
+        if topic in run.log and not np.array_equal(run.log[topic].time_ns, stamps):
+            yield f"{topic} has not the ticks of /truth"
+
+
+def _numbers(run: RunView) -> Iterator[str]:
+    """A state that is no number is no fall, and no walk either."""
+    for name in ("com", "com_velocity"):
+        if not np.isfinite(run.field("/truth", name)).all():
+            yield f"/truth {name} has values that are not numbers"
+
+
+def _end(run: RunView) -> Iterator[str]:
+    """The record of the end tells the fall that the data show, at its time, or the time at which they end."""
+    record, tick = run.log.metadata[END_RECORD], 1.0 / run.constants.control_rate
+    try:
+        said = float(record["time"])
+    except (KeyError, ValueError):
+        said = math.nan
+    fall = fall_time(run)
+    if record["kind"] == "completed":
+        if fall is not None:
+            yield f"the log says that the run was completed, and its data show a fall at {fall:.3f} s"
+        end = run.log["/truth"].time[-1] + tick
+        if not abs(end - said) < 1.5 * tick:
+            yield f"the log says that the run was completed at {said:.3f} s, and its data end at {end:.3f} s"
+    elif fall is None:
+        yield f"the log says that the robot fell at {said:.3f} s, and its data show no fall"
+    elif not abs(fall - said) < 1.5 * tick:
+        yield f"the log says that the robot fell at {said:.3f} s, and its data show a fall at {fall:.3f} s"

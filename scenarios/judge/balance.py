@@ -1,13 +1,10 @@
 """Metrics of balance: ZMP, centre of pressure, CoM and DCM against what was planned."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surefoot.scenarios.judge.body import feet_lean
-from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
-from surefoot.scenarios.judge.metric import SHARE, metric, reduction
-
-Rows = NDArray[np.intp]
+from surefoot.scenarios.judge.digest import Array, Mask, Reads, Rows, RunView
+from surefoot.scenarios.judge.metric import MM, OF_HALF_THE_FOOT, OF_THE_TIME, SHARE, metric, reduction
 
 MARGIN = 0.9
 """Share of each foot that the planned ZMP may use, the paper's margin."""
@@ -42,13 +39,13 @@ def zmp_inside(run: RunView) -> Mask:
     return np.asarray(run.reduced(zmp_depth) >= -1e-9)
 
 
-@metric(shown=(1e2, "% of the time"), reduces=(zmp_depth,), least=0.0, most=1.0, tolerance=(0.002, 0.0))
+@metric(shown=OF_THE_TIME, reduces=(zmp_depth,), least=0.0, most=1.0, tolerance=(0.002, 0.0))
 def zmp_inside_fraction(run: RunView) -> float:
     """Share of ticks at which `zmp_inside` holds."""
     return float(np.mean(zmp_inside(run)))
 
 
-@metric(unit="m", shown=(1e3, "mm"), reduces=(zmp_depth,), tolerance=(0.001, 0.0))
+@metric(unit="m", shown=MM, reduces=(zmp_depth,), tolerance=(0.001, 0.0))
 def zmp_excursion_max(run: RunView) -> float | None:
     """Farthest that the ZMP came out of the planned support polygon of feet shrunk to 90 %, negative inside [m]."""
     depth = run.reduced(zmp_depth)
@@ -69,27 +66,27 @@ def cop_ratios(run: RunView) -> Array:
     return np.asarray(ratios[np.isfinite(ratios)])
 
 
-@metric(shown=(1e2, "% of half the foot"), reads=_COP_READS, least=0.0)
+@metric(shown=OF_HALF_THE_FOOT, reads=_COP_READS, least=0.0)
 def cop_ratio_p99(run: RunView) -> float | None:
     """Centre of pressure of the stance foot over its half size in single support: 99th percentile [-]."""
     ratios = cop_ratios(run)
     return float(np.percentile(ratios, 99)) if len(ratios) else None
 
 
-@metric(shown=(1e2, "% of half the foot"), reads=_COP_READS, least=0.0)
+@metric(shown=OF_HALF_THE_FOOT, reads=_COP_READS, least=0.0)
 def cop_ratio_max(run: RunView) -> float | None:
     """The same: largest [-]."""
     ratios = cop_ratios(run)
     return float(ratios.max()) if len(ratios) else None
 
 
-@metric(unit="m", shown=(1e3, "mm"), size=2, reads=_ZMP_READS, least=0.0)
+@metric(unit="m", shown=MM, size=2, reads=_ZMP_READS, least=0.0)
 def zmp_error_rms(run: RunView) -> list[float] | None:
     """Measured ZMP minus the ZMP reference that the footsteps define, RMS, x and y [m]."""
     return rms(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
 
 
-@metric(unit="m", shown=(1e3, "mm"), size=2, reads=_ZMP_READS, least=0.0)
+@metric(unit="m", shown=MM, size=2, reads=_ZMP_READS, least=0.0)
 def zmp_error_max(run: RunView) -> list[float] | None:
     """Measured ZMP minus the ZMP reference that the footsteps define, largest in size, x and y [m]."""
     error = np.abs(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
@@ -107,9 +104,7 @@ def predicted(run: RunView) -> Array:
     return np.column_stack((com[:, sample], velocity[:, sample, :2], omega[:, sample]))
 
 
-@metric(
-    unit="m", shown=(1e3, "mm"), size=3, reads={"/truth": ("com",), "/plan": ("held",)}, reduces=(predicted,), least=0.0
-)
+@metric(unit="m", shown=MM, size=3, reads={"/truth": ("com",), "/plan": ("held",)}, reduces=(predicted,), least=0.0)
 def com_error_rms(run: RunView) -> list[float] | None:
     """True CoM minus what the plan of 0.2 s earlier predicted for this instant, RMS, x, y and z [m]."""
     rows, prediction = _predictions(run)
@@ -118,7 +113,7 @@ def com_error_rms(run: RunView) -> list[float] | None:
 
 @metric(
     unit="m",
-    shown=(1e3, "mm"),
+    shown=MM,
     size=2,
     reads={"/truth": ("com", "com_velocity"), "/plan": ("held",)},
     reduces=(predicted,),
@@ -133,13 +128,13 @@ def dcm_error_rms(run: RunView) -> list[float] | None:
     return rms(position + velocity / prediction[:, 5:])
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/plan": ("capture_margin",)})
+@metric(unit="m", shown=MM, reads={"/plan": ("capture_margin",)})
 def capture_margin_min(run: RunView) -> float | None:
     """Least that the DCM was inside what the steps to come could capture, moved as far as they may be [m]."""
     return _least(run.log["/plan"].field("capture_margin")[:, 1])
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/plan": ("step_shift",)}, least=0.0)
+@metric(unit="m", shown=MM, reads={"/plan": ("step_shift",)}, least=0.0)
 def step_shift(run: RunView) -> float | None:
     """Farthest that a plan moved the next landing from where it nominally was [m]."""
     return _most(np.linalg.norm(run.log["/plan"].field("step_shift"), axis=1))

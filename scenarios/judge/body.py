@@ -9,11 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.models.types import WITHOUT_ROLL
+from surefoot.planner.geometry import CORNERS
 
 Array = NDArray[np.float64]
-
-_SIGNS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
-"""Of the corners along and across a sole, in order around it."""
 
 
 def rotations(quaternions: Array) -> Array:
@@ -47,7 +45,7 @@ def corners(poses: Array, length: float, width: float) -> Array:
         length: of a sole [m].
         width: of a sole [m].
     """
-    local = np.column_stack((0.5 * _SIGNS * (length, width), np.zeros(4)))
+    local = np.column_stack((0.5 * CORNERS * (length, width), np.zeros(4)))
     return np.asarray(poses[:, None, :3] + np.einsum("nij,kj->nki", rotations(poses[:, 3:]), local))
 
 
@@ -59,7 +57,7 @@ def level_corners(places: Array, length: float, width: float) -> Array:
         length: of a sole [m].
         width: of a sole [m].
     """
-    local = 0.5 * _SIGNS * (length, width)
+    local = 0.5 * CORNERS * (length, width)
     cosine, sine = np.cos(places[:, -1, None]), np.sin(places[:, -1, None])
     x = places[:, 0, None] + cosine * local[:, 0] - sine * local[:, 1]
     y = places[:, 1, None] + sine * local[:, 0] + cosine * local[:, 1]

@@ -1,13 +1,10 @@
 """Metrics of what thinks: the state that was given, the solvers, the time they took, the log."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surefoot.scenarios.judge.balance import rms
-from surefoot.scenarios.judge.digest import Array, RunView
-from surefoot.scenarios.judge.metric import metric
-
-Rows = NDArray[np.intp]
+from surefoot.scenarios.judge.digest import Array, Rows, RunView
+from surefoot.scenarios.judge.metric import MM, metric
 
 _SPREAD = ("median", "p99")
 
@@ -15,7 +12,7 @@ WARM = 60.0
 """Time by which everything that a run needs once is there [s]."""
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",), "/planner_state": ("com",)}, least=0.0)
+@metric(unit="m", shown=MM, reads={"/truth": ("com",), "/planner_state": ("com",)}, least=0.0)
 def estimation_error_rms(run: RunView) -> float | None:
     """Distance of the CoM that the planner was given from the true one, RMS [m]."""
     rows, given = _given(run)
@@ -32,7 +29,7 @@ def planner_infeasible_fraction(run: RunView) -> float:
 
 @metric(
     unit="m",
-    shown=(1e3, "mm"),
+    shown=MM,
     size=2,
     reads={"/truth": ("com", "com_velocity"), "/planner_state": ("com", "com_velocity"), "/reference": ("omega",)},
     least=0.0,

@@ -193,6 +193,7 @@ SINGLE_SUPPORT = 2
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Rows = NDArray[np.intp]
 
 
 class RunView:

@@ -1,12 +1,10 @@
 """Metrics of effort, and of the way that it takes."""
 
-import math
-
 import numpy as np
 
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge.digest import Array, RunView
-from surefoot.scenarios.judge.metric import metric, reduction
+from surefoot.scenarios.judge.metric import DEG, MM, OF_THE_TIME, metric, reduction
 
 AT_LIMIT = 0.999
 """Share of its limit from which a torque counts as being at it; solvers end a hair below [-]."""
@@ -102,13 +100,13 @@ def knee_torque_rms(run: RunView) -> float | None:
     return value if np.isfinite(value) else None
 
 
-@metric(shown=(1e2, "% of the time"), reduces=(torque_ratio,), body=True, least=0.0, most=1.0)
+@metric(shown=OF_THE_TIME, reduces=(torque_ratio,), body=True, least=0.0, most=1.0)
 def torque_at_limit_fraction(run: RunView) -> float:
     """Share of ticks at which some joint's commanded torque is at its limit [-]."""
     return float(np.mean(run.reduced(torque_ratio) >= AT_LIMIT))
 
 
-@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reduces=(joint_limit_margin,), body=True, tolerance=(0.005, 0.0))
+@metric(unit="rad", shown=DEG, reduces=(joint_limit_margin,), body=True, tolerance=(0.005, 0.0))
 def joint_limit_margin_min(run: RunView) -> float:
     """Least distance of a joint from its limits, negative beyond them [rad]."""
     return float(run.reduced(joint_limit_margin).min())
@@ -120,14 +118,7 @@ def joint_speed_ratio_max(run: RunView) -> float:
     return float(run.reduced(joint_speed_ratio).max())
 
 
-@metric(
-    unit="rad",
-    shown=(180.0 / math.pi, "deg"),
-    reads={"/reference": ()},
-    reduces=(knee_flexion,),
-    body=True,
-    tolerance=(0.005, 0.0),
-)
+@metric(unit="rad", shown=DEG, reads={"/reference": ()}, reduces=(knee_flexion,), body=True, tolerance=(0.005, 0.0))
 def knee_angle_mean(run: RunView) -> float | None:
     """Mean flexion of both knees while walking, or over the whole run when no foot was lifted [rad]."""
     if not run.knees:
@@ -175,14 +166,14 @@ def displacement(run: RunView) -> list[float]:
     return [float(c * x + s * y), float(c * y - s * x)]
 
 
-@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads={"/truth": ()}, tolerance=(0.005, 0.0))
+@metric(unit="rad", shown=DEG, reads={"/truth": ()}, tolerance=(0.005, 0.0))
 def heading_change(run: RunView) -> float:
     """Change of the feet's mean heading from start to end, whole turns counted, left positive [rad]."""
     heading = _heading(run)
     return float(heading[-1] - heading[0])
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": ("com",)}, least=0.0, tolerance=(0.001, 0.0))
+@metric(unit="m", shown=MM, reads={"/truth": ("com",)}, least=0.0, tolerance=(0.001, 0.0))
 def com_height_range(run: RunView) -> float:
     """Highest minus lowest CoM [m]."""
     return float(np.ptp(run.field("/truth", "com")[:, 2]))

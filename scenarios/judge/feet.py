@@ -1,21 +1,17 @@
 """Metrics of the feet: where they land, how high they swing, how they hold."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.types import GRAVITY, Foot, Footstep
 from surefoot.scenarios.judge.body import corners, feet_lean, headings, rotations
-from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
-from surefoot.scenarios.judge.metric import metric
+from surefoot.scenarios.judge.digest import Array, Mask, Reads, Rows, RunView
+from surefoot.scenarios.judge.metric import DEG, MM, metric
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
 from surefoot.wbc.leaning import line_centre
-
-Rows = NDArray[np.intp]
 
 _CLEARANCE_TICKS = 5
 """Every how many control ticks the clearance of a swing is looked at."""
@@ -39,13 +35,13 @@ def landed(run: RunView) -> Array:
     return np.column_stack((places, headings(poses[:, 3:])))
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("planned", "foot")}, body=True, least=0.0)
+@metric(unit="m", shown=MM, reads={"/truth": (), "/footstep": ("planned", "foot")}, body=True, least=0.0)
 def footstep_error_max(run: RunView) -> float | None:
     """Largest distance of a sole at touchdown from its footstep as last planned before it [m]."""
     return float(np.linalg.norm((landed(run) - run.log["/footstep"].field("planned"))[:, :3], axis=1).max())
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads={"/truth": (), "/footstep": ("foot",)}, tolerance=(0.001, 0.0))
+@metric(unit="m", shown=MM, reads={"/truth": (), "/footstep": ("foot",)}, tolerance=(0.001, 0.0))
 def stair_edge_margin_min(run: RunView) -> float | None:
     """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
     terrain = terrain_of(run)
@@ -59,13 +55,7 @@ def stair_edge_margin_min(run: RunView) -> float | None:
     return float(terrain.edge_margins(poses[:, :2], placed).min())
 
 
-@metric(
-    unit="m",
-    shown=(1e3, "mm"),
-    reads={"/truth": (), "/reference": ("phase", "stance")},
-    body=True,
-    tolerance=(0.001, 0.0),
-)
+@metric(unit="m", shown=MM, reads={"/truth": (), "/reference": ("phase", "stance")}, body=True, tolerance=(0.001, 0.0))
 def swing_clearance_min(run: RunView) -> float | None:
     """Least height of a swing sole's corner over the ground, but for the first and last quarter of each swing [m]."""
     stance, least = run.field("/reference", "stance"), []
@@ -178,22 +168,20 @@ def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
 _STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "active", "normal_force")}
 
 
-@metric(unit="m", shown=(1e3, "mm"), reads=_STANCE_READS, body=True, least=0.0)
+@metric(unit="m", shown=MM, reads=_STANCE_READS, body=True, least=0.0)
 def foot_slip_max(run: RunView) -> float | None:
     """Largest horizontal way of a corner of a sole on the ground from where it came to it, over all stances [m]."""
     return max((slip.distance for slip in stance_slips(run)), default=None)
 
 
-@metric(unit="rad", shown=(180.0 / math.pi, "deg"), reads=_STANCE_READS, body=True, least=0.0)
+@metric(unit="rad", shown=DEG, reads=_STANCE_READS, body=True, least=0.0)
 def stance_twist_max(run: RunView) -> float | None:
     """Largest yaw of a loaded stance foot away from its yaw at first load, over all stances [rad]."""
     yaws = (np.unwrap(run.sole_yaw[stance.ticks, stance.foot]) for stance in stances(run))
     return max((float(np.abs(yaw - yaw[0]).max()) for yaw in yaws), default=None)
 
 
-@metric(
-    unit="rad", shown=(180.0 / math.pi, "deg"), reads={**_STANCE_READS, "/reference": ("roll",)}, body=True, least=0.0
-)
+@metric(unit="rad", shown=DEG, reads={**_STANCE_READS, "/reference": ("roll",)}, body=True, least=0.0)
 def stance_tilt_max(run: RunView) -> float | None:
     """Largest angle of a loaded stance sole to the ground under it [rad].
 

@@ -139,8 +139,6 @@ def _push(run: RunView) -> Array:
     return run.field(topic, "external_force")
 
 
-SATURATED = 0.999
-"""Torque over its limit from which a joint is saturated [-]."""
 PAST_STOP = 0.001
 """How far a soft simulated stop may give way before it is told [rad]."""
 DRIFT = 0.01
@@ -153,7 +151,7 @@ _PARTS = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log")
 def torque_saturation(run: RunView) -> Finding:
     """Largest commanded torque over its limit [-]."""
     ratio = run.reduced(effort.torque_ratio)
-    saturated = ratio >= SATURATED
+    saturated = ratio >= effort.AT_LIMIT
     worst = int(np.argmax(saturated) if saturated.any() else np.nanargmax(ratio))
     joint = run.constants.joint_names[int(run.reduced(effort.strained_joint)[worst])]
     cause = (
@@ -327,6 +325,3 @@ def _found(check: Callable[[RunView], Finding], run: RunView) -> Finding:
         return check(run)
     except (ValueError, IndexError, TypeError) as error:
         return judged(check.__name__, True, None, None, f"cannot be looked at: {error}")
-
-
-__all__ = ["Finding", "findings"]

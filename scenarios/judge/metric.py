@@ -23,19 +23,14 @@ T = TypeVar("T")
 TRUTH = bool.__name__
 """Kind of a metric that is true or false."""
 RESERVED = (
-    "verdict",
-    "reasons",
-    "notes",
-    "log",
-    "scenario",
-    "truncated",
-    "start",
-    "end",
-    "health",
-    "topics",
-    "versions",
+    *("verdict", "reasons", "notes", "log", "scenario", "truncated", "start", "end"),
+    *("health", "topics", "versions"),
 )
 """Names that stand beside the metrics in what `inspect --json` prints."""
+
+MM, DEG = (1e3, "mm"), (180.0 / math.pi, "deg")
+OF_THE_TIME, OF_HALF_THE_FOOT = (1e2, "% of the time"), (1e2, "% of half the foot")
+"""How lengths, angles and shares are shown: factor and unit."""
 
 SHARE = 0.05
 """Share of its value by which a metric may differ between runs that count as the same, unless it says otherwise [-]."""

@@ -11,25 +11,19 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from surefoot.errors import ParameterError
 from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.group import unknown
+from surefoot.scenarios.file.names import unknown
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import decoded, parse
 from surefoot.scenarios.file.translate import without
-from surefoot.scenarios.judge.acted import idle_commands, not_there, unmet_ground
-from surefoot.scenarios.judge.agreement import contradictions
+from surefoot.scenarios.judge.acted import contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import Digest, RunView
 from surefoot.scenarios.judge.metrics import digest, known, measure
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
-from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE
-from surefoot.scenarios.setup.events import never_act
-from surefoot.scenarios.setup.notes import notes
-from surefoot.scenarios.setup.walk import Walk
-from surefoot.similarity import Similarity
+from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE, Agenda, Event
 
 _SAME_TIME = 1e-8
 """Times of ticks are sums and carry rounding [s]."""
@@ -208,11 +202,17 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     run = RunView(gathered)
     size = run.constants.similarity
     untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(run)
-    idle = (*_unacted(log, scenario, size), *idle_commands(run, scenario.commands), *unmet_ground(run))
+    agenda = agenda_of(log, scenario)
+    idle = (
+        *_unacted(log, agenda, run.constants.control_rate),
+        *idle_commands(run, scenario.commands),
+        *unmet_ground(run),
+    )
     undone = (*idle, *not_there(measured.values, criteria, size.length))
     reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
     skipped = _skipped(scenario.criteria, scenario.fidelity)
-    said = (*skipped, *notes(Walk(scenario, size), run.has("/command")), *_degraded(measured.values), *measured.notes)
+    idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
+    said = (*skipped, *idle_keys, *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 
@@ -285,16 +285,37 @@ def _unfinished(log: Log) -> list[str]:
     return [f"the run ended at {end.get('time', '?')} s: {end.get('reason', 'unknown reason')}"]
 
 
-def _unacted(log: Log, scenario: Scenario, size: Similarity) -> list[str]:
-    """Say what was to happen after the run had ended."""
+def agenda_of(log: Log, scenario: Scenario) -> Agenda:
+    """What was to happen in a run; of a log that does not tell, as far as its scenario does.
+
+    Args:
+        log: of the run.
+        scenario: that it carries.
+
+    Raises:
+        LogError: what the log tells of it cannot be read.
+    """
+    told = Agenda.from_metadata(log.metadata, str(log.path))
+    if told is not None:
+        return told
+    pushes = [(f"pushes.{index}", push.time) for index, push in enumerate(scenario.pushes) if not push.live]
+    events = [Event(f"{name} begins at", time) for name, time in pushes if time is not None]
+    events += [Event(f"faults.{index} acts first at", fault.time) for index, fault in enumerate(scenario.faults)]
+    unknown = [f"when {name} was to begin" for name, time in pushes if time is None]
+    note = (
+        f"its log, of an earlier version, does not tell {', nor '.join(['which of its keys have no effect', *unknown])}"
+    )
+    bodies = dict.fromkeys(push.body for push in scenario.pushes if push.body is not None)
+    return Agenda(tuple(events), tuple(bodies), (note,))
+
+
+def _unacted(log: Log, agenda: Agenda, rate: int) -> list[str]:
+    """Say what was to happen after the run had ended, or does nothing; ``rate`` of the control ticks [Hz]."""
     broke_off = log.metadata.get(END_RECORD, {}).get("kind") not in _ACCEPTED_ENDS
-    end = log.time_range()[1] + 1.0 / scenario.rates.control
+    end = log.time_range()[1] + 1.0 / rate
     if broke_off:  # in the tick after the last of its log, in which a fault may have acted
         end += _SAME_TIME
-    try:
-        return [problem.what for problem in never_act(Walk(scenario, size), end)]
-    except ParameterError as fault:
-        return [f"when its pushes and faults act cannot be known: {fault}"]
+    return [missed for event in agenda.events if (missed := event.missed(end))]
 
 
 def _incomplete(log: Log) -> list[str]:

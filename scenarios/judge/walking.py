@@ -4,7 +4,7 @@ import numpy as np
 
 from surefoot.scenarios.judge.body import lies, lost
 from surefoot.scenarios.judge.digest import Mask, Reads, RunView
-from surefoot.scenarios.judge.metric import metric
+from surefoot.scenarios.judge.metric import MM, metric
 
 STILL_SPEED = 0.02
 """CoM speed of a robot that stands still [m/s]."""
@@ -63,9 +63,7 @@ def steps_planned(run: RunView) -> int:
 _PLACE_READS: Reads = {"/truth": ("left_sole", "right_sole"), "/command": ("place", "heading")}
 
 
-@metric(
-    unit="m", needs=("/truth", "/command"), shown=(1e3, "mm"), reads=_PLACE_READS, least=0.0, tolerance=(0.001, 0.0)
-)
+@metric(unit="m", needs=("/truth", "/command"), shown=MM, reads=_PLACE_READS, least=0.0, tolerance=(0.001, 0.0))
 def place_error(run: RunView) -> float | None:
     """Distance at the end from the middle of the stance to the place where the robot was told to go last [m]."""
     place = _last_place(run)

@@ -2,6 +2,7 @@
 
 import struct
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from mcap.opcode import Opcode
@@ -17,61 +18,66 @@ class Clock:
 
     Attributes:
         due: simulated time [ns] from which the next message completes the chunk.
+        complete: completes it, at this time [ns].
     """
 
-    __slots__ = ("due",)
-
-    def __init__(self, due: int) -> None:
-        self.due = due
+    def __init__(self, due: int, complete: Callable[[int], None]) -> None:
+        self.due, self.complete = due, complete
 
 
-class ChannelWriter:
+class Waiting:
     """Messages of one channel that wait for their chunk.
 
     Attributes:
-        spec: the channel.
         channel_id: its number in the file.
         count: messages waiting.
         total: messages handed over to chunks so far.
         times: simulated time of the messages waiting [ns].
     """
 
-    __slots__ = (
-        "_bytes",
-        "_capacity",
-        "_clock",
-        "_flush",
-        "_log_time",
-        "_offsets",
-        "_publish_time",
-        "_records",
-        "_sequence",
-        "_stamp",
-        "_views",
-        "channel_id",
-        "count",
-        "spec",
-        "times",
-        "total",
-    )
-
-    def __init__(
-        self, spec: ChannelSpec, channel_id: int, capacity: int, clock: Clock, flush: Callable[[int], None]
-    ) -> None:
-        self.spec = spec
-        self.channel_id = channel_id
-        self.count = 0
-        self.total = 0
-        self._records = blank_records(spec.fields, channel_id, capacity)
-        self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[field.name] for field in spec.fields)
-        self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
+    def __init__(self, channel_id: int, clock: Clock) -> None:
+        self.channel_id, self._clock = channel_id, clock
+        self.count = self.total = 0
         self.times: list[int] = []
-        self._stamp, self._sequence = self._records["_stamp"], self._records["_sequence"]
-        self._log_time, self._publish_time = self._records["_log_time"], self._records["_publish_time"]
+
+    def take(self, offset: int) -> tuple[memoryview | bytes, bytes]:
+        """Hand over what waits.
+
+        Args:
+            offset: where its block begins in the chunk [bytes].
+
+        Returns:
+            the message records, valid until the next `append`, and their MessageIndex record.
+        """
+        raise NotImplementedError
+
+    def drop(self) -> None:
+        """Forget what waits."""
+        self.times.clear()
+        self.count = 0
+
+
+class ChannelWriter(Waiting):
+    """Messages of a fixed layout, in memory that is taken once.
+
+    Args:
+        spec: the channel.
+        channel_id: its number in the file.
+        capacity: messages that may wait.
+        clock: says when a chunk is due.
+
+    Attributes:
+        spec: the channel.
+    """
+
+    def __init__(self, spec: ChannelSpec, channel_id: int, capacity: int, clock: Clock) -> None:
+        super().__init__(channel_id, clock)
+        self.spec, self._capacity = spec, capacity
+        self._names = tuple(field.name for field in spec.fields)
+        self._records = blank_records(spec.fields, channel_id, capacity)
+        self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[name] for name in self._names)
+        self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
         self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._records.dtype.itemsize)
-        self._capacity = capacity
-        self._clock = clock
-        self._flush = flush
 
     def append(self, time_ns: int, *values: ArrayLike) -> None:
         """Add a message; the values are copied.
@@ -90,38 +96,45 @@ class ChannelWriter:
             view[n] = value
         self.count = n = n + 1
         if time_ns >= self._clock.due or n == self._capacity:
-            self._flush(time_ns)
+            self._clock.complete(time_ns)
+
+    def put(self, time_ns: int, *sources: object, **given: ArrayLike) -> None:
+        """Add a message by the names of its fields; the values are copied.
+
+        Args:
+            time_ns: simulated time [ns].
+            sources: whose attributes are the values of the fields of their names; of several the first that has one.
+            given: values by field, in place of those of the sources.
+
+        Raises:
+            ValueError: a field that nothing gives, or a value that is of no field; else as of `append`.
+        """
+        owners = {name: source for source in reversed(sources) for name in self._names if hasattr(source, name)}
+        found = {name: getattr(source, name) for name, source in owners.items()} | given
+        if wrong := found.keys() ^ set(self._names):
+            raise ValueError(
+                f"{self.spec.topic}: fields that nothing gives, or that it has not: {', '.join(sorted(wrong))}"
+            )
+        self.append(time_ns, *(found[name] for name in self._names))
 
     def view(self, name: str) -> NDArray[np.generic]:
         """Where the values of a field wait, shape (capacity, *field shape)."""
-        return self._views[[field.name for field in self.spec.fields].index(name)]
+        return self._views[self._names.index(name)]
 
     def fill(self, times_ns: Sequence[int]) -> None:
         """Take over messages whose values were written into the views, while none waits."""
         self.times.extend(times_ns)
         self.count = len(times_ns)
 
-    def drop(self) -> None:
-        """Forget what waits."""
-        self.times.clear()
-        self.count = 0
-
     def take(self, offset: int) -> tuple[memoryview, bytes]:
-        """Hand over what waits.
-
-        Args:
-            offset: where its block begins in the chunk [bytes].
-
-        Returns:
-            the message records, valid until the next `append`, and their MessageIndex record.
-        """
-        n = self.count
+        """See `Waiting`."""
+        n, records = self.count, self._records
         stamps = np.array(self.times, np.uint64)
-        self._stamp[:n] = self._log_time[:n] = self._publish_time[:n] = stamps
-        self._sequence[:n] = np.arange(self.total, self.total + n)
-        self.times.clear()
-        self.count = 0
+        for name in ("_stamp", "_log_time", "_publish_time"):
+            records[name][:n] = stamps
+        records["_sequence"][:n] = np.arange(self.total, self.total + n)
         self.total += n
+        self.drop()
         index = message_index(self.channel_id, stamps, self._offsets[:n] + np.uint64(offset))
         return self._bytes[:n].data.cast("B"), index
 
@@ -138,22 +151,12 @@ def message_index(channel_id: int, times_ns: ArrayLike, offsets: ArrayLike) -> b
 _HEADER = struct.Struct("<BQHIQQ")
 
 
-class MessageWriter:
-    """Encoded messages of any size that wait for their chunk; for channels slower than the control rate.
+class MessageWriter(Waiting):
+    """Encoded messages of any size; for channels slower than the control rate."""
 
-    Attributes:
-        channel_id: its number in the file.
-        count: messages waiting.
-        total: messages handed over to chunks so far.
-        times: simulated time of the messages waiting [ns].
-    """
-
-    def __init__(self, channel_id: int, clock: Clock, flush: Callable[[int], None]) -> None:
-        self.channel_id = channel_id
-        self.count = self.total = 0
-        self.times: list[int] = []
+    def __init__(self, channel_id: int, clock: Clock) -> None:
+        super().__init__(channel_id, clock)
         self._waiting: list[bytes] = []
-        self._clock, self._flush = clock, flush
 
     def append(self, time_ns: int, data: bytes) -> None:
         """Add an encoded message.
@@ -165,16 +168,15 @@ class MessageWriter:
         self._waiting.append(data)
         self.count += 1
         if time_ns >= self._clock.due:
-            self._flush(time_ns)
+            self._clock.complete(time_ns)
 
     def drop(self) -> None:
         """Forget what waits."""
-        self.times.clear()
+        super().drop()
         self._waiting.clear()
-        self.count = 0
 
     def take(self, offset: int) -> tuple[bytes, bytes]:
-        """Hand over what waits, as `ChannelWriter.take` does."""
+        """See `Waiting`."""
         blocks, offsets = [], []
         for time, data in zip(self.times, self._waiting, strict=True):
             offsets.append(offset)
@@ -183,9 +185,7 @@ class MessageWriter:
             offset += len(blocks[-1])
             self.total += 1
         index = message_index(self.channel_id, self.times, offsets)
-        self.times.clear()
-        self._waiting.clear()
-        self.count = 0
+        self.drop()
         return b"".join(blocks), index
 
 
@@ -226,58 +226,51 @@ class Rows:
 Derive = Callable[[Rows], Mapping[tuple[str, str], Array]]
 
 
+@dataclass(frozen=True, slots=True)
+class RowLayout:
+    """What rows are made of: fields of channels, in this order.
+
+    Attributes:
+        vectors: fields that come as vectors.
+        numbers: fields that come as plain numbers.
+        derived: fields that come out of `derive`.
+        derive: from rows to the derived fields, by topic and name.
+        more_vectors: name and size of vectors that only `derive` needs; they come after the others.
+        more_numbers: names of numbers that only `derive` needs; they come after the others.
+    """
+
+    vectors: Columns
+    numbers: Columns
+    derived: Columns = ()
+    derive: Derive | None = None
+    more_vectors: Mapping[str, int] = field(default_factory=dict)
+    more_numbers: Sequence[str] = ()
+
+
 class RowWriter:
     """Rows that wait for their chunk: vectors, numbers, and what is derived from both when the chunk is due."""
 
-    __slots__ = (
-        *("_at", "_capacity", "_clock", "_derive", "_derived", "_flush", "_numbers", "_times", "_vectors"),
-        *("_views", "_writers"),
-    )
-
-    def __init__(
-        self,
-        vectors: Columns,
-        numbers: Columns,
-        capacity: int,
-        clock: Clock,
-        flush: Callable[[int], None],
-        derived: Columns = (),
-        derive: Derive | None = None,
-        more_vectors: Mapping[str, int] | None = None,
-        more_numbers: Sequence[str] = (),
-    ) -> None:
-        """Rows made of fields of channels, in this order.
-
-        Args:
-            vectors: fields that come as vectors.
-            numbers: fields that come as plain numbers.
-            capacity: rows that may wait.
-            clock: says when a chunk is due.
-            flush: completes it.
-            derived: fields that come out of `derive`.
-            derive: from rows to the derived fields, by topic and name.
-            more_vectors: name and size of vectors that only `derive` needs; they come after the others.
-            more_numbers: names of numbers that only `derive` needs; they come after the others.
+    def __init__(self, layout: RowLayout, capacity: int, clock: Clock) -> None:
+        """Rows of a layout, of which so many may wait until the clock says that a chunk is due.
 
         Raises:
             ValueError: a field is missing or there twice.
         """
-        groups = (vectors, numbers, derived)
+        groups = (layout.vectors, layout.numbers, layout.derived)
         writers = {writer.channel_id: writer for group in groups for writer, _ in group}
         sizes = [size for group in groups for _, size in _sizes(group)]
         if sum(sizes) != sum(field.size for writer in writers.values() for field in writer.spec.fields):
             raise ValueError("a row must hold every field of its channels exactly once")
         self._at = (
-            _places((*_sizes(vectors), *(more_vectors or {}).items())),
-            _places((*_sizes(numbers), *((name, 1) for name in more_numbers))),
+            _places((*_sizes(layout.vectors), *layout.more_vectors.items())),
+            _places((*_sizes(layout.numbers), *((name, 1) for name in layout.more_numbers))),
         )
-        self._views, self._derived = (_views(vectors), _views(numbers)), _views(derived)
-        self._writers = list(writers.values())
-        self._derive = derive
+        self._views, self._derived = (_views(layout.vectors), _views(layout.numbers)), _views(layout.derived)
+        self._writers, self._derive = list(writers.values()), layout.derive
         self._vectors = np.zeros((capacity, _width(self._at[0])))
         self._numbers: list[tuple[float, ...]] = []
         self._times: list[int] = []
-        self._capacity, self._clock, self._flush = capacity, clock, flush
+        self._capacity, self._clock = capacity, clock
 
     def append(self, time_ns: int, numbers: tuple[float, ...], *vectors: Array) -> None:
         """Add a message to each channel; the values are copied.
@@ -296,7 +289,7 @@ class RowWriter:
         self._numbers.append(numbers)
         self._times.append(time_ns)
         if time_ns >= self._clock.due or len(self._times) == self._capacity:
-            self._flush(time_ns)
+            self._clock.complete(time_ns)
 
     def drop(self) -> None:
         """Forget the rows that wait."""
@@ -324,17 +317,13 @@ class RowWriter:
                 view[:n] = values[place].reshape(n, *view.shape[1:])
         for writer in self._writers:
             writer.fill(self._times)
-        self._times.clear()
-        self._numbers.clear()
+        self.drop()
 
 
 def _sizes(group: Columns) -> list[tuple[tuple[str, str], int]]:
     """The fields of a group, in order, with their sizes."""
-    found = []
-    for writer, names in group:
-        sizes = {field.name: field.size for field in writer.spec.fields}
-        found += [((writer.spec.topic, name), sizes[name]) for name in names]
-    return found
+    found = ((writer.spec, name) for writer, names in group for name in names)
+    return [((spec.topic, name), one.size) for spec, name in found for one in spec.fields if one.name == name]
 
 
 def _places(sizes: Iterable[tuple[Place, int]]) -> dict[Place, slice]:

@@ -11,7 +11,7 @@ from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress, encoded
-from surefoot.scenarios.log.rows import ChannelWriter, Clock, Columns, Derive, MessageWriter, RowWriter
+from surefoot.scenarios.log.rows import ChannelWriter, Clock, MessageWriter, RowLayout, RowWriter, Waiting
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec, file_descriptor_set
 from surefoot.scenarios.output import reason
 
@@ -151,9 +151,9 @@ class LogWriter:
         self.path = path
         self._compression = compression
         self._summary = Summary()
-        self._channels: list[ChannelWriter | MessageWriter] = []
+        self._channels: list[Waiting] = []
         self._rows: list[RowWriter] = []
-        self._clock = Clock(CHUNK_PERIOD_NS)
+        self._clock = Clock(CHUNK_PERIOD_NS, self._flush)
         beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
         for name, values in metadata.items():
             beginning += self._summary.add_metadata(Metadata(name, dict(values)), len(beginning))
@@ -166,29 +166,19 @@ class LogWriter:
         """Add a channel, before or between messages."""
         schema = PublishedSchema(f"{PACKAGE}.{spec.message}", file_descriptor_set(spec))
         number = self._define(spec.topic, schema, spec.metadata())
-        writer = ChannelWriter(spec, number, _CAPACITY, self._clock, self._flush)
+        writer = ChannelWriter(spec, number, _CAPACITY, self._clock)
         self._channels.append(writer)
         return writer
 
-    def rows(
-        self,
-        vectors: Columns,
-        numbers: Columns,
-        derived: Columns = (),
-        derive: Derive | None = None,
-        more_vectors: Mapping[str, int] | None = None,
-        more_numbers: Sequence[str] = (),
-    ) -> RowWriter:
-        """Fill channels of one rate together; arguments as of `RowWriter`."""
-        rows = RowWriter(
-            vectors, numbers, _CAPACITY, self._clock, self._flush, derived, derive, more_vectors, more_numbers
-        )
+    def rows(self, layout: RowLayout) -> RowWriter:
+        """Fill channels of one rate together; errors as of `RowWriter`."""
+        rows = RowWriter(layout, _CAPACITY, self._clock)
         self._rows.append(rows)
         return rows
 
     def message_channel(self, topic: str, schema: PublishedSchema, doc: str) -> MessageWriter:
         """Add a channel of a published schema whose messages come encoded."""
-        writer = MessageWriter(self._define(topic, schema, {"doc": doc}), self._clock, self._flush)
+        writer = MessageWriter(self._define(topic, schema, {"doc": doc}), self._clock)
         self._channels.append(writer)
         return writer
 
@@ -266,7 +256,7 @@ class NoLog(LogWriter):
         """Open nothing."""
         self._channels = []
         self._rows = []
-        self._clock = Clock(CHUNK_PERIOD_NS)
+        self._clock = Clock(CHUNK_PERIOD_NS, self._flush)
 
     def _define(self, topic: str, schema: PublishedSchema, metadata: dict[str, str]) -> int:
         return len(self._channels) + 1
@@ -279,8 +269,10 @@ class NoLog(LogWriter):
 
     def flush(self) -> None:
         """Forget what waits."""
-        for waiting in (*self._rows, *self._channels):
-            waiting.drop()
+        for rows in self._rows:
+            rows.drop()
+        for channel in self._channels:
+            channel.drop()
 
     def close(self) -> None:
         """Forget what waits."""

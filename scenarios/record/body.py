@@ -1,11 +1,13 @@
 """Writes what the robot's body and its controller exchange in one run into the log's channels."""
 
+from operator import attrgetter
+
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.plan import PlanSample
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.log.rows import Rows
+from surefoot.scenarios.log.rows import RowLayout, Rows
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.sim.measurement import Measurement
@@ -44,6 +46,13 @@ def contact_points(wrench: Array, position: Array, rotation: Array) -> tuple[Arr
 
 
 _SECOND, _FALLBACK = SolveStatus.SECOND_SOLVER, SolveStatus.EQUALITIES_ONLY
+_SENSED = ("joint_position", "joint_velocity", "joint_torque", "gyro", "accelerometer")
+_STATE = ("q", "v")
+_TRUE = ("com", "com_velocity", "angular_momentum")
+_SOLVED = ("status", "iterations", "primal_residual", "dual_residual")
+_sensed, _state, _true, _solved = (attrgetter(*names) for names in (_SENSED, _STATE, _TRUE, _SOLVED))
+"""Fields that have the names that sensors, robot and report give them."""
+
 _MORE_VECTORS = {"sole_rotation": 18}
 _MORE_NUMBERS = ("omega", "upright")
 """What is not logged as it is, but needed for what is: the soles' orientations for the ZMP, the pendulum's natural
@@ -63,9 +72,8 @@ class Recorder:
         wbc = writer.channel(channels.wbc(sizes))
         torque = writer.channel(channels.torque(sizes))
         vectors = (
-            (measurement, ("joint_position", "joint_velocity", "joint_torque", "gyro", "accelerometer")),
-            (measurement, ("wrench_left", "wrench_right", "external_force")),
-            (truth, ("q", "v", "com", "com_velocity", "angular_momentum", "left_sole", "right_sole")),
+            (measurement, (*_SENSED, "wrench_left", "wrench_right", "external_force")),
+            (truth, (*_STATE, *_TRUE, "left_sole", "right_sole")),
             (estimate, ("com", "com_velocity", "base_position", "base_velocity", "external_force", "external_moment")),
             (wbc, ("acceleration", "wrench_left", "wrench_right", "task_error")),
             (torque, ("command",)),
@@ -74,7 +82,7 @@ class Recorder:
             (truth, ("nonfoot_contact", "self_contact")),
             (estimate, ("mass",)),
             (contact, ("planned", "active", "felt")),
-            (wbc, ("status", "iterations", "primal_residual", "dual_residual")),
+            (wbc, _SOLVED),
         )
         derived = (
             (wbc, ("solver", "fallback")),
@@ -83,7 +91,7 @@ class Recorder:
             (torque, ("limit_ratio_max",)),
             (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
         )
-        self._row = writer.rows(vectors, numbers, derived, self._derived, _MORE_VECTORS, _MORE_NUMBERS)
+        self._row = writer.rows(RowLayout(vectors, numbers, derived, self._derived, _MORE_VECTORS, _MORE_NUMBERS))
 
     def tick(
         self, time_ns: int, measurement: Measurement, truth: RobotTerms, terms: RobotTerms, state: RobotState,
@@ -104,14 +112,11 @@ class Recorder:
         m, r = measurement, report
         numbers = (
             m.nonfoot_contact, m.self_contact, r.load.mass_scale * terms.model_mass,
-            *planned.contacts, *r.active, *r.felt, r.status, r.iterations, r.primal_residual, r.dual_residual,
-            planned.omega, truth.torso_rotation[2, 2],
+            *planned.contacts, *r.active, *r.felt, *_solved(r), planned.omega, truth.torso_rotation[2, 2],
         )  # fmt: skip
         self._row.append(
-            time_ns, numbers,
-            m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer,
-            m.wrench.ravel(), m.external_force,
-            m.q, m.v, truth.com, truth.com_velocity, truth.angular_momentum, truth.sole_pose.ravel(),
+            time_ns, numbers, *_sensed(m), m.wrench.ravel(), m.external_force,
+            *_state(m), *_true(truth), truth.sole_pose.ravel(),
             terms.com, terms.com_velocity, state.q[:3], state.v[:6], r.load.force, r.load.moment,
             r.acceleration, r.wrench.ravel(), r.task_error, torque,
             truth.sole_rotation.ravel(),

@@ -42,6 +42,9 @@ PUSH_RECORD = "push "
 COMMAND_RECORD = "command "
 """Likewise of those that hold a command, in the words of a scenario's `commands`."""
 
+AGENDA_RECORD = "agenda"
+"""Metadata record of what was to happen in a run, and when; logs of earlier versions have none."""
+
 PARTS_RECORD = "parts"
 """Metadata record of what a user's program put in place of a part, which a log cannot carry."""
 
@@ -53,11 +56,6 @@ def run_folders(out: Path, scenario: str, seed: int) -> Iterator[Path]:
     """Folders that a run may have for its own, in order: the first that nobody has taken."""
     yield out / f"{scenario}-{seed}"
     yield from (out / f"{scenario}-{seed}-{number}" for number in itertools.count(2))
-
-
-def taken_folders(out: Path, scenario: str, seed: int) -> Iterator[Path]:
-    """Folders of the runs of a scenario's name and seed that there are."""
-    return itertools.takewhile(Path.exists, run_folders(out, scenario, seed))
 
 
 _GREATEST = 1e6
@@ -182,6 +180,63 @@ class RunConstants:
         if not all(map(math.isfinite, (part for place in self.waypoints for part in place))):
             return "waypoint"
         return ""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """A push or a fault that a run shall have, on its clock.
+
+    Attributes:
+        what: words that go before its time, such as "pushes.0 begins at".
+        time: at which it acts first [s].
+        idle: why it does nothing though the run goes on until then; empty where it acts.
+    """
+
+    what: str
+    time: float
+    idle: str = ""
+
+    def missed(self, end: float) -> str:
+        """Why it does nothing in a run that ends at a time [s]; empty where it acts."""
+        late = f"{self.what} {self.time:.6g} s and never acts: the run ends at {end:.6g} s"
+        return late if self.time >= end else self.idle
+
+
+@dataclass(frozen=True, slots=True)
+class Agenda:
+    """What only the setup of a run knows of its scenario: when its events act, and which of its keys do nothing.
+
+    Attributes:
+        events: pushes and faults that are to act; pushes that were given by hand are not among them.
+        bodies: that the pushes act on, each once.
+        notes: what else is to be known of the scenario, one sentence each.
+        standing: those of the notes that hold only while nobody tells the robot by hand how to walk.
+    """
+
+    events: tuple[Event, ...] = ()
+    bodies: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    standing: tuple[str, ...] = ()
+
+    def to_metadata(self) -> dict[str, str]:
+        """Write as metadata: JSON by name."""
+        return {name: json.dumps(value) for name, value in asdict(self).items()}
+
+    @classmethod
+    def from_metadata(cls, records: Mapping[str, Mapping[str, str]], log_name: str) -> "Agenda | None":
+        """Read back; None where the log has none.
+
+        Raises:
+            LogError: it cannot be read.
+        """
+        if AGENDA_RECORD not in records:
+            return None
+        try:
+            values = {name: json.loads(text) for name, text in records[AGENDA_RECORD].items()}
+            return TypeAdapter(cls).validate_python(values)
+        except (ValueError, RecursionError):
+            what = "does not say in words that can be read what was to happen in its run"
+            raise LogError(f"{log_name}: {what}; give a log that `surefoot run` has written") from None
 
 
 PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "piqp", "numpy", "scipy", "mcap")

@@ -14,10 +14,15 @@ from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.steps.commands import Orders
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, PlannedFootstep, SolverStatus
 from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.log.rows import RowLayout
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes
 
 Array = NDArray[np.float64]
+
+_SAMPLED = ("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_reference")
+_sampled = attrgetter(*_SAMPLED)
+"""What the reference of a tick has of a sample of the plan, under the same names."""
 
 _NO_FOOTSTEP = (math.nan,) * 4
 
@@ -60,12 +65,9 @@ class WalkRecorder:
 
     def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
         reference = writer.channel(channels.reference(sizes))
-        vectors = (
-            *("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_reference"),
-            *("swing_position", "swing_velocity", "support"),
-        )
+        vectors = (*_SAMPLED, "swing_position", "swing_velocity", "support")
         numbers = ("omega", "roll", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
-        self._reference = writer.rows(((reference, vectors),), ((reference, numbers),))
+        self._reference = writer.rows(RowLayout(((reference, vectors),), ((reference, numbers),)))
         self._state = writer.channel(channels.planner_state(sizes))
         self._plan = writer.channel(channels.plan(sizes))
         self._footsteps = writer.channel(channels.footsteps(sizes))
@@ -73,7 +75,7 @@ class WalkRecorder:
         self._command = writer.channel(channels.command(sizes))
         timing = writer.channel(channels.timing(sizes))
         parts = [field.name for field in timing.spec.fields]
-        self._timing = writer.rows((), ((timing, parts),))
+        self._timing = writer.rows(RowLayout((), ((timing, parts),)))
         self._parts: Callable[[TickTiming], tuple[float, ...]] = attrgetter(*parts)
         self._process = writer.channel(channels.process(sizes))
         self._looked = -1
@@ -82,28 +84,28 @@ class WalkRecorder:
 
     def planner_state(self, time_ns: int, state: PlannerState) -> None:
         """What the planner measured and was given."""
-        measured, given = state.measured, state.given
-        self._state.append(
-            time_ns, measured.com, measured.com_velocity, state.measured_zmp,
-            given.com, given.com_velocity, state.acceleration, state.innovation,
+        measured = state.measured
+        self._state.put(
+            time_ns, state, state.given, measured_com=measured.com, measured_com_velocity=measured.com_velocity,
+            com_acceleration=state.acceleration,
         )  # fmt: skip
 
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
         """A new plan with its horizon and footsteps."""
         status, balance = plan.status, plan.balance
-        self._plan.append(
-            time_ns, plan.com, plan.com_velocity, plan.zmp, plan.zmp_reference, plan.jerk, plan.omega,
-            status.solver, (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD,
-            status.infeasible, (balance.planned, balance.movable), balance.shift, balance.delay, status.falling,
+        self._plan.put(
+            time_ns, status, plan, status=status.solver, slack=(status.zmp_slack.max(), status.terminal_slack.max()),
+            held=status.solver is SolverStatus.HELD, capture_margin=(balance.planned, balance.movable),
+            step_shift=balance.shift, step_delay=balance.delay,
         )  # fmt: skip
         ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
-        self._footsteps.append(
+        self._footsteps.put(
             time_ns,
-            _pose(plan.footholds[Foot.LEFT]),
-            _pose(plan.footholds[Foot.RIGHT]),
-            [_NO_FOOTSTEP if step is None else _pose(step.footstep) for step in ahead],
-            [-1 if step is None else int(step.footstep.foot) for step in ahead],
-            [math.nan if step is None else step.touchdown_time for step in ahead],
+            current_left=_pose(plan.footholds[Foot.LEFT]),
+            current_right=_pose(plan.footholds[Foot.RIGHT]),
+            next=[_NO_FOOTSTEP if step is None else _pose(step.footstep) for step in ahead],
+            next_foot=[-1 if step is None else int(step.footstep.foot) for step in ahead],
+            touchdown_time=[math.nan if step is None else step.touchdown_time for step in ahead],
         )
         vertices = plan.support_polygon
         self._support[: len(vertices)] = vertices
@@ -113,15 +115,21 @@ class WalkRecorder:
         """A footstep taken: as last planned, and where the sole is."""
         foot = planned.footstep.foot
         actual = np.append(feet.position[foot], feet.yaw[foot])
-        self._footstep.append(time_ns, planned.step, int(foot), _pose(planned.footstep), actual)
+        self._footstep.put(time_ns, index=planned.step, foot=int(foot), planned=_pose(planned.footstep), actual=actual)
 
     def command(self, time_ns: int, orders: Orders) -> None:
         """What the walk is told from now on."""
         none = (math.nan,) * 3
-        pose, twists = orders.place or none, (orders.twist, orders.followed)
-        asked, followed = (none if twist is None else (twist.v_x, twist.v_y, twist.yaw_rate) for twist in twists)
-        gait = (orders.single_support, orders.double_support, orders.swing_height)
-        self._command.append(time_ns, asked[:2], asked[2], followed[:2], followed[2], pose[:2], pose[2], *gait)
+        *place, heading = orders.place or none
+        twists = (
+            none if twist is None else (twist.v_x, twist.v_y, twist.yaw_rate)
+            for twist in (orders.twist, orders.followed)
+        )
+        (*velocity, yaw_rate), (*followed, followed_rate) = twists
+        self._command.put(
+            time_ns, orders, velocity=velocity, yaw_rate=yaw_rate, followed_velocity=followed,
+            followed_yaw_rate=followed_rate, place=place, heading=heading,
+        )  # fmt: skip
 
     def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
         """The reference of a control tick and the gait's clock; the swing foot's sole is where its roll takes it."""
@@ -135,10 +143,7 @@ class WalkRecorder:
             sample.omega, *pitches, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
             phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
         )  # fmt: skip
-        self._reference.append(
-            time_ns, numbers, sample.com, sample.com_velocity, sample.com_acceleration, sample.zmp, sample.dcm,
-            sample.zmp_reference, position, velocity, self._support.ravel(),
-        )  # fmt: skip
+        self._reference.append(time_ns, numbers, *_sampled(sample), position, velocity, self._support.ravel())
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick, and once a simulated second the state of the process."""
@@ -174,7 +179,7 @@ class PendulumRecorder:
     def state(self, time_ns: int, state: CentroidalState, feet: FeetState, force: Array) -> None:
         """True state of a control tick and the push that follows it, shape (2,) [N]."""
         left, right = (_level_pose(position, float(yaw)) for position, yaw in zip(feet.position, feet.yaw, strict=True))
-        self._truth.append(time_ns, state.com, state.com_velocity, left, right, (*force, 0.0))
+        self._truth.put(time_ns, state, left_sole=left, right_sole=right, external_force=(*force, 0.0))
 
     def contact(self, time_ns: int, zmp: Array, sample: PlanSample, feet: FeetState) -> None:
         """Contacts and the ZMP, shape (2,) [m]; as centre of pressure only where one foot has all the load."""
@@ -185,9 +190,10 @@ class PendulumRecorder:
         if not all(contacts):
             foot = int(contacts[1])
             cops[foot] = tuple((zmp - feet.position[foot, :2]) @ frame_rotation(float(feet.yaw[foot])))
-        self._contact.append(
-            time_ns, (*zmp, height), (share * weight, (1.0 - share) * weight), contacts, contacts, contacts, *cops
-        )
+        self._contact.put(
+            time_ns, zmp=(*zmp, height), normal_force=(share * weight, (1.0 - share) * weight), planned=contacts,
+            active=contacts, felt=contacts, cop_left=cops[0], cop_right=cops[1],
+        )  # fmt: skip
 
 
 def _level_pose(position: Array, yaw: float) -> tuple[float, ...]:

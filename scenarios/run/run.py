@@ -19,6 +19,7 @@ from surefoot.scenarios.judge.verdict import Verdict, judge
 from surefoot.scenarios.log import AttachedFile, LogWriter, read
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import (
+    AGENDA_RECORD,
     END_RECORD,
     LOG_NAME,
     PARTS_RECORD,
@@ -32,6 +33,7 @@ from surefoot.scenarios.record.provenance import (
 from surefoot.scenarios.run.interrupts import Interrupts, held_back
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, OnProgress, Progress, fault_end, refusing, run_loop
 from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.setup.notes import agenda
 from surefoot.scenarios.setup.walk import Walk, resolve
 
 if TYPE_CHECKING:
@@ -222,7 +224,11 @@ def open_log(path: Path, walk: Walk) -> LogWriter:
     Raises:
         LogError: it cannot be written.
     """
-    metadata = {RECORD: run_constants(walk).to_metadata(), "versions": versions()}
+    metadata = {
+        RECORD: run_constants(walk).to_metadata(),
+        AGENDA_RECORD: agenda(walk).to_metadata(),
+        "versions": versions(),
+    }
     attachments = [
         AttachedFile(SCENARIO_FILE, "application/yaml", walk.text.encode()),
         AttachedFile("robot.xml", "application/xml", without_looks(walk.robot.mjcf).encode()),

@@ -11,6 +11,7 @@ from surefoot.planner.model.filter import ZMP_ONLY, CentroidalFilter, FilterNois
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import GRAVITY, CentroidalState
 from surefoot.plugins import Registry
+from surefoot.scenarios.file.names import SOURCES
 from surefoot.scenarios.file.schema import Sensing
 from surefoot.scenarios.record.walk import PlannerState
 from surefoot.scenarios.setup.walk import Walk
@@ -57,7 +58,7 @@ class TrueState:
 
 EstimatorMaker = Callable[[Walk], Estimator]
 
-ESTIMATORS: Registry[EstimatorMaker] = Registry("surefoot.estimators", None, {"truth": TrueState})
+ESTIMATORS: Registry[EstimatorMaker] = SOURCES.filled(None, {"truth": TrueState})
 """What makes an estimator of a walk, by the value of ``sensing.source``."""
 
 

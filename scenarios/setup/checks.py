@@ -56,7 +56,7 @@ def check(walk: Walk, robots: Robots) -> list[Problem]:
         *clock,
         *_durations(walk),
         *told_problems(walk),
-        *(() if clock else (*never_act(walk, walk.duration), *cut_off(walk))),
+        *(() if clock else (*never_act(walk), *cut_off(walk))),
         *slight(walk),
         *(() if commands else idle_commands(walk)),
         *_beliefs(walk),

@@ -9,7 +9,7 @@ from typing import Any
 
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.group import loadable
+from surefoot.scenarios.file.names import usable
 from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
 from surefoot.scenarios.judge.metric import TRUTH, Metric
 from surefoot.scenarios.judge.metrics import METRICS, known
@@ -144,7 +144,7 @@ def published() -> dict[str, Any]:
     for key, values in AVAILABLE.items():
         _narrow(schema, key, list(values))
     ground = schema["$defs"]["TerrainSettings"]
-    for kind in loadable(KINDS):
+    for kind in usable(KINDS):
         own = model_of(TerrainSettings, {"kind": kind}).model_json_schema()
         ground["properties"] = own["properties"] | ground["properties"]
         schema["$defs"] = own.get("$defs", {}) | schema["$defs"]

@@ -13,6 +13,7 @@ from surefoot.planner.steps.source import AWAY
 from surefoot.scenarios.errors import Key, Problem
 from surefoot.scenarios.file.schema import CommandSettings, Fault, PushSettings, Rates, VelocitySettings
 from surefoot.scenarios.file.units import meant
+from surefoot.scenarios.record.provenance import Event
 from surefoot.scenarios.setup.gait import gait_of, push_time, timed_command, timeline_of, twist_of, uncommanded
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.pushes import physics_window
@@ -59,8 +60,28 @@ class FaultWindow:
         return first / rates.control if first < self.end else math.inf
 
 
-def never_act(walk: Walk, end: float) -> Iterator[Problem]:
-    """List the promised pushes and the faults that do nothing in a run that ends at this time [s].
+@dataclass(frozen=True, slots=True)
+class Due:
+    """A push or a fault that is to act.
+
+    Attributes:
+        key: of what says when it begins.
+        event: what the log tells of it.
+        idle: why it does nothing even in a long run; None where it acts.
+    """
+
+    key: Key
+    event: Event
+    idle: Problem | None
+
+    @classmethod
+    def of(cls, key: Key, what: str, time: float, idle: Problem | None) -> "Due":
+        """One that acts first at a time [s]; ``what`` are the words that go before that."""
+        return cls(key, Event(what, time, "" if idle is None else idle.what), idle)
+
+
+def due(walk: Walk) -> Iterator[Due]:
+    """The promised pushes and the faults, each once.
 
     Raises:
         ParameterError: the gait cannot be walked, so that its phases have no times.
@@ -71,22 +92,37 @@ def never_act(walk: Walk, end: float) -> Iterator[Problem]:
         # Whether a walk that is told where to go comes to a step, the run will show.
         time = 0.0 if walk.told and push.time is None else push_time(walk.asked_gait, push)
         start, stop = physics_window(time, push.duration, rates.physics)
-        if time >= end:
-            yield _too_late((*key, "time" if push.time is not None else "step"), f"{name} begins at", time, end)
-        elif stop <= start:
+        idle = next(_weak(key, push), None)
+        if stop <= start:
             what = f"{name}.duration {push.duration:g} s rounds to nothing on a clock of {rates.physics} Hz"
-            yield Problem((*key, "duration"), what, "give it at least 1e-6 s")
-        else:
-            yield from _weak(key, push)
+            idle = Problem((*key, "duration"), what, "give it at least 1e-6 s")
+        yield Due.of((*key, "time" if push.time is not None else "step"), f"{name} begins at", time, idle)
     for index, fault in enumerate(walk.keys.faults):
-        key, name = ("faults", index), f"faults.{index}"
+        key, name, idle = ("faults", index), f"faults.{index}", None
         first = FaultWindow.of(fault, rates.control).first_act(rates)
         if math.isinf(first):
             every = rates.planner if fault.kind == "planner_freeze" else rates.control
             what = f"{name}.duration {fault.duration:g} s ends before the {fault.kind} acts at any tick of {every} Hz"
-            yield Problem((*key, "duration"), what, f"give it at least {1 / every:g} s")
-        elif first >= end:
-            yield _too_late((*key, "time"), f"{name} acts first at", first, end)
+            idle = Problem((*key, "duration"), what, f"give it at least {1 / every:g} s")
+        yield Due.of((*key, "time"), f"{name} acts first at", first if idle is None else 0.0, idle)
+
+
+def never_act(walk: Walk) -> Iterator[Problem]:
+    """List the promised pushes and the faults that do nothing in the whole run; errors as of `due`."""
+    end = walk.duration
+    for one in due(walk):
+        if one.event.time >= end:
+            yield Problem(one.key, one.event.missed(end), "let it begin before")
+        elif one.idle is not None:
+            yield one.idle
+
+
+def events(walk: Walk) -> tuple[Event, ...]:
+    """What the log is to tell of the promised pushes and the faults."""
+    try:
+        return tuple(one.event for one in due(walk))
+    except ParameterError as fault:
+        return (Event("", 0.0, f"when its pushes and faults act cannot be known: {fault}"),)
 
 
 def cut_off(walk: Walk) -> Iterator[Problem]:
@@ -160,10 +196,6 @@ def slight(walk: Walk) -> Iterator[Problem]:
         if size and abs(size) < LEAST:
             what = f"{'.'.join(map(str, key))} {size:g} is too small to change anything"
             yield Problem(key, what, f"use {'0, or ' if key[-1] != 'height' else ''}at least {LEAST:g}")
-
-
-def _too_late(key: Key, what: str, time: float, end: float) -> Problem:
-    return Problem(key, f"{what} {time:.6g} s and never acts: the run ends at {end:.6g} s", "let it begin before")
 
 
 def idle_commands(walk: Walk) -> Iterator[Problem]:

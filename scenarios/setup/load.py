@@ -16,7 +16,7 @@ from surefoot.errors import ParameterError, PartError
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.group import unusable
+from surefoot.scenarios.file.names import unusable
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, decoded, parse, value_at
 from surefoot.scenarios.file.translate import problems_of, without

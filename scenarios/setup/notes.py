@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from surefoot.plugins import PluginError
 from surefoot.scenarios.file.schema import Gait, PendulumSettings, Rates, TerrainSettings
 from surefoot.scenarios.file.units import meant
+from surefoot.scenarios.record.provenance import Agenda
+from surefoot.scenarios.setup.events import events
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, commanded
 from surefoot.scenarios.setup.sized import clock, default_of
 from surefoot.scenarios.setup.walk import Walk
@@ -22,6 +24,18 @@ def notes(walk: Walk, driven: bool = False) -> tuple[str, ...]:
     """
     still = () if driven or walk.keys.gait.steps or commanded(walk.keys.gait) or walk.told else _without_steps(walk)
     return (*_unlikely(walk), *_without_effect(walk), *_without_occasion(walk), *still, *_cut_short(walk))
+
+
+def agenda(walk: Walk) -> Agenda:
+    """What is to happen in a run, as its log tells it."""
+    said, driven = notes(walk), notes(walk, driven=True)
+    pushes = (*walk.pushes, *(push for _, push in walk.gait_pushes))
+    return Agenda(
+        events=events(walk),
+        bodies=tuple(dict.fromkeys(push.body for push in pushes)),
+        notes=said,
+        standing=tuple(note for note in said if note not in driven),
+    )
 
 
 _LONG = 60.0

@@ -8,7 +8,7 @@ import pytest
 from dotted import named
 
 import surefoot
-from surefoot.scenarios.file.group import _REGISTRIES
+from surefoot.scenarios.file.names import REGISTRIES
 from surefoot.scenarios.file.schema import Scenario
 
 pytestmark = pytest.mark.unit
@@ -21,7 +21,7 @@ ROWS = [line.strip("| ").split(" | ") for line in TEXT.splitlines() if line.star
 
 def test_there_is_a_row_for_every_key_that_names_a_part():
     keys = {key for row in ROWS for key in re.findall(r"`([a-z.]+)`", row[-1])}
-    assert keys == {".".join(map(str, key)) for key in _REGISTRIES}
+    assert keys == {".".join(map(str, key)) for key in REGISTRIES}
     for key in keys:
         assert key.partition(".")[0] in Scenario.model_fields
 

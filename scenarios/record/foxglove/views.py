@@ -15,7 +15,7 @@ from surefoot.models.types import RobotDescription
 from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.types import SolverStatus
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.log.template import Template
+from surefoot.scenarios.log.spec import Template
 from surefoot.scenarios.record.foxglove import drawing as templates
 from surefoot.scenarios.record.foxglove.drawing import NOWHERE, Outlines, force_arrow, published, world_scene
 from surefoot.sim.bodies import BodyPoses

@@ -5,8 +5,8 @@ from typing import Any, cast
 
 from surefoot.guard import Guarded, taken_for
 from surefoot.planner.ground.terrain import Terrain, flat
-from surefoot.plugins import Registry
 from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.file.names import TERRAIN_KINDS
 from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.setup.terrain.blocks import BlocksKind
 from surefoot.scenarios.setup.terrain.ground import Ground, TerrainKind
@@ -26,7 +26,7 @@ class FlatKind(TerrainKind):
 
 _OWN: tuple[TerrainKind, ...] = (FlatKind(), StairsKind(), BlocksKind(), SlopeKind())
 
-KINDS = Registry("surefoot.terrains", TerrainKind, {kind.name: kind for kind in _OWN})
+KINDS = TERRAIN_KINDS.filled(TerrainKind, {kind.name: kind for kind in _OWN})
 """Every kind of terrain by its name: these, and those of other packages (see `surefoot.plugins`)."""
 
 __all__ = ["KINDS", "Ground", "TerrainKind", "kind_of"]

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import torso
 from surefoot.scenarios.judge.digest import RunView
-from surefoot.scenarios.judge.verdict import scenario_of
+from surefoot.scenarios.judge.verdict import agenda_of, scenario_of
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.palette import FEET, Color
 from surefoot.scenarios.record.provenance import WORLD_FILE
@@ -130,13 +130,12 @@ def _body_poses(model: mujoco.MjModel, configurations: Array) -> tuple[Array, Ar
 
 
 def _pushed_body(log: Log, run: RunView) -> str:
-    """Body that the pushes of the scenario act on; the torso when they name several or none."""
+    """Body that the pushes of the run act on; the torso when they act on several or on none that is known."""
     try:
-        bodies = {settings.body for settings in scenario_of(log).pushes}
+        bodies = agenda_of(log, scenario_of(log)).bodies
     except LogError:
-        bodies = set()
-    named = next(iter(bodies)) if len(bodies) == 1 else None
-    return named or torso(run.constants.roles)
+        bodies = ()
+    return bodies[0] if len(bodies) == 1 else torso(run.constants.roles)
 
 
 def _facts(run: RunView, frames: Frames, pushed: Array) -> Facts:

@@ -7,7 +7,8 @@ from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
 from google.protobuf.timestamp_pb2 import Timestamp
 
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
-from surefoot.scenarios.log.template import NANOS, SECONDS, Template, slot
+from surefoot.scenarios.log.rows import RowLayout
+from surefoot.scenarios.log.spec import NANOS, SECONDS, Template, slot
 from surefoot.scenarios.record.body import contact_points
 from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
 
@@ -45,11 +46,12 @@ def test_rows_give_the_same_log_as_single_appends(tmp_path):
     rng = np.random.default_rng(0)
     with LogWriter(tmp_path / "rows.mcap", {}) as rows, LogWriter(tmp_path / "single.mcap", {}) as single:
         a, b = rows.channel(A), rows.channel(B)
-        row = rows.rows(
+        layout = RowLayout(
             ((b, ("y",)), (a, ("x",))), ((a, ("n",)), (b, ("z",))), ((a, ("twice",)),),
             lambda rows: {("/a", "twice"): 2 * rows["extra"] + rows["shift"] + 0 * rows["/b", "z"]},
             {"extra": 2}, ("shift",),
         )  # fmt: skip
+        row = rows.rows(layout)
         one, two = single.channel(A), single.channel(B)
         for tick in range(200):
             x, y, extra = rng.normal(size=3), rng.normal(size=(2, 2)), rng.normal(size=2)
@@ -65,14 +67,14 @@ def test_a_row_must_be_complete(tmp_path):
     with LogWriter(tmp_path / "log.mcap", {}) as writer:
         a = writer.channel(A)
         with pytest.raises(ValueError, match="every field"):
-            writer.rows(((a, ("x",)),), ((a, ("n",)),))
+            writer.rows(RowLayout(((a, ("x",)),), ((a, ("n",)),)))
 
 
 @pytest.mark.parametrize("numbers", [(1,), (1, 2.0, 3.0)])
 def test_a_number_too_few_or_too_many_shifts_nothing_in_silence(tmp_path, numbers):
     writer = LogWriter(tmp_path / "log.mcap", {})
     b = writer.channel(B)
-    row = writer.rows(((b, ("y",)),), ((b, ("z",)),), more_numbers=("more",))
+    row = writer.rows(RowLayout(((b, ("y",)),), ((b, ("z",)),), more_numbers=("more",)))
     row.append(0, numbers, np.zeros(4))
     with pytest.raises(ValueError, match="where there are places for 2"):
         writer.close()

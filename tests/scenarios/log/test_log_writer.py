@@ -6,6 +6,7 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -118,6 +119,19 @@ def test_wrong_values_are_refused(tmp_path):
         for values in ((1.0, (1, 2, 3)), (1.0, (1, 2, 3), 4, 5), (1.0, (1, 2), 3)):
             with pytest.raises(ValueError, match=r"argument|broadcast"):
                 channel.append(0, *values)
+
+
+def test_a_message_is_put_together_by_the_names_of_its_fields(tmp_path):
+    with LogWriter(tmp_path / "log.mcap", {}) as writer:
+        channel = writer.channel(SPEC)
+        channel.put(0, SimpleNamespace(a=1.0, other=9), SimpleNamespace(a=7.0, b=(1, 2, 3)), n=4)
+        channel.append(1, 1.0, (1, 2, 3), 4)
+        for sources, given in (((), {"a": 1.0, "n": 4}), ((SimpleNamespace(a=1, b=(1, 2, 3)),), {"n": 4, "m": 5})):
+            with pytest.raises(ValueError, match=r"/x: .*: [bm]$"):
+                channel.put(2, *sources, **given)
+    log = read(tmp_path / "log.mcap")
+    assert [log["/x"].field(name)[0].tolist() for name in "abn"] == [1.0, [1.0, 2.0, 3.0], 4]
+    assert all(len(set(map(str, log["/x"].field(name)))) == 1 for name in "abn")
 
 
 def test_equal_messages_give_equal_files(tmp_path):

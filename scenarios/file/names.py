@@ -1,0 +1,120 @@
+"""Names that a scenario may use and other packages may bring: their registries, and what is wrong with a name."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import PydanticCustomError, core_schema
+
+from surefoot.plugins import OWN_PACKAGE, Registry
+from surefoot.scenarios.errors import Key, Problem, dotted
+
+TERRAIN_KINDS: Registry[Any] = Registry("surefoot.terrains", object, ("flat", "stairs", "blocks", "slope"))
+"""Of ``terrain.kind``; what builds the ground, `surefoot.scenarios.setup.terrain` brings."""
+
+SOURCES: Registry[Any] = Registry("surefoot.estimators", None, ("truth",))
+"""Of ``sensing.source``; what estimates the state, `surefoot.scenarios.run.sensing` brings."""
+
+
+def profiles() -> Registry[Any]:
+    """Of ``planner.profile``."""
+    from surefoot.planner.laws.profiles import PROFILES
+
+    return PROFILES
+
+
+def tasks() -> Registry[Any]:
+    """Of each element of ``wbc.tasks``."""
+    from surefoot.wbc.tasks import TASKS
+
+    return TASKS
+
+
+def robots() -> Registry[Any]:
+    """Of ``robot``."""
+    from surefoot.models.registry import ROBOTS
+
+    return ROBOTS
+
+
+DEFAULTS = {"terrain": "flat", "planner": "default", "sensing": "truth", "robot": "humanoid100"}
+"""Names that are always there, by the group of the key."""
+
+REGISTRIES: dict[Key, Callable[[], Registry[Any]]] = {
+    ("robot",): robots,
+    ("terrain", "kind"): lambda: TERRAIN_KINDS,
+    ("planner", "profile"): profiles,
+    ("sensing", "source"): lambda: SOURCES,
+    ("wbc", "tasks"): tasks,
+}
+"""By the key that names a part, or several; asked only when a name is looked at, so that nothing is imported before."""
+
+
+def usable(found: Registry[Any]) -> list[str]:
+    """Names of a registry but for what a broken package has registered."""
+    return [name for name in found if found.package(name) == OWN_PACKAGE or found.refusal(name) is None]
+
+
+class OneOf:
+    """One of the names that a registry has when a value is checked: other packages may bring more of them.
+
+    Args:
+        key: whose registry it is; its default name is accepted without a look at the others.
+    """
+
+    def __init__(self, *key: str) -> None:
+        self._default, self._names = DEFAULTS.get(key[0], ""), REGISTRIES[key]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        """Check as a literal would, with its message."""
+        return core_schema.no_info_after_validator_function(self._check, core_schema.str_schema(strict=True))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """Describe as a literal would; what a broken package has registered is not among the names."""
+        return {"enum": usable(self._names()), "type": "string"}
+
+    def _check(self, value: str) -> str:
+        if value == self._default or value in (known := list(self._names())):
+            return value
+        names = [repr(name) for name in known]
+        expected = " or ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)
+        expected = expected or "one that an installed package brings, and none does"
+        raise PydanticCustomError("literal_error", "{expected}", {"expected": expected})
+
+
+def unusable(keys: Any) -> list[Problem]:
+    """List names whose package cannot be used, or has taken a name of surefoot's own for something else.
+
+    Args:
+        keys: plain values of a scenario; what is of another type, or unknown, is for the schema to say.
+    """
+    refused = ((key, registry().refusal(name)) for key, name, registry in _named(keys))
+    return [Problem(key, f"{dotted(key)} {why.what}", why.right) for key, why in refused if why is not None]
+
+
+def unknown(keys: Any) -> list[Problem]:
+    """List names that no installed package brings; no package is loaded.
+
+    Args:
+        keys: plain values of a scenario.
+    """
+    return [
+        Problem(key, f"{dotted(key)} '{name}' is not known here", "install the package that brings it")
+        for key, name, registry in _named(keys)
+        if name != DEFAULTS.get(str(key[0])) and name not in registry()
+    ]
+
+
+def _named(keys: Any) -> Iterator[tuple[Key, str, Callable[[], Registry[Any]]]]:
+    """Every name that is written, with its place; a robot file is no name."""
+    from surefoot.models.registry import is_file
+
+    for key, registry in REGISTRIES.items():
+        value = keys
+        for part in key:
+            value = value.get(part) if isinstance(value, dict) else None
+        if isinstance(value, str) and not (key == ("robot",) and is_file(value)):
+            yield key, value, registry
+        for index, name in enumerate(value if isinstance(value, list) else ()):
+            if isinstance(name, str):
+                yield (*key, index), name, registry

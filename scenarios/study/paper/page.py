@@ -3,9 +3,9 @@
 import json
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from typing import NamedTuple
 
 import yaml
 
@@ -15,17 +15,30 @@ from surefoot.scenarios.show.kit.html import PageTable, TableRow, details, docum
 from surefoot.scenarios.show.kit.html import tally as tally_html
 from surefoot.scenarios.study.campaigns.engine import Worker, local_workers
 from surefoot.scenarios.study.campaigns.sweep import CampaignBar
-from surefoot.scenarios.study.paper import studies
-from surefoot.scenarios.study.paper.claims import CLAIMS, Claim
+from surefoot.scenarios.study.paper.claims import Assessment, Claim, Grade, claims
 from surefoot.scenarios.study.paper.figures import PLATES, Plate
 from surefoot.scenarios.study.paper.results import Results, run_experiments
-from surefoot.scenarios.study.paper.rules import Assessment, Grade
-from surefoot.scenarios.study.paper.studies import Experiment, Study, experiments
+from surefoot.scenarios.study.paper.studies import (
+    BRISK_STAIRS,
+    BRISK_WALK,
+    HEIGHTS,
+    NOISE_ALONE,
+    NOISE_STAIRS,
+    NOISE_WALK,
+    PUSHES,
+    STAIRS,
+    STEP_LAW,
+    WALK,
+    WIDE_WALK,
+    ZMP_ONLY,
+    Experiment,
+    Study,
+    experiments,
+)
 from surefoot.scenarios.study.paper.tables import balance_table, knee_table, provenance, runs_table, shove_table
 
 
-@dataclass(frozen=True, slots=True)
-class PageSection:
+class PageSection(NamedTuple):
     """A section of the page.
 
     Attributes:
@@ -44,10 +57,7 @@ class PageSection:
 def sections() -> tuple[PageSection, ...]:
     """All sections in the order of the page."""
     entries = yaml.safe_load((files(__package__) / "sections.yaml").read_text(encoding="utf-8"))
-    return tuple(
-        PageSection(entry["name"], entry["title"], tuple(entry["text"]), tuple(entry.get("points", ())))
-        for entry in entries
-    )
+    return tuple(PageSection(**entry) for entry in entries)
 
 
 TITLE = "A Robust Closed-Loop Biped Locomotion Planner Based on Time Varying Model Predictive Control, measured"
@@ -64,32 +74,16 @@ Judged = Sequence[tuple[Claim, Assessment]]
 
 def judged(results: Results) -> Judged:
     """Every claim with what was found about it."""
-    return [(claim, claim.judge(results)) for claim in CLAIMS]
+    return [(claim, claim.judge(results)) for claim in claims()]
 
 
-def tables(results: Results) -> dict[str, tuple[PageTable, ...]]:
-    """Every table of numbers, by the section that it stands in."""
-
-    def balance(name: str, *chosen: Study) -> PageTable:
-        return balance_table(name, results.samples(chosen))
-
-    plain = (
-        studies.WALK,
-        studies.WIDE_WALK,
-        studies.STEP_LAW,
-        studies.BRISK_WALK,
-        *studies.STAIRS,
-        studies.BRISK_STAIRS,
-    )
-    return {
-        "profiles": (balance("profiles-table", *plain),),
-        "noise": (
-            balance("noise-table", studies.NOISE_WALK, studies.NOISE_STAIRS, studies.NOISE_ALONE, studies.ZMP_ONLY),
-        ),
-        "height-error": (balance("height-table", *studies.HEIGHTS),),
-        "pushes": (balance("push-table", *studies.PUSHES), shove_table(results)),
-        "energy": (knee_table(results),),
-    }
+_BALANCES: dict[str, tuple[str, tuple[Study, ...]]] = {
+    "profiles": ("profiles-table", (WALK, WIDE_WALK, STEP_LAW, BRISK_WALK, *STAIRS, BRISK_STAIRS)),
+    "noise": ("noise-table", (NOISE_WALK, NOISE_STAIRS, NOISE_ALONE, ZMP_ONLY)),
+    "height-error": ("height-table", HEIGHTS),
+    "pushes": ("push-table", PUSHES),
+}
+"""Tables of falls and ZMP errors by the section that they stand in: the anchor, and the studies."""
 
 
 Plates = Mapping[str, Sequence[Plate]]
@@ -98,14 +92,16 @@ Plates = Mapping[str, Sequence[Plate]]
 
 def page(results: Results, plates: Plates = PLATES) -> str:
     """The whole page as HTML, with these figures."""
-    claims, numbers = judged(results), tables(results)
+    found, every = judged(results), sections()
     content = {
-        "claims": _claims_table(claims),
-        "runs": provenance(results) + runs_table(results),
+        "claims": [_claims_table(found)],
+        "runs": [provenance(results) + runs_table(results)],
+        **{name: [balance_table(anchor, results.samples(of)).html] for name, (anchor, of) in _BALANCES.items()},
+        "energy": [knee_table(results).html],
     }
-    every = sections()
-    written = [_section(part, content.get(part.name, ""), numbers, results, plates) for part in every]
-    return document(TITLE, "\n".join((_top(results, claims), _contents(every), *written)))
+    content["pushes"].append(shove_table(results).html)
+    written = (_section(part, content.get(part.name, []), results, plates) for part in every)
+    return document(TITLE, "\n".join((_top(results, found), _contents(every), *written)))
 
 
 def tally(claims: Judged) -> dict[Grade, int]:
@@ -115,10 +111,12 @@ def tally(claims: Judged) -> dict[Grade, int]:
 
 
 def _top(results: Results, claims: Judged) -> str:
-    runs = len(results.outcomes)
-    fell = sum(bool(outcome.metrics.get("fell")) for outcome in results.outcomes)
     boxes = [(str(count), f"claims: {verdict}") for verdict, count in tally(claims).items() if count]
-    boxes += [(str(runs), "runs"), (str(fell), "falls"), (str(len(results.failures)), "could not run")]
+    boxes += [
+        (str(len(results.outcomes)), "runs"),
+        (str(results.falls), "falls"),
+        (str(len(results.failures)), "could not run"),
+    ]
     lead = (
         "The experiments of M. Kasaei, N. Lau and A. Pereira, run by Surefoot: on the paper's own plant, on a true "
         "pendulum and in full physics. Every number and every curve on this page is read from the logs of these runs."
@@ -131,17 +129,15 @@ def _contents(every: Sequence[PageSection]) -> str:
     return tag("nav", tag("ol", "".join(tag("li", link) for link in links)))
 
 
-def _section(
-    part: PageSection, content: str, numbers: dict[str, tuple[PageTable, ...]], results: Results, plates: Plates
-) -> str:
+def _section(part: PageSection, content: Sequence[str], results: Results, plates: Plates) -> str:
+    """Its text, its figures, its tables."""
     points = tag("ul", "".join(tag("li", entry) for entry in part.points)) if part.points else ""
     figures = (
         figure_html(plate.draw(results), plate.caption, plate.name, "half" if plate.half else "")
         for plate in plates.get(part.name, ())
     )
-    tables = (table.html for table in numbers.get(part.name, ()))
     text = (tag("p", paragraph) for paragraph in part.text)
-    return section(part.title, *text, points, content, *figures, *tables, name=part.name)
+    return section(part.title, *text, points, *figures, *content, name=part.name)
 
 
 def _claims_table(claims: Judged) -> str:
@@ -164,23 +160,11 @@ def _sentences(text: str) -> str:
 PAGE_NAME, NUMBERS_NAME, RUNS_NAME = "paper.html", "paper.json", "runs"
 
 
-@dataclass(frozen=True, slots=True)
-class PaperWritten:
-    """What the command left behind.
-
-    Attributes:
-        page: path of the page.
-        runs: how many experiments there are.
-        falls: how many fell.
-        failures: names of those that gave no result.
-        verdicts: how many claims have which verdict.
-    """
+class PaperWritten(NamedTuple):
+    """What the command left behind: the page, and the results that it is of."""
 
     page: Path
-    runs: int
-    falls: int
-    failures: tuple[str, ...]
-    verdicts: dict[Grade, int]
+    results: Results
 
 
 def paper(
@@ -224,9 +208,7 @@ def write(results: Results, out: Path, replace: bool = False, plates: Plates = P
         temporary.write_text(page(results, plates), encoding="utf-8")
     with write_whole(out / NUMBERS_NAME, replace) as temporary:
         temporary.write_text(json.dumps(_numbers(results), indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    falls = sum(bool(outcome.metrics.get("fell")) for outcome in results.outcomes)
-    failures = tuple(outcome.experiment.folder for outcome in results.failures)
-    return PaperWritten(out / PAGE_NAME, len(results.outcomes), falls, failures, tally(judged(results)))
+    return PaperWritten(out / PAGE_NAME, results)
 
 
 def _numbers(results: Results) -> dict[str, object]:

@@ -1,8 +1,8 @@
 """The tables of the page: what was measured, study by study, and what was run."""
 
 import math
-import statistics
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from surefoot.scenarios.record.provenance import ABSENT
 from surefoot.scenarios.show.kit.html import MISSING, PageTable, TableCell, TableRow, details, escape, number, tag
@@ -15,7 +15,42 @@ from surefoot.scenarios.study.paper.studies import (
     SHOVE_IMPULSES,
     PaperWorld,
     knee_study,
-    shove,
+)
+
+MM, PERCENT = 1e3, 1e2
+WORLD_NAMES: dict[PaperWorld, str] = {"cart-table": "cart-table", "pendulum": "pendulum", "full": "full physics"}
+
+
+class Measured(NamedTuple):
+    """A column of a table that shows a metric.
+
+    Attributes:
+        heading: with the unit that is shown.
+        metric: its name.
+        element: of it, None for the whole.
+        scale: from its value to what is shown.
+    """
+
+    heading: str
+    metric: str
+    element: int | None = None
+    scale: float = 1.0
+
+
+_BALANCE = (
+    Measured("ZMP error RMS x [mm]", "zmp_error_rms", 0, MM),
+    Measured("y [mm]", "zmp_error_rms", 1, MM),
+    Measured("largest ZMP error x [mm]", "zmp_error_max", 0, MM),
+    Measured("y [mm]", "zmp_error_max", 1, MM),
+    Measured("beyond the 90 % box [mm]", "zmp_excursion_max", None, MM),
+    Measured("ZMP inside it [% of time]", "zmp_inside_fraction", None, PERCENT),
+)
+_EFFORT = (
+    Measured("speed [m/s]", "speed_mean"),
+    Measured("knee angle, mean [deg]", "knee_angle_mean", None, 180.0 / math.pi),
+    Measured("cost of transport [-]", "cost_of_transport"),
+    Measured("knee torque RMS [N m]", "knee_torque_rms"),
+    Measured("largest torque [% of limit]", "torque_ratio_max", None, PERCENT),
 )
 
 
@@ -40,117 +75,83 @@ def _range(spread: Spread, scale: float, digits: int) -> str:
     return "" if least == greatest else f"{least} … {greatest}"
 
 
-MM = 1e3
-PERCENT = 1e2
-WORLD_NAMES: dict[PaperWorld, str] = {"cart-table": "cart-table", "pendulum": "pendulum", "full": "full physics"}
-
-BALANCE_HEAD = (
-    *("profile", "world", "fell", "feasible plans [%]", "ZMP error RMS x [mm]", "y [mm]"),
-    *("largest ZMP error x [mm]", "y [mm]", "beyond the 90 % box [mm]", "ZMP inside it [% of time]"),
-)
-
-
-def balance_table(name: str, samples: Iterable[Sample], note: str = "") -> PageTable:
+def balance_table(name: str, samples: Iterable[Sample]) -> PageTable:
     """Feasibility, ZMP errors and falls of some samples, study by study."""
+    head = ("profile", "world", "fell", "feasible plans [%]", *(column.heading for column in _BALANCE))
     rows: list[TableRow | str] = []
     for sample in samples:
         if sample.study.title not in rows:
             rows.append(sample.study.title)
-        rows.append(_balance_row(sample))
-    return PageTable(name, BALANCE_HEAD, rows, note)
+        rows.append([TableCell(sample.profile), TableCell(WORLD_NAMES[sample.world], "short"), *_balance(sample)])
+    return PageTable(name, head, rows)
 
 
-def feasible(sample: Sample) -> Spread | None:
-    """Share of plans whose problem, hard limits and all, had a solution [-]."""
-    infeasible = sample.spread("planner_infeasible_fraction")
-    if infeasible is None:
-        return None
-    return Spread(1.0 - infeasible.median, 1.0 - infeasible.greatest, 1.0 - infeasible.least)
+def _balance(sample: Sample) -> Iterator[TableCell]:
+    if not sample.runs:
+        yield TableCell("could not run", "bad short")
+        yield from (TableCell(MISSING, "number"),) * (1 + len(_BALANCE))
+        return
+    yield TableCell(_fell_text(sample), "short bad" if sample.falls else "short", None, _first_fall(sample))
+    share = sample.feasible
+    yield spread_cell(share, PERCENT, "number" if share is None or share.least >= 1.0 else "number bad")
+    for column in _BALANCE:
+        spread, kind = sample.spread(column.metric, column.element), "number past" if sample.falls else "number"
+        outside = column.metric == "zmp_excursion_max" and spread is not None and spread.greatest > 0.0
+        yield spread_cell(spread, column.scale, f"{kind} bad" if outside else kind)
+
+
+def _fell_text(sample: Sample) -> str:
+    return f"{sample.falls} of {len(sample.runs)}"
+
+
+def _first_fall(sample: Sample) -> str:
+    return f"from {number(min(sample.values('fall_time')))} s on" if sample.falls else ""
 
 
 def fell_text(sample: Sample) -> str:
     """How many of how many fell, and when the first of them."""
-    if not sample.falls:
-        return f"0 of {len(sample.runs)}"
-    return f"{sample.falls} of {len(sample.runs)}, from {number(min(sample.values('fall_time')))} s on"
+    return ", ".join(filter(None, (_fell_text(sample), _first_fall(sample))))
 
 
-def _fell_cell(sample: Sample) -> TableCell:
-    first = f"from {number(min(sample.values('fall_time')))} s on" if sample.falls else ""
-    return TableCell(f"{sample.falls} of {len(sample.runs)}", "short bad" if sample.falls else "short", None, first)
+def balance_text(samples: Sequence[Sample]) -> str:
+    """Falls and excursions of some samples of one profile and world, in a phrase."""
+    name = f"{samples[0].profile}, {WORLD_NAMES[samples[0].world]}"
+    runs = [outcome for sample in samples for outcome in sample.runs]
+    missing = any(len(sample.runs) < len(sample.outcomes) for sample in samples)
+    if missing or not runs:
+        return f"{name}: could not run" if missing else f"{name}: not run"
+    falls = sum(sample.falls for sample in samples)
+    fell = fell_text(samples[0]) if len(samples) == 1 else f"{falls} of {len(runs)}"
+    found = [value for sample in samples for value in sample.values("zmp_excursion_max")]
+    return f"{name}: fell in {fell}; {_excursion_text(max(found, default=None))}"
 
 
-def _balance_row(sample: Sample) -> tuple[TableCell, ...]:
-    head = (TableCell(sample.profile), TableCell(WORLD_NAMES[sample.world], "short"))
-    if not sample.runs:
-        return (
-            *head,
-            TableCell("could not run", "bad short"),
-            *(TableCell(MISSING, "number"),) * (len(BALANCE_HEAD) - 3),
-        )
-    kind = "number past" if sample.falls else "number"
-    share = feasible(sample)
-    inside = sample.spread("zmp_inside_fraction")
-    excursion = sample.spread("zmp_excursion_max")
-    outside = excursion is not None and excursion.greatest > 0.0
-    return (
-        *head,
-        _fell_cell(sample),
-        spread_cell(share, PERCENT, "number" if share is None or share.least >= 1.0 else "number bad"),
-        *(spread_cell(sample.spread("zmp_error_rms", axis), MM, kind) for axis in (0, 1)),
-        *(spread_cell(sample.spread("zmp_error_max", axis), MM, kind) for axis in (0, 1)),
-        spread_cell(excursion, MM, f"{kind} bad" if outside else kind),
-        spread_cell(inside, PERCENT, kind),
-    )
-
-
-def preview_gain(without: Sample, previewed: Sample) -> float | None:
-    """How many times lower the ZMP error is with previewed dynamics: ratio of medians of `error_norms` [-], or None."""
-    before, after = error_norms(without), error_norms(previewed)
-    return statistics.median(before) / statistics.median(after) if before and after else None
-
-
-def error_norms(sample: Sample) -> list[float]:
-    """Norm of the ZMP error's RMS in x and y, of each run [m]."""
-    return [math.hypot(*errors) for errors in zip(*(sample.values("zmp_error_rms", i) for i in (0, 1)), strict=True)]
+def _excursion_text(excursion: float | None) -> str:
+    """How far the ZMP came out of the 90 % box, in a phrase."""
+    if excursion is None:
+        return "no ZMP"
+    if excursion <= 0.0:
+        return f"ZMP at least {number(-excursion, MM)} mm inside the 90 % box"
+    return f"ZMP up to {number(excursion, MM)} mm beyond the 90 % box"
 
 
 def knee_table(results: Results) -> PageTable:
     """Effort with stretched and with bent knees, gait by gait."""
-    head = (
-        *("gait", "knees", "fell", "speed [m/s]", "knee angle, mean [deg]", "cost of transport [-]"),
-        *("knee torque RMS [N m]", "largest torque [% of limit]"),
-    )
     rows = []
     for gait in GAITS:
         for knee in KNEES:
             sample = results.sample(knee_study(gait, knee), "default", "full")
             fell = TableCell(fell_text(sample) if sample.runs else "could not run", "bad" if sample.falls else "")
-            columns = (
-                ("speed_mean", 1.0),
-                ("knee_angle_mean", 180.0 / math.pi),
-                ("cost_of_transport", 1.0),
-                ("knee_torque_rms", 1.0),
-                ("torque_ratio_max", PERCENT),
-            )
-            cells = (spread_cell(sample.spread(metric), scale) for metric, scale in columns)
+            cells = (spread_cell(sample.spread(column.metric), column.scale) for column in _EFFORT)
             rows.append((TableCell(gait), TableCell(knee), fell, *cells))
-    return PageTable("knees", head, rows)
-
-
-def survived(results: Results, adaptation: str, direction: str) -> list[int] | None:
-    """Impulses of a direction that did not make the robot fall [N s]; None when one of the runs is missing."""
-    samples = {i: results.sample(shove(i, direction, adaptation), "default", "pendulum") for i in SHOVE_IMPULSES}
-    if not all(sample.complete for sample in samples.values()):
-        return None
-    return [impulse for impulse, sample in samples.items() if not sample.falls]
+    return PageTable("knees", ("gait", "knees", "fell", *(column.heading for column in _EFFORT)), rows)
 
 
 def shove_table(results: Results) -> PageTable:
     """What was survived of strong pushes, with and without adaptation of the footsteps."""
     head = ("adaptation of footsteps", *(f"{direction} [N s]" for direction in SHOVE_DIRECTIONS))
     rows = [
-        (TableCell(adaptation), *(_survived_cell(survived(results, adaptation, way)) for way in SHOVE_DIRECTIONS))
+        (TableCell(adaptation), *(_survived_cell(results.survived(adaptation, way)) for way in SHOVE_DIRECTIONS))
         for adaptation in ADAPTATIONS
     ]
     tried = ", ".join(map(str, SHOVE_IMPULSES))
@@ -158,19 +159,23 @@ def shove_table(results: Results) -> PageTable:
 
 
 def _survived_cell(impulses: list[int] | None) -> TableCell:
-    if impulses is None:
-        return TableCell(MISSING, "number")
     if not impulses:
-        return TableCell(f"less than {min(SHOVE_IMPULSES)}", "number")
+        return TableCell(MISSING if impulses is None else f"less than {min(SHOVE_IMPULSES)}", "number")
     return TableCell(str(max(impulses)), "number", float(max(impulses)))
 
 
 def provenance(results: Results) -> str:
     """Versions that made the logs, and when."""
-    rows = [(escape(name), escape(", ".join(values))) for name, values in _versions(results.outcomes).items()]
-    written = sorted(outcome.written for outcome in results.outcomes if outcome.written)
+    found: dict[str, dict[str, None]] = {}
+    for outcome in results.outcomes:
+        for name, value in outcome.versions.items():
+            if value not in ("", ABSENT):
+                found.setdefault(name.replace("_", " "), {})[value] = None
+    rows = [(escape(name), escape(", ".join(values))) for name, values in found.items()]
+    written = sorted(outcome.written.replace("T", " ") for outcome in results.outcomes if outcome.written)
     if written:
-        rows.append(("logs written (UTC)", escape(f"{_date(written[0])} to {_date(written[-1])}")))
+        first, last = (date.removesuffix("+00:00") for date in (written[0], written[-1]))
+        rows.append(("logs written (UTC)", escape(f"{first} to {last}")))
     return PageTable("versions", ("made by", "version"), rows).html
 
 
@@ -183,7 +188,7 @@ def runs_table(results: Results) -> str:
     rows = [
         (
             escape(outcome.experiment.folder),
-            TableCell(_end(outcome), "bad" if outcome.failure or outcome.metrics.get("fell") else ""),
+            TableCell(_end(outcome), "bad" if outcome.failure or outcome.fell else ""),
             tag("code", escape(outcome.experiment.command)),
         )
         for outcome in results.outcomes
@@ -196,20 +201,6 @@ def runs_table(results: Results) -> str:
 def _end(outcome: ExperimentResult) -> str:
     if outcome.failure:
         return "could not run"
-    if outcome.metrics.get("fell"):
+    if outcome.fell:
         return f"fell at {number(outcome.metrics['fall_time'])} s"
     return f"{outcome.metrics.get('steps_taken', MISSING)} of {outcome.metrics.get('steps_planned', MISSING)} steps"
-
-
-def _versions(outcomes: Iterable[ExperimentResult]) -> dict[str, list[str]]:
-    """Every version that occurs, by name."""
-    found: dict[str, dict[str, None]] = {}
-    for outcome in outcomes:
-        for name, value in outcome.versions.items():
-            if value not in ("", ABSENT):
-                found.setdefault(name.replace("_", " "), {})[value] = None
-    return {name: list(values) for name, values in found.items()}
-
-
-def _date(iso: str) -> str:
-    return iso.replace("T", " ").removesuffix("+00:00")

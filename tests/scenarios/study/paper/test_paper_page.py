@@ -20,7 +20,6 @@ from surefoot.scenarios.study.paper.results import Spread, run_experiments
 from surefoot.scenarios.study.paper.studies import SHOVES, WALK, Experiment, Study
 from surefoot.scenarios.study.paper.tables import (
     balance_table,
-    feasible,
     shove_table,
     spread_cell,
     spread_text,
@@ -79,7 +78,7 @@ def test_a_table_gives_median_and_range_and_marks_falls_and_failures():
     assert (first[2].text, first[2].below) == ("1 of 3", "from 5 s on")
     assert (first[4].text, first[4].below, first[4].kind) == ("2", "1 … 3", "number past")
     assert second[2].text == "could not run"
-    assert feasible(found.sample(WALK, "default", "pendulum")) == Spread(1.0, 1.0, 1.0)
+    assert found.sample(WALK, "default").feasible == Spread(1.0, 1.0, 1.0)
 
 
 @pytest.mark.unit
@@ -181,7 +180,8 @@ def test_a_few_experiments_end_to_end(tmp_path):
     short = Study("walk", "Walk", "paper-walk", SHORT[:3])
     every = tuple(Experiment(short, "default", world) for world in ("cart-table", "pendulum", "full"))
     written = page.paper(tmp_path, 2, every=every)
-    assert (written.runs, written.falls, written.failures) == (3, 0, ())
+    found = written.results
+    assert (len(found.outcomes), found.falls, found.failures) == (3, 0, ())
     text = written.page.read_text()
     assert Page(text).asked == []
     assert text.count("<svg ") == 9

@@ -224,7 +224,7 @@ def run_cells(
     """Run what has no result yet; one that fails does not stop the others.
 
     Args:
-        cells: to run; taken as workers get free.
+        cells: to run.
         journal: gets every result.
         workers: that make the runs.
         on_run: is told each new result.
@@ -235,9 +235,13 @@ def run_cells(
         LogError: a result could not be written down.
     """
     told: queue.SimpleQueue[_News] = queue.SimpleQueue()
+    left: queue.SimpleQueue[Searched] = queue.SimpleQueue()
+    for cell in cells:
+        left.put(cell)
     stop = threading.Event()
-    shared = (_Shared(cells), journal, told, stop)
-    slots = [threading.Thread(target=_slot, args=(worker, *shared), daemon=True) for worker in workers]
+    slots = [
+        threading.Thread(target=_slot, args=(worker, left, journal, told, stop), daemon=True) for worker in workers
+    ]
     running = len(slots)
     try:
         for slot in slots:
@@ -269,64 +273,50 @@ _News = Record | Exception | Literal["cell", "end"]
 """What a slot tells: a result, what went wrong, that a cell is done, that it has nothing more to do."""
 
 
-class _Shared:
-    """An iterator for several threads."""
-
-    def __init__(self, items: Iterable[Searched]) -> None:
-        self._items, self._lock = iter(items), threading.Lock()
-
-    def __iter__(self) -> Iterator[Searched]:
-        return self
-
-    def __next__(self) -> Searched:
-        with self._lock:
-            return next(self._items)
-
-
 def _slot(
     worker: Worker,
-    cells: Iterator[Searched],
+    left: "queue.SimpleQueue[Searched]",
     journal: Journal,
     told: "queue.SimpleQueue[_News]",
     stop: threading.Event,
 ) -> None:
-    """Take one cell after the other, and have what has no result run."""
+    """Take one cell after the other that is left, and have what has no result run."""
+
+    def made(point: Point) -> bool:
+        if journal.get(point) is None:
+            if stop.is_set():
+                return False
+            record = worker(point)
+            journal.add(point, record)
+            told.put(record)
+        found = journal.said(point)
+        return found is not None and found.status != "broken"
+
     try:
-        for cell in cells:
-            for point, known in _asked(cell, journal):
-                if known is None:
-                    if stop.is_set():
-                        return
-                    record = worker(point)
-                    journal.add(point, record)
-                    told.put(record)
+        while not stop.is_set():
+            outcome_of(left.get_nowait(), journal, made)
             told.put("cell")
+    except queue.Empty:
+        pass
     except Exception as error:
         told.put(error)
     finally:
         told.put("end")
 
 
-def _asked(cell: Searched, journal: Journal) -> Iterator[tuple[Point, Record | None]]:
-    """Each run that a cell asks for, with its result where it is known; the journal has it when the next is asked."""
-    search = cell.search()
-    with suppress(StopIteration):
-        point = next(search)
-        while True:
-            yield point, journal.get(point)
-            record = journal.said(point)
-            if record is None or record.status == "broken":
-                return
-            point = search.send(record)
+def outcome_of(cell: Searched, journal: Journal, made: Callable[[Point], bool] = lambda _: True) -> Outcome:
+    """What became of a cell, by the results that are there.
 
-
-def outcome_of(cell: Searched, journal: Journal) -> Outcome:
-    """What became of a cell, by the results that are there."""
+    Args:
+        cell: that was asked for.
+        journal: has the results.
+        made: is asked of each run before its result is looked up, and says whether to go on.
+    """
     runs: list[tuple[Point, Record]] = []
     search = cell.search()
     try:
         point = next(search)
-        while (record := journal.said(point)) is not None:
+        while made(point) and (record := journal.said(point)) is not None:
             runs.append((point, record))
             point = search.send(record)
     except StopIteration as end:

@@ -9,7 +9,7 @@ import shutil
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -54,6 +54,7 @@ class MadeOf:
 
     def __init__(self, versions: Callable[[], Mapping[str, str]] = relevant_versions) -> None:
         self._versions = versions
+        self._base, self._robot = lru_cache(maxsize=None)(_named), lru_cache(maxsize=None)(robot_digest)
 
     def of(self, point: Point, anywhere: bool = False) -> str:
         """Digest of all that the result of a run depends on but its scenario.
@@ -67,14 +68,6 @@ class MadeOf:
         versions = {name: one for name, one in self._versions().items() if not (anywhere and name in OF_A_MACHINE)}
         robot = self._robot(str(point.settings.get("robot", base.robot)))
         return _digest([versions, dict(packages_of(words)), robot])
-
-    @cached_property
-    def _base(self) -> Callable[[Written], _Names]:
-        return lru_cache(maxsize=None)(_named)
-
-    @cached_property
-    def _robot(self) -> Callable[[str], str]:
-        return lru_cache(maxsize=None)(robot_digest)
 
 
 def robot_digest(name: str) -> str:

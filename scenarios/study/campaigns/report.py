@@ -22,18 +22,17 @@ from surefoot.scenarios.show.kit.html import (
     tag,
     tally,
 )
-from surefoot.scenarios.study.campaigns.axes import Axis, angle_of, is_around, text, with_unit
 from surefoot.scenarios.study.campaigns.capturability import LIMIT_NOTE, Limits
 from surefoot.scenarios.study.campaigns.journal import JOURNAL
 from surefoot.scenarios.study.campaigns.points import Cell, Point, Record, Runs, RunStatus
+from surefoot.scenarios.study.campaigns.spec import Axis, angle_of, is_around, text, with_unit
 from surefoot.scenarios.study.campaigns.success import (
     distributions_section,
     judged_of,
     map_section,
-    passed_of,
+    rate_of,
     success_section,
 )
-from surefoot.scenarios.study.campaigns.table import wilson
 from surefoot.scenarios.study.campaigns.thresholds import Found, along, are_named, bars, compass
 
 if TYPE_CHECKING:
@@ -68,9 +67,8 @@ def _tally(swept: "Swept", runs: Runs) -> str:
         done = sum(outcome.threshold is not None for outcome in swept.outcomes)
         boxes.append((f"{done} of {len(swept.outcomes)}", "thresholds found"))
     elif judged:
-        rate = wilson(passed_of(judged), len(judged))
-        interval = f"success rate, 95 % interval {100 * rate.low:.1f} to {100 * rate.high:.1f} %"
-        boxes.append((f"{100 * rate.rate:.1f} %", interval))
+        rate = rate_of(judged)
+        boxes.append((f"{100 * rate.rate:.1f} %", f"success rate, 95 % interval {rate.between} %"))
     return tally(boxes)
 
 

@@ -140,7 +140,7 @@ class Swept:
         if self.campaign.spec.bisect is None and self.ran:
             judged = [record.status for _, record in self.facts if record.status in ("pass", "fail")]
             rate = wilson(judged.count("pass"), len(judged))
-            yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {100 * rate.low:.1f} to {100 * rate.high:.1f} %"
+            yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {rate.between} %"
         yield from map(str, reversed(self.files))
 
     def to_json(self) -> dict[str, Any]:

@@ -106,11 +106,9 @@ class Baseline:
 
     def other_world(self, now: "Baseline") -> list[str]:
         """Which options of the world are not as here, a sentence each."""
-        return [
-            f"the world's {name} is {_shown(now.world.get(name))}, {_shown(before)} in the baseline"
-            for name, before in self.world.items()
-            if not _alike(before, now.world.get(name))
-        ]
+        other = {name: was for name, was in self.world.items() if not _alike(was, now.world.get(name))}
+        shown = {name: _flow(now.world[name]) if name in now.world else "none" for name in other}
+        return [f"the world's {name} is {shown[name]}, {_flow(was)} in the baseline" for name, was in other.items()]
 
     def moves(self, metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> Iterator[Move]:
         """Metrics that moved by more than their tolerance; those that the baseline has not got are no moves."""
@@ -262,11 +260,6 @@ def _alike(before: Any, now: Any) -> bool:
     if isinstance(before, int | float) and isinstance(now, int | float):
         return math.isclose(before, now, rel_tol=SAME_OPTION, abs_tol=1e-12)
     return bool(before == now)
-
-
-def _shown(option: Any) -> str:
-    """An option as the file has it."""
-    return "none" if option is None else _flow(option)
 
 
 def _near(before: MetricValue, now: MetricValue, allowed: float) -> bool:

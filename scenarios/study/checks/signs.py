@@ -77,7 +77,7 @@ class Sign:
         columns: names; three are the x, y and z of a place in the world.
         digits: behind the point.
         tolerance: how far two runs may be apart that count as the same, and share of the value beside it.
-        shown: factor and unit in which a person is shown it.
+        unit: in which a person is shown it.
         figure: of `surefoot plot` that shows it.
         words: what it is, of which foot and in which stage.
         measure: it.
@@ -88,12 +88,22 @@ class Sign:
     columns: tuple[str, ...]
     digits: int
     tolerance: tuple[float, float]
-    shown: tuple[float, str]
+    unit: str
     figure: str
     words: str
     measure: Measure
     body: bool = False
     peak: bool = False
+
+    @property
+    def scale(self) -> float:
+        """From its values to what a person is shown."""
+        return {"ms": 1e3, "mm": 1e3, "deg": 180.0 / math.pi}.get(self.unit, 1.0)
+
+    @property
+    def around(self) -> bool:
+        """Whether it is an angle."""
+        return self.unit == "deg"
 
 
 def _times(run: RunView, parts: Sequence[Stage]) -> Array:
@@ -184,46 +194,37 @@ def _com(run: RunView, parts: Sequence[Stage]) -> Array:
     return run.field("/truth", "com")[[one.end - 1 for one in parts]]
 
 
-_SECONDS, _MS, _MM, _DEGREES, _NEWTON_METRES = (
-    (1.0, "s"),
-    (1e3, "ms"),
-    (1e3, "mm"),
-    (180.0 / math.pi, "deg"),
-    (1.0, "N m"),
-)
-_PLAIN = (1.0, "")
 _GRIP = "largest force along the ground over normal force that the controller plans for the {} foot {{stage}}"
 _LAG = "lag of the measured ground forces behind those that the controller plans {stage}"
 _SWING = "swing task: largest distance of the {foot} sole from its reference {stage}"
 _BALANCE = "balance: largest distance of the CoM along the ground from where the controller was to hold it {stage}"
 _ZMP = "largest distance of the ZMP from its reference {stage}"
+_SOLE, _YAW = "{foot} sole at touchdown of {label}", "heading of the {foot} sole at touchdown of {label}"
 
 
 def _leg(side: str) -> Sign:
     torque = _each(partial(_leg_torque, side=side), lambda squared: math.sqrt(np.mean(squared)))
     words = f"torque of the {side} leg (RMS) {{stage}}"
-    return Sign((f"torque_{side}",), 2, (0.5, 0.02), _NEWTON_METRES, "torques", words, torque, body=True)
+    return Sign((f"torque_{side}",), 2, (0.5, 0.02), "N m", "torques", words, torque, body=True)
 
 
 def _grip(side: str) -> Sign:
     used, words = _each(partial(_friction, side=side)), _GRIP.format(side)
-    return Sign((f"friction_{side}",), 3, (0.1, 0.0), _PLAIN, "grip", words, used, body=True, peak=True)
+    return Sign((f"friction_{side}",), 3, (0.1, 0.0), "", "grip", words, used, body=True, peak=True)
 
-
-_SOLE, _YAW = "{foot} sole at touchdown of {label}", "heading of the {foot} sole at touchdown of {label}"
 
 SIGNS: tuple[Sign, ...] = (
-    Sign(("time",), 3, (0.011, 0.0), _SECONDS, "feet", "begin of {label}", _times),
-    Sign(("lag",), 4, (1e-3, 0.0), _MS, "feet", _LAG, _lag, body=True),
+    Sign(("time",), 3, (0.011, 0.0), "s", "feet", "begin of {label}", _times),
+    Sign(("lag",), 4, (1e-3, 0.0), "ms", "feet", _LAG, _lag, body=True),
     *map(_grip, FOOT_NAMES),
-    Sign(("sole_x", "sole_y", "sole_z"), 4, (1e-3, 0.0), _MM, "soles", _SOLE, _landings),
-    Sign(("sole_yaw",), 4, (5e-3, 0.0), _DEGREES, "top-view", _YAW, _landing_yaw),
-    Sign(("swing",), 5, (5e-5, 0.05), _MM, "feet", _SWING, _swing_error),
+    Sign(("sole_x", "sole_y", "sole_z"), 4, (1e-3, 0.0), "mm", "soles", _SOLE, _landings),
+    Sign(("sole_yaw",), 4, (5e-3, 0.0), "deg", "top-view", _YAW, _landing_yaw),
+    Sign(("swing",), 5, (5e-5, 0.05), "mm", "feet", _SWING, _swing_error),
     *map(_leg, FOOT_NAMES),
-    Sign(("zmp",), 4, (5e-3, 0.05), _MM, "balance", _ZMP, _each(_zmp_error)),
-    Sign(("sway",), 5, (2e-4, 0.05), _MM, "balance", _BALANCE, _each(_sway)),
-    Sign(("tilt",), 4, (2e-3, 0.05), _DEGREES, "balance", "largest tilt of the torso {stage}", _each(_tilt), body=True),
-    Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), _MM, "balance", "CoM at the end of {label}", _com),
+    Sign(("zmp",), 4, (5e-3, 0.05), "mm", "balance", _ZMP, _each(_zmp_error)),
+    Sign(("sway",), 5, (2e-4, 0.05), "mm", "balance", _BALANCE, _each(_sway)),
+    Sign(("tilt",), 4, (2e-3, 0.05), "deg", "balance", "largest tilt of the torso {stage}", _each(_tilt), body=True),
+    Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), "mm", "balance", "CoM at the end of {label}", _com),
 )
 """What is kept of a run; of those that part in the same stage, the first is nearest to the cause. Torques come late:
 after the first tick they follow from how the robot moves."""

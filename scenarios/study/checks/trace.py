@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from surefoot.planner.geometry import frame_rotation
 from surefoot.scenarios.judge.digest import Array, RunView
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.show.logview import FOOT_NAMES
@@ -80,10 +81,9 @@ class Trace:
         longer = self if len(self.labels) > stage else now
         begin, *later = longer._begins[stage:]
         window = (begin, min(later, default=math.inf))
-        if len(now.labels) <= stage:
-            return [Parting(f"{self.labels[stage]} is not there", stage, math.inf, "balance", *window)]
-        if len(self.labels) <= stage:
-            return [Parting(f"{now.labels[stage]} is one too many", stage, math.inf, "balance", *window)]
+        if min(len(self.labels), len(now.labels)) <= stage:
+            text = f"{longer.labels[stage]} is {'not there' if longer is self else 'one too many'}"
+            return [Parting(text, stage, math.inf, "balance", *window)]
         if (self.labels[stage], self.feet[stage]) != (now.labels[stage], now.feet[stage]):
             which = (f"{one.labels[stage]} with the foot {one.feet[stage]}" for one in (now, self))
             return [Parting(" is in the baseline ".join(which), stage, math.inf, "feet", *window)]
@@ -106,17 +106,15 @@ class Trace:
         where = {"first tick": "at the first tick", "stand": "before the first step"}.get(label, f"in {label}")
         what = sign.words.format(stage=where, label=label, foot=foot)
         if not np.all(told):
-            return (
-                _LOST,
-                f"{what} {'cannot be told any more' if told[0].all() else 'could not be told in the baseline'}",
-            )
+            since = "cannot be told any more" if told[0].all() else "could not be told in the baseline"
+            return _LOST, f"{what} {since}"
         yaw = self.values["sole_yaw"][stage] if len(before) == 3 and "sole_yaw" in self.values else 0.0
         if sign.peak:
             before = np.array([np.nanmax(self.values[sign.columns[0]])])
             off = self._over_peak(now, sign, stage, float(before[0]))
         else:
             off = after - before
-        if sign.shown[1] == "deg":
+        if sign.around:
             off = np.remainder(off + math.pi, 2.0 * math.pi) - math.pi
         allowed = sign.tolerance[0] + sign.tolerance[1] * float(np.abs(before).max())
         text = _place_text(off, yaw, sign) if len(off) == 3 else _number_text(after, before, sign)
@@ -154,12 +152,8 @@ class Trace:
         if not isinstance(rows, list) or not rows or not all(isinstance(row, list) for row in rows):
             raise ValueError("its trace is no table")
         head, *below = rows
-        if (
-            not all(isinstance(name, str) for name in head)
-            or head[:2] != _LABELS
-            or not set(head[2:]) <= set(COLUMNS)
-            or len(set(head)) < len(head)
-        ):
+        named = all(isinstance(name, str) for name in head) and len(set(head)) == len(head)
+        if not named or head[:2] != _LABELS or not set(head[2:]) <= set(COLUMNS):
             raise ValueError(f"its trace has columns other than {', '.join((*_LABELS, *COLUMNS))}")
         if any(len(row) != len(head) for row in below):
             raise ValueError("its trace has rows of other lengths than the first")
@@ -178,17 +172,11 @@ def _is_finite(value: Any) -> bool:
 
 def _place_text(off: Array, yaw: float, sign: Sign) -> str:
     """How far one place is from another, along the direction in which it is farthest in the heading there."""
-    scale, unit = sign.shown
-    along = (
-        off[0] * math.cos(yaw) + off[1] * math.sin(yaw),
-        off[1] * math.cos(yaw) - off[0] * math.sin(yaw),
-        off[2],
-    )
+    along = (*(off[:2] @ frame_rotation(yaw)), off[2])
     axis = int(np.argmax(np.abs(along)))
-    return f"{scale * abs(along[axis]):.1f} {unit} {_SIDES[axis][int(along[axis] < 0.0)]} the baseline"
+    return f"{sign.scale * abs(along[axis]):.1f} {sign.unit} {_SIDES[axis][int(along[axis] < 0.0)]} the baseline"
 
 
 def _number_text(now: Array, before: Array, sign: Sign) -> str:
-    scale, unit = sign.shown
-    values = (f"{scale * float(one[0]):.3g} {unit}".rstrip() for one in (now, before))
+    values = (f"{sign.scale * float(one[0]):.3g} {sign.unit}".rstrip() for one in (now, before))
     return f"{next(values)}, {'at most ' if sign.peak else ''}{next(values)} in the baseline"

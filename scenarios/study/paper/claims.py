@@ -320,7 +320,7 @@ def stretched_knees(results: Results) -> Assessment:
     return Assessment(_NO_KNEES, f"mean knee flexion: {', '.join(parts)}", verdict)
 
 
-_JUDGES: Mapping[str, Callable[[Results], Assessment]] = {
+JUDGES: Mapping[str, Callable[[Results], Assessment]] = {
     "walk": partial(survival, studies=(WALK,), full=(WALK,), margin=0.0),
     "hard": hard_constraint,
     "stairs": partial(survival, studies=STAIRS[:1], full=STAIRS[:1], margin=0.0),
@@ -345,6 +345,6 @@ def claims() -> tuple[Claim, ...]:
     numbers["stretched"] = math.degrees(STRETCHED)
     written = yaml.safe_load((files(__package__) / "claims.yaml").read_text(encoding="utf-8"))
     return tuple(
-        Claim(f"claim-{name}", said["section"], said["text"], said["rule"].format(**numbers), _JUDGES[name])
+        Claim(f"claim-{name}", said["section"], said["text"], said["rule"].format(**numbers), JUDGES[name])
         for name, said in written.items()
     )

@@ -1,6 +1,6 @@
 """The paper's figures, drawn anew from the logs: runs side by side, quantities below each other."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -235,23 +235,6 @@ def preview_chart(results: Results) -> Figure:
     return figure
 
 
-@dataclass(frozen=True, slots=True)
-class Plate:
-    """A figure of the page.
-
-    Attributes:
-        name: its anchor.
-        caption: what it shows.
-        draw: draws it.
-        half: whether it takes half of the page's width.
-    """
-
-    name: str
-    caption: str
-    draw: Callable[[Results], Figure]
-    half: bool = False
-
-
 POSITIONS = tuple(PanelRow(f"{name} [m]", partial(position, axis=axis), 1.7) for axis, name in enumerate("xy"))
 JERKS = tuple(
     PanelRow(f"jerk {name} [m/s³]", partial(jerk, axis=axis), 1.1, shared=False) for axis, name in enumerate("xy")
@@ -292,57 +275,13 @@ def _pushes(results: Results, run: Run) -> Figure:
     return grid(columns, POSITIONS)
 
 
-PLATES: dict[str, tuple[Plate, ...]] = {
-    "diagonal-walk": (
-        Plate(
-            "figure-walk",
-            "Diagonal walk: reference and measured ZMP and CoM in x and y, and the jerk that the planner commands; "
-            "dotted, the paper's bound of ±1.5 m/s³. The axes of the paper's figure 2.",
-            partial(_runs, study=studies.WALK, runs=SIDE_BY_SIDE, rows=(*POSITIONS, *JERKS)),
-        ),
-    ),
-    "stairs": (
-        Plate(
-            "figure-stairs",
-            "Stairs of 0.10 m: CoM height with single and double support shaded, ZMP and CoM in x and y. "
-            "The axes of the paper's figure 3.",
-            partial(_runs, study=studies.STAIRS[0], runs=ON_STAIRS, rows=(HEIGHT, *POSITIONS)),
-        ),
-        Plate(
-            "figure-preview",
-            "ZMP error over riser height: norm of the RMS in x and y, median over seeds, with the range over seeds. "
-            "lti keeps everything of default but the preview of the changing dynamics.",
-            preview_chart,
-            half=True,
-        ),
-    ),
-    "noise": (
-        Plate(
-            "figure-noise-walk",
-            "Diagonal walk with noise of ±0.02 m on the measured ZMP and 2 mm on the CoM. "
-            "First row of the paper's figure 4.",
-            partial(_runs, study=studies.NOISE_WALK, runs=SIDE_BY_SIDE, rows=POSITIONS),
-        ),
-        Plate(
-            "figure-noise-stairs",
-            "Stairs of 0.10 m with the same noise. Second row of the paper's figure 4.",
-            partial(_runs, study=studies.NOISE_STAIRS, runs=ON_STAIRS, rows=POSITIONS),
-        ),
-    ),
-    "height-error": (
-        Plate(
-            "figure-height",
-            "True ZMP when the planner's CoM height is wrong by −0.2, −0.1, +0.1 and +0.2 m. The paper's figure 5.",
-            _heights,
-        ),
-    ),
-    "pushes": tuple(
-        Plate(
-            f"figure-push-{run[0]}",
-            f"{_called(run)}: pushes of 10 ms at 2.2 s, with noise. The axes of the paper's figure 6.",
-            partial(_pushes, run=run),
-        )
-        for run in SIDE_BY_SIDE
-    ),
+PLATES: Mapping[str, Callable[[Results], Figure]] = {
+    "figure-walk": partial(_runs, study=WALK, runs=SIDE_BY_SIDE, rows=(*POSITIONS, *JERKS)),
+    "figure-stairs": partial(_runs, study=STAIRS[0], runs=ON_STAIRS, rows=(HEIGHT, *POSITIONS)),
+    "figure-preview": preview_chart,
+    "figure-noise-walk": partial(_runs, study=studies.NOISE_WALK, runs=SIDE_BY_SIDE, rows=POSITIONS),
+    "figure-noise-stairs": partial(_runs, study=studies.NOISE_STAIRS, runs=ON_STAIRS, rows=POSITIONS),
+    "figure-height": _heights,
+    **{f"figure-push-{run[0]}": partial(_pushes, run=run) for run in SIDE_BY_SIDE},
 }
-"""Figures by the section that they stand in."""
+"""What draws each figure, by its anchor; where it stands and what is said of it, `sections.yaml` tells."""

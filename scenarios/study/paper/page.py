@@ -5,9 +5,10 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import yaml
+from matplotlib.figure import Figure
 
 from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.run.run import made_folder
@@ -16,7 +17,7 @@ from surefoot.scenarios.show.kit.html import tally as tally_html
 from surefoot.scenarios.study.campaigns.engine import Worker, local_workers
 from surefoot.scenarios.study.campaigns.sweep import CampaignBar
 from surefoot.scenarios.study.paper.claims import Assessment, Claim, Grade, claims
-from surefoot.scenarios.study.paper.figures import PLATES, Plate
+from surefoot.scenarios.study.paper.figures import PLATES
 from surefoot.scenarios.study.paper.results import Results, run_experiments
 from surefoot.scenarios.study.paper.studies import (
     BRISK_STAIRS,
@@ -46,12 +47,14 @@ class PageSection(NamedTuple):
         title: its heading.
         text: paragraphs, as HTML.
         points: entries of a list below them, as HTML.
+        figures: of each its anchor, its caption, and whether it takes half of the page's width.
     """
 
     name: str
     title: str
     text: tuple[str, ...]
     points: tuple[str, ...] = ()
+    figures: tuple[dict[str, Any], ...] = ()
 
 
 def sections() -> tuple[PageSection, ...]:
@@ -86,8 +89,8 @@ _BALANCES: dict[str, tuple[str, tuple[Study, ...]]] = {
 """Tables of falls and ZMP errors by the section that they stand in: the anchor, and the studies."""
 
 
-Plates = Mapping[str, Sequence[Plate]]
-"""Figures by the section that they stand in."""
+Plates = Mapping[str, Callable[[Results], Figure]]
+"""What draws figures, by their anchors; those that it has not got are left out."""
 
 
 def page(results: Results, plates: Plates = PLATES) -> str:
@@ -133,8 +136,9 @@ def _section(part: PageSection, content: Sequence[str], results: Results, plates
     """Its text, its figures, its tables."""
     points = tag("ul", "".join(tag("li", entry) for entry in part.points)) if part.points else ""
     figures = (
-        figure_html(plate.draw(results), plate.caption, plate.name, "half" if plate.half else "")
-        for plate in plates.get(part.name, ())
+        figure_html(plates[one["name"]](results), one["caption"], one["name"], "half" if one.get("half") else "")
+        for one in part.figures
+        if one["name"] in plates
     )
     text = (tag("p", paragraph) for paragraph in part.text)
     return section(part.title, *text, points, *figures, *content, name=part.name)

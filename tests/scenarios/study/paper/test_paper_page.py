@@ -14,7 +14,7 @@ from surefoot.scenarios.log import read
 from surefoot.scenarios.show.kit.html import number, svg
 from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
 from surefoot.scenarios.study.paper import page
-from surefoot.scenarios.study.paper.figures import JERKS, POSITIONS, PanelColumn, grid
+from surefoot.scenarios.study.paper.figures import JERKS, PLATES, POSITIONS, PanelColumn, grid
 from surefoot.scenarios.study.paper.page import paper as page_of
 from surefoot.scenarios.study.paper.results import Spread, run_experiments
 from surefoot.scenarios.study.paper.studies import SHOVES, WALK, Experiment, Study
@@ -85,6 +85,12 @@ def test_a_table_gives_median_and_range_and_marks_falls_and_failures():
 def test_the_shove_table_says_what_was_survived():
     html = shove_table(results(*(outcome(study) for study in SHOVES))).html
     assert values(html) == [14.0] * 8
+
+
+@pytest.mark.unit
+def test_every_figure_that_a_section_names_is_drawn_and_the_other_way_round():
+    named = [one["name"] for part in page.sections() for one in part.figures]
+    assert sorted(named) == sorted(PLATES)
 
 
 @pytest.mark.unit

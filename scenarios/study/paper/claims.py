@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 import yaml
 
 from surefoot.scenarios.show.kit.html import number
-from surefoot.scenarios.study.paper.results import Results, Sample
+from surefoot.scenarios.study.paper.results import MM, PERCENT, Results, Sample, balance_text, spread_text
 from surefoot.scenarios.study.paper.studies import (
     CLAIMANTS,
     GAITS,
@@ -30,7 +30,6 @@ from surefoot.scenarios.study.paper.studies import (
     Study,
     knee_study,
 )
-from surefoot.scenarios.study.paper.tables import MM, PERCENT, balance_text, spread_text
 
 Grade = Literal["holds", "holds with a change", "does not hold", "not measured"]
 

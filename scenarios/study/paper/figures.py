@@ -40,9 +40,8 @@ from surefoot.scenarios.show.kit.figures import (
 from surefoot.scenarios.show.kit.shading import background
 from surefoot.scenarios.show.logview import LogView, MissingError
 from surefoot.scenarios.study.paper import studies
-from surefoot.scenarios.study.paper.results import Results, Sample
+from surefoot.scenarios.study.paper.results import WORLD_NAMES, Results, Sample
 from surefoot.scenarios.study.paper.studies import STAIRS, WALK, PaperWorld, Study
-from surefoot.scenarios.study.paper.tables import WORLD_NAMES
 
 Views = Sequence[tuple[str, LogView]]
 

@@ -1,8 +1,9 @@
 """The page, and the command that writes it."""
 
 import json
+import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,31 +13,36 @@ from matplotlib.figure import Figure
 
 from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.run.run import made_folder
-from surefoot.scenarios.show.kit.html import PageTable, TableRow, details, document, escape, figure_html, section, tag
+from surefoot.scenarios.show.kit.html import (
+    MISSING,
+    PageTable,
+    TableCell,
+    TableRow,
+    details,
+    document,
+    escape,
+    figure_html,
+    section,
+    tag,
+)
 from surefoot.scenarios.show.kit.html import tally as tally_html
 from surefoot.scenarios.study.campaigns.engine import Worker, local_workers
 from surefoot.scenarios.study.campaigns.sweep import CampaignBar
+from surefoot.scenarios.study.paper import studies
 from surefoot.scenarios.study.paper.claims import Assessment, Claim, Grade, claims
 from surefoot.scenarios.study.paper.figures import PLATES
-from surefoot.scenarios.study.paper.results import Results, run_experiments
-from surefoot.scenarios.study.paper.studies import (
-    BRISK_STAIRS,
-    BRISK_WALK,
-    HEIGHTS,
-    NOISE_ALONE,
-    NOISE_STAIRS,
-    NOISE_WALK,
-    PUSHES,
-    STAIRS,
-    STEP_LAW,
-    WALK,
-    WIDE_WALK,
-    ZMP_ONLY,
-    Experiment,
-    Study,
-    experiments,
+from surefoot.scenarios.study.paper.results import (
+    MM,
+    PERCENT,
+    WORLD_NAMES,
+    Results,
+    Sample,
+    fell_text,
+    first_fall,
+    run_experiments,
+    spread_cell,
 )
-from surefoot.scenarios.study.paper.tables import balance_table, knee_table, provenance, runs_table, shove_table
+from surefoot.scenarios.study.paper.studies import Experiment, Study, experiments
 
 
 class PageSection(NamedTuple):
@@ -80,11 +86,122 @@ def judged(results: Results) -> Judged:
     return [(claim, claim.judge(results)) for claim in claims()]
 
 
+Columns = tuple[tuple[str, str, int | None, float], ...]
+"""Of a table that shows metrics: heading, metric, element of it, None for the whole, and factor of what is shown."""
+
+_BALANCE: Columns = (
+    ("ZMP error RMS x [mm]", "zmp_error_rms", 0, MM),
+    ("y [mm]", "zmp_error_rms", 1, MM),
+    ("largest ZMP error x [mm]", "zmp_error_max", 0, MM),
+    ("y [mm]", "zmp_error_max", 1, MM),
+    ("beyond the 90 % box [mm]", "zmp_excursion_max", None, MM),
+    ("ZMP inside it [% of time]", "zmp_inside_fraction", None, PERCENT),
+)
+_EFFORT: Columns = (
+    ("speed [m/s]", "speed_mean", None, 1.0),
+    ("knee angle, mean [deg]", "knee_angle_mean", None, 180.0 / math.pi),
+    ("cost of transport [-]", "cost_of_transport", None, 1.0),
+    ("knee torque RMS [N m]", "knee_torque_rms", None, 1.0),
+    ("largest torque [% of limit]", "torque_ratio_max", None, PERCENT),
+)
+
+
+def balance_table(name: str, samples: Iterable[Sample]) -> PageTable:
+    """Feasibility, ZMP errors and falls of some samples, study by study."""
+    head = ("profile", "world", "fell", "feasible plans [%]", *(column[0] for column in _BALANCE))
+    rows: list[TableRow | str] = []
+    for sample in samples:
+        if sample.study.title not in rows:
+            rows.append(sample.study.title)
+        rows.append([TableCell(sample.profile), TableCell(WORLD_NAMES[sample.world], "short"), *_balance(sample)])
+    return PageTable(name, head, rows)
+
+
+def _balance(sample: Sample) -> Iterator[TableCell]:
+    if not sample.runs:
+        yield TableCell("could not run", "bad short")
+        yield from (TableCell(MISSING, "number"),) * (1 + len(_BALANCE))
+        return
+    yield TableCell(
+        f"{sample.falls} of {len(sample.runs)}", "short bad" if sample.falls else "short", None, first_fall(sample)
+    )
+    share = sample.feasible
+    yield spread_cell(share, PERCENT, "number" if share is None or share.least >= 1.0 else "number bad")
+    for _, metric, element, scale in _BALANCE:
+        spread, kind = sample.spread(metric, element), "number past" if sample.falls else "number"
+        outside = metric == "zmp_excursion_max" and spread is not None and spread.greatest > 0.0
+        yield spread_cell(spread, scale, f"{kind} bad" if outside else kind)
+
+
+def knee_table(results: Results) -> PageTable:
+    """Effort with stretched and with bent knees, gait by gait."""
+    rows = []
+    for gait in studies.GAITS:
+        for knee in studies.KNEES:
+            sample = results.sample(studies.knee_study(gait, knee), "default", "full")
+            fell = TableCell(fell_text(sample) if sample.runs else "could not run", "bad" if sample.falls else "")
+            cells = (spread_cell(sample.spread(metric, part), scale) for _, metric, part, scale in _EFFORT)
+            rows.append((TableCell(gait), TableCell(knee), fell, *cells))
+    return PageTable("knees", ("gait", "knees", "fell", *(column[0] for column in _EFFORT)), rows)
+
+
+def shove_table(results: Results) -> PageTable:
+    """What was survived of strong pushes, with and without adaptation of the footsteps."""
+    head = ("adaptation of footsteps", *(f"{direction} [N s]" for direction in studies.SHOVE_DIRECTIONS))
+    rows = [
+        (
+            TableCell(adaptation),
+            *(_survived_cell(results.survived(adaptation, way)) for way in studies.SHOVE_DIRECTIONS),
+        )
+        for adaptation in studies.ADAPTATIONS
+    ]
+    tried = ", ".join(map(str, studies.SHOVE_IMPULSES))
+    return PageTable("shoves", head, rows, f"Largest impulse survived of {tried} N s.")
+
+
+def _survived_cell(impulses: list[int] | None) -> TableCell:
+    if not impulses:
+        return TableCell(MISSING if impulses is None else f"less than {min(studies.SHOVE_IMPULSES)}", "number")
+    return TableCell(str(max(impulses)), "number", float(max(impulses)))
+
+
+def provenance(results: Results) -> str:
+    """Versions that made the logs, and when."""
+    rows = [(escape(name), escape(", ".join(values))) for name, values in results.versions.items()]
+    written = sorted(outcome.written.replace("T", " ") for outcome in results.outcomes if outcome.written)
+    if written:
+        first, last = (date.removesuffix("+00:00") for date in (written[0], written[-1]))
+        rows.append(("logs written (UTC)", escape(f"{first} to {last}")))
+    return PageTable("versions", ("made by", "version"), rows).html
+
+
+def runs_table(results: Results) -> str:
+    """Every run: how it ended and how to make it again; before them those that could not run, and why."""
+    reasons: dict[str, list[str]] = {}
+    for outcome in results.failures:
+        reasons.setdefault(outcome.failure, []).append(outcome.experiment.folder)
+    failed = [(TableCell(", ".join(runs), "bad"), escape(reason)) for reason, runs in reasons.items()]
+    rows = [
+        (
+            escape(outcome.experiment.folder),
+            TableCell(outcome.end, "bad" if outcome.failure or outcome.fell else ""),
+            tag("code", escape(outcome.experiment.command)),
+        )
+        for outcome in results.outcomes
+    ]
+    failures = PageTable("failures", ("could not run", "why"), failed).html if failed else ""
+    table = PageTable("runs-table", ("run", "end", "command"), rows, kind="runs").html
+    return failures + details(f"All {len(rows)} runs with their commands", table, name="all-runs")
+
+
 _BALANCES: dict[str, tuple[str, tuple[Study, ...]]] = {
-    "profiles": ("profiles-table", (WALK, WIDE_WALK, STEP_LAW, BRISK_WALK, *STAIRS, BRISK_STAIRS)),
-    "noise": ("noise-table", (NOISE_WALK, NOISE_STAIRS, NOISE_ALONE, ZMP_ONLY)),
-    "height-error": ("height-table", HEIGHTS),
-    "pushes": ("push-table", PUSHES),
+    "profiles": (
+        "profiles-table",
+        (studies.WALK, studies.WIDE_WALK, studies.STEP_LAW, studies.BRISK_WALK, *studies.STAIRS, studies.BRISK_STAIRS),
+    ),
+    "noise": ("noise-table", (studies.NOISE_WALK, studies.NOISE_STAIRS, studies.NOISE_ALONE, studies.ZMP_ONLY)),
+    "height-error": ("height-table", studies.HEIGHTS),
+    "pushes": ("push-table", studies.PUSHES),
 }
 """Tables of falls and ZMP errors by the section that they stand in: the anchor, and the studies."""
 

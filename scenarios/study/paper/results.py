@@ -1,4 +1,4 @@
-"""What the logs of the experiments say, run by run and over seeds."""
+"""What the logs of the experiments say, run by run and over seeds, in numbers and in phrases."""
 
 import math
 import statistics
@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.source import setting
 from surefoot.scenarios.log import read
-from surefoot.scenarios.record.provenance import END_RECORD
+from surefoot.scenarios.record.provenance import ABSENT, END_RECORD
 from surefoot.scenarios.setup.load import written
+from surefoot.scenarios.show.kit.html import MISSING, TableCell, number
 from surefoot.scenarios.study.campaigns.campaign import Base
 from surefoot.scenarios.study.campaigns.engine import Single, Worker, run_cells
 from surefoot.scenarios.study.campaigns.journal import Journal
@@ -57,6 +58,15 @@ class ExperimentResult:
     def fell(self) -> bool:
         """Whether the robot did."""
         return bool(self.metrics.get("fell"))
+
+    @property
+    def end(self) -> str:
+        """How it ended, in a phrase."""
+        if self.failure:
+            return "could not run"
+        if self.fell:
+            return f"fell at {number(self.metrics['fall_time'])} s"
+        return f"{self.metrics.get('steps_taken', MISSING)} of {self.metrics.get('steps_planned', MISSING)} steps"
 
 
 def run_experiments(
@@ -223,6 +233,77 @@ class Results:
         """How many runs fell."""
         return sum(outcome.fell for outcome in self.outcomes)
 
+    @property
+    def versions(self) -> dict[str, list[str]]:
+        """Every version that made a log, by name."""
+        found: dict[str, dict[str, None]] = {}
+        for outcome in self.outcomes:
+            for name, value in outcome.versions.items():
+                if value not in ("", ABSENT):
+                    found.setdefault(name.replace("_", " "), {})[value] = None
+        return {name: list(values) for name, values in found.items()}
+
 
 def _kind(experiment: Experiment) -> tuple[Study, str, PaperWorld]:
     return experiment.study, experiment.profile, experiment.world
+
+
+MM, PERCENT = 1e3, 1e2
+WORLD_NAMES: dict[PaperWorld, str] = {"cart-table": "cart-table", "pendulum": "pendulum", "full": "full physics"}
+
+
+def spread_text(spread: Spread | None, scale: float = 1.0, digits: int = 3) -> str:
+    """A median, with its range where that is another text."""
+    if spread is None:
+        return MISSING
+    between = _range(spread, scale, digits)
+    return number(spread.median, scale, digits) + (f" ({between})" if between else "")
+
+
+def _range(spread: Spread, scale: float, digits: int = 3) -> str:
+    """Least and greatest value; empty when both read the same."""
+    least, greatest = number(spread.least, scale, digits), number(spread.greatest, scale, digits)
+    return "" if least == greatest else f"{least} … {greatest}"
+
+
+def _fell_text(sample: Sample) -> str:
+    return f"{sample.falls} of {len(sample.runs)}"
+
+
+def first_fall(sample: Sample) -> str:
+    """When the first of those that fell did, in a phrase; empty when none fell."""
+    return f"from {number(min(sample.values('fall_time')))} s on" if sample.falls else ""
+
+
+def fell_text(sample: Sample) -> str:
+    """How many of how many fell, and when the first of them."""
+    return ", ".join(filter(None, (_fell_text(sample), first_fall(sample))))
+
+
+def balance_text(samples: Sequence[Sample]) -> str:
+    """Falls and excursions of some samples of one profile and world, in a phrase."""
+    name = f"{samples[0].profile}, {WORLD_NAMES[samples[0].world]}"
+    runs = [outcome for sample in samples for outcome in sample.runs]
+    missing = any(len(sample.runs) < len(sample.outcomes) for sample in samples)
+    if missing or not runs:
+        return f"{name}: could not run" if missing else f"{name}: not run"
+    falls = sum(sample.falls for sample in samples)
+    fell = fell_text(samples[0]) if len(samples) == 1 else f"{falls} of {len(runs)}"
+    found = [value for sample in samples for value in sample.values("zmp_excursion_max")]
+    return f"{name}: fell in {fell}; {_excursion_text(max(found, default=None))}"
+
+
+def _excursion_text(excursion: float | None) -> str:
+    """How far the ZMP came out of the 90 % box, in a phrase."""
+    if excursion is None:
+        return "no ZMP"
+    if excursion <= 0.0:
+        return f"ZMP at least {number(-excursion, MM)} mm inside the 90 % box"
+    return f"ZMP up to {number(excursion, MM)} mm beyond the 90 % box"
+
+
+def spread_cell(spread: Spread | None, scale: float = 1.0, kind: str = "number") -> TableCell:
+    """The same as a cell, the range below the median."""
+    if spread is None:
+        return TableCell(MISSING, kind)
+    return TableCell(number(spread.median, scale), kind, spread.median, _range(spread, scale))

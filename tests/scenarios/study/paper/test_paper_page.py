@@ -15,15 +15,10 @@ from surefoot.scenarios.show.kit.html import number, svg
 from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
 from surefoot.scenarios.study.paper import page
 from surefoot.scenarios.study.paper.figures import JERKS, PLATES, POSITIONS, PanelColumn, grid
+from surefoot.scenarios.study.paper.page import balance_table, shove_table
 from surefoot.scenarios.study.paper.page import paper as page_of
-from surefoot.scenarios.study.paper.results import Spread, run_experiments
+from surefoot.scenarios.study.paper.results import Spread, run_experiments, spread_cell, spread_text
 from surefoot.scenarios.study.paper.studies import SHOVES, WALK, Experiment, Study
-from surefoot.scenarios.study.paper.tables import (
-    balance_table,
-    shove_table,
-    spread_cell,
-    spread_text,
-)
 
 SHORT = ("gait.steps=1", "gait.single_support=0.6", "gait.initial_stand=0.2", "rates.control=100")
 SHORT_WALK = Study("short", "Short walk", "paper-walk", SHORT)

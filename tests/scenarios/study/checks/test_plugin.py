@@ -7,7 +7,7 @@ import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.source import parse
-from surefoot.scenarios.study.checks.trace import Trace
+from surefoot.scenarios.study.checks.signs import Trace
 
 pytestmark = pytest.mark.unit
 

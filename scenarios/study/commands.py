@@ -54,8 +54,7 @@ def sweep(
     Begun again, it goes on where it stopped.
     """
     from surefoot.scenarios.study.campaigns.campaign import read_campaign
-    from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
-    from surefoot.scenarios.study.campaigns.sweep import cores
+    from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
     from surefoot.scenarios.study.campaigns.sweep import sweep as run_sweep
 
     if jobs is not None and cluster is not None:
@@ -134,8 +133,7 @@ def paper(
 
     Begun again, it goes on where it stopped.
     """
-    from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
-    from surefoot.scenarios.study.campaigns.sweep import cores
+    from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
     from surefoot.scenarios.study.paper.page import judged, tally
     from surefoot.scenarios.study.paper.page import paper as run_paper
 

@@ -25,7 +25,7 @@ from surefoot.scenarios.record.packages import packages_of
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.run.run import made_folder
 from surefoot.scenarios.setup.load import Written
-from surefoot.scenarios.study.campaigns.points import Point, Record
+from surefoot.scenarios.study.campaigns.points import Outcome, Point, Record, Searched
 
 JOURNAL, LOGS, SCRATCH = "runs.jsonl", "logs", ".running"
 
@@ -221,3 +221,24 @@ class Journal:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def outcome_of(cell: Searched, journal: Journal, made: Callable[[Point], bool] = lambda _: True) -> Outcome:
+    """What became of a cell, by the results that are there.
+
+    Args:
+        cell: that was asked for.
+        journal: has the results.
+        made: is asked of each run before its result is looked up, and says whether to go on.
+    """
+    runs: list[tuple[Point, Record]] = []
+    search = cell.search()
+    try:
+        point = next(search)
+        while made(point) and (record := journal.said(point)) is not None:
+            runs.append((point, record))
+            point = search.send(record)
+    except StopIteration as end:
+        whole = all(record.status != "broken" for _, record in runs)
+        return Outcome(cell, tuple(runs), end.value if whole else None, whole)
+    return Outcome(cell, tuple(runs), complete=False)

@@ -16,8 +16,7 @@ from scipy.stats import binomtest
 from surefoot.scenarios.errors import require
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.output import write_whole
-from surefoot.scenarios.study.campaigns.engine import Outcome
-from surefoot.scenarios.study.campaigns.points import Cell, facts
+from surefoot.scenarios.study.campaigns.points import Cell, Outcome, facts
 from surefoot.scenarios.study.campaigns.spec import described
 
 TableValue = bool | int | float | str | None

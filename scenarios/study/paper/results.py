@@ -16,10 +16,10 @@ from surefoot.scenarios.record.provenance import ABSENT, END_RECORD
 from surefoot.scenarios.setup.load import written
 from surefoot.scenarios.show.kit.html import MISSING, TableCell, number
 from surefoot.scenarios.study.campaigns.campaign import Base
-from surefoot.scenarios.study.campaigns.engine import Single, Worker, run_cells
+from surefoot.scenarios.study.campaigns.engine import Worker
 from surefoot.scenarios.study.campaigns.journal import Journal
-from surefoot.scenarios.study.campaigns.points import Point, Record
-from surefoot.scenarios.study.campaigns.sweep import CampaignBar
+from surefoot.scenarios.study.campaigns.points import Point, Record, Single
+from surefoot.scenarios.study.campaigns.sweep import CampaignBar, run_cells
 from surefoot.scenarios.study.paper.studies import (
     PROFILES,
     SHOVE_IMPULSES,

@@ -12,7 +12,7 @@ from surefoot.scenarios.apps import cli
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import read
 from surefoot.scenarios.show.kit.html import number, svg
-from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
+from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError
 from surefoot.scenarios.study.paper import page
 from surefoot.scenarios.study.paper.figures import JERKS, PLATES, POSITIONS, PanelColumn, grid
 from surefoot.scenarios.study.paper.page import balance_table, shove_table

@@ -201,7 +201,7 @@ def _of_values(data: Any, path: Path) -> Baseline:
             raise ValueError(f"its {name} is not what the metric gives")
     if not isinstance(world, dict) or not _are_finite([world, metrics]):
         raise ValueError("its metrics or its world hold what is no finite number")
-    return Baseline(scenario, settings, world, metrics, _trace(values["trace"]))
+    return Baseline(scenario, settings, world, metrics, read_trace(values["trace"]))
 
 
 def write_baseline(path: Path, baseline: Baseline) -> None:
@@ -242,7 +242,7 @@ def _table(trace: Trace) -> list[str]:
     return [f"[{', '.join(map(str.rjust, row, widths))}]" for row in rows]
 
 
-def _trace(rows: Any) -> Trace:
+def read_trace(rows: Any) -> Trace:
     """Read such a table of a trace back.
 
     Raises:

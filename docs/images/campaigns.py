@@ -20,10 +20,10 @@ import yaml
 from PIL import Image
 
 from surefoot.scenarios.show.kit.figures import PAGE_WIDTH, save
-from surefoot.scenarios.study.campaigns.axes import Axis, text, with_unit
 from surefoot.scenarios.study.campaigns.campaign import read_campaign
 from surefoot.scenarios.study.campaigns.capturability import Limits
 from surefoot.scenarios.study.campaigns.points import Threshold
+from surefoot.scenarios.study.campaigns.spec import Axis, text, with_unit
 from surefoot.scenarios.study.campaigns.success import Histogram, distributions
 from surefoot.scenarios.study.campaigns.table import wilson
 from surefoot.scenarios.study.campaigns.thresholds import Found, LimitOf, bars

@@ -54,8 +54,7 @@ def sweep(
     Begun again, it goes on where it stopped.
     """
     from surefoot.scenarios.study.campaigns.campaign import read_campaign
-    from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
-    from surefoot.scenarios.study.campaigns.sweep import cores
+    from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
     from surefoot.scenarios.study.campaigns.sweep import sweep as run_sweep
 
     if jobs is not None and cluster is not None:
@@ -134,18 +133,18 @@ def paper(
 
     Begun again, it goes on where it stopped.
     """
-    from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
-    from surefoot.scenarios.study.campaigns.sweep import cores
+    from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
+    from surefoot.scenarios.study.paper.page import judged, tally
     from surefoot.scenarios.study.paper.page import paper as run_paper
 
     try:
-        written = run_paper(out, jobs or cores(), force)
+        page, results = run_paper(out, jobs or cores(), force)
     except InterruptedRunsError:
         raise _interrupted(out) from None
-    for name in written.failures:
-        typer.echo(f"could not run: {name}", err=True)
-    verdicts = ", ".join(f"{verdict}: {count}" for verdict, count in written.verdicts.items() if count)
-    typer.echo(f"{written.runs} runs, {written.falls} falls, {len(written.failures)} could not run")
+    for failure in results.failures:
+        typer.echo(f"could not run: {failure.experiment.folder}", err=True)
+    verdicts = ", ".join(f"{verdict}: {count}" for verdict, count in tally(judged(results)).items() if count)
+    typer.echo(f"{len(results.outcomes)} runs, {results.falls} falls, {len(results.failures)} could not run")
     typer.echo(f"claims: {verdicts}")
-    typer.echo(str(written.page))
-    raise typer.Exit(MISSED if written.failures else 0)
+    typer.echo(str(page))
+    raise typer.Exit(MISSED if results.failures else 0)

@@ -11,9 +11,10 @@ from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.log import read
 from surefoot.scenarios.setup.load import load, written
 from surefoot.scenarios.study.campaigns.campaign import Base
-from surefoot.scenarios.study.campaigns.engine import Single, local_workers, outcome_of, processes, run_cells
-from surefoot.scenarios.study.campaigns.journal import Journal
-from surefoot.scenarios.study.campaigns.points import Point
+from surefoot.scenarios.study.campaigns.engine import local_workers, processes
+from surefoot.scenarios.study.campaigns.journal import Journal, outcome_of
+from surefoot.scenarios.study.campaigns.points import Point, Single
+from surefoot.scenarios.study.campaigns.sweep import run_cells
 from surefoot.scenarios.study.checks.check import cases, check, run_case
 
 

@@ -39,6 +39,7 @@ def test_the_wheel_holds_the_package_whole_and_nothing_beside_it(distributions):
     data = (
         "py.typed",
         "scenarios/show/kit/page.css",
+        "scenarios/study/paper/claims.yaml",
         "scenarios/study/paper/sections.yaml",
         "scenarios/catalogue/walk.yaml",
     )

@@ -1,46 +1,36 @@
-"""Runs the cells of a campaign, several at once, writes every result down, and goes on where it was stopped."""
+"""What makes the runs of a campaign: processes on this machine, or the machines of a dask.distributed cluster."""
 
-import queue
+import asyncio
 import shutil
 import signal
+import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from contextlib import contextmanager
+from dataclasses import replace
 from multiprocessing import get_context, parent_process
 from os import _exit
 from pathlib import Path
-from typing import Any, Literal, Protocol, TypeVar
+from types import ModuleType
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 from surefoot.errors import PluginError
 from surefoot.guard import said
-from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.errors import LogError, ScenarioError, SetupError, require
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.record.provenance import LOG_NAME
+from surefoot.scenarios.record.provenance import LOG_NAME, relevant_versions
 from surefoot.scenarios.run.run import Result, made_folder, run_scenario
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.study.campaigns.journal import LOGS, SCRATCH, Journal, MadeOf
-from surefoot.scenarios.study.campaigns.points import Point, Record, Search, Threshold
+from surefoot.scenarios.study.campaigns.journal import LOGS, OF_A_MACHINE, SCRATCH, MadeOf
+from surefoot.scenarios.study.campaigns.points import Point, Record
 
 T = TypeVar("T")
 
 TRIES = 2
 """How often a run is begun whose process dies."""
-
-
-class InterruptedRunsError(Exception):
-    """The user stopped the campaign; what was done is kept."""
-
-
-class Searched(Protocol):
-    """Runs that are made one after another: a cell of a campaign, or a single run."""
-
-    def search(self) -> Search:
-        """Its runs."""
-        ...
 
 
 class Worker(Protocol):
@@ -53,35 +43,6 @@ class Worker(Protocol):
     def close(self) -> None:
         """Let it end; what it does not do any more is lost."""
         ...
-
-
-@dataclass(frozen=True, slots=True)
-class Single:
-    """A run that stands for itself."""
-
-    point: Point
-
-    def search(self) -> Search:
-        """See `Searched`."""
-        yield self.point
-        return None
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What became of a cell.
-
-    Attributes:
-        cell: that was run.
-        runs: its runs in order, with what became of each.
-        threshold: what its search found, if it was one.
-        complete: whether every run that belongs to it has a result.
-    """
-
-    cell: Searched
-    runs: tuple[tuple[Point, Record], ...]
-    threshold: Threshold | None = None
-    complete: bool = True
 
 
 def perform(
@@ -214,127 +175,6 @@ def _end_with_parent() -> None:
         _exit(1)
 
 
-def run_cells(
-    cells: Iterable[Searched],
-    journal: Journal,
-    workers: Sequence[Worker],
-    on_run: Callable[[Record], None] = lambda _: None,
-    on_cell: Callable[[], None] = lambda: None,
-) -> None:
-    """Run what has no result yet; one that fails does not stop the others.
-
-    Args:
-        cells: to run; taken as workers get free.
-        journal: gets every result.
-        workers: that make the runs.
-        on_run: is told each new result.
-        on_cell: is told that a cell is done.
-
-    Raises:
-        InterruptedRunsError: Ctrl-C; runs under way were brought to their end first, unless it came twice.
-        LogError: a result could not be written down.
-    """
-    told: queue.SimpleQueue[_News] = queue.SimpleQueue()
-    stop = threading.Event()
-    shared = (_Shared(cells), journal, told, stop)
-    slots = [threading.Thread(target=_slot, args=(worker, *shared), daemon=True) for worker in workers]
-    running = len(slots)
-    try:
-        for slot in slots:
-            slot.start()
-        while running:
-            news = told.get()
-            if isinstance(news, Exception):
-                raise news
-            if isinstance(news, Record):
-                on_run(news)
-            elif news == "cell":
-                on_cell()
-            else:
-                running -= 1
-    except KeyboardInterrupt:
-        stop.set()
-        with suppress(KeyboardInterrupt):
-            for slot in slots:
-                slot.join()
-        raise InterruptedRunsError from None
-    finally:
-        stop.set()
-        with interrupts_ignored():
-            for worker in workers:
-                worker.close()
-
-
-_News = Record | Exception | Literal["cell", "end"]
-"""What a slot tells: a result, what went wrong, that a cell is done, that it has nothing more to do."""
-
-
-class _Shared:
-    """An iterator for several threads."""
-
-    def __init__(self, items: Iterable[Searched]) -> None:
-        self._items, self._lock = iter(items), threading.Lock()
-
-    def __iter__(self) -> Iterator[Searched]:
-        return self
-
-    def __next__(self) -> Searched:
-        with self._lock:
-            return next(self._items)
-
-
-def _slot(
-    worker: Worker,
-    cells: Iterator[Searched],
-    journal: Journal,
-    told: "queue.SimpleQueue[_News]",
-    stop: threading.Event,
-) -> None:
-    """Take one cell after the other, and have what has no result run."""
-    try:
-        for cell in cells:
-            for point, known in _asked(cell, journal):
-                if known is None:
-                    if stop.is_set():
-                        return
-                    record = worker(point)
-                    journal.add(point, record)
-                    told.put(record)
-            told.put("cell")
-    except Exception as error:
-        told.put(error)
-    finally:
-        told.put("end")
-
-
-def _asked(cell: Searched, journal: Journal) -> Iterator[tuple[Point, Record | None]]:
-    """Each run that a cell asks for, with its result where it is known; the journal has it when the next is asked."""
-    search = cell.search()
-    with suppress(StopIteration):
-        point = next(search)
-        while True:
-            yield point, journal.get(point)
-            record = journal.said(point)
-            if record is None or record.status == "broken":
-                return
-            point = search.send(record)
-
-
-def outcome_of(cell: Searched, journal: Journal) -> Outcome:
-    """What became of a cell, by the results that are there."""
-    runs: list[tuple[Point, Record]] = []
-    search = cell.search()
-    try:
-        point = next(search)
-        while (record := journal.said(point)) is not None:
-            runs.append((point, record))
-            point = search.send(record)
-    except StopIteration as end:
-        whole = all(record.status != "broken" for _, record in runs)
-        return Outcome(cell, tuple(runs), end.value if whole else None, whole)
-    return Outcome(cell, tuple(runs), complete=False)
-
-
 @contextmanager
 def interrupts_ignored() -> Iterator[None]:
     """Ignore Ctrl-C for a moment; only the main thread can."""
@@ -346,3 +186,119 @@ def interrupts_ignored() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+PATIENCE = 10.0
+"""How long a cluster may take to answer [s]."""
+
+
+class Away(NamedTuple):
+    """What comes back from another machine: what became of a run, what made it, and the files of its folder."""
+
+    record: Record
+    made_by: str
+    files: dict[str, bytes]
+
+
+def perform_away(point: Point, keep_all: bool) -> Away:
+    """Make a run on a machine that shares no disk with the one that asks; arguments as of `perform`."""
+    made_by = MadeOf().of(point, anywhere=True)
+    with tempfile.TemporaryDirectory(prefix="surefoot-") as folder:
+        record = perform(point, Path(folder) / "run", Path(folder) / LOGS, keep_all)
+        kept = (Path(folder) / record.log).parent if record.log else None
+        return Away(record, made_by, {path.name: path.read_bytes() for path in kept.iterdir()} if kept else {})
+
+
+class ClusterWorker:
+    """One thread of a worker of a cluster, for as long as a run takes.
+
+    A run whose worker dies is begun again by the scheduler on another one.
+
+    Args:
+        client: of the cluster.
+        folder: the campaign's directory on this machine.
+        keep_all: whether the logs of all runs are kept.
+    """
+
+    def __init__(self, client: Any, folder: Path, keep_all: bool) -> None:
+        self._client, self._folder, self._keep_all = client, folder, keep_all
+        self._made_of = MadeOf()
+
+    def __call__(self, point: Point) -> Record:
+        """See `Worker`."""
+        try:
+            future = self._client.submit(perform_away, point, self._keep_all, key=f"run-{point.id}", pure=False)
+            away: Away = future.result()
+        except Exception as error:  # dask tells of lost workers and of a lost scheduler by many types
+            what = " ".join(str(error).split()) or type(error).__name__
+            return Record(point.id, "broken", (f"the cluster gave no result: {what[:300]}",))
+        if away.files:
+            own = made_folder(self._folder / LOGS / point.name)
+            for name, content in away.files.items():
+                (own / name).write_bytes(content)
+        alike = away.made_by == self._made_of.of(point, anywhere=True)
+        return replace(away.record, made_by=self._made_of.of(point) if alike else away.made_by)
+
+    def close(self) -> None:
+        """Leave the cluster."""
+        self._client.close()
+
+
+def cluster_workers(address: str, folder: Path, keep_all: bool, patience: float = PATIENCE) -> list[Worker]:
+    """One worker for each thread of a cluster.
+
+    Args:
+        address: of its scheduler, such as ``tcp://127.0.0.1:8786``.
+        folder: the campaign's directory on this machine.
+        keep_all: whether the logs of all runs are kept.
+        patience: how long it may take to answer [s].
+
+    Raises:
+        MissingExtraError: dask.distributed is not installed.
+        ScenarioError: the cluster cannot be reached, has no worker, or other versions.
+    """
+    distributed = require("distributed", "cluster", "--cluster", "run on this machine with --jobs")
+    try:
+        asyncio.run(asyncio.wait_for(_knock(distributed, address, patience), patience))
+    except Exception as error:  # whatever answers there may be no scheduler at all
+        why = " ".join(str(error).split()) or type(error).__name__
+        right = "give the address of a running dask scheduler, such as tcp://127.0.0.1:8786"
+        raise ScenarioError([f"--cluster {address}: cannot be reached, {why[:200]}; {right}"]) from None
+    client = distributed.Client(address, timeout=patience, set_as_default=False)
+    try:
+        threads = client.nthreads()
+        if not threads:
+            right = "start some with `dask worker ADDRESS --nthreads 1`"
+            raise ScenarioError([f"--cluster {address}: has no workers; {right}"])
+        _check_versions(address, client)
+    except BaseException:
+        client.close()
+        raise
+    return [ClusterWorker(client, folder, keep_all) for _ in range(sum(threads.values()))]
+
+
+async def _knock(distributed: ModuleType, address: str, patience: float) -> None:
+    """Shake hands with a scheduler and leave: a client that fails to connect would take its time to end."""
+    connection = await distributed.comm.connect(address, timeout=0.5 * patience)
+    await connection.close()
+
+
+def _check_versions(address: str, client: Any) -> None:
+    """Refuse workers whose runs would be others than those of this machine.
+
+    Raises:
+        ScenarioError: one lacks Surefoot, or has other versions of what a run depends on.
+    """
+    own = dict(relevant_versions())
+    right = "install the same versions there, best from the same constraints.txt"
+    try:
+        found = client.run(lambda: dict(relevant_versions()), on_error="return")
+    except Exception as error:
+        raise ScenarioError([f"--cluster {address}: its workers do not answer, {error}; {right}"]) from None
+    for worker, theirs in found.items():
+        if not isinstance(theirs, dict):
+            raise ScenarioError([f"--cluster {address}: worker {worker} cannot run Surefoot, {theirs}; {right}"])
+        for name, version in own.items():
+            if name not in OF_A_MACHINE and theirs.get(name) != version:
+                what = f"worker {worker} has {name} {theirs.get(name)}, and this machine {version}"
+                raise ScenarioError([f"--cluster {address}: {what}; {right}"])

@@ -9,7 +9,7 @@ import shutil
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -25,7 +25,7 @@ from surefoot.scenarios.record.packages import packages_of
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.run.run import made_folder
 from surefoot.scenarios.setup.load import Written
-from surefoot.scenarios.study.campaigns.points import Point, Record
+from surefoot.scenarios.study.campaigns.points import Outcome, Point, Record, Searched
 
 JOURNAL, LOGS, SCRATCH = "runs.jsonl", "logs", ".running"
 
@@ -54,6 +54,7 @@ class MadeOf:
 
     def __init__(self, versions: Callable[[], Mapping[str, str]] = relevant_versions) -> None:
         self._versions = versions
+        self._base, self._robot = lru_cache(maxsize=None)(_named), lru_cache(maxsize=None)(robot_digest)
 
     def of(self, point: Point, anywhere: bool = False) -> str:
         """Digest of all that the result of a run depends on but its scenario.
@@ -67,14 +68,6 @@ class MadeOf:
         versions = {name: one for name, one in self._versions().items() if not (anywhere and name in OF_A_MACHINE)}
         robot = self._robot(str(point.settings.get("robot", base.robot)))
         return _digest([versions, dict(packages_of(words)), robot])
-
-    @cached_property
-    def _base(self) -> Callable[[Written], _Names]:
-        return lru_cache(maxsize=None)(_named)
-
-    @cached_property
-    def _robot(self) -> Callable[[str], str]:
-        return lru_cache(maxsize=None)(robot_digest)
 
 
 def robot_digest(name: str) -> str:
@@ -228,3 +221,24 @@ class Journal:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def outcome_of(cell: Searched, journal: Journal, made: Callable[[Point], bool] = lambda _: True) -> Outcome:
+    """What became of a cell, by the results that are there.
+
+    Args:
+        cell: that was asked for.
+        journal: has the results.
+        made: is asked of each run before its result is looked up, and says whether to go on.
+    """
+    runs: list[tuple[Point, Record]] = []
+    search = cell.search()
+    try:
+        point = next(search)
+        while made(point) and (record := journal.said(point)) is not None:
+            runs.append((point, record))
+            point = search.send(record)
+    except StopIteration as end:
+        whole = all(record.status != "broken" for _, record in runs)
+        return Outcome(cell, tuple(runs), end.value if whole else None, whole)
+    return Outcome(cell, tuple(runs), complete=False)

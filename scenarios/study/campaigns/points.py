@@ -7,7 +7,7 @@ import zlib
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
@@ -140,6 +140,43 @@ class Cell:
         told = {**self.labels, **searched, "seed": seed}
         labels = {**self.labels, **drawn, **searched, "seed": seed}
         return Point(base, {**settings, "seed": seed}, labels, _folder(told))
+
+
+class Searched(Protocol):
+    """Runs that are made one after another: a cell of a campaign, or a single run."""
+
+    def search(self) -> Search:
+        """Its runs."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Single:
+    """A run that stands for itself."""
+
+    point: Point
+
+    def search(self) -> Search:
+        """See `Searched`."""
+        yield self.point
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a cell.
+
+    Attributes:
+        cell: that was run.
+        runs: its runs in order, with what became of each.
+        threshold: what its search found, if it was one.
+        complete: whether every run that belongs to it has a result.
+    """
+
+    cell: Searched
+    runs: tuple[tuple[Point, Record], ...]
+    threshold: Threshold | None = None
+    complete: bool = True
 
 
 def cells(campaign: Campaign) -> Iterator[Cell]:

@@ -22,18 +22,17 @@ from surefoot.scenarios.show.kit.html import (
     tag,
     tally,
 )
-from surefoot.scenarios.study.campaigns.axes import Axis, angle_of, is_around, text, with_unit
 from surefoot.scenarios.study.campaigns.capturability import LIMIT_NOTE, Limits
 from surefoot.scenarios.study.campaigns.journal import JOURNAL
 from surefoot.scenarios.study.campaigns.points import Cell, Point, Record, Runs, RunStatus
+from surefoot.scenarios.study.campaigns.spec import Axis, angle_of, is_around, text, with_unit
 from surefoot.scenarios.study.campaigns.success import (
     distributions_section,
     judged_of,
     map_section,
-    passed_of,
+    rate_of,
     success_section,
 )
-from surefoot.scenarios.study.campaigns.table import wilson
 from surefoot.scenarios.study.campaigns.thresholds import Found, along, are_named, bars, compass
 
 if TYPE_CHECKING:
@@ -68,9 +67,8 @@ def _tally(swept: "Swept", runs: Runs) -> str:
         done = sum(outcome.threshold is not None for outcome in swept.outcomes)
         boxes.append((f"{done} of {len(swept.outcomes)}", "thresholds found"))
     elif judged:
-        rate = wilson(passed_of(judged), len(judged))
-        interval = f"success rate, 95 % interval {100 * rate.low:.1f} to {100 * rate.high:.1f} %"
-        boxes.append((f"{100 * rate.rate:.1f} %", interval))
+        rate = rate_of(judged)
+        boxes.append((f"{100 * rate.rate:.1f} %", f"success rate, 95 % interval {rate.between} %"))
     return tally(boxes)
 
 
@@ -88,6 +86,7 @@ def _what_was_run(swept: "Swept") -> str:
     journal = swept.folder / JOURNAL
     when = datetime.fromtimestamp(journal.stat().st_mtime, UTC) if journal.exists() else None
     incomplete = sum(not outcome.complete for outcome in swept.outcomes)
+    tables = [path.name for path in swept.files if path.suffix != ".html"] or [JOURNAL]
     said = [f"{len(swept.outcomes)} {'searches' if spec.bisect else 'runs'} were asked for"]
     said += [f"{incomplete} of them have no result yet"] if incomplete else []
     said += [f"the last result is of {when:%Y-%m-%d %H:%M} UTC"] if when else []
@@ -100,26 +99,18 @@ def _what_was_run(swept: "Swept") -> str:
         *(tag("p", f"{escape(note[:1].upper() + note[1:])}.") for note in swept.repeats()),
         details("Specification", tag("pre", escape(written))),
         details("Versions", tag("p", escape(versions))),
-        tag("p", "The same as tables: " + ", ".join(_file_link(name) for name in _tables(swept)) + ".", kind="note"),
+        tag(
+            "p",
+            f"The same as tables: {', '.join(tag('a', escape(name), href=quote(name)) for name in tables)}.",
+            kind="note",
+        ),
     )
-
-
-def _tables(swept: "Swept") -> list[str]:
-    return [path.name for path in swept.files if path.suffix != ".html"] or [JOURNAL]
-
-
-def _file_link(name: str) -> str:
-    return tag("a", escape(name), href=quote(name))
 
 
 def _time(seconds: float) -> str:
-    return (
-        f"{seconds:.0f} s"
-        if seconds < 120
-        else f"{seconds / 60:.0f} min"
-        if seconds < 7200
-        else f"{seconds / 3600:.1f} h"
-    )
+    if seconds < 120:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
 
 
 def _thresholds(swept: "Swept", axes: Sequence[Axis]) -> str:
@@ -132,9 +123,17 @@ def _thresholds(swept: "Swept", axes: Sequence[Axis]) -> str:
     angle = angle_of(axes)
     logs = ((one.labels, swept.folder / record.log) for one, runs in ends for _, record in runs if record.log)
     limits = Limits(bisect.key, logs, angle.name if angle else "")
-    searched = tag("p", escape(_searched(bisect.ratio is not None, bisect.key)))
+    searched = f"The value of {bisect.key} at which passing turns into failing, by halving the range."
+    if bisect.ratio is not None:
+        searched = f"The greatest value of {bisect.key} up to which every rung of a ladder was passed by all seeds."
     note = tag("p", LIMIT_NOTE, kind="note") if limits else ""
-    return section("Thresholds", searched, _figure(swept, found, axes, limits), _table(swept, ends, axes, limits), note)
+    return section(
+        "Thresholds",
+        tag("p", escape(searched)),
+        _figure(swept, found, axes, limits),
+        _table(swept, ends, axes, limits),
+        note,
+    )
 
 
 def _figure(swept: "Swept", found: Sequence[Found], axes: Sequence[Axis], limits: Limits) -> str:
@@ -158,12 +157,6 @@ def _figure(swept: "Swept", found: Sequence[Found], axes: Sequence[Axis], limits
 
 
 _BEYOND = " lie beyond the end of the searched range."
-
-
-def _searched(ladder: bool, key: str) -> str:
-    if ladder:
-        return f"The greatest value of {key} up to which every rung of a ladder was passed by all seeds."
-    return f"The value of {key} at which passing turns into failing, by halving the range."
 
 
 def _searches(swept: "Swept") -> list[tuple[Found, Runs]]:

@@ -1,8 +1,8 @@
 """Which runs of a campaign met their criteria: rates, a map of them, and how what was drawn and measured spread."""
 
 import math
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,7 +17,9 @@ from surefoot.scenarios.palette import FAIL, GREY, PASS, paler
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.show.kit.figures import DASHED, in_style, note, panels
 from surefoot.scenarios.show.kit.html import MISSING, PageTable, TableCell, TableRow, escape, figure_html, section, tag
-from surefoot.scenarios.study.campaigns.axes import (
+from surefoot.scenarios.study.campaigns.points import Point, Record, Runs
+from surefoot.scenarios.study.campaigns.spec import (
+    MOST,
     MOST_PANELS,
     Axis,
     combinations,
@@ -27,9 +29,7 @@ from surefoot.scenarios.study.campaigns.axes import (
     title,
     with_unit,
 )
-from surefoot.scenarios.study.campaigns.points import Point, Record, Runs
-from surefoot.scenarios.study.campaigns.spec import MOST
-from surefoot.scenarios.study.campaigns.table import as_float, wilson
+from surefoot.scenarios.study.campaigns.table import SuccessRate, as_float, wilson
 
 if TYPE_CHECKING:
     from surefoot.scenarios.study.campaigns.sweep import Swept
@@ -63,27 +63,28 @@ def success_section(swept: "Swept", runs: Runs, axes: Sequence[Axis]) -> str:
 
 def _rate_row(name: str, value: str, runs: Runs) -> TableRow:
     judged = judged_of(runs)
-    counts = [str(len(judged)), str(passed_of(judged))]
-    rest = str(len(runs) - len(judged))
-    if not judged:
-        return [escape(name), escape(value), *counts, MISSING, MISSING, rest]
-    rate = wilson(passed_of(judged), len(judged))
-    shown = TableCell(f"{100 * rate.rate:.1f}", value=rate.rate)
-    return [escape(name), escape(value), *counts, shown, f"{100 * rate.low:.1f} to {100 * rate.high:.1f}", rest]
+    shown: tuple[TableCell | str, str] = (MISSING, MISSING)
+    if judged:
+        rate = rate_of(judged)
+        shown = (TableCell(f"{100 * rate.rate:.1f}", value=rate.rate), rate.between)
+    counts = (str(len(judged)), str(_passed(judged)))
+    return [escape(name), escape(value), *counts, *shown, str(len(runs) - len(judged))]
 
 
 def _split(key: str, runs: Runs) -> Iterator[tuple[str, Runs]]:
     """Runs by the quarter of a drawn number, or by a drawn choice."""
     values = [point.labels[key] for point, _ in runs]
-    if len(set(map(str, values))) <= 4 or not Axis(key, tuple(values)).numeric:
-        for one in sorted(set(map(str, values))):
-            yield one, [run for run in runs if str(run[0].labels[key]) == one]
+    names = [str(value) for value in values]
+    order = sorted(set(names))
+    if len(order) > 4 and Axis(key, tuple(values)).numeric:
+        edges = np.quantile(values, [0.0, 0.25, 0.5, 0.75, 1.0])
+        order = [f"{text(float(low))} to {text(float(high))}" for low, high in pairwise(edges)]
+        quarters = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, 3)
+        for quarter, name in enumerate(order):
+            yield name, [run for run, at in zip(runs, quarters, strict=True) if at == quarter]
         return
-    edges = np.quantile(values, [0.0, 0.25, 0.5, 0.75, 1.0])
-    quarter = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, 3)
-    for i in range(4):
-        name = f"{text(float(edges[i]))} to {text(float(edges[i + 1]))}"
-        yield name, [run for run, at in zip(runs, quarter, strict=True) if at == i]
+    for name in order:
+        yield name, [run for run, own in zip(runs, names, strict=True) if own == name]
 
 
 def map_section(swept: "Swept", runs: Runs, axes: Sequence[Axis]) -> str:
@@ -92,38 +93,36 @@ def map_section(swept: "Swept", runs: Runs, axes: Sequence[Axis]) -> str:
     if not varied:
         return ""
     first = next(iter(swept.campaign.spec.first), None)
-    groups: dict[tuple[str, ...], list[tuple[Point, Record]]] = {}
+    groups: dict[str, list[tuple[Point, Record]]] = {}
     for run in runs:
-        groups.setdefault(tuple(str(run[0].labels[axis.name]) for axis in varied), []).append(run)
+        groups.setdefault(_place(run[0].labels, varied), []).append(run)
 
-    def square(labels: Mapping[str, Any]) -> Square:
-        return _square(groups.get(tuple(str(labels[axis.name]) for axis in varied), []), first)
+    def at(labels: Mapping[str, Any]) -> Runs:
+        return groups.get(_place(labels, varied), [])
 
     if len(varied) == 1 and first is None:
-        (axis,) = varied
-        judged = [judged_of(groups.get((str(value),), [])) for value in axis.values]
-        drawn = success_along(axis, [(passed_of(group), len(group)) for group in judged])
-        shown = figure_html(drawn, f"Success rate by {axis.name}.", "success-along")
+        drawn, name, caption = success_along(varied[0], at), "success-along", f"Success rate by {varied[0].name}."
     else:
-        drawn = success_map(varied, square, f"{first} accepted" if first else "")
-        caption = "Runs that passed, of those that were judged; grey where none was." + (
-            f" Below, the first value of {first} that was accepted." if first else ""
-        )
-        panels = int(np.prod([len(axis.values) for axis in varied[:-2]]))
-        left = panels - MOST_PANELS
+        what = f"{first} accepted" if first else ""
+        drawn, name = success_map(varied, lambda labels: _square(at(labels), first), what), "success-map"
+        caption = "Runs that passed, of those that were judged; grey where none was."
+        caption += f" Below, the first value of {first} that was accepted." if first else ""
+        left = math.prod(len(axis.values) for axis in varied[:-2]) - MOST_PANELS
         caption += f" {left} more panels are left out; the tables have all." if left > 0 else ""
-        shown = figure_html(drawn, caption, "success-map")
-    return section("Map", shown)
+    return section("Map", figure_html(drawn, caption, name))
+
+
+def _place(labels: Mapping[str, Any], axes: Sequence[Axis]) -> str:
+    return str([str(labels[axis.name]) for axis in axes])
 
 
 def _square(runs: Runs, first: str | None) -> Square:
     judged = judged_of(runs)
     if not judged:
-        return Square("refused" if runs and all(one.status == "refused" for _, one in runs) else "", float("nan"))
-    passed = passed_of(judged)
-    counts = f"{passed}/{len(judged)}"
+        return Square("refused" if runs and all(one.status == "refused" for _, one in runs) else "", math.nan)
+    passed = _passed(judged)
     accepted = sorted({text(point.labels[first]) for point, _ in judged}) if first else []
-    return Square("\n".join((counts, *accepted)), passed / len(judged))
+    return Square("\n".join((f"{passed}/{len(judged)}", *accepted)), passed / len(judged))
 
 
 def distributions_section(swept: "Swept", runs: Runs) -> str:
@@ -131,15 +130,15 @@ def distributions_section(swept: "Swept", runs: Runs) -> str:
     judged = judged_of(runs)
     if not judged:
         return ""
-    sampled = [drawn(key, draw.choice is not None, judged) for key, draw in swept.campaign.spec.sample.items()]
-    measured = list(of_criteria(judged))
-    parts = []
-    for name, spreads, caption in (
-        ("sampled", sampled, "What was drawn, of runs that met their criteria and that missed them."),
-        ("measured", measured, "What the criteria bound; dashed their bounds."),
-    ):
-        if spreads:
-            parts.append(figure_html(distributions(spreads), caption, name))
+    sampled = [_drawn(key, draw.choice is not None, judged) for key, draw in swept.campaign.spec.sample.items()]
+    parts = [
+        figure_html(distributions(spreads), caption, name)
+        for name, spreads, caption in (
+            ("sampled", sampled, "What was drawn, of runs that met their criteria and that missed them."),
+            ("measured", list(_of_criteria(judged)), "What the criteria bound; dashed their bounds."),
+        )
+        if spreads
+    ]
     return section("Distributions", *parts) if parts else ""
 
 
@@ -148,9 +147,13 @@ def judged_of(runs: Runs) -> Runs:
     return [run for run in runs if run[1].status in ("pass", "fail")]
 
 
-def passed_of(runs: Runs) -> int:
-    """How many met them."""
-    return Counter(record.status for _, record in runs)["pass"]
+def rate_of(judged: Runs) -> SuccessRate:
+    """The success rate of runs that were judged, one at least."""
+    return wilson(_passed(judged), len(judged))
+
+
+def _passed(judged: Runs) -> int:
+    return sum(record.status == "pass" for _, record in judged)
 
 
 def success_map(axes: Sequence[Axis], square: Callable[[Mapping[str, Any]], Square], what: str) -> Figure:
@@ -241,21 +244,21 @@ def _edges(values: Sequence[float]) -> list[float]:
     return [float(edge) for edge in np.linspace(low, high, count + 1)]
 
 
-def success_along(axis: Axis, counts: Sequence[tuple[int, int]]) -> Figure:
+def success_along(axis: Axis, at: Callable[[Mapping[str, Any]], Runs]) -> Figure:
     """Success rate along one axis, with its interval.
 
     Args:
         axis: of the grid.
-        counts: at each value runs that passed, and all that were judged.
+        at: gives the runs at some labels.
     """
     with in_style():
         figure, (one,) = panels(1, 2, 2.6)
-        for place, (passed, judged) in enumerate(counts):
-            at = axis.values[place] if axis.numeric else place
-            if judged:
-                rate = wilson(passed, judged)
-                one.plot([at, at], [100 * rate.low, 100 * rate.high], color=GREY, linewidth=2.0)
-                one.plot([at], [100 * rate.rate], "o", color=PASS)
+        for place, value in enumerate(axis.values):
+            x = value if axis.numeric else place
+            if judged := judged_of(at({axis.name: value})):
+                rate = rate_of(judged)
+                one.plot([x, x], [100 * rate.low, 100 * rate.high], color=GREY, linewidth=2.0)
+                one.plot([x], [100 * rate.rate], "o", color=PASS)
         name_axis(one, axis, "x", ticks=not axis.numeric)
         one.margins(x=0.05)
         one.set_ylim(-4.0, 104.0)
@@ -263,24 +266,21 @@ def success_along(axis: Axis, counts: Sequence[tuple[int, int]]) -> Figure:
     return figure
 
 
-def drawn(key: str, choice: bool, judged: Runs) -> Histogram:
+def _drawn(key: str, choice: bool, judged: Runs) -> Histogram:
     """What was drawn; of a choice by its words."""
-
-    def values(run: tuple[Point, Record]) -> list[Any]:
-        value = run[0].labels[key]
-        return [text(value) if choice else value]
-
-    return _spread(with_unit(key), judged, values)
+    return _spread(with_unit(key), judged, lambda run: [text(run[0].labels[key]) if choice else run[0].labels[key]])
 
 
-def _spread(heading: str, judged: Runs, values: Any, bounds: Sequence[float] = ()) -> Histogram:
+def _spread(
+    heading: str, judged: Runs, values: Callable[[tuple[Point, Record]], list[Any]], bounds: Sequence[float] = ()
+) -> Histogram:
     groups: dict[str, list[Any]] = {"pass": [], "fail": []}
     for run in judged:
         groups[run[1].status] += values(run)
     return Histogram(heading, groups["pass"], groups["fail"], bounds)
 
 
-def of_criteria(judged: Runs) -> Iterator[Histogram]:
+def _of_criteria(judged: Runs) -> Iterator[Histogram]:
     """Every metric that a criterion bounds, in the unit that a person is shown."""
     for name, bounds in criteria(judged).items():
         metric = known(name)
@@ -313,12 +313,8 @@ def criteria(runs: Runs) -> dict[str, list[Bound]]:
     return found
 
 
-def _numbers(values: Iterable[Any]) -> list[float]:
-    """Numbers among values and among the elements of lists of them."""
-    found: list[float] = []
+def _numbers(values: Iterable[Any]) -> Iterator[float]:
+    """Numbers among values, and those among the elements and parts of these."""
     for value in values:
-        several = (
-            value if isinstance(value, list | tuple) else list(value.values()) if isinstance(value, dict) else [value]
-        )
-        found += [as_float(one) for one in several if is_number(one)]
-    return found
+        inner = value.values() if isinstance(value, dict) else value if isinstance(value, list | tuple) else (value,)
+        yield from (as_float(one) for one in inner if is_number(one))

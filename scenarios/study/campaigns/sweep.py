@@ -1,10 +1,13 @@
 """``surefoot sweep``: runs a campaign and writes its tables and its page."""
 
 import os
-from collections.abc import Iterator, Sequence
+import queue
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, Literal, get_args
 
 import yaml
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -13,16 +16,9 @@ from surefoot.scenarios.errors import install_command
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.show.console import TerminalLine
 from surefoot.scenarios.study.campaigns.campaign import Campaign
-from surefoot.scenarios.study.campaigns.engine import (
-    InterruptedRunsError,
-    Outcome,
-    Worker,
-    local_workers,
-    outcome_of,
-    run_cells,
-)
-from surefoot.scenarios.study.campaigns.journal import Journal
-from surefoot.scenarios.study.campaigns.points import Record, Runs, RunStatus, cells, facts
+from surefoot.scenarios.study.campaigns.engine import Worker, cluster_workers, interrupts_ignored, local_workers
+from surefoot.scenarios.study.campaigns.journal import Journal, outcome_of
+from surefoot.scenarios.study.campaigns.points import Outcome, Point, Record, Runs, RunStatus, Searched, cells, facts
 from surefoot.scenarios.study.campaigns.table import has_parquet, runs_table, thresholds_table, wilson, write_table
 
 SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", "table", "thresholds"
@@ -57,6 +53,100 @@ class CampaignBar(TerminalLine):
     def cell(self) -> None:
         """Count a cell."""
         self._bar.advance(self._task)
+
+
+class InterruptedRunsError(Exception):
+    """The user stopped the campaign; what was done is kept."""
+
+
+def run_cells(
+    cells: Iterable[Searched],
+    journal: Journal,
+    workers: Sequence[Worker],
+    on_run: Callable[[Record], None] = lambda _: None,
+    on_cell: Callable[[], None] = lambda: None,
+) -> None:
+    """Run what has no result yet; one that fails does not stop the others.
+
+    Args:
+        cells: to run.
+        journal: gets every result.
+        workers: that make the runs.
+        on_run: is told each new result.
+        on_cell: is told that a cell is done.
+
+    Raises:
+        InterruptedRunsError: Ctrl-C; runs under way were brought to their end first, unless it came twice.
+        LogError: a result could not be written down.
+    """
+    told: queue.SimpleQueue[_News] = queue.SimpleQueue()
+    left: queue.SimpleQueue[Searched] = queue.SimpleQueue()
+    for cell in cells:
+        left.put(cell)
+    stop = threading.Event()
+    slots = [
+        threading.Thread(target=_slot, args=(worker, left, journal, told, stop), daemon=True) for worker in workers
+    ]
+    running = len(slots)
+    try:
+        for slot in slots:
+            slot.start()
+        while running:
+            news = told.get()
+            if isinstance(news, Exception):
+                raise news
+            if isinstance(news, Record):
+                on_run(news)
+            elif news == "cell":
+                on_cell()
+            else:
+                running -= 1
+    except KeyboardInterrupt:
+        stop.set()
+        with suppress(KeyboardInterrupt):
+            for slot in slots:
+                slot.join()
+        raise InterruptedRunsError from None
+    finally:
+        stop.set()
+        with interrupts_ignored():
+            for worker in workers:
+                worker.close()
+
+
+_News = Record | Exception | Literal["cell", "end"]
+"""What a slot tells: a result, what went wrong, that a cell is done, that it has nothing more to do."""
+
+
+def _slot(
+    worker: Worker,
+    left: "queue.SimpleQueue[Searched]",
+    journal: Journal,
+    told: "queue.SimpleQueue[_News]",
+    stop: threading.Event,
+) -> None:
+    """Take one cell after the other that is left, and have what has no result run."""
+
+    def made(point: Point) -> bool:
+        if journal.get(point) is None:
+            if stop.is_set():
+                return False
+            record = worker(point)
+            journal.add(point, record)
+            told.put(record)
+        found = journal.said(point)
+        return found is not None and found.status != "broken"
+
+    try:
+        while not stop.is_set():
+            outcome_of(left.get_nowait(), journal, made)
+            told.put("cell")
+    except queue.Empty:
+        pass
+    except Exception as error:
+        told.put(error)
+    finally:
+        told.put("end")
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +230,7 @@ class Swept:
         if self.campaign.spec.bisect is None and self.ran:
             judged = [record.status for _, record in self.facts if record.status in ("pass", "fail")]
             rate = wilson(judged.count("pass"), len(judged))
-            yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {100 * rate.low:.1f} to {100 * rate.high:.1f} %"
+            yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {rate.between} %"
         yield from map(str, reversed(self.files))
 
     def to_json(self) -> dict[str, Any]:
@@ -185,8 +275,6 @@ def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) 
 def _workers(out: Path, jobs: int, cluster: str | None, keep_all: bool) -> Sequence[Worker]:
     if cluster is None:
         return local_workers(out, jobs, keep_all)
-    from surefoot.scenarios.study.campaigns.cluster import cluster_workers
-
     return cluster_workers(cluster, out, keep_all)
 
 

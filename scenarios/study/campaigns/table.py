@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from scipy.stats import binomtest
+
 from surefoot.scenarios.errors import require
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.output import write_whole
-from surefoot.scenarios.study.campaigns.axes import described
-from surefoot.scenarios.study.campaigns.engine import Outcome
-from surefoot.scenarios.study.campaigns.points import Cell, facts
+from surefoot.scenarios.study.campaigns.points import Cell, Outcome, facts
+from surefoot.scenarios.study.campaigns.spec import described
 
 TableValue = bool | int | float | str | None
 _MOST_WHOLE = 2**63 - 1
@@ -142,21 +143,23 @@ class SuccessRate(NamedTuple):
     low: float
     high: float
 
+    @property
+    def between(self) -> str:
+        """The interval in percent."""
+        return f"{100 * self.low:.1f} to {100 * self.high:.1f}"
 
-def wilson(successes: int, trials: int, deviations: float = 1.959964) -> SuccessRate:
-    """A success rate with its interval by Wilson's score, which holds near 0 and 1 and for few trials too.
+
+def wilson(successes: int, trials: int) -> SuccessRate:
+    """A success rate with its 95 % interval by Wilson's score, which holds near 0 and 1 and for few trials too.
 
     E. B. Wilson, Probable inference, the law of succession, and statistical inference, JASA 22, 1927.
 
     Args:
         successes: how many.
         trials: of how many, 1 or more.
-        deviations: half width of the interval in standard deviations; 95 % by default.
     """
-    rate, square = successes / trials, deviations**2
-    middle = (rate + square / (2 * trials)) / (1 + square / trials)
-    half = deviations / (1 + square / trials) * math.sqrt(rate * (1 - rate) / trials + square / (4 * trials**2))
-    return SuccessRate(rate, max(middle - half, 0.0), min(middle + half, 1.0))
+    interval = binomtest(successes, trials).proportion_ci(0.95, "wilson")
+    return SuccessRate(successes / trials, float(interval.low), float(interval.high))
 
 
 def write_table(table: Table, path: Path) -> list[Path]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,9 +13,11 @@ from matplotlib.projections.polar import PolarAxes
 
 from surefoot.scenarios.palette import BLACK, BLUE, GREY, VERMILION, Color, paler
 from surefoot.scenarios.show.kit.figures import CYCLE, DASHED, PAGE_WIDTH, in_style, panels
-from surefoot.scenarios.study.campaigns.axes import (
+from surefoot.scenarios.study.campaigns.points import Threshold
+from surefoot.scenarios.study.campaigns.spec import (
     MOST_PANELS,
     Axis,
+    Published,
     angle_of,
     combinations,
     name_axis,
@@ -23,11 +25,6 @@ from surefoot.scenarios.study.campaigns.axes import (
     title,
     with_unit,
 )
-from surefoot.scenarios.study.campaigns.points import Threshold
-from surefoot.scenarios.study.campaigns.spec import Published
-
-if TYPE_CHECKING:
-    pass
 
 ROUND = {0.0: "forward", 0.25: "", 0.5: "left", 0.75: "", 1.0: "backward", 1.25: "", 1.5: "right", 1.75: ""}
 """What directions are called, by their angle from the world's x axis [pi rad]."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
 import yaml
 
 from surefoot.scenarios.errors import LogError, ScenarioError
@@ -17,7 +18,7 @@ from surefoot.scenarios.judge.metrics import OWN, known
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import WORLD_FILE
-from surefoot.scenarios.study.checks.trace import FAR, Trace
+from surefoot.scenarios.study.checks.signs import COLUMNS, FAR, SIGNS, Trace
 from surefoot.sim.options import Option, world_options
 
 ENDING = ".baseline.yaml"
@@ -29,6 +30,9 @@ SAME_OPTION = 1e-5
 """Share by which an option of the world may differ, which is written with six digits [-]."""
 
 _GAPS_TOLD = 5
+
+_LABELS = ["stage", "foot"]
+"""First columns of the table."""
 
 MetricValue = bool | int | float | None
 Trend = Literal["better", "worse", "other"]
@@ -106,11 +110,9 @@ class Baseline:
 
     def other_world(self, now: "Baseline") -> list[str]:
         """Which options of the world are not as here, a sentence each."""
-        return [
-            f"the world's {name} is {_shown(now.world.get(name))}, {_shown(before)} in the baseline"
-            for name, before in self.world.items()
-            if not _alike(before, now.world.get(name))
-        ]
+        other = {name: was for name, was in self.world.items() if not _alike(was, now.world.get(name))}
+        shown = {name: _flow(now.world[name]) if name in now.world else "none" for name in other}
+        return [f"the world's {name} is {shown[name]}, {_flow(was)} in the baseline" for name, was in other.items()]
 
     def moves(self, metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> Iterator[Move]:
         """Metrics that moved by more than their tolerance; those that the baseline has not got are no moves."""
@@ -147,7 +149,7 @@ class Baseline:
             metric = known(name)
             unit = f"  # {metric.unit}" if metric is not None and metric.unit else ""
             lines.append(f"  {name}: {_flow(value)}{unit}")
-        lines += ["trace:  # lift-off to lift-off; SI units", *(f"  - {row}" for row in self.trace.lines())]
+        lines += ["trace:  # lift-off to lift-off; SI units", *(f"  - {row}" for row in _table(self.trace))]
         settings = "\n".join(f"  {line}" for line in self.settings.splitlines())
         return "\n".join([*lines, f"settings: |\n{settings}\n"])
 
@@ -199,7 +201,7 @@ def _of_values(data: Any, path: Path) -> Baseline:
             raise ValueError(f"its {name} is not what the metric gives")
     if not isinstance(world, dict) or not _are_finite([world, metrics]):
         raise ValueError("its metrics or its world hold what is no finite number")
-    return Baseline(scenario, settings, world, metrics, Trace.from_rows(values["trace"]))
+    return Baseline(scenario, settings, world, metrics, read_trace(values["trace"]))
 
 
 def write_baseline(path: Path, baseline: Baseline) -> None:
@@ -226,6 +228,41 @@ def _world(log: Log) -> Mapping[str, Option]:
         return world_options(log.attachments[WORLD_FILE].decode()) if WORLD_FILE in log.attachments else {}
     except ValueError as error:
         raise LogError(f"{log.path}: {WORLD_FILE} is damaged, {str(error).splitlines()[0]}; run it anew") from None
+
+
+def _table(trace: Trace) -> list[str]:
+    """A trace as a table in YAML, a row for each stage."""
+    digits = {column: sign.digits for sign in SIGNS for column in sign.columns}
+    rows = [[*_LABELS, *trace.values]]
+    for stage, (label, foot) in enumerate(zip(trace.labels, trace.feet, strict=True)):
+        numbers = ((column, values[stage]) for column, values in trace.values.items())
+        written = (f"{x:.{digits[column]}f}" if math.isfinite(x) else "~" for column, x in numbers)
+        rows.append([label, foot, *written])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [f"[{', '.join(map(str.rjust, row, widths))}]" for row in rows]
+
+
+def read_trace(rows: Any) -> Trace:
+    """Read such a table of a trace back.
+
+    Raises:
+        ValueError: it is none; says why.
+    """
+    if not isinstance(rows, list) or not rows or not all(isinstance(row, list) for row in rows):
+        raise ValueError("its trace is no table")
+    head, *below = rows
+    named = all(isinstance(name, str) for name in head) and len(set(head)) == len(head)
+    if not named or head[:2] != _LABELS or not set(head[2:]) <= set(COLUMNS):
+        raise ValueError(f"its trace has columns other than {', '.join((*_LABELS, *COLUMNS))}")
+    if any(len(row) != len(head) for row in below):
+        raise ValueError("its trace has rows of other lengths than the first")
+    if any(not (x is None or _is_finite(x)) for row in below for x in row[2:]):
+        raise ValueError("its trace holds what is no finite number")
+    columns = {
+        name: np.array([math.nan if row[i] is None else float(row[i]) for row in below])
+        for i, name in enumerate(head[2:], 2)
+    }
+    return Trace(tuple(str(row[0]) for row in below), tuple(str(row[1]) for row in below), columns)
 
 
 def _elements(name: str, before: Any, now: Any) -> Iterator[tuple[str, MetricValue, MetricValue]]:
@@ -264,11 +301,6 @@ def _alike(before: Any, now: Any) -> bool:
     return bool(before == now)
 
 
-def _shown(option: Any) -> str:
-    """An option as the file has it."""
-    return "none" if option is None else _flow(option)
-
-
 def _near(before: MetricValue, now: MetricValue, allowed: float) -> bool:
     if before is None or now is None or isinstance(before, bool) or isinstance(now, bool):
         return before is now
@@ -297,3 +329,7 @@ def _rounded(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _rounded(one) for name, one in value.items()}
     return float(f"{value:.6g}") if isinstance(value, float) else value
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

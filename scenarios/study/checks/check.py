@@ -21,7 +21,7 @@ from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.study.campaigns.engine import side_by_side
 from surefoot.scenarios.study.checks.baseline import ENDING, Baseline, Move, read_baseline, write_baseline
-from surefoot.scenarios.study.checks.trace import Parting
+from surefoot.scenarios.study.checks.signs import Parting
 
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""

@@ -12,7 +12,7 @@ from surefoot.scenarios.judge.verdict import shown_unit, value_text
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.study.checks.baseline import Move
 from surefoot.scenarios.study.checks.check import Checked, CheckStatus
-from surefoot.scenarios.study.checks.trace import FAR, Parting
+from surefoot.scenarios.study.checks.signs import FAR, Parting
 
 _SHOWN_MOVES = 12
 """Moves of a run that are named; the others are counted."""

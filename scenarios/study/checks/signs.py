@@ -1,20 +1,22 @@
-"""What a run is recognised by: its stages, and a handful of physical quantities in each.
+"""What a run is recognised by: its stages, and a handful of physical quantities in each; where it parts from another.
 
 A stage goes from one lift-off to the next. The first tick is one of its own: all runs of a scenario begin it in the
 same state, so that what one does differently there is its controller's doing alone.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
+from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge.body import headings, leg
 from surefoot.scenarios.judge.digest import Array, RunView
 from surefoot.scenarios.judge.walking import runs_of
+from surefoot.scenarios.log import Log
 from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED
 
 LONGEST_LAG = 10
@@ -77,7 +79,7 @@ class Sign:
         columns: names; three are the x, y and z of a place in the world.
         digits: behind the point.
         tolerance: how far two runs may be apart that count as the same, and share of the value beside it.
-        shown: factor and unit in which a person is shown it.
+        unit: in which a person is shown it.
         figure: of `surefoot plot` that shows it.
         words: what it is, of which foot and in which stage.
         measure: it.
@@ -88,12 +90,17 @@ class Sign:
     columns: tuple[str, ...]
     digits: int
     tolerance: tuple[float, float]
-    shown: tuple[float, str]
+    unit: str
     figure: str
     words: str
     measure: Measure
     body: bool = False
     peak: bool = False
+
+    @property
+    def scale(self) -> float:
+        """From its values to what a person is shown."""
+        return {"ms": 1e3, "mm": 1e3, "deg": 180.0 / math.pi}.get(self.unit, 1.0)
 
 
 def _times(run: RunView, parts: Sequence[Stage]) -> Array:
@@ -176,7 +183,6 @@ def _sway(run: RunView) -> Array:
 
 
 def _tilt(run: RunView) -> Array:
-    """Angle of the torso from the vertical."""
     return run.field("/truth", "torso_tilt")
 
 
@@ -184,48 +190,161 @@ def _com(run: RunView, parts: Sequence[Stage]) -> Array:
     return run.field("/truth", "com")[[one.end - 1 for one in parts]]
 
 
-_SECONDS, _MS, _MM, _DEGREES, _NEWTON_METRES = (
-    (1.0, "s"),
-    (1e3, "ms"),
-    (1e3, "mm"),
-    (180.0 / math.pi, "deg"),
-    (1.0, "N m"),
-)
-_PLAIN = (1.0, "")
-_GRIP = "largest force along the ground over normal force that the controller plans for the {} foot {{stage}}"
 _LAG = "lag of the measured ground forces behind those that the controller plans {stage}"
 _SWING = "swing task: largest distance of the {foot} sole from its reference {stage}"
 _BALANCE = "balance: largest distance of the CoM along the ground from where the controller was to hold it {stage}"
 _ZMP = "largest distance of the ZMP from its reference {stage}"
+_SOLE, _YAW = "{foot} sole at touchdown of {label}", "heading of the {foot} sole at touchdown of {label}"
 
 
 def _leg(side: str) -> Sign:
     torque = _each(partial(_leg_torque, side=side), lambda squared: math.sqrt(np.mean(squared)))
     words = f"torque of the {side} leg (RMS) {{stage}}"
-    return Sign((f"torque_{side}",), 2, (0.5, 0.02), _NEWTON_METRES, "torques", words, torque, body=True)
+    return Sign((f"torque_{side}",), 2, (0.5, 0.02), "N m", "torques", words, torque, body=True)
 
 
 def _grip(side: str) -> Sign:
-    used, words = _each(partial(_friction, side=side)), _GRIP.format(side)
-    return Sign((f"friction_{side}",), 3, (0.1, 0.0), _PLAIN, "grip", words, used, body=True, peak=True)
+    used = _each(partial(_friction, side=side))
+    words = f"largest force along the ground over normal force that the controller plans for the {side} foot {{stage}}"
+    return Sign((f"friction_{side}",), 3, (0.1, 0.0), "", "grip", words, used, body=True, peak=True)
 
-
-_SOLE, _YAW = "{foot} sole at touchdown of {label}", "heading of the {foot} sole at touchdown of {label}"
 
 SIGNS: tuple[Sign, ...] = (
-    Sign(("time",), 3, (0.011, 0.0), _SECONDS, "feet", "begin of {label}", _times),
-    Sign(("lag",), 4, (1e-3, 0.0), _MS, "feet", _LAG, _lag, body=True),
+    Sign(("time",), 3, (0.011, 0.0), "s", "feet", "begin of {label}", _times),
+    Sign(("lag",), 4, (1e-3, 0.0), "ms", "feet", _LAG, _lag, body=True),
     *map(_grip, FOOT_NAMES),
-    Sign(("sole_x", "sole_y", "sole_z"), 4, (1e-3, 0.0), _MM, "soles", _SOLE, _landings),
-    Sign(("sole_yaw",), 4, (5e-3, 0.0), _DEGREES, "top-view", _YAW, _landing_yaw),
-    Sign(("swing",), 5, (5e-5, 0.05), _MM, "feet", _SWING, _swing_error),
+    Sign(("sole_x", "sole_y", "sole_z"), 4, (1e-3, 0.0), "mm", "soles", _SOLE, _landings),
+    Sign(("sole_yaw",), 4, (5e-3, 0.0), "deg", "top-view", _YAW, _landing_yaw),
+    Sign(("swing",), 5, (5e-5, 0.05), "mm", "feet", _SWING, _swing_error),
     *map(_leg, FOOT_NAMES),
-    Sign(("zmp",), 4, (5e-3, 0.05), _MM, "balance", _ZMP, _each(_zmp_error)),
-    Sign(("sway",), 5, (2e-4, 0.05), _MM, "balance", _BALANCE, _each(_sway)),
-    Sign(("tilt",), 4, (2e-3, 0.05), _DEGREES, "balance", "largest tilt of the torso {stage}", _each(_tilt), body=True),
-    Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), _MM, "balance", "CoM at the end of {label}", _com),
+    Sign(("zmp",), 4, (5e-3, 0.05), "mm", "balance", _ZMP, _each(_zmp_error)),
+    Sign(("sway",), 5, (2e-4, 0.05), "mm", "balance", _BALANCE, _each(_sway)),
+    Sign(("tilt",), 4, (2e-3, 0.05), "deg", "balance", "largest tilt of the torso {stage}", _each(_tilt), body=True),
+    Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), "mm", "balance", "CoM at the end of {label}", _com),
 )
 """What is kept of a run; of those that part in the same stage, the first is nearest to the cause. Torques come late:
 after the first tick they follow from how the robot moves."""
 
 COLUMNS = tuple(column for sign in SIGNS for column in sign.columns)
+
+FAR, _LOST = 10.0, 2.0
+"""Tolerances by which a run may be better than its baseline: one that is farther off says that something else than the
+walk has changed, its judge for instance; and how far off a value counts that cannot be told any more [-]."""
+
+_SIDES = (("ahead of", "behind"), ("to the left of", "to the right of"), ("above", "below"))
+
+
+@dataclass(frozen=True, slots=True)
+class Parting:
+    """Something in which a run is not as its baseline.
+
+    Attributes:
+        text: what, where and by how much, in a sentence without a full stop.
+        stage: number of the stage.
+        excess: how far they are apart over how far they may be [-].
+        figure: of `surefoot plot` that shows it.
+        begin: of the stage [s].
+        end: of the stage [s]; infinite for the last one.
+    """
+
+    text: str
+    stage: int
+    excess: float
+    figure: str
+    begin: float
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """The signs of a run.
+
+    Attributes:
+        labels: of its stages.
+        feet: that swing in them: left, right or both, which none does.
+        values: by column, each of shape (stages,), NaN where one means nothing.
+    """
+
+    labels: tuple[str, ...]
+    feet: tuple[str, ...]
+    values: Mapping[str, Array]
+
+    @classmethod
+    def of(cls, log: Log) -> "Trace":
+        """The signs of a log, as far as it has what they need."""
+        run = RunView(log)
+        parts = stages(run)
+        values: dict[str, Array] = {}
+        for sign in SIGNS if parts else ():
+            if not (sign.body and run.constants.fidelity == "pendulum"):
+                values |= dict(zip(sign.columns, sign.measure(run, parts).T, strict=True))
+        return cls(tuple(one.label for one in parts), tuple((*FOOT_NAMES, "both")[one.foot] for one in parts), values)
+
+    def partings(self, now: "Trace") -> list[Parting]:
+        """Everything in which a run is not as this one, stage by stage, in each in the order of the signs."""
+        longest = max(len(self.labels), len(now.labels))
+        return [parting for stage in range(longest) for parting in self._partings(now, stage)]
+
+    def _partings(self, now: "Trace", stage: int) -> list[Parting]:
+        longer = self if len(self.labels) > stage else now
+        begin, *later = longer._begins[stage:]
+        window = (begin, min(later, default=math.inf))
+        if min(len(self.labels), len(now.labels)) <= stage:
+            text = f"{longer.labels[stage]} is {'not there' if longer is self else 'one too many'}"
+            return [Parting(text, stage, math.inf, "balance", *window)]
+        if (self.labels[stage], self.feet[stage]) != (now.labels[stage], now.feet[stage]):
+            which = (f"{one.labels[stage]} with the foot {one.feet[stage]}" for one in (now, self))
+            return [Parting(" is in the baseline ".join(which), stage, math.inf, "feet", *window)]
+        told = ((sign, self._apart(now, sign, stage)) for sign in SIGNS)
+        return [Parting(text, stage, far, sign.figure, *window) for sign, (far, text) in told if not far <= 1.0]
+
+    @property
+    def _begins(self) -> list[float]:
+        return self.values["time"].tolist() if "time" in self.values else [0.0] * len(self.labels)
+
+    def _apart(self, now: "Trace", sign: Sign, stage: int) -> tuple[float, str]:
+        """How far a sign is off over what it may be, and that in words."""
+        before, after = (self._at(sign, stage), now._at(sign, stage))
+        told = np.isfinite(before), np.isfinite(after)
+        if not np.any(told) or not self.values.keys() >= set(sign.columns):
+            return 0.0, ""
+        label, foot = self.labels[stage], self.feet[stage]
+        where = {"first tick": "at the first tick", "stand": "before the first step"}.get(label, f"in {label}")
+        what = sign.words.format(stage=where, label=label, foot=foot)
+        if not np.all(told):
+            since = "cannot be told any more" if told[0].all() else "could not be told in the baseline"
+            return _LOST, f"{what} {since}"
+        yaw = self.values["sole_yaw"][stage] if len(before) == 3 and "sole_yaw" in self.values else 0.0
+        if sign.peak:
+            before = np.array([np.nanmax(self.values[sign.columns[0]])])
+            off = self._over_peak(now, sign, stage, float(before[0]))
+        else:
+            off = after - before
+        if sign.unit == "deg":
+            off = np.remainder(off + math.pi, 2.0 * math.pi) - math.pi
+        allowed = sign.tolerance[0] + sign.tolerance[1] * float(np.abs(before).max())
+        text = _place_text(off, yaw, sign) if len(off) == 3 else _number_text(after, before, sign)
+        return float(np.linalg.norm(off)) / allowed, f"{what}: {text}"
+
+    def _over_peak(self, now: "Trace", sign: Sign, stage: int, peak: float) -> Array:
+        """How far a value is over the greatest of all stages; where that one is, how far the run is below, if far."""
+        (column,), tolerance = sign.columns, sign.tolerance[0] + sign.tolerance[1] * abs(peak)
+        below = peak - float(np.nanmax(now.values[column]))
+        if self.values[column][stage] == peak and below > FAR * tolerance:
+            return np.array([-below])
+        return np.maximum(now.values[column][[stage]] - peak, 0.0)
+
+    def _at(self, sign: Sign, stage: int) -> Array:
+        return np.array([self.values[name][stage] if name in self.values else math.nan for name in sign.columns])
+
+
+def _place_text(off: Array, yaw: float, sign: Sign) -> str:
+    """How far one place is from another, along the direction in which it is farthest in the heading there."""
+    along = (*(off[:2] @ frame_rotation(yaw)), off[2])
+    axis = int(np.argmax(np.abs(along)))
+    return f"{sign.scale * abs(along[axis]):.1f} {sign.unit} {_SIDES[axis][int(along[axis] < 0.0)]} the baseline"
+
+
+def _number_text(now: Array, before: Array, sign: Sign) -> str:
+    values = (f"{sign.scale * float(one[0]):.3g} {sign.unit}".rstrip() for one in (now, before))
+    return f"{next(values)}, {'at most ' if sign.peak else ''}{next(values)} in the baseline"

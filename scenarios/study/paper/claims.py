@@ -1,17 +1,78 @@
 """The paper's claims, each with the rule by which the numbers of the runs decide whether it holds."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+import statistics
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from importlib.resources import files
+from typing import Literal, NamedTuple
 
-from surefoot.scenarios.study.paper import rules
-from surefoot.scenarios.study.paper.results import Results
-from surefoot.scenarios.study.paper.rules import AXES_APART, BETTER, FOOT_EDGE, STRONGER, Assessment
-from surefoot.scenarios.study.paper.studies import HEIGHTS, NOISE_STAIRS, NOISE_WALK, PUSHES, STAIRS, WALK
+import yaml
+
+from surefoot.scenarios.show.kit.html import number
+from surefoot.scenarios.study.paper.results import MM, PERCENT, Results, Sample, balance_text, spread_text
+from surefoot.scenarios.study.paper.studies import (
+    CLAIMANTS,
+    GAITS,
+    HEIGHTS,
+    KNEES,
+    NOISE_ALONE,
+    NOISE_STAIRS,
+    NOISE_WALK,
+    PUSHES,
+    SHOVE_DIRECTIONS,
+    SHOVE_IMPULSES,
+    STAIRS,
+    STEP_LAW,
+    WALK,
+    ZMP_ONLY,
+    PaperWorld,
+    Study,
+    knee_study,
+)
+
+Grade = Literal["holds", "holds with a change", "does not hold", "not measured"]
+
+FOOT_EDGE = 0.00375
+"""From the 90 % box of a 0.075 m sole to its edge [m]."""
+
+BETTER = 1.1
+"""Ratio from which a ZMP error counts as lower."""
+
+STRONGER = 1.2
+"""Ratio from which a survived impulse counts as larger."""
+
+AXES_APART = 1.5
+"""Ratio from which an effect in one axis counts as larger than in the other."""
+
+SAVES = 0.05
+"""Share from which effort counts as lower."""
+
+SAME_SPEED = 0.02
+"""Share by which two speeds may differ and count as the same."""
+
+STRETCHED = math.radians(25.0)
+"""Mean knee flexion of a walk with mostly stretched knees: people have about 20 to 25 degrees [rad]."""
+
+SAMPLE_TIME, _ROUNDING = 0.02, 1e-6
+"""Within which a plan is to be made [s], and what does not count of a distance [m]."""
 
 
-@dataclass(frozen=True, slots=True)
-class Claim:
+class Assessment(NamedTuple):
+    """What was found about a claim.
+
+    Attributes:
+        pendulum: what the point-mass worlds show, in a sentence.
+        full: what full physics shows, in a sentence.
+        verdict: by the claim's rule.
+    """
+
+    pendulum: str
+    full: str
+    verdict: Grade
+
+
+class Claim(NamedTuple):
     """A claim of the paper.
 
     Attributes:
@@ -29,86 +90,260 @@ class Claim:
     judge: Callable[[Results], Assessment]
 
 
-_SURVIVES = (
-    "Holds when no run of `paper` on the pendulum and none of `default` in full physics falls or has its ZMP outside "
-    "{edge}; with a change when that is so for `repaired` or `default` on the pendulum instead of `paper`. "
-    "Runs in full physics that are not available are left out."
-)
-_BOX = _SURVIVES.format(edge="the support of feet shrunk to 90 %")
-_SOLES = _SURVIVES.format(edge="the planned support")
+_NO_KNEES = "a pendulum has no knees"
+_NOT_MEASURED = Assessment("not measured", "not measured", "not measured")
+_POINT_AND_BODY: tuple[PaperWorld, PaperWorld] = ("pendulum", "full")
 
-CLAIMS: tuple[Claim, ...] = (
-    Claim(
-        "claim-walk", "V-B",
-        "The planner generates stable walking and keeps the actual ZMP inside the support polygon.",
-        _BOX, partial(rules.survival, studies=(WALK,), full=(WALK,), margin=0.0),
-    ),
-    Claim(
-        "claim-hard", "III-B", "The ZMP constraint is hard: the solution must always satisfy it.",
-        "Holds when every plan of `paper` on the pendulum had a solution within all hard limits; with a change when "
-        "every plan of `repaired` had.", rules.hard_constraint,
-    ),
-    Claim(
-        "claim-stairs", "V-C", "The method generates stable stair climbing, with stairs of 0.1 m.",
-        _BOX, partial(rules.survival, studies=(STAIRS[0],), full=(STAIRS[0],), margin=0.0),
-    ),
-    Claim(
-        "claim-preview", "I, VI", "Previewing the changes of the dynamics improves the performance of the planner.",
-        f"Holds when the RMS of the ZMP error on the pendulum without preview (`lti`) is at least {BETTER:g} times "
-        "that with it (`default`) and their ranges over seeds do not overlap, on flat ground and on every stair; with "
-        "a change when on the stairs only.", rules.preview,
-    ),
-    Claim(
-        "claim-noise", "V-D", "The planner is robust against measurement noise of ±0.02 m, walking and on stairs.",
-        _SOLES, partial(rules.survival, studies=(NOISE_WALK, NOISE_STAIRS), full=(NOISE_WALK,), margin=FOOT_EDGE),
-    ),
-    Claim(
-        "claim-filter", "II-B, V-D", "A Kalman filter on the measured ZMP gives the state that the planner needs.",
-        "Holds when no run with the ZMP alone falls on the pendulum, where the planner alone closes the loop, or has "
-        "its ZMP outside the planned support; with a change when that is so for `repaired` or `default` with the "
-        "filter that also sees the CoM, and in full physics.", rules.zmp_filter,
-    ),
-    Claim(
-        "claim-height", "V-E", "With a CoM height wrong by ±0.1 and ±0.2 m walking is stable and the ZMP stays inside.",
-        _SOLES, partial(rules.survival, studies=HEIGHTS, full=HEIGHTS, margin=FOOT_EDGE),
-    ),
-    Claim(
-        "claim-frontal", "V-E", "Unlike in the sagittal plane, the height error matters in the frontal plane.",
-        f"Holds when the most that the four errors add to the RMS of the ZMP error is {AXES_APART:g} times as much "
-        "in y as in x, for `repaired` and `default` on the pendulum and `default` in full physics.",
-        rules.frontal_effect,
-    ),
-    Claim(
-        "claim-push", "V-F", "The planner is robust against pushes of ±50 and ±75 N for 10 ms, with noise.",
-        _SOLES, partial(rules.survival, studies=PUSHES, full=PUSHES, margin=FOOT_EDGE),
-    ),
-    Claim(
-        "claim-adaptation", "I, VI", "Moving the landing location by the DCM helps against severe disturbances.",
-        "Holds when `paper` with its step law walks on the pendulum; with a change (footsteps in the QP of `default`) "
-        f"when the largest impulse survived, mean of four directions, grows at least {STRONGER:g} times.",
-        rules.adaptation,
-    ),
-    Claim(
-        "claim-online", "III", "The planner works online.",
-        "Holds when the median plan of `paper` on the pendulum and of `default` in full physics takes less than the "
-        "sample time of 20 ms, on the machine that made the logs, with all its cores busy.", rules.online,
-    ),
-    Claim(
-        "claim-stretched", "IV-B, V-B", "The robot walks with mostly stretched knees.",
-        "Holds when the knees' mean flexion while walking is at most 25 degrees in both gaits; with a change when in "
-        "one of them.", rules.stretched_knees,
-    ),
-    Claim(
-        "claim-torque", "IV", "Always bending the knees takes high torques in them; stretched knees take less.",
-        "Holds when the RMS of the knee torques is at least 5 % lower with stretched than with bent knees at the same "
-        "speed, in both gaits; with a change when in one of them.",
-        partial(rules.saving, metric="knee_torque_rms", name="knee torque RMS"),
-    ),
-    Claim(
-        "claim-energy", "IV, VII", "Walking with mostly stretched knees is more energy efficient.",
-        "Holds when the cost of transport is at least 5 % lower with stretched than with bent knees at the same speed, "
-        "in both gaits; with a change when in one of them.",
-        partial(rules.saving, metric="cost_of_transport", name="cost of transport"),
-    ),
-)  # fmt: skip
+
+def grade(printed: bool | None, changed: bool | None, full: bool | None = None) -> Grade:
+    """Grade a claim.
+
+    Args:
+        printed: whether it holds as the paper printed the planner; None when that was not measured.
+        changed: whether it holds with the planner changed.
+        full: whether it holds in full physics too; None when that is not asked or was not measured.
+    """
+    if printed is None or (changed is None and not printed):
+        return "not measured"
+    if full is False:
+        return "does not hold"
+    if printed:
+        return "holds"
+    return "holds with a change" if changed else "does not hold"
+
+
+def stable(samples: Iterable[Sample], margin: float = FOOT_EDGE) -> bool | None:
+    """Whether no run fell and the ZMP stayed inside the planned support, in all runs.
+
+    Args:
+        samples: of which every run counts.
+        margin: beyond the support of feet shrunk to 90 % that is allowed [m]; by default up to the soles' edges.
+
+    Returns:
+        None when a run is missing.
+    """
+    every = list(samples)
+    if not every or not all(sample.complete for sample in every):
+        return None
+    most = margin + _ROUNDING
+    excursions = (sample.greatest("zmp_excursion_max") for sample in every if not sample.falls)
+    return sum(excursion is not None and excursion <= most for excursion in excursions) == len(every)
+
+
+def any_of(verdicts: Sequence[bool | None]) -> bool | None:
+    """Whether one of some holds; None when that is not known."""
+    if any(verdicts):
+        return True
+    return None if None in verdicts else False
+
+
+def survival(results: Results, studies: Sequence[Study], full: Sequence[Study], margin: float) -> Assessment:
+    """Whether the robot stays up and its ZMP inside, as printed, changed and in full physics."""
+    printed, *changed = ([results.sample(study, profile) for study in studies] for profile in CLAIMANTS)
+    plant = [sample for study in studies if (sample := results.sample(study, "paper", "cart-table")).outcomes]
+    body = [results.sample(study, "default", "full") for study in full]
+    rows = [row for row in (plant, printed, *changed) if row]
+    verdict = grade(stable(printed, margin), any_of([stable(row, margin) for row in changed]), stable(body, margin))
+    return Assessment(". ".join(map(balance_text, rows)), balance_text(body), verdict)
+
+
+def hard_constraint(results: Results) -> Assessment:
+    """Whether the constrained problem had a solution at every plan."""
+    samples, body = (results.of(WALK, "paper", "repaired", world=world) for world in _POINT_AND_BODY)
+    printed, changed = (
+        None if share is None or not sample.complete else share.least >= 1.0
+        for sample in samples
+        for share in (sample.feasible,)
+    )
+    return Assessment(_feasible_text(samples), _feasible_text(body), grade(printed, changed))
+
+
+def _feasible_text(samples: Iterable[Sample]) -> str:
+    shares = {sample.profile: sample.feasible for sample in samples}
+    told = {name: f"{spread_text(share, PERCENT)} % of plans feasible" for name, share in shares.items() if share}
+    return "; ".join(f"{name}: {told.get(name, 'not measured')}" for name in shares)
+
+
+def zmp_filter(results: Results) -> Assessment:
+    """Whether a Kalman filter that sees the ZMP alone gives a state that can be walked with."""
+    alone, both = (results.of(study, "repaired", "default") for study in (ZMP_ONLY, NOISE_ALONE))
+    rows = [f"ZMP alone, {balance_text([sample])}" for sample in alone]
+    rows += [f"with the CoM, {balance_text([sample])}" for sample in both]
+    body = results.sample(NOISE_WALK, "default", "full")
+    verdict = grade(stable(alone), any_of([stable([sample]) for sample in both]), stable([body]))
+    return Assessment(". ".join(rows), f"with the CoM, {balance_text([body])}", verdict)
+
+
+def frontal_effect(results: Results) -> Assessment:
+    """Whether a wrong CoM height moves the ZMP more in the frontal than in the sagittal plane."""
+    points = {profile: _height_effect(results, profile, "pendulum") for profile in ("repaired", "default")}
+    body = _height_effect(results, "default", "full")
+    known = [effect for effect in points.values() if effect is not None]
+    if not known:
+        return _NOT_MEASURED
+    frontal = all(y > AXES_APART * x for x, y in known)
+    full = None if body is None else body[1] > AXES_APART * body[0]
+    texts = (_effect_text(name, effect) for name, effect in points.items())
+    return Assessment(". ".join(texts), _effect_text("default", body), grade(frontal, False, full))
+
+
+def _height_effect(results: Results, profile: str, world: PaperWorld) -> tuple[float, float] | None:
+    """Most that a height error adds to the ZMP error's RMS, in x and in y [m]."""
+    base, *errors = (results.sample(study, profile, world) for study in (WALK, *HEIGHTS))
+    if not base.complete or not all(sample.complete and not sample.falls for sample in (base, *errors)):
+        return None
+    x, y = (
+        max(max(sample.values("zmp_error_rms", axis)) for sample in errors)
+        - (base.median("zmp_error_rms", axis) or 0.0)
+        for axis in (0, 1)
+    )
+    return x, y
+
+
+def _effect_text(name: str, effect: tuple[float, float] | None) -> str:
+    if effect is None:
+        return f"{name}: not measured"
+    x, y = (number(value, MM) for value in effect)
+    return f"{name}: a wrong height adds up to {x} mm to the RMS in x (sagittal), {y} mm in y (frontal)"
+
+
+def preview(results: Results) -> Assessment:
+    """Whether previewing the changing dynamics lowers the ZMP error."""
+    points = {study: _gain(results, study, "pendulum") for study in (WALK, *STAIRS)}
+    body = {study: _gain(results, study, "full") for study in (WALK, *STAIRS[:2])}
+    verdict: Grade = "not measured"
+    if all(points.values()):
+        better = {study: gain is not None and gain[0] >= BETTER and gain[1] for study, gain in points.items()}
+        on_stairs = all(better[study] for study in STAIRS)
+        verdict = grade(on_stairs and better[WALK], on_stairs)
+    return Assessment(_gains_text(points), _gains_text(body), verdict)
+
+
+def _gain(results: Results, study: Study, world: PaperWorld) -> tuple[float, bool] | None:
+    """How many times lower the ZMP error is with preview, and whether the ranges over seeds lie apart."""
+    samples = results.of(study, "lti", "default", world=world)
+    without, previewed = (sample.error_norms for sample in samples)
+    if not without or not previewed or not all(sample.complete for sample in samples):
+        return None
+    return statistics.median(without) / statistics.median(previewed), min(without) > max(previewed)
+
+
+def _gains_text(gains: Mapping[Study, tuple[float, bool] | None]) -> str:
+    parts = [f"{study.title} {number(gain and gain[0], digits=2)}" for study, gain in gains.items()]
+    return f"RMS without over with preview (lti over default): {', '.join(parts)}"
+
+
+def adaptation(results: Results) -> Assessment:
+    """Whether moving the next footstep lets the robot survive stronger pushes; by the printed law, whether it walks."""
+    law = results.sample(STEP_LAW, "paper")
+    fixed, moved = (_largest_mean(results, kind) for kind in ("none", "location"))
+    if fixed is None or moved is None:
+        return Assessment("not measured", "not run", "not measured")
+    text = (
+        f"The printed law, without a push: {balance_text([law])}. "
+        f"Largest impulse survived, mean of four directions: {number(fixed)} N s with fixed footsteps, "
+        f"{number(moved)} N s with footsteps in the QP, {number(moved / fixed)} times as much"
+    )
+    return Assessment(text, "not run", grade(stable([law]), moved >= STRONGER * fixed))
+
+
+def _largest_mean(results: Results, kind: str) -> float | None:
+    """Largest impulse survived, mean over directions; one below the least tried counts as a step of the ladder less."""
+    step = SHOVE_IMPULSES[1] - SHOVE_IMPULSES[0]
+    found = [results.survived(kind, direction) for direction in SHOVE_DIRECTIONS]
+    largest = [max(impulses, default=SHOVE_IMPULSES[0] - step) for impulses in found if impulses is not None]
+    return sum(largest) / len(largest) if len(largest) == len(found) else None
+
+
+def online(results: Results) -> Assessment:
+    """Whether a plan is made within a sample time."""
+    points, body = results.of(WALK, *CLAIMANTS), results.sample(WALK, "default", "full")
+    medians = [sample.greatest("planner_time", "median") for sample in (points[0], body)]
+    known = [median for median in medians if median is not None]
+    if len(known) < len(medians):
+        return _NOT_MEASURED
+    verdict = grade(all(median < SAMPLE_TIME for median in known), False)
+    return Assessment("; ".join(map(_plan_time_text, points)), _plan_time_text(body), verdict)
+
+
+def _plan_time_text(sample: Sample) -> str:
+    median, p99 = (sample.greatest("planner_time", key) for key in ("median", "p99"))
+    if median is None:
+        return f"{sample.profile}: not measured"
+    return f"{sample.profile}: median {number(median, 1e3, 2)} ms, 99th percentile {number(p99, 1e3, 2)} ms"
+
+
+def saving(results: Results, metric: str, name: str) -> Assessment:
+    """Whether stretched knees take less effort than bent ones at the same speed.
+
+    Args:
+        results: of the knee studies.
+        metric: that measures the effort.
+        name: of it.
+    """
+    found = {gait: _saving(results, gait, metric) for gait in GAITS}
+    parts = [f"{gait} gait {_share_text(saved)}" for gait, saved in found.items()]
+    text = f"{name}, stretched against bent knees: {', '.join(parts)}"
+    lower = [saved >= SAVES for saved in found.values() if saved is not None]
+    verdict = grade(all(lower), any(lower)) if len(lower) == len(GAITS) else "not measured"
+    return Assessment(_NO_KNEES, text, verdict)
+
+
+def _saving(results: Results, gait: str, metric: str) -> float | None:
+    """Share of effort that stretched knees save; None unless both were walked, at the same speed."""
+    samples = [results.sample(knee_study(gait, knee), "default", "full") for knee in KNEES]
+    if not all(sample.complete and not sample.falls for sample in samples):
+        return None
+    speeds, efforts = ([sample.median(name) for sample in samples] for name in ("speed_mean", metric))
+    if None in (*speeds, *efforts) or not math.isclose(speeds[0] or 0.0, speeds[1] or 0.0, rel_tol=SAME_SPEED):
+        return None
+    return 1.0 - (efforts[0] or 0.0) / (efforts[1] or math.inf)
+
+
+def _share_text(saved: float | None) -> str:
+    if saved is None:
+        return "not measured at the same speed"
+    return f"{number(abs(saved), PERCENT)} % {'lower' if saved >= 0.0 else 'higher'}"
+
+
+def stretched_knees(results: Results) -> Assessment:
+    """Whether the robot walks with mostly stretched knees."""
+    samples = {gait: results.sample(knee_study(gait, "stretched"), "default", "full") for gait in GAITS}
+    angles = {gait: sample.median("knee_angle_mean") for gait, sample in samples.items() if sample.complete}
+    found = {gait: angle for gait, angle in angles.items() if angle is not None}
+    if len(found) < len(GAITS):
+        return Assessment(_NO_KNEES, "not measured", "not measured")
+    parts = [f"{gait} gait {number(angle, 180 / math.pi)} degrees" for gait, angle in found.items()]
+    stretched = [angle <= STRETCHED for angle in found.values()]
+    verdict = grade(all(stretched), any(stretched))
+    return Assessment(_NO_KNEES, f"mean knee flexion: {', '.join(parts)}", verdict)
+
+
+JUDGES: Mapping[str, Callable[[Results], Assessment]] = {
+    "walk": partial(survival, studies=(WALK,), full=(WALK,), margin=0.0),
+    "hard": hard_constraint,
+    "stairs": partial(survival, studies=STAIRS[:1], full=STAIRS[:1], margin=0.0),
+    "preview": preview,
+    "noise": partial(survival, studies=(NOISE_WALK, NOISE_STAIRS), full=(NOISE_WALK,), margin=FOOT_EDGE),
+    "filter": zmp_filter,
+    "height": partial(survival, studies=HEIGHTS, full=HEIGHTS, margin=FOOT_EDGE),
+    "frontal": frontal_effect,
+    "push": partial(survival, studies=PUSHES, full=PUSHES, margin=FOOT_EDGE),
+    "adaptation": adaptation,
+    "online": online,
+    "stretched": stretched_knees,
+    "torque": partial(saving, metric="knee_torque_rms", name="knee torque RMS"),
+    "energy": partial(saving, metric="cost_of_transport", name="cost of transport"),
+}
 """Those of knees and energy, which stand last, are judged in full physics: a pendulum has no knees."""
+
+
+def claims() -> tuple[Claim, ...]:
+    """All claims in the order of the page; their words are those of `claims.yaml`."""
+    numbers = {"better": BETTER, "axes_apart": AXES_APART, "stronger": STRONGER, "saves": PERCENT * SAVES}
+    numbers["stretched"] = math.degrees(STRETCHED)
+    written = yaml.safe_load((files(__package__) / "claims.yaml").read_text(encoding="utf-8"))
+    return tuple(
+        Claim(f"claim-{name}", said["section"], said["text"], said["rule"].format(**numbers), JUDGES[name])
+        for name, said in written.items()
+    )

@@ -1,13 +1,13 @@
 """The paper's figures, drawn anew from the logs: runs side by side, quantities below each other."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
@@ -24,22 +24,26 @@ from surefoot.scenarios.palette import (
     VERMILION,
     ZMP,
     ZMP_PLANNED,
+    Color,
 )
 from surefoot.scenarios.show.figures.motion import draw_support, support_handle
-from surefoot.scenarios.show.kit.figures import DASHED, canvas, curve, in_style, note, reference_curve
+from surefoot.scenarios.show.kit.figures import (
+    DASHED,
+    PAGE_WIDTH,
+    canvas,
+    curve,
+    in_style,
+    note,
+    or_say,
+    reference_curve,
+)
 from surefoot.scenarios.show.kit.shading import background
 from surefoot.scenarios.show.logview import LogView, MissingError
 from surefoot.scenarios.study.paper import studies
-from surefoot.scenarios.study.paper.results import Results, Sample
+from surefoot.scenarios.study.paper.results import WORLD_NAMES, Results, Sample
 from surefoot.scenarios.study.paper.studies import STAIRS, WALK, PaperWorld, Study
-from surefoot.scenarios.study.paper.tables import WORLD_NAMES, error_norms
-
-Array = NDArray[np.float64]
 
 Views = Sequence[tuple[str, LogView]]
-
-WIDTH = 11.6
-"""Of a figure [in]."""
 
 _HEAD = 0.55
 
@@ -77,7 +81,7 @@ class PanelRow:
 def grid(columns: Sequence[PanelColumn], rows: Sequence[PanelRow]) -> Figure:
     """Draw a figure; a run that is missing leaves a note in its column."""
     with in_style():
-        figure, (top, area) = canvas(WIDTH, (_HEAD, sum(row.height for row in rows) + 0.5))
+        figure, (top, area) = canvas(PAGE_WIDTH, (_HEAD, sum(row.height for row in rows) + 0.5))
         heights = [row.height for row in rows]
         axes = area.subplots(len(rows), len(columns), sharex="col", squeeze=False, height_ratios=heights)
         handles: dict[str, object] = {}
@@ -104,15 +108,12 @@ def _draw_column(axes: Sequence[Axes], column: PanelColumn, rows: Sequence[Panel
         return {}
     behind = background(max((view for _, view in views), key=lambda view: view.end))
     behind.shade(axes)
-    for one in axes:
-        for push in behind.pushes:  # 10 ms of 14 s are less than a pixel
-            one.axvline(push.start, color=PUSH, linewidth=1.0, zorder=1.2)
     entries: dict[str, object] = {"planned support, bounds": support_handle()}
     for one, row in zip(axes, rows, strict=True):
-        try:
+        for push in behind.pushes:  # 10 ms of 14 s are less than a pixel
+            one.axvline(push.start, color=PUSH, linewidth=1.0, zorder=1.2)
+        with or_say(one):
             row.draw(one, views)
-        except MissingError as missing:
-            note(one, f"not in this log: {missing}")
         found, labels = one.get_legend_handles_labels()
         entries |= dict(zip(labels, found, strict=True))
     axes[-1].set_xlim(0.0, max(view.end for _, view in views))
@@ -160,11 +161,30 @@ def position(axes: Axes, views: Views, axis: int) -> None:
     """Reference ZMP, measured ZMP, CoM and the bounds of the support along an axis."""
     ((_, view),) = views
     draw_support(axes, view, axis)
-    zmp, com = view.field("/contact", "zmp", 3)[:, axis], view.field("/truth", "com", 3)[:, axis]
-    curve(axes, view.time("/contact"), zmp, "ZMP measured", ZMP, POINTS, linewidth=1.3)
-    curve(axes, view.time("/truth"), com, "CoM", COM, POINTS, linewidth=1.4)
-    reference = _reference(axes, view, axis)
-    margin = 0.12 + 0.1 * np.ptp(reference)
+    _along(axes, view, "/contact", "zmp", axis, "ZMP measured", ZMP, linewidth=1.3)
+    _along(axes, view, "/truth", "com", axis, "CoM", COM, linewidth=1.4)
+    _around_reference(axes, view, axis, 0.12, 0.1)
+
+
+def zmp_of_several(axes: Axes, views: Views, axis: int) -> None:
+    """True ZMP of several runs in the same axes, with the support and the reference of the longest of them."""
+    longest = max((view for _, view in views), key=lambda view: view.end)
+    draw_support(axes, longest, axis)
+    for (label, view), color in zip(views, SEVERAL, strict=False):
+        _along(axes, view, "/contact", "zmp", axis, f"ZMP, {label}", color, linewidth=0.8)
+    _around_reference(axes, longest, axis, 0.06, 0.08)
+
+
+def _along(axes: Axes, view: LogView, topic: str, name: str, axis: int, label: str, color: Color, **style: Any) -> None:
+    curve(axes, view.time(topic), view.field(topic, name, 3)[:, axis], label, color, POINTS, **style)
+
+
+def _around_reference(axes: Axes, view: LogView, axis: int, room: float, share: float) -> None:
+    """Draw the reference of the ZMP, and leave some room around it, and a share of its range [m]."""
+    reference = view.field("/reference", "zmp_reference", 2)[:, axis]
+    reference_curve(axes, view.time("/reference"), reference, "ZMP reference", ZMP_PLANNED, POINTS)
+    reference = reference[np.isfinite(reference)]
+    margin = room + share * np.ptp(reference)
     axes.set_ylim(reference.min() - margin, reference.max() + margin)
 
 
@@ -182,28 +202,10 @@ def jerk(axes: Axes, views: Views, axis: int) -> None:
 def height(axes: Axes, views: Views) -> None:
     """Height of the CoM."""
     ((_, view),) = views
-    curve(axes, view.time("/truth"), view.field("/truth", "com", 3)[:, 2], "CoM height", COM, POINTS, linewidth=1.4)
+    _along(axes, view, "/truth", "com", 2, "CoM height", COM, linewidth=1.4)
+    _along(axes, view, "/reference", "com", 2, "its reference", COM_PLANNED, linestyle=DASHED, linewidth=0.6)
     planned = view.field("/reference", "com", 3)[:, 2]
-    curve(axes, view.time("/reference"), planned, "its reference", COM_PLANNED, POINTS, linestyle=DASHED, linewidth=0.6)
     axes.set_ylim(planned.min() - 0.05, planned.max() + 0.05)
-
-
-def zmp_of_several(axes: Axes, views: Views, axis: int) -> None:
-    """True ZMP of several runs in the same axes, with the support and the reference of the longest of them."""
-    longest = max((view for _, view in views), key=lambda view: view.end)
-    draw_support(axes, longest, axis)
-    for (label, view), color in zip(views, SEVERAL, strict=False):
-        zmp = view.field("/contact", "zmp", 3)[:, axis]
-        curve(axes, view.time("/contact"), zmp, f"ZMP, {label}", color, POINTS, linewidth=0.8)
-    reference = _reference(axes, longest, axis)
-    margin = 0.06 + 0.08 * np.ptp(reference)
-    axes.set_ylim(reference.min() - margin, reference.max() + margin)
-
-
-def _reference(axes: Axes, view: LogView, axis: int) -> Array:
-    reference = view.field("/reference", "zmp_reference", 2)[:, axis]
-    reference_curve(axes, view.time("/reference"), reference, "ZMP reference", ZMP_PLANNED, POINTS)
-    return reference[np.isfinite(reference)]
 
 
 RISERS = (0.0, 0.10, 0.15, 0.18)
@@ -216,13 +218,13 @@ def preview_chart(results: Results) -> Figure:
         figure, (area,) = canvas(7.0, (2.8,))
         axes = area.subplots()
         for profile, color in _SHOWN.items():
-            rows = [(riser, error_norms(results.sample(study, profile, "pendulum")))
-                    for riser, study in zip(RISERS, (WALK, *STAIRS), strict=True)]  # fmt: skip
-            drawn = [(riser, sorted(values)) for riser, values in rows if values]
-            x = [riser for riser, _ in drawn]
-            middle = [1e3 * values[len(values) // 2] for _, values in drawn]
-            low = [m - 1e3 * values[0] for m, (_, values) in zip(middle, drawn, strict=True)]
-            high = [1e3 * values[-1] - m for m, (_, values) in zip(middle, drawn, strict=True)]
+            samples = zip(RISERS, (results.sample(study, profile) for study in (WALK, *STAIRS)), strict=True)
+            drawn = [
+                (riser, [1e3 * norm for norm in sorted(norms)]) for riser, one in samples if (norms := one.error_norms)
+            ]
+            x, middle = [riser for riser, _ in drawn], [values[len(values) // 2] for _, values in drawn]
+            low = [m - values[0] for m, (_, values) in zip(middle, drawn, strict=True)]
+            high = [values[-1] - m for m, (_, values) in zip(middle, drawn, strict=True)]
             axes.errorbar(x, middle, (low, high), color=color, label=profile, marker="o", markersize=3.5, capsize=2)
         axes.set_xlabel("riser height [m]; 0: flat ground")
         axes.set_ylabel("ZMP error RMS, norm of x and y [mm]")
@@ -230,23 +232,6 @@ def preview_chart(results: Results) -> Figure:
         axes.set_ylim(bottom=0.0)
         axes.legend(loc="upper left")
     return figure
-
-
-@dataclass(frozen=True, slots=True)
-class Plate:
-    """A figure of the page.
-
-    Attributes:
-        name: its anchor.
-        caption: what it shows.
-        draw: draws it.
-        half: whether it takes half of the page's width.
-    """
-
-    name: str
-    caption: str
-    draw: Callable[[Results], Figure]
-    half: bool = False
 
 
 POSITIONS = tuple(PanelRow(f"{name} [m]", partial(position, axis=axis), 1.7) for axis, name in enumerate("xy"))
@@ -261,22 +246,24 @@ SIDE_BY_SIDE: tuple[Run, ...] = (("paper", "cart-table"), ("repaired", "pendulum
 ON_STAIRS: tuple[Run, ...] = (("paper", "cart-table"), ("repaired", "pendulum"), ("default", "pendulum"))
 
 
-def _study(results: Results, study: Study, runs: tuple[Run, ...], rows: tuple[PanelRow, ...]) -> Figure:
-    return grid([_column(run, (("", results.sample(study, *run)),)) for run in runs], rows)
+def _runs(results: Results, study: Study, runs: tuple[Run, ...], rows: tuple[PanelRow, ...]) -> Figure:
+    """A study, a column for each run."""
+    return grid([PanelColumn(_called(run), (("", results.sample(study, *run)),)) for run in runs], rows)
 
 
 def _heights(results: Results) -> Figure:
     errors = [f"error {studies.with_sign(error)} m" for error in studies.HEIGHT_ERRORS]
     columns = [
-        _column(run, tuple(zip(errors, (results.sample(study, *run) for study in studies.HEIGHTS), strict=True)))
+        PanelColumn(
+            _called(run), tuple(zip(errors, (results.sample(study, *run) for study in studies.HEIGHTS), strict=True))
+        )
         for run in SIDE_BY_SIDE
     ]
     return grid(columns, ZMPS)
 
 
-def _column(run: Run, samples: tuple[tuple[str, Sample], ...]) -> PanelColumn:
-    profile, world = run
-    return PanelColumn(f"{profile}, {WORLD_NAMES[world]}", samples)
+def _called(run: Run) -> str:
+    return f"{run[0]}, {WORLD_NAMES[run[1]]}"
 
 
 def _pushes(results: Results, run: Run) -> Figure:
@@ -287,57 +274,13 @@ def _pushes(results: Results, run: Run) -> Figure:
     return grid(columns, POSITIONS)
 
 
-PLATES: dict[str, tuple[Plate, ...]] = {
-    "diagonal-walk": (
-        Plate(
-            "figure-walk",
-            "Diagonal walk: reference and measured ZMP and CoM in x and y, and the jerk that the planner commands; "
-            "dotted, the paper's bound of ±1.5 m/s³. The axes of the paper's figure 2.",
-            partial(_study, study=studies.WALK, runs=SIDE_BY_SIDE, rows=(*POSITIONS, *JERKS)),
-        ),
-    ),
-    "stairs": (
-        Plate(
-            "figure-stairs",
-            "Stairs of 0.10 m: CoM height with single and double support shaded, ZMP and CoM in x and y. "
-            "The axes of the paper's figure 3.",
-            partial(_study, study=studies.STAIRS[0], runs=ON_STAIRS, rows=(HEIGHT, *POSITIONS)),
-        ),
-        Plate(
-            "figure-preview",
-            "ZMP error over riser height: norm of the RMS in x and y, median over seeds, with the range over seeds. "
-            "lti keeps everything of default but the preview of the changing dynamics.",
-            preview_chart,
-            half=True,
-        ),
-    ),
-    "noise": (
-        Plate(
-            "figure-noise-walk",
-            "Diagonal walk with noise of ±0.02 m on the measured ZMP and 2 mm on the CoM. "
-            "First row of the paper's figure 4.",
-            partial(_study, study=studies.NOISE_WALK, runs=SIDE_BY_SIDE, rows=POSITIONS),
-        ),
-        Plate(
-            "figure-noise-stairs",
-            "Stairs of 0.10 m with the same noise. Second row of the paper's figure 4.",
-            partial(_study, study=studies.NOISE_STAIRS, runs=ON_STAIRS, rows=POSITIONS),
-        ),
-    ),
-    "height-error": (
-        Plate(
-            "figure-height",
-            "True ZMP when the planner's CoM height is wrong by −0.2, −0.1, +0.1 and +0.2 m. The paper's figure 5.",
-            _heights,
-        ),
-    ),
-    "pushes": tuple(
-        Plate(
-            f"figure-push-{profile}",
-            f"{profile}, {WORLD_NAMES[world]}: pushes of 10 ms at 2.2 s, with noise. The axes of the paper's figure 6.",
-            partial(_pushes, run=(profile, world)),
-        )
-        for profile, world in SIDE_BY_SIDE
-    ),
+PLATES: Mapping[str, Callable[[Results], Figure]] = {
+    "figure-walk": partial(_runs, study=WALK, runs=SIDE_BY_SIDE, rows=(*POSITIONS, *JERKS)),
+    "figure-stairs": partial(_runs, study=STAIRS[0], runs=ON_STAIRS, rows=(HEIGHT, *POSITIONS)),
+    "figure-preview": preview_chart,
+    "figure-noise-walk": partial(_runs, study=studies.NOISE_WALK, runs=SIDE_BY_SIDE, rows=POSITIONS),
+    "figure-noise-stairs": partial(_runs, study=studies.NOISE_STAIRS, runs=ON_STAIRS, rows=POSITIONS),
+    "figure-height": _heights,
+    **{f"figure-push-{run[0]}": partial(_pushes, run=run) for run in SIDE_BY_SIDE},
 }
-"""Figures by the section that they stand in."""
+"""What draws each figure, by its anchor; where it stands and what is said of it, `sections.yaml` tells."""

@@ -1,7 +1,9 @@
 """The paper's experiments: which runs, in which worlds, with which profiles."""
 
 import shlex
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import chain, product, starmap
 from typing import Literal
 
 PaperWorld = Literal["cart-table", "pendulum", "full"]
@@ -52,11 +54,6 @@ class Experiment:
     seed: int = 0
 
     @property
-    def base(self) -> str:
-        """Catalogue scenario that it starts from."""
-        return self.study.base
-
-    @property
     def name(self) -> str:
         """Name of the scenario as run; with the seed it is the name of the run's folder."""
         return f"{self.study.name}.{self.profile}.{self.world}"
@@ -83,33 +80,6 @@ class Experiment:
         """The command that makes this run alone."""
         settings = " ".join(f"--set {shlex.quote(setting)}" for setting in self.overrides)
         return f"surefoot run {self.study.base} {settings}"
-
-
-@dataclass(frozen=True, slots=True)
-class Block:
-    """Studies that are run in every combination.
-
-    Attributes:
-        studies: what.
-        profiles: with which planners.
-        worlds: in which worlds.
-        seeds: how often; seeds 0, 1, ...
-    """
-
-    studies: tuple[Study, ...]
-    profiles: tuple[str, ...]
-    worlds: tuple[PaperWorld, ...]
-    seeds: int = 1
-
-    def experiments(self) -> tuple[Experiment, ...]:
-        """Every combination."""
-        return tuple(
-            Experiment(study, profile, world, seed)
-            for study in self.studies
-            for profile in self.profiles
-            for world in self.worlds
-            for seed in range(self.seeds)
-        )
 
 
 PROFILES = ("paper", "repaired", "default", "lti", "preview", "dcm")
@@ -153,36 +123,26 @@ ZMP_ONLY = Study(
 )
 
 
-def signed(value: float) -> str:
-    """A signed number in the letters that a scenario's name may have."""
-    return f"{'minus' if value < 0 else 'plus'}-{abs(value):g}"
-
-
 def with_sign(value: float) -> str:
     """A signed number for people."""
     return f"{value:+g}".replace("-", "\N{MINUS SIGN}")
 
 
+def _signed(name: str, value: float, title: str, base: str, setting: str) -> Study:
+    """A study named by a signed number, in the letters that a scenario's name may have."""
+    return Study(f"{name}-{'minus' if value < 0 else 'plus'}-{abs(value):g}", title, base, (setting,))
+
+
 HEIGHT_ERRORS = (-0.2, -0.1, 0.1, 0.2)
 HEIGHTS = tuple(
-    Study(
-        f"height-{signed(off)}",
-        f"CoM height error {with_sign(off)} m",
-        "paper-height-error",
-        (f"errors.com_height={off}",),
-    )
+    _signed("height", off, f"CoM height error {with_sign(off)} m", "paper-height-error", f"errors.com_height={off}")
     for off in HEIGHT_ERRORS
 )
 
 PUSH_FORCES = (-75, -50, 75, 50)
+_PUSH = "pushes=[{{time: 2.2, duration: 0.01, force: [{0}, {0}, 0]}}]"
 PUSHES = tuple(
-    Study(
-        f"push-{signed(force)}",
-        f"Push {with_sign(force)} N",
-        "paper-push",
-        (f"pushes=[{{time: 2.2, duration: 0.01, force: [{force}, {force}, 0]}}]",),
-    )
-    for force in PUSH_FORCES
+    _signed("push", force, f"Push {with_sign(force)} N", "paper-push", _PUSH.format(force)) for force in PUSH_FORCES
 )
 
 SHOVE_IMPULSES = (11, 12, 13, 14)
@@ -200,10 +160,7 @@ def shove(impulse: int, direction: str, adaptation: str) -> Study:
 
 
 SHOVES = tuple(
-    shove(impulse, direction, adaptation)
-    for adaptation in ADAPTATIONS
-    for direction in SHOVE_DIRECTIONS
-    for impulse in SHOVE_IMPULSES
+    starmap(shove, ((i, way, kind) for kind in ADAPTATIONS for way in SHOVE_DIRECTIONS for i in SHOVE_IMPULSES))
 )
 
 GAITS = {"slow": "paper-walk", "fast": "walk"}
@@ -216,32 +173,32 @@ def knee_study(gait: str, knee: str) -> Study:
     return Study(f"knee-{gait}-{knee}", title, GAITS[gait], (f"planner.knee={knee}",))
 
 
-KNEE_STUDIES = tuple(knee_study(gait, knee) for gait in GAITS for knee in KNEES)
-
-BLOCKS = (
-    Block((WALK, BRISK_WALK, *STAIRS, BRISK_STAIRS), PROFILES, ("pendulum",), 3),
-    Block((WIDE_WALK, STEP_LAW), CLAIMANTS, ("pendulum",)),
-    Block((WALK, *STAIRS), CLAIMANTS, ("cart-table",)),
-    Block((WALK,), ("paper", "repaired", "default", "lti"), ("full",)),
-    Block((WIDE_WALK, BRISK_WALK), ("default",), ("full",)),
-    Block(STAIRS[:2], ("default", "lti"), ("full",)),
-    Block((NOISE_WALK, NOISE_STAIRS), CLAIMANTS, ("pendulum",), 5),
-    Block((NOISE_WALK, NOISE_STAIRS), ("paper", "repaired"), ("cart-table",)),
-    Block((NOISE_ALONE, ZMP_ONLY), ("repaired", "default"), ("pendulum",), 5),
-    Block((ZMP_ONLY,), ("repaired",), ("cart-table",), 3),
-    Block((NOISE_WALK,), ("default",), ("full",), 3),
-    Block((NOISE_STAIRS,), ("default",), ("full",)),
-    Block(HEIGHTS, CLAIMANTS, ("pendulum",)),
-    Block(HEIGHTS, ("paper", "repaired"), ("cart-table",)),
-    Block(HEIGHTS, ("default",), ("full",)),
-    Block(PUSHES, CLAIMANTS, ("pendulum",), 3),
-    Block(PUSHES, ("paper",), ("cart-table",)),
-    Block(PUSHES, ("default",), ("full",), 2),
-    Block(SHOVES, ("default",), ("pendulum",)),
-    Block(KNEE_STUDIES, ("default",), ("full",)),
+BLOCKS: tuple[tuple[Iterable[Study], tuple[str, ...], tuple[PaperWorld, ...], int], ...] = (
+    ((WALK, BRISK_WALK, *STAIRS, BRISK_STAIRS), PROFILES, ("pendulum",), 3),
+    ((WIDE_WALK, STEP_LAW), CLAIMANTS, ("pendulum",), 1),
+    ((WALK, *STAIRS), CLAIMANTS, ("cart-table",), 1),
+    ((WALK,), ("paper", "repaired", "default", "lti"), ("full",), 1),
+    ((WIDE_WALK, BRISK_WALK), ("default",), ("full",), 1),
+    (STAIRS[:2], ("default", "lti"), ("full",), 1),
+    ((NOISE_WALK, NOISE_STAIRS), CLAIMANTS, ("pendulum",), 5),
+    ((NOISE_WALK, NOISE_STAIRS), ("paper", "repaired"), ("cart-table",), 1),
+    ((NOISE_ALONE, ZMP_ONLY), ("repaired", "default"), ("pendulum",), 5),
+    ((ZMP_ONLY,), ("repaired",), ("cart-table",), 3),
+    ((NOISE_WALK,), ("default",), ("full",), 3),
+    ((NOISE_STAIRS,), ("default",), ("full",), 1),
+    (HEIGHTS, CLAIMANTS, ("pendulum",), 1),
+    (HEIGHTS, ("paper", "repaired"), ("cart-table",), 1),
+    (HEIGHTS, ("default",), ("full",), 1),
+    (PUSHES, CLAIMANTS, ("pendulum",), 3),
+    (PUSHES, ("paper",), ("cart-table",), 1),
+    (PUSHES, ("default",), ("full",), 2),
+    (SHOVES, ("default",), ("pendulum",), 1),
+    (tuple(starmap(knee_study, product(GAITS, KNEES))), ("default",), ("full",), 1),
 )
+"""Studies that are run with every one of some profiles in every one of some worlds, and with how many seeds."""
 
 
 def experiments() -> tuple[Experiment, ...]:
     """Every run of the page, none twice."""
-    return tuple(dict.fromkeys(experiment for block in BLOCKS for experiment in block.experiments()))
+    every = (starmap(Experiment, product(*chosen, range(seeds))) for *chosen, seeds in BLOCKS)
+    return tuple(dict.fromkeys(chain.from_iterable(every)))

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from surefoot.scenarios.study.campaigns.axes import Axis, angle_of, combinations, is_around, title, with_unit
+from surefoot.scenarios.study.campaigns.spec import Axis, angle_of, combinations, is_around, title, with_unit
 
 pytestmark = pytest.mark.unit
 

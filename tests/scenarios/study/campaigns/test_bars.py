@@ -4,9 +4,8 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from surefoot.scenarios.palette import BLUE, VERMILION
-from surefoot.scenarios.study.campaigns.axes import Axis
 from surefoot.scenarios.study.campaigns.points import Threshold
-from surefoot.scenarios.study.campaigns.spec import Published
+from surefoot.scenarios.study.campaigns.spec import Axis, Published
 from surefoot.scenarios.study.campaigns.thresholds import LIMIT_NAME, Found, are_named, bars
 
 pytestmark = pytest.mark.unit

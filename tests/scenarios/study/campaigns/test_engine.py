@@ -11,16 +11,10 @@ import pytest
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.setup.load import written
 from surefoot.scenarios.study.campaigns.campaign import Base
-from surefoot.scenarios.study.campaigns.engine import (
-    InterruptedRunsError,
-    LocalWorker,
-    Single,
-    outcome_of,
-    perform,
-    run_cells,
-)
-from surefoot.scenarios.study.campaigns.journal import CHANGED, JOURNAL, LOGS, SCRATCH, Journal, MadeOf
-from surefoot.scenarios.study.campaigns.points import Point, Record, facts
+from surefoot.scenarios.study.campaigns.engine import LocalWorker, perform
+from surefoot.scenarios.study.campaigns.journal import CHANGED, JOURNAL, LOGS, SCRATCH, Journal, MadeOf, outcome_of
+from surefoot.scenarios.study.campaigns.points import Point, Record, Single, facts
+from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, run_cells
 
 pytestmark = pytest.mark.unit
 

@@ -16,7 +16,7 @@ from strangers import listening
 from surefoot.scenarios.apps import cli
 from surefoot.scenarios.apps.cli import INTERRUPTED
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.study.campaigns import cluster
+from surefoot.scenarios.study.campaigns import engine as cluster
 from surefoot.scenarios.study.campaigns.engine import perform
 from surefoot.scenarios.study.campaigns.journal import JOURNAL, LOGS, SCRATCH
 from surefoot.scenarios.study.campaigns.sweep import PAGE, CampaignBar

@@ -15,10 +15,10 @@ import pytest
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.study.campaigns import report
 from surefoot.scenarios.study.campaigns.campaign import read_campaign
-from surefoot.scenarios.study.campaigns.engine import LocalWorker, outcome_of, run_cells
-from surefoot.scenarios.study.campaigns.journal import Journal, MadeOf
+from surefoot.scenarios.study.campaigns.engine import LocalWorker
+from surefoot.scenarios.study.campaigns.journal import Journal, MadeOf, outcome_of
 from surefoot.scenarios.study.campaigns.points import Record, cells
-from surefoot.scenarios.study.campaigns.sweep import PAGE, Swept, write
+from surefoot.scenarios.study.campaigns.sweep import PAGE, Swept, run_cells, write
 from surefoot.scenarios.study.campaigns.table import wilson
 
 pytestmark = pytest.mark.unit

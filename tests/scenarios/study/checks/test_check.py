@@ -16,8 +16,7 @@ from surefoot.scenarios.study.checks import check as checking
 from surefoot.scenarios.study.checks import report
 from surefoot.scenarios.study.checks.baseline import Baseline, read_baseline, write_baseline
 from surefoot.scenarios.study.checks.check import cases, compared, exit_code, run_case, updated
-from surefoot.scenarios.study.checks.signs import COLUMNS, SIGNS
-from surefoot.scenarios.study.checks.trace import Trace
+from surefoot.scenarios.study.checks.signs import COLUMNS, SIGNS, Trace
 
 pytestmark = pytest.mark.unit
 

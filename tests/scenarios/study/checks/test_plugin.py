@@ -7,7 +7,7 @@ import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.source import parse
-from surefoot.scenarios.study.checks.trace import Trace
+from surefoot.scenarios.study.checks.baseline import read_trace
 
 pytestmark = pytest.mark.unit
 
@@ -80,4 +80,4 @@ def test_more_values_than_a_file_may_hold_are_refused_before_they_are_composed()
 @pytest.mark.parametrize("name", [[], {}, None, 1.0])
 def test_a_trace_whose_column_has_no_word_for_a_name_is_refused(name):
     with pytest.raises(ValueError, match="its trace has columns other than"):
-        Trace.from_rows([["stage", "foot", name], ["stand", "both", 0.0]])
+        read_trace([["stage", "foot", name], ["stand", "both", 0.0]])

@@ -5,8 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from surefoot.scenarios.study.checks.signs import SIGNS, Stage, stages
-from surefoot.scenarios.study.checks.trace import Trace
+from surefoot.scenarios.study.checks.signs import SIGNS, Stage, Trace, stages
 
 pytestmark = pytest.mark.unit
 

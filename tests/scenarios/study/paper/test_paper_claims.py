@@ -4,8 +4,8 @@ import pytest
 from paper_samples import FALL, outcome, results
 
 from surefoot.scenarios.study.paper import studies
-from surefoot.scenarios.study.paper.claims import CLAIMS
-from surefoot.scenarios.study.paper.rules import any_of, grade, stable
+from surefoot.scenarios.study.paper.claims import JUDGES as RULES
+from surefoot.scenarios.study.paper.claims import any_of, claims, grade, stable
 from surefoot.scenarios.study.paper.studies import (
     HEIGHTS,
     NOISE_ALONE,
@@ -20,7 +20,7 @@ from surefoot.scenarios.study.paper.studies import (
 
 pytestmark = pytest.mark.unit
 
-JUDGES = {claim.name: claim.judge for claim in CLAIMS}
+JUDGES = {claim.name: claim.judge for claim in claims()}
 
 
 def verdict(name, *outcomes):
@@ -177,6 +177,8 @@ def test_stretched_knees():
 
 
 def test_every_claim_has_a_section_a_rule_and_an_anchor_of_its_own():
-    every = CLAIMS
+    every = claims()
     assert len({claim.name for claim in every}) == len(every)
     assert all(claim.section and claim.rule and claim.text for claim in every)
+    assert {claim.name for claim in every} == {f"claim-{name}" for name in RULES}
+    assert not any("{" in claim.rule for claim in every)

@@ -56,7 +56,7 @@ def test_every_experiment_of_the_page_is_a_scenario_that_can_run():
     every = experiments()
     assert len({experiment.folder for experiment in every}) == len(every) > 200
     for experiment in {(e.study, e.profile, e.world): e for e in every}.values():
-        scenario = load_scenario(experiment.base, experiment.overrides)
+        scenario = load_scenario(experiment.study.base, experiment.overrides)
         assert f"{scenario.name}-{scenario.seed}" == experiment.folder
 
 

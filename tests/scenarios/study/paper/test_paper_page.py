@@ -12,19 +12,13 @@ from surefoot.scenarios.apps import cli
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import read
 from surefoot.scenarios.show.kit.html import number, svg
-from surefoot.scenarios.study.campaigns.engine import InterruptedRunsError
+from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError
 from surefoot.scenarios.study.paper import page
-from surefoot.scenarios.study.paper.figures import JERKS, POSITIONS, PanelColumn, grid
+from surefoot.scenarios.study.paper.figures import JERKS, PLATES, POSITIONS, PanelColumn, grid
+from surefoot.scenarios.study.paper.page import balance_table, shove_table
 from surefoot.scenarios.study.paper.page import paper as page_of
-from surefoot.scenarios.study.paper.results import Spread, run_experiments
+from surefoot.scenarios.study.paper.results import Spread, run_experiments, spread_cell, spread_text
 from surefoot.scenarios.study.paper.studies import SHOVES, WALK, Experiment, Study
-from surefoot.scenarios.study.paper.tables import (
-    balance_table,
-    feasible,
-    shove_table,
-    spread_cell,
-    spread_text,
-)
 
 SHORT = ("gait.steps=1", "gait.single_support=0.6", "gait.initial_stand=0.2", "rates.control=100")
 SHORT_WALK = Study("short", "Short walk", "paper-walk", SHORT)
@@ -79,13 +73,19 @@ def test_a_table_gives_median_and_range_and_marks_falls_and_failures():
     assert (first[2].text, first[2].below) == ("1 of 3", "from 5 s on")
     assert (first[4].text, first[4].below, first[4].kind) == ("2", "1 … 3", "number past")
     assert second[2].text == "could not run"
-    assert feasible(found.sample(WALK, "default", "pendulum")) == Spread(1.0, 1.0, 1.0)
+    assert found.sample(WALK, "default").feasible == Spread(1.0, 1.0, 1.0)
 
 
 @pytest.mark.unit
 def test_the_shove_table_says_what_was_survived():
     html = shove_table(results(*(outcome(study) for study in SHOVES))).html
     assert values(html) == [14.0] * 8
+
+
+@pytest.mark.unit
+def test_every_figure_that_a_section_names_is_drawn_and_the_other_way_round():
+    named = [one["name"] for part in page.sections() for one in part.figures]
+    assert sorted(named) == sorted(PLATES)
 
 
 @pytest.mark.unit
@@ -181,7 +181,8 @@ def test_a_few_experiments_end_to_end(tmp_path):
     short = Study("walk", "Walk", "paper-walk", SHORT[:3])
     every = tuple(Experiment(short, "default", world) for world in ("cart-table", "pendulum", "full"))
     written = page.paper(tmp_path, 2, every=every)
-    assert (written.runs, written.falls, written.failures) == (3, 0, ())
+    found = written.results
+    assert (len(found.outcomes), found.falls, found.failures) == (3, 0, ())
     text = written.page.read_text()
     assert Page(text).asked == []
     assert text.count("<svg ") == 9

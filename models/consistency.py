@@ -35,19 +35,6 @@ class EngineDifference:
         return float(max(astuple(self)))
 
 
-def model_difference(one: pin.Model, other: pin.Model, q: Array, v: Array) -> tuple[float, float]:
-    """Largest differences of mass matrix and bias forces between two Pinocchio models at one state.
-
-    So a description is held against the model that its text was made of.
-    """
-    mass, bias = [], []
-    for model in (one, other):
-        data = model.createData()
-        mass.append(pin.crba(model, data, q).copy())
-        bias.append(pin.nle(model, data, q, v).copy())
-    return _largest(*mass), _largest(*bias)
-
-
 class EnginePair:
     """One robot in both engines.
 

@@ -65,13 +65,6 @@ def mujoco_acceleration_to_pinocchio(qpos: Array, qvel: Array, qacc: Array, a_ou
     a_out[:3] = rotation.T @ qacc[:3] - np.cross(qvel[3:6], rotation.T @ qvel[:3])
 
 
-def pinocchio_acceleration_to_mujoco(q: Array, v: Array, a: Array, qacc_out: Array) -> None:
-    """Acceleration from Pinocchio's into MuJoCo's convention, at the state (q, v) of Pinocchio."""
-    x, y, z, w = q[3:7].tolist()
-    qacc_out[:] = a
-    qacc_out[:3] = np.array(_rotation(w, x, y, z)) @ (a[:3] + np.cross(v[3:6], v[:3]))
-
-
 def velocity_map(qpos: Array, nv: int) -> Array:
     """Matrix T with v_mujoco = T v_pinocchio, shape (nv, nv).
 

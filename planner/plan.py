@@ -116,7 +116,6 @@ class PlanSample:
         stiffness: λ [1/s^2].
         contacts: planned contacts (left, right).
         load_left: planned share of the weight on the left foot [-].
-        load_left_rate: its rate [1/s].
         swing_foot: the swinging foot, or None; the swing arrays are zero without one.
         swing: swing sole x, y, z [m], yaw, pitch, roll [rad], shape (6,).
         swing_velocity: shape (6,) [m/s, rad/s].
@@ -135,7 +134,6 @@ class PlanSample:
     stiffness: float
     contacts: tuple[bool, bool]
     load_left: float
-    load_left_rate: float
     swing_foot: Foot | None
     swing: Array
     swing_velocity: Array
@@ -173,7 +171,6 @@ class PlanSampler:
         self._lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
         self._start = plan.time
         self._table = np.zeros((6, _COLUMNS))
-        self._load_rate = 0.0
         self._contacts = (True, True)
         self._swing_foot: Foot | None = None
 
@@ -208,7 +205,6 @@ class PlanSampler:
             stiffness,
             (True, True) if interval == 0 and time >= self._lands else self._contacts,
             load,
-            self._load_rate,
             self._swing_foot,
             values[10:16],
             values[19:25],
@@ -239,7 +235,7 @@ class PlanSampler:
             motion[:, 3:] = shifted(plan.swing.coefficients(since), self._start - since)
         rates[:5] = _DERIVATIVE * motion[1:]
         bends[:4] = _DERIVATIVE[:4] * rates[1:5]
-        self._table, self._load_rate = table, float(linear[1, 6])
+        self._table = table
 
 
 _COLUMNS = 34

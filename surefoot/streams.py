@@ -8,13 +8,14 @@ import numpy as np
 class Stream(IntEnum):
     """What has random numbers of its own, whatever else is drawn with the same seed.
 
-    The pose at the start and the heights of treads and blocks have none: they are drawn from the seed itself.
+    The pose at the start has none: it is drawn from the seed itself.
     """
 
     MEASUREMENT = 1
     GROUND = 2
     MASSES = 3
     TILES = 4
+    HEIGHTS = 5
 
 
 def generator(seed: int, stream: Stream | None = None) -> np.random.Generator:

@@ -60,11 +60,6 @@ def derive(file: RobotFile, path: Path) -> Derived:
     return _Deriver(file, model).derived()
 
 
-def source_model(file: RobotFile, path: Path) -> pin.Model:
-    """The model of a file as its text is made of it: reduced, with x of the base ahead; for comparisons."""
-    return reduced(file, read_source(file, path), path).model
-
-
 class _Deriver:
     """Holds what is found while a robot is described."""
 

@@ -36,9 +36,10 @@ def test_acceleration_round_trip(pair: EnginePair) -> None:
     rng = np.random.default_rng(4)
     q, v = pair.random_state(rng)
     a = rng.normal(size=v.size)
-    qacc, back = np.empty_like(a), np.empty_like(a)
-    convert.pinocchio_acceleration_to_mujoco(q, v, a, qacc)
-    convert.mujoco_acceleration_to_pinocchio(*_to_mujoco(q, v), qacc, back)
+    back, (qpos, qvel) = np.empty_like(a), _to_mujoco(q, v)
+    qacc = convert.velocity_map(qpos, v.size) @ a
+    qacc[:3] += convert.velocity_map(qpos, v.size)[:3, :3] @ np.cross(v[3:6], v[:3])
+    convert.mujoco_acceleration_to_pinocchio(qpos, qvel, qacc, back)
     np.testing.assert_allclose(back, a, atol=1e-13)
 
 

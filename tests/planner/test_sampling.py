@@ -87,13 +87,6 @@ def test_swing_is_there_only_in_single_support(diagonal):
             np.testing.assert_allclose([sample.swing, sample.swing_velocity, sample.swing_acceleration], expected)
 
 
-def test_load_rate_is_the_slope_of_the_load(diagonal):
-    plan = diagonal[1].plans[85]
-    a, b = (PlanSampler(plan).sample(plan.time + t) for t in (0.0, 0.01))
-    assert a.load_left_rate == pytest.approx((b.load_left - a.load_left) / 0.01)
-    assert a.load_left_rate != 0.0
-
-
 def test_a_swing_is_its_own_also_where_it_touches_down_between_samples(diagonal):
     """Going on with the descent would accelerate, by up to several m/s^2, a foot that is to press gently."""
     touching = [

@@ -149,7 +149,7 @@ class Ground:
         if self.tiles is not None:
             terrain = self.tiles.build(self.site)
         elif noise != 0.0:
-            errors = generator(self.seed).uniform(-noise, noise, len(terrain.boxes))
+            errors = generator(self.seed, Stream.HEIGHTS).uniform(-noise, noise, len(terrain.boxes))
             boxes = (
                 box if box.top(self.origin[None])[1][0] >= 0.0 else _raised(box, error)
                 for box, error in zip(terrain.boxes, errors, strict=True)

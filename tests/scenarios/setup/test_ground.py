@@ -11,6 +11,7 @@ from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.notes import notes
 from surefoot.scenarios.setup.walk import Walk, resolve
+from surefoot.streams import generator
 
 pytestmark = pytest.mark.unit
 
@@ -45,6 +46,13 @@ def test_truth_differs_from_belief_by_the_noise_but_not_where_the_robot_starts(r
         Walk(scenario(robots)).ground.true_terrain.boxes[0].center.tolist()
         == Walk(scenario(robots)).ground.terrain.boxes[0].center.tolist()
     )
+
+
+def test_heights_of_treads_are_not_the_noise_of_the_start_once_more(robots):
+    ground = Walk(scenario(robots, ", height_noise: 0.02")).ground
+    true, known = (np.array([box.center[2] for box in one.boxes]) for one in (ground.true_terrain, ground.terrain))
+    shares = (true - known) / generator(ground.seed).uniform(-0.02, 0.02, len(true))
+    assert np.ptp(shares[shares != 0.0]) > 0.1
 
 
 UNEVEN = "errors.ground_noise=0.01"

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from inspect import isclass
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 import yaml
 from pydantic import BaseModel
@@ -109,10 +109,10 @@ def _groups(annotation: Any) -> Iterator[type[Group]]:
 
 
 def keys(model: type[BaseModel], place: str = "") -> Iterator[str]:
-    """Dotted keys of a group that lead to values; those of the groups of a list like any."""
+    """Dotted keys of a group that lead to values; those of the groups of a list like any, criteria are one."""
     for name, field in model.model_fields.items():
         inner = next(_groups(field.annotation), None)
-        if inner is None:
+        if inner is None or get_origin(field.annotation) is dict:
             yield f"{place}{name}"
         else:
             yield from keys(inner, f"{place}{name}.")

@@ -60,8 +60,7 @@ class Quality:
 def render_frames(
     mjcf: str,
     configurations: Iterable[Array],
-    width: int = 1280,
-    height: int = 720,
+    size: tuple[int, int] = (1280, 720),
     camera: Camera | None = None,
     quality: Quality | None = None,
     marks: Iterable[Iterable[Mark]] | None = None,
@@ -72,8 +71,7 @@ def render_frames(
     Args:
         mjcf: text of the world, from `World.mjcf()` or a log.
         configurations: Pinocchio's convention, shape (7 + nj,) each.
-        width: picture width [px].
-        height: picture height [px].
+        size: width and height of the pictures [px].
         camera: where to look from; a three-quarter view from the front by default.
         quality: how carefully to draw; all that there is by default.
         marks: what to draw beside the world, for each configuration; nothing by default.
@@ -85,7 +83,7 @@ def render_frames(
     Raises:
         RenderingUnavailableError: the machine has no off-screen OpenGL.
     """
-    quality = quality or Quality()
+    (width, height), quality = size, quality or Quality()
     model = _compiled(mjcf, width, height, quality)
     context = make_context(width, height)
     try:

@@ -64,7 +64,7 @@ def pictures(log: Log, shot: Shot) -> tuple[list[Image.Image], int]:
     marks = (list(marks_of(replay, frame)) if shot.marked else [] for frame in shown)
     width, height = (2 * side for side in shot.size)
     moving, middle = replay.configuration[::EVERY], look_at[::EVERY] - (0.0, 0.0, shot.lower)
-    drawn = render_frames(replay.mjcf, moving, width, height, camera, QUALITY, marks, middle)
+    drawn = render_frames(replay.mjcf, moving, (width, height), camera, QUALITY, marks, middle)
     images = [Image.fromarray(picture).resize(shot.size, Image.Resampling.LANCZOS) for picture in drawn]
     return images, round(1000 * EVERY / replay.frame_rate)
 

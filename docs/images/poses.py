@@ -36,7 +36,7 @@ def composite(log: Log) -> Image.Image:
     gone, view = middle.copy(), np.deg2rad(camera.azimuth)
     gone[:2] -= FAR_AWAY * np.array([np.cos(view), np.sin(view)])
     size = (OVERSAMPLING * WIDTH, OVERSAMPLING * HEIGHT)
-    frames = render_frames(log.attachments[WORLD_FILE].decode(), [middle, gone, *shown], *size, camera)
+    frames = render_frames(log.attachments[WORLD_FILE].decode(), [middle, gone, *shown], size, camera)
     _, ground, *images = frames
     picture = ground.copy()
     for image in images:

@@ -12,7 +12,7 @@ from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.sim.measurement import Measurement
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.types import RobotState, SolveStatus, WbcReport
+from surefoot.wbc.types import SolveStatus, WbcReport
 from surefoot.wbc.zmp import UNLOADED
 
 Array = NDArray[np.float64]
@@ -94,8 +94,8 @@ class Recorder:
         self._row = writer.rows(RowLayout(vectors, numbers, derived, self._derived, _MORE_VECTORS, _MORE_NUMBERS))
 
     def tick(
-        self, time_ns: int, measurement: Measurement, truth: RobotTerms, terms: RobotTerms, state: RobotState,
-        planned: PlanSample, report: WbcReport, torque: Array,
+        self, time_ns: int, measurement: Measurement, truth: RobotTerms, terms: RobotTerms, planned: PlanSample,
+        report: WbcReport, torque: Array,
     ) -> None:  # fmt: skip
         """A control tick: sensors and true state, contacts, what the controller was given and what it answered.
 
@@ -104,7 +104,6 @@ class Recorder:
             measurement: what the sensors say.
             truth: terms of the true robot in its true state.
             terms: terms of the controller's robot model in the state that it was given.
-            state: that state.
             planned: for this instant.
             report: what it did.
             torque: the torque commanded, shape (nj,) [N·m].
@@ -117,7 +116,7 @@ class Recorder:
         self._row.append(
             time_ns, numbers, *_sensed(m), m.wrench.ravel(), m.external_force,
             *_state(m), *_true(truth), truth.sole_pose.ravel(),
-            terms.com, terms.com_velocity, state.q[:3], state.v[:6], r.load.force, r.load.moment,
+            terms.com, terms.com_velocity, terms.q[:3], terms.v[:6], r.load.force, r.load.moment,
             r.acceleration, r.wrench.ravel(), r.task_error, torque,
             truth.sole_rotation.ravel(),
         )  # fmt: skip

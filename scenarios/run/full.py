@@ -206,16 +206,7 @@ class SimulatedRobot:
 
     def record(self, now_ns: int, sample: PlanSample) -> None:
         """See `Walker`."""
-        self._recorder.tick(
-            now_ns,
-            self.measurement,
-            self._truth,
-            self._terms,
-            self.state,
-            sample,
-            self.report,
-            self._torque,
-        )
+        self._recorder.tick(now_ns, self.measurement, self._truth, self._terms, sample, self.report, self._torque)
 
     def fallen(self, sample: PlanSample) -> bool:
         """See `Walker`."""

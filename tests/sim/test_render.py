@@ -33,16 +33,16 @@ def test_pictures_show_the_robot_and_follow_it() -> None:
     away = q.copy()
     away[0] += 50.0
     try:
-        here, gone = render_frames(world.mjcf(), [q, away], 160, 120, Camera(azimuth=90, tracking=False), DRAFT)
+        here, gone = render_frames(world.mjcf(), [q, away], (160, 120), Camera(azimuth=90, tracking=False), DRAFT)
     except gl.RenderingUnavailableError as error:
         pytest.skip(str(error))
     assert here.shape == (120, 160, 3)
     orange = (here[..., 0] > 150) & (here[..., 2] < 80)
     assert orange.sum() > 10
     assert not ((gone[..., 0] > 150) & (gone[..., 2] < 80)).any()
-    (tracked,) = render_frames(world.mjcf(), [away], 160, 120, Camera(azimuth=90), DRAFT)
+    (tracked,) = render_frames(world.mjcf(), [away], (160, 120), Camera(azimuth=90), DRAFT)
     assert ((tracked[..., 0] > 150) & (tracked[..., 2] < 80)).sum() == pytest.approx(orange.sum(), rel=0.2)
-    (aimed,) = render_frames(world.mjcf(), [away], 160, 120, Camera(azimuth=90), DRAFT, look_at=[q[:3]])
+    (aimed,) = render_frames(world.mjcf(), [away], (160, 120), Camera(azimuth=90), DRAFT, look_at=[q[:3]])
     assert not ((aimed[..., 0] > 150) & (aimed[..., 2] < 80)).any()
 
 
@@ -54,7 +54,7 @@ def test_marks_are_drawn_where_they_are() -> None:
     counts = (("point", 1), ("arrow", 2), ("line", 2))
     kinds = [(), *([Mark(kind, magenta, 0.05, ends[:count])] for kind, count in counts)]
     try:
-        pictures = list(render_frames(world.mjcf(), [q] * 4, 160, 120, Camera(azimuth=180), DRAFT, kinds))
+        pictures = list(render_frames(world.mjcf(), [q] * 4, (160, 120), Camera(azimuth=180), DRAFT, kinds))
     except gl.RenderingUnavailableError as error:
         pytest.skip(str(error))
     none, point, arrow, line = ((p[..., 0] > 150) & (p[..., 1] < 80) & (p[..., 2] > 150) for p in pictures)
@@ -72,7 +72,7 @@ def test_marks_inside_the_robot_shine_through() -> None:
     q = np.concatenate(([0.0, 0.0, 0.9, 0.0, 0.0, 0.0, 1.0], world.description.nominal_joint_positions))
     inside = Mark("point", (1.0, 0.0, 1.0), 0.03, np.array([[0.0, 0.0, 1.0]]))
     try:
-        plain, marked = render_frames(world.mjcf(), [q, q], 160, 120, Camera(azimuth=180), DRAFT, [(), (inside,)])
+        plain, marked = render_frames(world.mjcf(), [q, q], (160, 120), Camera(azimuth=180), DRAFT, [(), (inside,)])
     except gl.RenderingUnavailableError as error:
         pytest.skip(str(error))
     rows, columns = np.nonzero((plain != marked).any(axis=2))

@@ -179,7 +179,7 @@ def _pictures(replay: Replay, film: Film) -> Iterator[Image]:
     marks = (marks_of(replay, frame) for frame in range(len(replay)))
     camera, look_at = stand(replay, film.camera)
     caption = Caption(replay, film.size, film.speed)
-    drawn = render_frames(replay.mjcf, replay.configuration, *film.size, camera, QUALITY, marks, look_at)
+    drawn = render_frames(replay.mjcf, replay.configuration, film.size, camera, QUALITY, marks, look_at)
     for instant, picture in zip(replay.time.tolist(), drawn, strict=True):
         yield caption.drawn_on(picture, instant)
 

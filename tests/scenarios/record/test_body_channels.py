@@ -40,10 +40,12 @@ def tick(rng, status):
         task_error=rng.normal(size=18),
         load=ExternalLoad(rng.normal(size=3), rng.normal(size=3), rng.uniform(0.8, 1.2)),
     )  # fmt: skip
-    terms = SimpleNamespace(com=rng.normal(size=3), com_velocity=rng.normal(size=3), model_mass=100.0)
-    state = SimpleNamespace(q=rng.normal(size=NJ + 7), v=rng.normal(size=NJ + 6))
+    terms = SimpleNamespace(
+        com=rng.normal(size=3), com_velocity=rng.normal(size=3), model_mass=100.0,
+        q=rng.normal(size=NJ + 7), v=rng.normal(size=NJ + 6),
+    )  # fmt: skip
     planned = SimpleNamespace(contacts=(True, True), omega=rng.uniform(2, 4))
-    return measurement, truth, terms, state, planned, report, rng.normal(size=NJ) * 30
+    return measurement, truth, terms, planned, report, rng.normal(size=NJ) * 30
 
 
 def test_derived_fields_follow_their_definitions(tmp_path):

@@ -66,7 +66,7 @@ def test_derived_fields_follow_their_definitions(tmp_path):
         assert estimate.field("mass")[n] == pytest.approx(100.0 * report.load.mass_scale)
         np.testing.assert_array_equal(estimate.field("external_force")[n], report.load.force)
         np.testing.assert_array_equal(estimate.field("external_moment")[n], report.load.moment)
-    for n, (measurement, truth, terms, _, planned, _, torque) in enumerate(ticks):
+    for n, (measurement, truth, terms, planned, _, torque) in enumerate(ticks):
         zmp = measured_zmp(measurement.wrench, truth.sole_position, truth.sole_rotation)
         row = {name: log[topic].field(name)[n] for topic, name in (
             ("/estimate", "dcm"), ("/truth", "torso_tilt"), ("/torque", "limit_ratio_max"), ("/contact", "zmp"),

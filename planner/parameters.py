@@ -147,6 +147,7 @@ class RecoveryParameters:
         landing_share: DCM error at landing, as a share of the CoP's box, that an adjusted step may leave [-].
         landing_spare: the same for long boxes: all of the box but this [m].
         tolerance: DCM error beyond what the CoP holds at which a step is adjusted, or in a stand its foot chosen [m].
+        unheld_share: the same of feet whose CoP cannot be moved at will, as a share of the ZMP box [-].
         stand_share: share of the ZMP box of a stand that holds a DCM error without any step [-].
         time_changes: changes of the present phase that are tried, close where a swing's reach grows fast [s].
         least_double: time that a double support is not cut below; the load has to go over [s].
@@ -180,6 +181,7 @@ class RecoveryParameters:
     landing_share: float = quantity(0.5, "-")
     landing_spare: float = quantity(0.03, "m")
     tolerance: float = quantity(0.02, "m")
+    unheld_share: float = quantity(0.5, "-")
     stand_share: float = quantity(0.85, "-")
     time_changes: tuple[float, ...] = quantity(tuple(map(float, _TIME_CHANGES)), "s")
     least_double: float = quantity(0.06, "s")

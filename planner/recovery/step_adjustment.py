@@ -170,7 +170,8 @@ class StepAdjustment:
         more = bounded[0, 3:]
         fade = float(decays(window.stiffness[: land + 1], window.omega[: land + 1], t)[-1])
         own = np.minimum(box, self._authority)
-        fine = bool((np.abs(dcm - bounded[0, :2]) <= (1.0 - fade) * own + more + fade * numbers.tolerance).all())
+        missed = np.where(own < box, fade * numbers.unheld_share * box, fade * numbers.tolerance)
+        fine = bool((np.abs(dcm - bounded[0, :2]) <= (1.0 - fade) * own + more + missed).all())
         if fine and not step.adapted:
             return None
         times, held = self._times(step, fine), numbers.cop_share * own

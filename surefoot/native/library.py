@@ -93,9 +93,10 @@ class Library:
             setattr(made, name, _address(f"{struct}.{name}", fields[name], value) if fields[name].pointer else value)
         return Bound(made, tuple(values.values()))
 
-    def bind(self, function: str, bound: Bound) -> Callable[..., Any]:
-        """A function on a struct; calls give its further numbers."""
+    def bind(self, function: str, bound: Bound | None = None, **values: Any) -> Callable[..., Any]:
+        """A function on a struct, which is filled already or from these values; calls give its further numbers."""
         call, struct = self._functions[function]
+        bound = bound or self.fill(struct, **values)
         if type(bound.struct) is not self._layouts[struct]:
             raise TypeError(f"{function} works on a {struct}, not on a {type(bound.struct).__name__}")
         return _Kernel(call, ctypes.addressof(bound.struct), bound=bound)

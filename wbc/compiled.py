@@ -7,6 +7,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pinocchio as pin
 
 from surefoot.native.library import Bound, Library
 from surefoot.wbc.types import NO_LOAD, Array, ExternalLoad, WbcReference
@@ -105,8 +106,7 @@ class CompiledTerms:
     def _frame(self, terms: "RobotTerms", frame: int, jacobian: Array, velocity: Array, bias: Array) -> Bound:
         model, data = terms.model, terms.data
         joint, placement = model.frames[frame].parentJoint, model.frames[frame].placement
-        chain = [model.joints[above] for above in model.supports[joint] if above]
-        columns = [column for moving in chain for column in range(moving.idx_v, moving.idx_v + moving.nv)]
+        columns = moving_columns(model, joint)
         return self.kernels.fill(
             "Frame",
             joint_rotation_columns=data.oMi[joint].rotation,
@@ -123,6 +123,12 @@ class CompiledTerms:
             velocity=velocity,
             bias=bias,
         )
+
+
+def moving_columns(model: pin.Model, joint: int) -> list[int]:
+    """Columns of the generalised velocity that move the body of a joint."""
+    chain = [model.joints[above] for above in model.supports[joint] if above]
+    return [column for moving in chain for column in range(moving.idx_v, moving.idx_v + moving.nv)]
 
 
 _VECTORS = attrgetter(

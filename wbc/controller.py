@@ -130,7 +130,9 @@ class WholeBodyController:
         self.terms = RobotTerms(model, frames, WRENCH_UNIT * size.factor("N"))
         self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
         self.qp: QpData = allocate(self.layout)
-        self._separation = Separation(model, limbs, parameters.separation) if limbs is not None else None
+        self._separation = (
+            Separation(model, limbs, parameters.separation, self.terms.compiled) if limbs is not None else None
+        )
         gaps = self.layout.separation
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]

@@ -57,6 +57,16 @@ static inline void rotation_vector(const double *R, double *out) {
     for (int i = 0; i < 3; i++) out[i] = scale * axis[i];
 }
 
+/* Four sums beside each other, in this order on every machine: one alone would wait for itself at each term. */
+static inline double dot(const double *a, const double *b, int64_t count) {
+    double sums[4] = {0.0};
+    int64_t i = 0;
+    for (; i + 4 <= count; i += 4)
+        for (int lane = 0; lane < 4; lane++) sums[lane] += a[i + lane] * b[i + lane];
+    for (int lane = 0; i + lane < count; lane++) sums[lane] += a[i + lane] * b[i + lane];
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
 static inline double clamp(double value, double least, double most) {
     return value < least ? least : value > most ? most : value;
 }

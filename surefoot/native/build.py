@@ -31,6 +31,11 @@ def digest() -> str:
     return found.hexdigest()[:16]
 
 
+def is_built() -> bool:
+    """Whether there is a library of these very sources. It is not loaded: one that is stale would then stay."""
+    return LIBRARY.exists() and digest().encode() in LIBRARY.read_bytes()
+
+
 def build() -> str:
     """Compile the library anew and put it in its place at once, so that others may do the same meanwhile.
 

@@ -237,6 +237,19 @@ typedef struct {
 
 void hard_rows_write(const HardRows *rows, int64_t left, int64_t right, int64_t rolling, double left_cap, double right_cap);
 
+/* Counterpart of `wbc.separation.Separation._gradient`: two points of two bodies, and the direction from b to a. */
+typedef struct {
+    const Terms *terms;
+    int64_t first_count;
+    const int64_t *first_columns;
+    int64_t second_count;
+    const int64_t *second_columns;
+    const double *points;
+    double *gradient;
+} Distance;
+
+double distance_rate(const Distance *distance);
+
 /* Counterpart of `wbc.solvers.equalities_only`; H is split where its first variables do not meet the others. */
 typedef struct {
     int64_t variables;

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from surefoot.native.build import FOLDER, LIBRARY, build, digest
+from surefoot.native.build import FOLDER, LIBRARY, build, is_built
 
 VARIABLE = "SUREFOOT_NATIVE"
 """Environment variable that asks for plain Python where it is 0."""
@@ -127,24 +127,18 @@ def library() -> Library | None:
 @cache
 def _loaded() -> Library | None:
     """The library, loaded once. A checkout, which has the sources, makes a missing or stale one anew."""
-    handle = _open()
-    if handle is None and (FOLDER.parents[1] / "pyproject.toml").exists():
-        why = build()
-        handle = _open()
-        if handle is None and LIBRARY.exists():
-            _LOG.warning("%s is of other sources and is not used: %s", LIBRARY.name, why)
-    return None if handle is None else Library(handle, (FOLDER / "kernels.h").read_text(encoding="utf-8"))
-
-
-def _open() -> ctypes.CDLL | None:
-    """The library as it lies there, if it is of these sources."""
+    if not is_built():
+        why = build() if (FOLDER.parents[1] / "pyproject.toml").exists() else "this is no checkout"
+        if why:
+            if LIBRARY.exists():
+                _LOG.warning("%s is of other sources and is not used, since %s", LIBRARY.name, why)
+            return None
     try:
         handle = ctypes.CDLL(str(LIBRARY))
-        told = handle.surefoot_digest
-    except (OSError, AttributeError):
+    except OSError as error:
+        _LOG.warning("%s is not used: %s", LIBRARY.name, error)
         return None
-    told.restype = ctypes.c_char_p
-    return handle if told() == digest().encode() else None
+    return Library(handle, (FOLDER / "kernels.h").read_text(encoding="utf-8"))
 
 
 def _layout(name: str, fields: Mapping[str, Field]) -> type[ctypes.Structure]:

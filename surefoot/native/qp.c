@@ -7,43 +7,50 @@
 
 static int64_t padded(int64_t count) { return (count + WIDTH - 1) / WIDTH * WIDTH; }
 
+/* out -= sum of factor times row; four at a time, since to load and to store `out` costs more than the products. */
+static inline void subtract_rows(double *restrict out, int64_t count, const double *factors, int64_t factor_stride,
+                                 const double *rows, int64_t row_stride, int64_t terms) {
+    int64_t k = 0;
+    for (; k + 4 <= terms; k += 4) {
+        const double *f = factors + factor_stride * k, *first = rows + row_stride * k;
+        const double *second = first + row_stride, *third = second + row_stride, *fourth = third + row_stride;
+        const double a = f[0], b = f[factor_stride], c = f[2 * factor_stride], d = f[3 * factor_stride];
+        if (a == 0.0 && b == 0.0 && c == 0.0 && d == 0.0) continue;
+        for (int64_t j = 0; j < count; j++)
+            out[j] -= (a * first[j] + b * second[j]) + (c * third[j] + d * fourth[j]);
+    }
+    for (; k < terms; k++) {
+        const double factor = factors[factor_stride * k], *row = rows + row_stride * k;
+        for (int64_t j = 0; j < count; j++) out[j] -= factor * row[j];
+    }
+}
+
 /* U with A = U'U in the upper triangle of A; its diagonal holds the reciprocals. Returns whether A is not positive. */
 static int cholesky(double *A, int64_t size, int64_t stride) {
-    for (int64_t k = 0; k < size; k++) {
-        double *row = A + stride * k;
-        if (!(row[k] > 0.0)) return 1;
-        const double scale = 1.0 / sqrt(row[k]);
-        for (int64_t j = k + 1; j < size; j++) row[j] *= scale;
-        row[k] = scale;
-        for (int64_t i = k + 1; i < size; i++) {
-            const double factor = row[i];
-            double *restrict below = A + stride * i;
-            for (int64_t j = i; j < size; j++) below[j] -= factor * row[j];
-        }
+    for (int64_t i = 0; i < size; i++) {
+        double *row = A + stride * i + i;
+        subtract_rows(row, size - i, A + i, stride, A + i, stride, i);
+        if (!(row[0] > 0.0)) return 1;
+        row[0] = 1.0 / sqrt(row[0]);
+        for (int64_t j = 1; j < size - i; j++) row[j] *= row[0];
     }
     return 0;
 }
 
 /* Solves U'Y = B in place, for `width` right sides lying row by row. */
 static void forward(const double *U, int64_t size, int64_t stride, double *B, int64_t width) {
-    for (int64_t k = 0; k < size; k++) {
-        const double *row = U + stride * k;
-        double *y = B + width * k;
-        for (int64_t c = 0; c < width; c++) y[c] *= row[k];
-        for (int64_t i = k + 1; i < size; i++) {
-            const double factor = row[i];
-            double *restrict below = B + width * i;
-            for (int64_t c = 0; c < width; c++) below[c] -= factor * y[c];
-        }
+    for (int64_t i = 0; i < size; i++) {
+        double *y = B + width * i;
+        subtract_rows(y, width, U + i, stride, B, width, i);
+        for (int64_t c = 0; c < width; c++) y[c] *= U[stride * i + i];
     }
 }
 
 /* Solves U x = b in place. */
 static void backward(const double *U, int64_t size, int64_t stride, double *x) {
     for (int64_t i = size - 1; i >= 0; i--) {
-        double rest = x[i];
-        for (int64_t j = i + 1; j < size; j++) rest -= U[stride * i + j] * x[j];
-        x[i] = rest * U[stride * i + i];
+        const double *row = U + stride * i;
+        x[i] = (x[i] - dot(row + i + 1, x + i + 1, size - i - 1)) * row[i];
     }
 }
 
@@ -59,13 +66,7 @@ static double violation(const EqualityQp *qp) {
     const int64_t n = qp->variables;
     double worst = 0.0;
     for (int64_t i = 0; i < n + qp->rows; i++) {
-        double value = 0.0;
-        if (i < n) {
-            value = qp->x[i];
-        } else {
-            const double *row = qp->A + n * (i - n);
-            for (int64_t j = 0; j < n; j++) value += row[j] * qp->x[j];
-        }
+        const double value = i < n ? qp->x[i] : dot(qp->A + n * (i - n), qp->x, n);
         const double below = qp->lower[i] - value, above = value - qp->upper[i];
         if (!(below <= worst)) worst = below;
         if (!(above <= worst)) worst = above;
@@ -96,15 +97,11 @@ double equality_qp_solve(const EqualityQp *qp, int64_t split) {
         if (cholesky(block, ends[part] - first, n)) return INFINITY;
         forward(block, ends[part] - first, n, Y + width * first, width);
     }
-    memset(S, 0, m * width * sizeof(double));
-    for (int64_t i = 0; i < n; i++) {
-        const double *restrict y = Y + width * i;
-        for (int64_t e = 0; e < m; e++) {
-            const double factor = y[e];
-            double *restrict row = S + width * e;
-            if (factor == 0.0) continue;
-            for (int64_t c = 0; c < width; c++) row[c] += factor * y[c];
-        }
+    for (int64_t e = 0; e < m; e++) {
+        double *row = S + width * e + e;
+        memset(row, 0, (width - e) * sizeof(double));
+        subtract_rows(row, width - e, Y + e, width, Y + e, width, n);
+        for (int64_t c = 0; c < width - e; c++) row[c] = -row[c];
     }
     for (int64_t e = 0; e < m; e++) multipliers[e] = qp->lower[n + e] + S[width * e + m];
     if (cholesky(S, m, width)) return INFINITY;
@@ -112,9 +109,7 @@ double equality_qp_solve(const EqualityQp *qp, int64_t split) {
     backward(S, m, width, multipliers);
     for (int64_t i = 0; i < n; i++) {
         const double *y = Y + width * i;
-        double sum = -y[m];
-        for (int64_t e = 0; e < m; e++) sum += y[e] * multipliers[e];
-        qp->x[i] = sum;
+        qp->x[i] = dot(y, multipliers, m) - y[m];
     }
     for (int64_t part = 0, first = 0; part < parts; first = ends[part++])
         backward(U + n * first + first, ends[part] - first, n, qp->x + first);
@@ -128,17 +123,13 @@ void answer_read(const Answer *answer) {
     const int64_t n = stack->variables, nv = terms->nv;
     const double *x = answer->x;
     for (int64_t j = 0; j < answer->joints; j++) {
-        const double *row = answer->torque_rows + n * j, most = answer->torque_limit[j];
-        double torque = 0.0;
-        for (int64_t i = 0; i < n; i++) torque += row[i] * x[i];
-        torque += terms->bias[6 + j];
+        const double most = answer->torque_limit[j];
+        const double torque = dot(answer->torque_rows + n * j, x, n) + terms->bias[6 + j];
         answer->torque[j] = torque > most ? most : torque < -most ? -most : torque;
     }
     memcpy(answer->acceleration, x, nv * sizeof(double));
     for (int i = 0; i < 12; i++) answer->wrench[i] = x[nv + i] * terms->wrench_unit;
     for (int64_t t = 0; t < stack->rows_count; t++) {
-        double value = 0.0;
-        for (int64_t i = 0; i < n; i++) value += stack->rows[n * t + i] * x[i];
-        answer->task_error[t] = (value - stack->target[t]) * stack->unscale[t];
+        answer->task_error[t] = (dot(stack->rows + n * t, x, n) - stack->target[t]) * stack->unscale[t];
     }
 }

@@ -1,4 +1,4 @@
-/* Hard rows of the whole-body QP; see `wbc.dynamics` and `wbc.limits`. */
+/* Hard rows of the whole-body QP; see `wbc.dynamics`, `wbc.limits` and `wbc.separation`. */
 #include "algebra.h"
 #include "kernels.h"
 
@@ -82,4 +82,27 @@ void hard_rows_write(const HardRows *rows, int64_t left, int64_t right, int64_t 
     rows->upper[nv + 2] = left_cap / unit;
     rows->upper[nv + 8] = right_cap / unit;
     joint_bounds(rows, held);
+}
+
+/* Adds n'(J v) of a point of a body; the columns are those of the joints that move it. */
+static void add_point(const Distance *distance, double sign, const double *normal, const double *point, int64_t count,
+                      const int64_t *columns) {
+    double lever[3];
+    cross(point, normal, lever);
+    for (int64_t n = 0; n < count; n++) {
+        const double *column = distance->terms->joint_jacobian_columns + 6 * columns[n];
+        double rate = 0.0;
+        for (int i = 0; i < 3; i++) rate += normal[i] * column[i] + lever[i] * column[3 + i];
+        distance->gradient[columns[n]] += sign * rate;
+    }
+}
+
+/* Fills the gradient of a distance; returns its rate. `points`: direction from b to a, point a, point b. */
+double distance_rate(const Distance *distance) {
+    const double *normal = distance->points;
+    const int64_t nv = distance->terms->nv;
+    memset(distance->gradient, 0, nv * sizeof(double));
+    add_point(distance, 1.0, normal, distance->points + 3, distance->first_count, distance->first_columns);
+    add_point(distance, -1.0, normal, distance->points + 6, distance->second_count, distance->second_columns);
+    return dot(distance->gradient, distance->terms->v, nv);
 }

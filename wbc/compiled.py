@@ -88,7 +88,8 @@ class CompiledTerms:
     def shift(self, k: int, forward: float, pitch: float) -> Array:
         """See `RobotTerms.shift_foot`, of a sole that does not lean."""
         self._shift(k, forward, pitch)
-        return self._to_sole[k].copy()
+        to_sole: Array = self._to_sole[k].copy()
+        return to_sole
 
     def _sole(self, terms: "RobotTerms", k: int, frame: int) -> Bound:
         motion = terms.sole_jacobian[k], terms.sole_velocity[k], terms.sole_bias[k]

@@ -57,8 +57,8 @@ def build() -> str:
             )
             if done.returncode or not made.exists():
                 said = done.stderr.strip().splitlines()
-                return f"'{shlex.join(command)}' fails" + (f": {said[0]}" if said else "")
+                return f"no library: '{shlex.join(command)}' fails" + (f": {said[0]}" if said else "")
             made.replace(LIBRARY)
     except OSError as error:
-        return f"no library can be written: {error}"
+        return f"no library: {error}"
     return ""

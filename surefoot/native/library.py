@@ -128,10 +128,10 @@ def library() -> Library | None:
 def _loaded() -> Library | None:
     """The library, loaded once. A checkout, which has the sources, makes a missing or stale one anew."""
     if not is_built():
-        why = build() if (FOLDER.parents[1] / "pyproject.toml").exists() else "this is no checkout"
+        why = build() if (FOLDER.parents[1] / "pyproject.toml").exists() else "no checkout to build in"
         if why:
             if LIBRARY.exists():
-                _LOG.warning("%s is of other sources and is not used, since %s", LIBRARY.name, why)
+                _LOG.warning("%s is of other sources and is not used: there is %s", LIBRARY.name, why)
             return None
     try:
         handle = ctypes.CDLL(str(LIBRARY))

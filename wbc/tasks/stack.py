@@ -63,9 +63,7 @@ class TaskStack:
         if compiled is not None:
             self._compile(compiled, list(zip(tasks, places, strict=True)), terms)
 
-    def _compile(
-        self, tick: CompiledTick, tasks: Sequence[tuple[Task, slice]], terms: Sequence[DiagonalTerm]
-    ) -> None:
+    def _compile(self, tick: CompiledTick, tasks: Sequence[tuple[Task, slice]], terms: Sequence[DiagonalTerm]) -> None:
         """Take kernels where a class has one of its own; a class that inherits one may write something else."""
         self._kernels: list[Callable[[], None]] = []
         self._others = []

@@ -29,7 +29,7 @@ def checkout(tmp_path):
 
 def say(folder: Path, **changed: str) -> tuple[str, str]:
     """What ``python -m surefoot.native`` says there, on its two outputs."""
-    environment = {**os.environ, "PYTHONPATH": str(folder), **changed}
+    environment = {**os.environ, "PYTHONPATH": str(folder), VARIABLE: "1", **changed}
     command = [sys.executable, "-m", "surefoot.native"]
     done = subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0

@@ -227,7 +227,7 @@ class WholeBodyController:
         if (terms.leaning is not None or holding != self._region_contacts) and np.isfinite(terms.sole_position).all():
             self._region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
             self._region_contacts = holding
-        if self._tick is None:
+        if self._tick is None or terms is not self.terms:
             self.tasks.write(terms, reference)
             self._hard.write(terms, terms.q, terms.v, contacts, reference.ground_normal, reference.roll[1:])
         else:
@@ -257,7 +257,7 @@ class WholeBodyController:
         if solution is None:
             self._fade(answer.torque, terms.v)
             return answer
-        if self._tick is None:
+        if self._tick is None or terms is not self.terms:
             self._read(terms, solution.x)
         else:
             np.copyto(self._x, solution.x)
@@ -284,7 +284,7 @@ class WholeBodyController:
             stack=self.tasks.bound,
             joints=self.layout.joints,
             torque_rows=self._torque_rows,
-            torque_limit=self._limits.torque,
+            torque_limit=np.ascontiguousarray(self._limits.torque, dtype=np.float64),
             x=self._x,
             torque=answer.torque,
             acceleration=answer.acceleration,

@@ -211,7 +211,8 @@ static void yield(const Bench *bench, const double *axis, double share, double *
     for (int i = 0; i < 3; i++) turn[i] -= share * axis[i] * along;
 }
 
-#define MOST_ANKLE_JOINTS 3
+/* `AnkleStops` has the last two joints of a leg, or the last one. */
+#define MOST_ANKLE_JOINTS 2
 
 void task_swing_foot(const SwingFoot *task) {
     const Bench *bench = task->bench;

@@ -84,6 +84,17 @@ def test_tasks_of_ones_own_stand_beside_kernels_one_by_one(robot, pair, referenc
     held_alike(robot, pair(robot, tasks=(Still(),)), [(references[1](), LEFT), (references[0](), BOTH)], rng)
 
 
+def test_terms_of_others_are_read_by_plain_python(robot, pair, references, rng):
+    plain, compiled = pair(robot)
+    compiled.observe(robot.moved(rng))
+    terms = plain.observe(robot.moved(rng))
+    one, other = (controller.build(terms, references[1](), LEFT) for controller in (plain, compiled))
+    for name in ("H", "g", "A", "bounds_lower", "bounds_upper"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
+    x = plain.solve(one)[1]
+    np.testing.assert_array_equal(plain.interpret(terms, x).torque, compiled.interpret(terms, x).torque)
+
+
 def test_a_task_that_inherits_a_kernel_is_asked_itself(robot, references):
     class Calm(Torso):
         name = "calm"

@@ -25,7 +25,8 @@ static inline void rotate_back(const double *R, const double *x, double *out) {
 /* A B, of two rotations */
 static inline void compose(const double *A, const double *B, double *out) {
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) out[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+        for (int j = 0; j < 3; j++)
+            out[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
 }
 
 /* A' B, of two rotations */

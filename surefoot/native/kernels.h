@@ -235,7 +235,8 @@ typedef struct {
     double *upper;
 } HardRows;
 
-void hard_rows_write(const HardRows *rows, int64_t left, int64_t right, int64_t rolling, double left_cap, double right_cap);
+void hard_rows_write(const HardRows *rows, int64_t left, int64_t right, int64_t rolling, double left_cap,
+                     double right_cap);
 
 /* Counterpart of `wbc.separation.Separation._gradient`: two points of two bodies, and the direction from b to a. */
 typedef struct {

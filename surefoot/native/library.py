@@ -28,7 +28,7 @@ _NUMBERS: Mapping[str, Any] = {"int64_t": ctypes.c_int64, "double": ctypes.c_dou
 _TYPES: Mapping[str, Any] = {"int64_t": np.int64, "double": np.float64}
 _STRUCT = re.compile(r"typedef struct \{(.*?)\} (\w+);", re.DOTALL)
 _FIELD = re.compile(r"\s*(?:const )?(\w+) (\*?)(\w+)(?:\[(\d+)\])?;\n")
-_FUNCTION = re.compile(r"^(\w+) (\w+)\(const (\w+) \*\w+((?:, \w+ \w+)*)\);", re.MULTILINE)
+_FUNCTION = re.compile(r"^(\w+) (\w+)\(const (\w+) \*\w+((?:,\s+\w+ \w+)*)\);", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)

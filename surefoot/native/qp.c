@@ -1,4 +1,4 @@
-/* The whole-body QP under its equalities alone; see `wbc.solvers.equalities_only`. What a solution means for the robot. */
+/* The whole-body QP under its equalities alone (see `wbc.solvers`), and what a solution means for the robot. */
 #include "algebra.h"
 #include "kernels.h"
 
@@ -79,7 +79,7 @@ static double violation(const EqualityQp *qp) {
  * With H = U'U, Y = U'^-1 E' and w = U'^-1 g the multipliers solve Y'Y l = e + Y'w, and x = U^-1 (Y l - w).
  *
  * `split`: number of the first variables of which H has no products with the others, where it has none.
- * Returns the largest violation at x; infinite where H is not positive definite or the equalities contradict each other.
+ * Returns the largest violation at x; infinite where H is not positive definite or the equalities contradict.
  */
 double equality_qp_solve(const EqualityQp *qp, int64_t split) {
     const int64_t n = qp->variables, m = qp->equalities, width = padded(m + 1);

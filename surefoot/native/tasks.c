@@ -173,7 +173,8 @@ static void see_from_ankle(const SwingFoot *task, int64_t foot, const double *R,
     const double *ankle = task->ankles + 3 * foot;
     const double *spin = terms->sole_velocity + 6 * foot + 3, *bias = terms->sole_bias + 6 * foot + 3;
     const double *turning = reference->swing_angular_velocity;
-    double there[3], here[3], along[3], outward[3], swept[3], wanted[3], local[3], turn[3], moved[3], own[3], ownward[3];
+    double there[3], here[3], along[3], outward[3], swept[3], wanted[3], local[3], turn[3], moved[3];
+    double own[3], ownward[3];
     rotate(reference->swing_rotation, ankle, there);
     rotate(R, ankle, here);
     cross(turning, there, along);

@@ -2,7 +2,7 @@
 #include "algebra.h"
 #include "kernels.h"
 
-/* From a wrench in a frame to force and moment about the origin: the frame's columns of a matrix with `stride` columns. */
+/* From a wrench in a frame to force and moment about the origin; `stride`: columns of the matrix that has these six. */
 static void dual_action(const double *R, const double *p, double *out, int stride) {
     for (int j = 0; j < 3; j++) {
         const double axis[3] = {R[j], R[3 + j], R[6 + j]};

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from surefoot.native.build import LIBRARY
-from surefoot.native.library import library
+from surefoot.native.build import LIBRARY, is_built
 
 pytestmark = pytest.mark.unit
 
@@ -55,7 +54,7 @@ def test_the_wheel_of_the_sdist_is_the_same(distributions, wheel_from_sdist):
 
 def test_a_wheel_with_compiled_kernels_is_of_its_platform_and_of_any_python(distributions):
     built = f"surefoot/native/{LIBRARY.name}" in files_of(distributions[0])
-    assert built == (library() is not None)
+    assert built == is_built()
     platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
     assert distributions[0].stem.endswith(f"-py3-none-{platform if built else 'any'}")
 

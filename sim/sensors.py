@@ -1,10 +1,13 @@
 """Reading the sensors out of MuJoCo's state, without a look at the forces of single contacts."""
 
+from collections.abc import Callable
+
 import mujoco
 import numpy as np
 
 from surefoot.models.convert import mujoco_to_pinocchio
 from surefoot.models.types import RobotDescription
+from surefoot.native.library import Library, library
 from surefoot.sim.contacts import ContactSense
 from surefoot.sim.errors import WorldError
 from surefoot.sim.measurement import Array, Measurement
@@ -42,6 +45,8 @@ class SensorReader:
         self._contact: Array = np.zeros((model.nbody, 6))
         self._touch = ContactSense(model, data, feet)
         self._allocate(model.nq, model.nv)
+        kernels = library()
+        self._read_compiled = self._compiled(kernels, data) if kernels else None
 
     def _allocate(self, nq: int, nv: int) -> None:
         self._q, self._v, self._torque = np.zeros(nq), np.zeros(nv), np.zeros(nv - 6)
@@ -56,15 +61,15 @@ class SensorReader:
     def read(self, time: float, pushes: PushSchedule) -> Measurement:
         """Everything at `time` [s]; `pushes` are the forces of the step that ended there."""
         mujoco.mj_rnePostConstraint(self._model, self._data)
-        mujoco_to_pinocchio(self._qpos, self._qvel, self._q, self._v)
-        self._torque[:] = self._joint_force
-        np.subtract(self._qacc_base, self._gravity, out=self._specific_force)
-        np.dot(self._specific_force, self._base_rotation, out=self._accelerometer)
         self._push[:] = pushes.mean
-        contact = self._without_pushes(pushes) if pushes.active else self._external
-        com = self._com.tolist()
-        for wrench, (foot, position, rotation) in zip(self._wrench, self._soles, strict=True):
-            wrench[:] = _at_sole(contact[foot].tolist(), com, position.tolist(), rotation.tolist())
+        if self._read_compiled is None:
+            self._read(pushes)
+        else:
+            if pushes.active:
+                self._without_pushes(pushes)
+            else:
+                np.copyto(self._contact, self._external)
+            self._read_compiled()
         nonfoot_contact, self_contact = self._touch.read()
         return Measurement(
             time=time,
@@ -79,6 +84,44 @@ class SensorReader:
             external_force=self._push_view,
             nonfoot_contact=nonfoot_contact,
             self_contact=self_contact,
+        )
+
+    def _read(self, pushes: PushSchedule) -> None:
+        """Fill the buffers but for the pushes."""
+        mujoco_to_pinocchio(self._qpos, self._qvel, self._q, self._v)
+        self._torque[:] = self._joint_force
+        np.subtract(self._qacc_base, self._gravity, out=self._specific_force)
+        np.dot(self._specific_force, self._base_rotation, out=self._accelerometer)
+        contact = self._without_pushes(pushes) if pushes.active else self._external
+        com = self._com.tolist()
+        for wrench, (foot, position, rotation) in zip(self._wrench, self._soles, strict=True):
+            wrench[:] = _at_sole(contact[foot].tolist(), com, position.tolist(), rotation.tolist())
+
+    def _compiled(self, kernels: Library, data: mujoco.MjData) -> Callable[[], None]:
+        """The kernel that does what `_read` does."""
+        (left, *at_left), (right, *at_right) = self._soles
+        return kernels.bind(
+            "sensors_read",
+            nq=len(self._q),
+            nv=len(self._v),
+            qpos=self._qpos,
+            qvel=self._qvel,
+            base_acceleration=self._qacc_base,
+            joint_force=self._joint_force,
+            base_rotation=self._base_rotation,
+            gravity=self._gravity,
+            com=self._com,
+            left_external=self._contact[left],
+            right_external=self._contact[right],
+            left_position=at_left[0],
+            right_position=at_right[0],
+            left_rotation=at_left[1],
+            right_rotation=at_right[1],
+            q=self._q,
+            v=self._v,
+            torque=self._torque,
+            accelerometer=self._accelerometer,
+            wrench=self._wrench,
         )
 
     def _without_pushes(self, pushes: PushSchedule) -> Array:

@@ -9,6 +9,7 @@ import pytest
 ALLOWED = {
     r"needs chromium": "a browser, which CI servers need not have",
     r"needs the package mjlab": "a package of others, which has one MJCF",
+    r"needs a C compiler": "compiled kernels, without which all else must pass",
     r"no off-screen OpenGL": "a machine without off-screen OpenGL",
 }
 """Beginnings of the reasons for which a test may be skipped, and what is missing then."""

@@ -34,6 +34,10 @@ class SupportRegion:
 
     Held as its edges in the horizontal plane, rebuilt only when the contacts change. Plain floats, since arrays of two
     numbers cost more than their arithmetic.
+
+    Attributes:
+        edges: the same for kernels: start point, unit direction and length of each edge, shape (8, 5) [m, -, m].
+        edge_count: how many of them there are, shape (1,).
     """
 
     def __init__(self, half_length: float, half_width: float, share: float) -> None:
@@ -41,6 +45,8 @@ class SupportRegion:
         corners = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
         self._corners = corners * (share * np.array([half_length, half_width]))
         self._edges: list[_Edge] = []
+        # Two convex soles of four corners have a hull of eight at most.
+        self.edges, self.edge_count = np.zeros((8, 5)), np.zeros(1, dtype=np.int64)
 
     def rebuild(self, positions: Array, rotations: Array, active: tuple[bool, bool], rolling: int = -1) -> None:
         """Hull of the active soles; positions (2, 3), rotations (2, 3, 3) in the world frame.
@@ -53,6 +59,8 @@ class SupportRegion:
         points = np.concatenate(soles)
         vertices = points[ConvexHull(points).vertices].tolist()
         self._edges = [_edge(*start, *end) for start, end in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
+        self.edge_count[0] = len(self._edges)
+        self.edges[: len(self._edges)] = self._edges
 
     def project(self, x: float, y: float) -> tuple[float, float]:
         """The point of the region nearest to (x, y)."""

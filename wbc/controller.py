@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from surefoot.similarity import Similarity
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
+from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.cone import CONE_ROWS, wrench_cone
 from surefoot.wbc.contacts import ContactSchedule, ContactState
 from surefoot.wbc.dynamics import HardConstraints
@@ -129,7 +130,9 @@ class WholeBodyController:
         self.terms = RobotTerms(model, frames, WRENCH_UNIT * size.factor("N"))
         self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
         self.qp: QpData = allocate(self.layout)
-        self._separation = Separation(model, limbs, parameters.separation) if limbs is not None else None
+        self._separation = (
+            Separation(model, limbs, parameters.separation, self.terms.compiled) if limbs is not None else None
+        )
         gaps = self.layout.separation
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
@@ -137,8 +140,11 @@ class WholeBodyController:
         leaning = frames.leaning is not None
         if leaning:
             sole = replace(sole, half_width=TOE_DEPTH * size.length)
-        cones = _cones(sole, size)
-        self._hard = HardConstraints(self.qp, self.layout, cones, limits, parameters.contact, stops[0].columns)
+        cones, ankles = _cones(sole, size), stops[0].columns
+        self._tick = CompiledTick(self.terms.compiled) if self.terms.compiled else None
+        self._hard = HardConstraints(
+            self.qp, self.layout, cones, limits, parameters.contact, ankles, self._tick, leaning
+        )
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
         arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and parameters.arm_swing else None
@@ -152,9 +158,9 @@ class WholeBodyController:
             Posture(weights, gains, posture, leg_joints, arms),
             ForceDistribution(weights, self.terms.wrench_unit),
         )
-        self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal)
+        self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal, self._tick)
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
-        self._observer = LoadObserver(self.terms.mass, control_period, size)
+        self._observer = LoadObserver(self.terms.mass, control_period, size, self.terms.compiled)
         self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
         self._limits, self._toe = limits, toe
         self._fading = control_period / (FADE * size.time), FADE_DAMPING * size.time
@@ -162,6 +168,8 @@ class WholeBodyController:
         self._torque_rows, self._wrench_flat = self.qp.A[self.layout.torque_rows], np.zeros(12)
         wrench, error = self._wrench_flat.reshape(2, 6), np.zeros_like(self.tasks.target)
         self._answer = WbcAnswer(np.zeros(self.layout.joints), np.zeros(self.layout.nv), wrench, error)
+        if self._tick is not None:
+            self._compile(self._tick)
 
     @property
     def task_layout(self) -> TaskLayout:
@@ -219,8 +227,13 @@ class WholeBodyController:
         if (terms.leaning is not None or holding != self._region_contacts) and np.isfinite(terms.sole_position).all():
             self._region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
             self._region_contacts = holding
-        self.tasks.write(terms, reference)
-        self._hard.write(terms, terms.q, terms.v, contacts, reference.ground_normal, reference.roll[1:])
+        if self._tick is None or terms is not self.terms:
+            self.tasks.write(terms, reference)
+            self._hard.write(terms, terms.q, terms.v, contacts, reference.ground_normal, reference.roll[1:])
+        else:
+            self._tick.refer(reference)
+            self.tasks.write_compiled(terms, reference)
+            self._hard.write_compiled(contacts)
         if self._separation is not None:
             self._separation.write(terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         return self.qp
@@ -244,16 +257,40 @@ class WholeBodyController:
         if solution is None:
             self._fade(answer.torque, terms.v)
             return answer
-        x, nv = solution.x, self.layout.nv
+        if self._tick is None or terms is not self.terms:
+            self._read(terms, solution.x)
+        else:
+            np.copyto(self._x, solution.x)
+            self._read_compiled()
+        for foot, to_sole in self._seen:
+            answer.wrench[foot] = to_sole @ answer.wrench[foot]
+        return answer
+
+    def _read(self, terms: RobotTerms, x: Array) -> None:
+        """Fill the answer, with wrenches in the frames of the QP."""
+        answer, nv = self._answer, self.layout.nv
         np.matmul(self._torque_rows, x, out=answer.torque)
         np.add(answer.torque, terms.bias[6:], out=answer.torque)
         self._clip(answer.torque)
         answer.acceleration[:] = x[:nv]
         np.multiply(x[nv:], terms.wrench_unit, out=self._wrench_flat)
-        for foot, to_sole in self._seen:
-            answer.wrench[foot] = to_sole @ answer.wrench[foot]
         answer.task_error[:] = self.tasks.residual(x)
-        return answer
+
+    def _compile(self, tick: CompiledTick) -> None:
+        answer, self._x = self._answer, np.zeros(self.layout.variables)
+        self._read_compiled = tick.kernels.bind(
+            "answer_read",
+            terms=tick.terms,
+            stack=self.tasks.bound,
+            joints=self.layout.joints,
+            torque_rows=self._torque_rows,
+            torque_limit=np.ascontiguousarray(self._limits.torque, dtype=np.float64),
+            x=self._x,
+            torque=answer.torque,
+            acceleration=answer.acceleration,
+            wrench=self._wrench_flat,
+            task_error=answer.task_error,
+        )
 
     def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
         """See a rolling foot from its toe edge, a leaning one from its line, others from their soles."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.contacts import ContactState
 from surefoot.wbc.leaning import FREE
 from surefoot.wbc.limits import AccelerationBounds, JointLimits
@@ -50,6 +51,8 @@ class HardConstraints:
         limits: JointLimits,
         gains: ContactGains,
         ankles: Sequence[Sequence[int]] = ((), ()),
+        compiled: CompiledTick | None = None,
+        leaning: bool = False,
     ) -> None:
         """Write the rows that change with the contacts only.
 
@@ -60,6 +63,8 @@ class HardConstraints:
             limits: of the joints.
             gains: of the contacts.
             ankles: columns of the generalised velocity that belong to the left and to the right ankle.
+            compiled: on which the kernel works; None for plain Python.
+            leaning: whether the kernel's feet lean.
         """
         self._gains = gains
         self._joints, self._ankles = AccelerationBounds(limits), [list(columns) for columns in ankles]
@@ -75,6 +80,40 @@ class HardConstraints:
         self._bind(qp, layout)
         self._release(0)
         self._release(1)
+        if compiled is not None:
+            self._compile(compiled, qp, leaning)
+
+    def _compile(self, tick: CompiledTick, qp: QpData, leaning: bool) -> None:
+        bounds = self._joints
+        self._write_rows = tick.kernels.bind(
+            "hard_rows_write",
+            terms=tick.terms,
+            reference=tick.reference,
+            variables=len(qp.g),
+            damping=self._gains.damping,
+            levelling=self._gains.levelling,
+            leaning=int(leaning),
+            free_row=FREE,
+            ankle_joints=len(self._ankles[0]),
+            ankle_columns=np.array(self._ankles, dtype=np.int64),
+            torque_span=self._torque_span,
+            reach_time=bounds.reach_time,
+            position_rate=bounds.position_rate,
+            velocity_rate=bounds.velocity_rate,
+            positions=bounds.positions,
+            velocities=bounds.velocities,
+            rates=self._rates,
+            A=qp.A,
+            lower=qp.bounds_lower,
+            upper=qp.bounds_upper,
+        )
+
+    def write_compiled(self, contacts: ContactState) -> None:
+        """The same as ``write`` by the kernel, for the terms and the reference of its tick."""
+        if contacts.rolling != self._rolling:
+            self._roll(contacts.rolling)
+        self._active = contacts.active
+        self._write_rows(*contacts.active, contacts.rolling, *contacts.force_cap)
 
     def _bind(self, qp: QpData, layout: QpLayout) -> None:
         # A view costs as much to make as to use, so the parts of rows and bounds get their names once.

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from surefoot.similarity import REFERENCE_SIZE, Similarity
+from surefoot.wbc.compiled import CompiledTerms
 from surefoot.wbc.model import RobotTerms, cross
 from surefoot.wbc.types import GRAVITY, NO_LOAD, Array, ExternalLoad
 
@@ -68,12 +69,19 @@ class LoadObserver:
         mass: the model's [kg].
         period: time between two updates [s].
         size: of the robot.
+        compiled: terms on which the kernel works; None for plain Python.
 
     Attributes:
         load: as estimated; `NO_LOAD` while there is none.
     """
 
-    def __init__(self, mass: float, period: float, size: Similarity = REFERENCE_SIZE) -> None:
+    def __init__(
+        self,
+        mass: float,
+        period: float,
+        size: Similarity = REFERENCE_SIZE,
+        compiled: CompiledTerms | None = None,
+    ) -> None:
         self._mass, self._ticks = mass, max(1, round(SPAN * size.time / period))
         self._span = self._ticks * period
         self._felt, self._com = np.zeros(6), np.zeros(3)
@@ -86,6 +94,11 @@ class LoadObserver:
         self._kept, self._sudden = (tuple(limit * pull for limit in limits) for limits in (KEPT, SUDDEN))
         self._estimate = np.zeros(sum(_ROWS))
         self.load = NO_LOAD
+        self._wrench, self._add = np.zeros((2, 6)), None
+        if compiled is not None:
+            self._add = compiled.kernels.bind(
+                "load_sums_add", terms=compiled.bound, wrench=self._wrench, felt=self._felt, com=self._com
+            )
 
     def update(self, terms: RobotTerms, wrench: Array) -> ExternalLoad:
         """The load as it is now known; call it once per control tick.
@@ -97,8 +110,12 @@ class LoadObserver:
         if self._momentum is None:
             self._momentum = self._moving(terms)
             return self.load
-        self._felt += terms.sole_wrench_map @ wrench.ravel()
-        self._com += terms.com
+        if self._add is not None:
+            np.copyto(self._wrench, wrench)
+            self._add()
+        else:
+            self._felt += terms.sole_wrench_map @ wrench.ravel()
+            self._com += terms.com
         self._count += 1
         if self._count == self._ticks:
             self._end_span(self._momentum, self._moving(terms))

@@ -37,28 +37,34 @@ class AccelerationBounds:
     q' >= -(q - q_min) / T keeps that property and never passes its limit. Near-straight knees hyperextend without this.
     Velocity: v + T_v q̈ within a share of the no-load speed. Where the two conflict the position bound wins, so that
     lower <= upper always.
+
+    Attributes:
+        reach_time: 2 T [s].
+        position_rate, velocity_rate: 1 / T² [1/s^2] and 1 / T_v [1/s].
+        positions: lower and upper ends of the ranges, shape (2, nj) [rad].
+        velocities: lowest and highest, shape (2, nj) [rad/s].
     """
 
     def __init__(self, limits: JointLimits) -> None:
         """Allocate buffers for the joints of ``limits``."""
-        self._reach_time = 2.0 * limits.position_horizon
-        self._position_rate = 1.0 / limits.position_horizon**2
-        self._velocity_rate = 1.0 / limits.velocity_horizon
-        self._positions = np.stack([limits.lower, limits.upper])
+        self.reach_time = 2.0 * limits.position_horizon
+        self.position_rate = 1.0 / limits.position_horizon**2
+        self.velocity_rate = 1.0 / limits.velocity_horizon
+        self.positions = np.stack([limits.lower, limits.upper])
         fastest = limits.velocity_share * limits.velocity
-        self._velocities = np.stack([-fastest, fastest])
+        self.velocities = np.stack([-fastest, fastest])
         self._reach = np.zeros_like(limits.lower)
-        self._by_position, self._by_velocity = np.zeros_like(self._positions), np.zeros_like(self._velocities)
+        self._by_position, self._by_velocity = np.zeros_like(self.positions), np.zeros_like(self.velocities)
 
     def write(self, position: Array, velocity: Array, lower: Array, upper: Array) -> None:
         """Write the bounds of a state into ``lower`` and ``upper``; shape (nj,) each."""
-        np.multiply(velocity, self._reach_time, out=self._reach)
+        np.multiply(velocity, self.reach_time, out=self._reach)
         self._reach += position
         by_position, by_velocity = self._by_position, self._by_velocity
-        np.subtract(self._positions, self._reach, out=by_position)
-        by_position *= self._position_rate
-        np.subtract(self._velocities, velocity, out=by_velocity)
-        by_velocity *= self._velocity_rate
+        np.subtract(self.positions, self._reach, out=by_position)
+        by_position *= self.position_rate
+        np.subtract(self.velocities, velocity, out=by_velocity)
+        by_velocity *= self.velocity_rate
         np.maximum(by_position[0], by_velocity[0], out=lower)
         np.minimum(by_position[1], by_velocity[1], out=upper)
         np.minimum(lower, by_position[1], out=lower)

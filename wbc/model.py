@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from surefoot.native.library import library
+from surefoot.wbc.compiled import CompiledTerms
 from surefoot.wbc.leaning import line_centre, line_frame
 from surefoot.wbc.qp import WRENCH_UNIT
 from surefoot.wbc.types import GRAVITY, NO_LOAD, Array, ExternalLoad
@@ -75,6 +77,7 @@ class RobotTerms:
         torso_jacobian: from v to the torso's angular velocity, shape (3, nv).
         torso_velocity: angular, in its frame, shape (3,) [rad/s].
         torso_bias: angular acceleration with v' = 0, shape (3,) [rad/s^2].
+        compiled: kernels that fill these arrays; None for plain Python.
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, wrench_unit: float = WRENCH_UNIT) -> None:
@@ -91,7 +94,8 @@ class RobotTerms:
         self.data = data = model.createData()
         self.q: Array = pin.neutral(model)
         self.v: Array = np.zeros(model.nv)
-        self._soles = tuple(_frame_id(model, name) for name in frames.soles)
+        left, right = frames.soles
+        self._soles = _frame_id(model, left), _frame_id(model, right)
         self._torso = _frame_id(model, frames.torso)
         self.leaning = frames.leaning
         self.waist = model.frames[self._torso].parentJoint != 1
@@ -107,9 +111,11 @@ class RobotTerms:
         self.base_rotation: Array = data.oMi[1].rotation
         self.torso_rotation: Array = data.oMf[self._torso].rotation
         self.torso_position: Array = data.oMf[self._torso].translation
-        self._allocate(model.nv)
+        torso = self._allocate(model.nv)
+        kernels = library()
+        self.compiled = CompiledTerms(kernels, self, self._soles, self._torso, torso) if kernels else None
 
-    def _allocate(self, nv: int) -> None:
+    def _allocate(self, nv: int) -> tuple[Array, Array, Array]:
         self.com_velocity, self.base_angular_velocity = np.zeros(3), np.zeros(3)
         self.sole_position, self.sole_rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
         self.sole_pose = np.zeros((2, 7))
@@ -118,20 +124,27 @@ class RobotTerms:
         self.sole_jacobian = self.contact_jacobian.reshape(2, 6, nv)
         self.sole_velocity, self.sole_bias = np.zeros((2, 6)), np.zeros((2, 6))
         self.sole_wrench_map = np.zeros((6, 12))
-        self.torso_jacobian = np.zeros((3, nv))
-        self.torso_velocity, self.torso_bias = np.zeros(3), np.zeros(3)
+        torso = np.zeros((6, nv)), np.zeros(6), np.zeros(6)
+        self.torso_jacobian, self.torso_velocity, self.torso_bias = (part[3:] for part in torso)
         self._shifted = [False, False]
+        return torso
 
     def update(self, q: Array, v: Array) -> None:
         """Compute every term at configuration q, shape (nq,), and velocity v, shape (nv,)."""
         self.q, self.v = q, v
         # Leaves in data.a the velocity-product accelerations, those of zero generalised acceleration.
         pin.computeAllTerms(self.model, self.data, q, v)
+        if self.compiled is not None:
+            self.mass, self.load = self.model_mass, NO_LOAD
+            self.compiled.update(q, v, self.mass)
+            self._shifted[:] = False, False
+            return
         np.divide(self._linear_momentum, self.model_mass, out=self.com_velocity)
         self.mass, self.load = self.model_mass, NO_LOAD
         self.base_angular_velocity[:] = v[3:6]
         self._update_sole(0)
         self._update_sole(1)
+        self._shifted[:] = False, False
         self._update_torso()
 
     def bear(self, load: ExternalLoad) -> None:
@@ -153,7 +166,10 @@ class RobotTerms:
             self.bias *= scale
         R = self.torso_rotation
         moment = load.moment + cross(self.com - self.torso_position, load.force)
-        self.bias -= np.concatenate((load.force @ R, moment @ R)) @ self._torso_rows
+        torso = pin.getFrameJacobian(self.model, self.data, self._torso, _LOCAL)
+        self.bias -= np.concatenate((load.force @ R, moment @ R)) @ torso
+        if self.compiled is not None:
+            self.compiled.bear(self.mass, load)
 
     def _update_sole(self, k: int) -> None:
         model, data, frame = self.model, self.data, self._soles[k]
@@ -166,7 +182,6 @@ class RobotTerms:
         self.sole_jacobian[k] = pin.getFrameJacobian(model, data, frame, _LOCAL)
         self.sole_velocity[k] = pin.getFrameVelocity(model, data, frame, _LOCAL).vector
         self.sole_bias[k] = pin.getFrameClassicalAcceleration(model, data, frame, _LOCAL).vector
-        self._shifted[k] = False
 
     def level_soles(self, toe: float) -> Array:
         """Where the soles' centres would be if each foot turned level about its toe edge, shape (2, 3) [m].
@@ -198,6 +213,8 @@ class RobotTerms:
         """
         self.unshift(k)
         self._shifted[k] = True
+        if self.compiled is not None and self.leaning is None:
+            return self.compiled.shift(k, forward, pitch)
         turned = pin.SE3(pin.utils.rotate("y", -pitch), np.array([forward, 0.0, 0.0]))
         if self.leaning is not None:
             turned = line_frame(k, self.sole_rotation[k], self.leaning) * turned
@@ -217,13 +234,13 @@ class RobotTerms:
     def unshift(self, k: int) -> None:
         """See foot k from its sole again, as after an update."""
         if self._shifted[k]:
-            self._update_sole(k)
+            self._shifted[k] = False
+            (self._update_sole if self.compiled is None else self.compiled.unshift)(k)
 
     def _update_torso(self) -> None:
         model, data, frame = self.model, self.data, self._torso
         pin.updateFramePlacement(model, data, frame)
-        self._torso_rows = pin.getFrameJacobian(model, data, frame, _LOCAL)
-        self.torso_jacobian[:] = self._torso_rows[3:]
+        self.torso_jacobian[:] = pin.getFrameJacobian(model, data, frame, _LOCAL)[3:]
         self.torso_velocity[:] = pin.getFrameVelocity(model, data, frame, _LOCAL).angular
         self.torso_bias[:] = pin.getFrameAcceleration(model, data, frame, _LOCAL).angular
 

@@ -1,10 +1,12 @@
 """Distances between the robot's own limbs as bounds on the joint accelerations of one tick."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
+from surefoot.wbc.compiled import CompiledTerms, moving_columns
 from surefoot.wbc.tunable import check, number
 from surefoot.wbc.types import Array
 
@@ -40,8 +42,21 @@ class Separation:
     ICRA 1987, is the first such damper on distances.)
     """
 
-    def __init__(self, model: pin.Model, geometry: pin.GeometryModel, parameters: SeparationParameters) -> None:
-        """Take the shapes whose collision pairs are to be kept apart."""
+    def __init__(
+        self,
+        model: pin.Model,
+        geometry: pin.GeometryModel,
+        parameters: SeparationParameters,
+        compiled: CompiledTerms | None = None,
+    ) -> None:
+        """Take the shapes whose collision pairs are to be kept apart.
+
+        Args:
+            model: the robot.
+            geometry: its shapes.
+            parameters: when they keep apart.
+            compiled: terms on which the kernel works; None for plain Python.
+        """
         self._model, self._geometry, self._parameters = model, geometry, parameters
         self._data = pin.GeometryData(geometry)
         # The results are updated in place; to walk through Pinocchio's vector of them costs more than the distances.
@@ -50,6 +65,8 @@ class Separation:
             tuple(geometry.geometryObjects[shape].parentJoint for shape in (pair.first, pair.second))
             for pair in geometry.collisionPairs
         ]
+        self._points, self._row = np.zeros((3, 3)), np.zeros(model.nv)
+        self._rates = [self._compiled(compiled, *joints) for joints in self._joints] if compiled else None
 
     def write(self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
         """Write the rows of the nearest pairs; unused ones become zero rows without a bound.
@@ -71,10 +88,30 @@ class Separation:
             if slot >= len(near):
                 rows[slot:], lower[slot:] = 0.0, -unbounded
                 return
-            row = self._gradient(data, near[slot])
             gap = max(distances[near[slot]] - p.clearance, 0.0)
+            if self._rates is None:
+                row = self._gradient(data, near[slot])
+                rate = float(row @ v)
+            else:
+                result, row = self._results[near[slot]], self._row
+                self._points[:] = -result.normal, result.getNearestPoint1(), result.getNearestPoint2()
+                rate = self._rates[near[slot]]()
             rows[slot] = row
-            lower[slot] = -2.0 / p.horizon * float(row @ v) - gap / p.horizon**2
+            lower[slot] = -2.0 / p.horizon * rate - gap / p.horizon**2
+
+    def _compiled(self, terms: CompiledTerms, first: int, second: int) -> Callable[[], float]:
+        """The kernel that does what `_gradient` does for the pair of two joints' bodies."""
+        columns = [np.array(moving_columns(self._model, joint), dtype=np.int64) for joint in (first, second)]
+        return terms.kernels.bind(
+            "distance_rate",
+            terms=terms.bound,
+            first_count=len(columns[0]),
+            first_columns=columns[0],
+            second_count=len(columns[1]),
+            second_columns=columns[1],
+            points=self._points,
+            gradient=self._row,
+        )
 
     def _gradient(self, data: pin.Data, pair: int) -> Array:
         """Jacobian of a distance, shape (nv,)."""

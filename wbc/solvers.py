@@ -10,7 +10,8 @@ import numpy as np
 from proxsuite import proxqp
 from scipy.linalg import lapack
 
-from surefoot.wbc.qp import EQUALITY_ROWS, QpData
+from surefoot.native.library import Library, library
+from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
 from surefoot.wbc.types import Array
 
 
@@ -131,10 +132,12 @@ class EqualityFirst:
         """``accuracy``: largest violation that counts as none."""
         self._accuracy = accuracy
         self._full = Daqp(accuracy)
+        kernels = library()
+        self._equalities = equalities_only if kernels is None else CompiledEqualities(kernels).solve
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
-        solution = equalities_only(qp)
+        solution = self._equalities(qp)
         if solution is not None and solution.violation <= self._accuracy:
             return solution
         return self._full.solve(qp)
@@ -160,6 +163,44 @@ def equalities_only(qp: QpData) -> QpSolution | None:
     x, _ = lapack.dtrtrs(L, y, lower=1, trans=1, overwrite_b=1)
     violation = qp.violation(x)
     return QpSolution(x, violation, 0) if math.isfinite(violation) else None
+
+
+class CompiledEqualities:
+    """Does what ``equalities_only`` does by a kernel, which is bound anew to another QP."""
+
+    def __init__(self, kernels: Library) -> None:
+        self._kernels = kernels
+        self._qp: QpData | None = None
+
+    def solve(self, qp: QpData) -> QpSolution | None:
+        """See ``equalities_only``."""
+        if qp is not self._qp:
+            self._bind(qp)
+        violation = self._run(self._split)
+        return QpSolution(self._x.copy(), violation, 0) if math.isfinite(violation) else None
+
+    def _bind(self, qp: QpData) -> None:
+        n, rows, eq = qp.g.shape[0], qp.A.shape[0], EQUALITY_ROWS
+        # A right side for each equality and for the gradient, and room to make their number a multiple of four.
+        width = eq + 4
+        self._x, self._split = np.zeros(n), n - 2 * FOOT_ROWS
+        self._run = self._kernels.bind(
+            "equality_qp_solve",
+            variables=n,
+            equalities=eq,
+            rows=rows,
+            H=qp.H,
+            g=qp.g,
+            A=qp.A,
+            lower=qp.bounds_lower,
+            upper=qp.bounds_upper,
+            factor=np.zeros((n, n)),
+            right_sides=np.zeros((n, width)),
+            schur=np.zeros((eq, width)),
+            multipliers=np.zeros(eq),
+            x=self._x,
+        )
+        self._qp = qp
 
 
 SOLVERS: dict[str, Callable[[], QpSolver]] = {

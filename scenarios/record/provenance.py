@@ -15,6 +15,7 @@ from types import MappingProxyType
 
 from pydantic import TypeAdapter
 
+from surefoot.native.library import library
 from surefoot.scenarios.errors import LogError
 from surefoot.similarity import Similarity
 
@@ -240,7 +241,7 @@ class Agenda:
 
 
 PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "piqp", "numpy", "scipy", "mcap")
-CODE = ("planner", "wbc", "sim", "models", "scenarios")
+CODE = ("planner", "wbc", "sim", "models", "scenarios", "native")
 READERS = ("scenarios/study/checks", "scenarios/study/paper", "scenarios/show", "scenarios/study/campaigns")
 """Folders of the code, and those in it that only read logs: no run depends on them."""
 
@@ -262,6 +263,7 @@ def relevant_versions() -> Mapping[str, str]:
     found = {name: _version(name) for name in PACKAGES}
     found["python"] = platform.python_version()
     found["machine"] = f"{platform.system()} {platform.machine()}"
+    found["native"] = "plain Python" if library() is None else "compiled kernels"
     found["source_digest"] = source_digest(Path(__file__).parents[2])
     return MappingProxyType(found)
 
@@ -274,7 +276,8 @@ def source_digest(root: Path) -> str:
     """
     digest = hashlib.sha256()
     shared = [path for path in root.glob("*.py") if root.name == "surefoot"]
-    for path in sorted((*shared, *(path for folder in CODE for path in (root / folder).rglob("*.py")))):
+    code = (path for folder in CODE for path in (root / folder).rglob("*.[pch]*"))
+    for path in sorted((*shared, *(path for path in code if path.suffix in (".py", ".c", ".h")))):
         name = path.relative_to(root).as_posix()
         if not name.startswith(READERS):
             digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")

@@ -39,14 +39,26 @@ def distributions(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]
     return wheel, sdist
 
 
+def _wheel_of(sdist: Path, factory: pytest.TempPathFactory) -> Path:
+    folder = factory.mktemp("sdist")
+    shutil.unpack_archive(sdist, folder)
+    (tree,) = folder.iterdir()
+    (wheel,) = build(tree, factory.mktemp("again"), "-t", "wheel")
+    return wheel
+
+
 @pytest.fixture(scope="session")
 def wheel_from_sdist(distributions: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel that an installer makes of the sdist."""
-    folder = tmp_path_factory.mktemp("sdist")
-    shutil.unpack_archive(distributions[1], folder)
-    (tree,) = folder.iterdir()
-    (wheel,) = build(tree, tmp_path_factory.mktemp("again"), "-t", "wheel")
-    return wheel
+    return _wheel_of(distributions[1], tmp_path_factory)
+
+
+@pytest.fixture(scope="session")
+def wheel_without_compiler(distributions: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Likewise on a machine whose compiler fails."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CC", "false")
+        return _wheel_of(distributions[1], tmp_path_factory)
 
 
 @pytest.fixture(scope="session")

@@ -3,12 +3,15 @@
 import os
 import subprocess
 import sys
+import sysconfig
 import tarfile
 import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
+
+from surefoot.native.build import LIBRARY, is_built
 
 pytestmark = pytest.mark.unit
 
@@ -48,6 +51,20 @@ def test_the_wheel_holds_the_package_whole_and_nothing_beside_it(distributions):
 
 def test_the_wheel_of_the_sdist_is_the_same(distributions, wheel_from_sdist):
     assert files_of(wheel_from_sdist) == files_of(distributions[0])
+
+
+def test_a_wheel_with_compiled_kernels_is_of_its_platform_and_of_any_python(distributions):
+    built = f"surefoot/native/{LIBRARY.name}" in files_of(distributions[0])
+    assert built == is_built()
+    platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+    assert distributions[0].stem.endswith(f"-py3-none-{platform if built else 'any'}")
+
+
+def test_without_a_compiler_the_wheel_is_whole_but_for_the_kernels(wheel_from_sdist, wheel_without_compiler):
+    assert wheel_without_compiler.stem.endswith("-py3-none-any")
+    names = {name for name in files_of(wheel_from_sdist) if not name.endswith("/WHEEL")}
+    without = {name for name in files_of(wheel_without_compiler) if not name.endswith("/WHEEL")}
+    assert without == names - {f"surefoot/native/{LIBRARY.name}"}
 
 
 def test_the_sdist_holds_each_file_once(distributions):

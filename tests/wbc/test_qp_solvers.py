@@ -33,7 +33,8 @@ def test_the_answer_satisfies_the_kkt_conditions(problems, name):
     for qp in problems:
         solution = solver.solve(qp)
         assert solution is not None
-        assert solution.violation == qp.violation(solution.x) <= 1e-6
+        assert solution.violation == pytest.approx(qp.violation(solution.x), abs=1e-10)
+        assert solution.violation <= 1e-6
         residual, count = kkt_residual(qp, solution.x)
         assert residual < 1e-6
         active.append(count)

@@ -3,12 +3,14 @@
 Each costs Σ weight_i (x_i - target_i)², which adds the weights to the diagonal of H and weight_i target_i to -g.
 """
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.wbc.arm_swing import ArmSwing
+from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.types import GRAVITY, Array, WbcReference
@@ -22,6 +24,9 @@ class DiagonalTerm(Protocol):
 
     def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """Write weight times target of its variables into ``linear``, shape (nv + 12,), zero at first."""
+
+    def compiled(self, tick: CompiledTick, linear: Array) -> Callable[[], None] | None:
+        """A kernel that does what ``write`` does; None where that is nothing."""
 
 
 class Regularisation:
@@ -38,6 +43,9 @@ class Regularisation:
 
     def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """Nothing: the target is zero."""
+
+    def compiled(self, tick: CompiledTick, linear: Array) -> None:
+        """None is needed."""
 
 
 class Posture:
@@ -78,6 +86,24 @@ class Posture:
         if self._arms is not None:
             self._swing_arms(self._arms, terms, joints)
 
+    def compiled(self, tick: CompiledTick, linear: Array) -> Callable[[], None]:
+        """See ``DiagonalTerm.compiled``."""
+        arms = self._arms or ArmSwing((0, 0), 0.0)
+        return tick.kernels.bind(
+            "cost_posture",
+            terms=tick.terms,
+            joints=len(self._pull),
+            stiffness=self._stiffness,
+            damping=self._damping,
+            pull=self._pull,
+            arm_gain=arms.gain,
+            left_arm=arms.joints[0],
+            right_arm=arms.joints[1],
+            left_back=arms.back[0],
+            right_back=arms.back[1],
+            linear=linear,
+        )
+
     def _swing_arms(self, arms: ArmSwing, terms: RobotTerms, joints: Array) -> None:
         angle, rate = arms.offset(terms)
         left, right = arms.back
@@ -102,3 +128,14 @@ class ForceDistribution:
         weight = self._force * self._unit * terms.mass * GRAVITY
         left, right = reference.load_share
         linear[-10::6] = (weight * left, weight * right)
+
+    def compiled(self, tick: CompiledTick, linear: Array) -> Callable[[], None]:
+        """See ``DiagonalTerm.compiled``."""
+        return tick.kernels.bind(
+            "cost_force_distribution",
+            terms=tick.terms,
+            reference=tick.reference,
+            force=self._force,
+            gravity=GRAVITY,
+            linear=linear,
+        )

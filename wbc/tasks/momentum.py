@@ -1,8 +1,12 @@
 """The two momentum tasks: they act on the sole forces, which the floating-base rows tie to the accelerations."""
 
+from collections.abc import Callable
+
 import numpy as np
 
+from surefoot.native.library import Bound
 from surefoot.wbc.balance import BalanceGains, SupportRegion, com_acceleration
+from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.task import Vector
@@ -29,6 +33,20 @@ class CentreOfMass:
         x, y, z = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
         fx, fy, fz = terms.load.force.tolist()
         return x - fx / terms.mass, y - fy / terms.mass, z + GRAVITY - fz / terms.mass
+
+    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
+        """See ``CompiledTask.compiled``."""
+        gains, region = self._balance, self._region
+        return tick.kernels.bind(
+            "task_centre_of_mass",
+            bench=bench,
+            edges=region.edges,
+            edge_count=region.edge_count,
+            dcm=gains.dcm,
+            height_stiffness=gains.height_stiffness,
+            height_damping=gains.height_damping,
+            gravity=GRAVITY,
+        )
 
 
 class AngularMomentum:
@@ -61,3 +79,7 @@ class AngularMomentum:
         lx, ly, lz = terms.angular_momentum.tolist()
         nx, ny, nz = terms.load.moment.tolist()
         return decay * lx - nx / mass, decay * ly - ny / mass, decay * lz - nz / mass
+
+    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
+        """See ``CompiledTask.compiled``."""
+        return tick.kernels.bind("task_angular_momentum", bench=bench, decay=self._decay)

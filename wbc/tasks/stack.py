@@ -1,13 +1,15 @@
 """All tasks as one weighted least-squares cost of the whole-body QP."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import cast
 
 import numpy as np
 
+from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.qp import QpData
 from surefoot.wbc.tasks.diagonal import DiagonalTerm
-from surefoot.wbc.tasks.task import Task, TaskLayout, layout_of
+from surefoot.wbc.tasks.task import CompiledTask, Task, TaskLayout, layout_of
 from surefoot.wbc.types import Array, WbcReference
 
 
@@ -25,13 +27,16 @@ class TaskStack:
         linear: d, shape (n,).
     """
 
-    def __init__(self, qp: QpData, tasks: Sequence[Task], terms: Sequence[DiagonalTerm]) -> None:
+    def __init__(
+        self, qp: QpData, tasks: Sequence[Task], terms: Sequence[DiagonalTerm], compiled: CompiledTick | None = None
+    ) -> None:
         """Stack tasks in their order.
 
         Args:
             qp: whose H and g this writes.
             tasks: those with rows.
             terms: costs of single variables.
+            compiled: on which kernels of tasks work that have one; None for plain Python.
 
         Raises:
             ValueError: two tasks have one name, or a task's size or weight is none.
@@ -49,12 +54,40 @@ class TaskStack:
         self._unscale = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0.0)
         # A view costs as much to make as to use, so each task's part of the rows gets its name once.
         ends = np.cumsum(sizes)
+        places = [slice(end - size, end) for size, end in zip(sizes, ends, strict=True)]
         self._tasks = [
-            (task.write, scale[end - size : end, None], self.rows[end - size : end])
-            for task, size, end in zip(tasks, sizes, ends, strict=True)
+            (task.write, scale[place, None], self.rows[place]) for task, place in zip(tasks, places, strict=True)
         ]
         self._terms = [term.write for term in terms]
         self._H, self._g, self._H_diagonal = qp.H, qp.g, qp.H.reshape(-1)[:: variables + 1]
+        if compiled is not None:
+            self._compile(compiled, list(zip(tasks, places, strict=True)), terms)
+
+    def _compile(self, tick: CompiledTick, tasks: Sequence[tuple[Task, slice]], terms: Sequence[DiagonalTerm]) -> None:
+        """Take kernels where a class has one of its own; a class that inherits one may write something else."""
+        self._kernels: list[Callable[[], None]] = []
+        self._others = []
+        for (task, place), (write, scale, rows) in zip(tasks, self._tasks, strict=True):
+            if "compiled" in vars(type(task)):
+                bench = tick.bench(self._scale[place], rows, self.target[place])
+                self._kernels.append(cast(CompiledTask, task).compiled(tick, bench))
+            else:
+                self._others.append((write, scale, rows, self.target[place]))
+        self._kernels += filter(None, (term.compiled(tick, self.linear) for term in terms))
+        self.bound = tick.kernels.fill(
+            "Stack",
+            variables=len(self.linear),
+            rows_count=len(self.target),
+            rows=self.rows,
+            target=self.target,
+            scale=self._scale,
+            unscale=self._unscale,
+            diagonal=self.diagonal,
+            linear=self.linear,
+            H=self._H,
+            g=self._g,
+        )
+        self._assemble = tick.kernels.bind("stack_assemble", self.bound)
 
     def write(self, terms: RobotTerms, reference: WbcReference) -> None:
         """Write H and g of the QP for this state and reference."""
@@ -70,6 +103,14 @@ class TaskStack:
         np.matmul(self.target, self.rows, out=self._g)
         self._g += self.linear
         np.negative(self._g, out=self._g)
+
+    def write_compiled(self, terms: RobotTerms, reference: WbcReference) -> None:
+        """The same as ``write`` by kernels, after the reference was given to their tick."""
+        for kernel in self._kernels:
+            kernel()
+        for write, scale, rows, target in self._others:
+            target[:] = np.reshape(tuple(write(terms, reference, scale, rows)), target.shape)
+        self._assemble()
 
     def residual(self, x: Array) -> Array:
         """Residuals J x - a of all tasks at the solution x, shape (rows,); those of a task without weight are zero."""

@@ -1,8 +1,12 @@
 """The swing foot follows its curve."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pinocchio as pin
 
+from surefoot.native.library import Bound
+from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.leaning import FREE
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms, cross
@@ -34,6 +38,8 @@ class AnkleStops:
     Attributes:
         ankles: from the centres of the soles, in their frames: forward and up, shape (2, 3) [m].
         columns: of the generalised velocity, those of the joints of each ankle.
+        lower, upper: ends of the ranges of all joints, shape (nj,) [rad].
+        ahead: time by which a joint is looked at before it comes to its end [s].
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
@@ -42,7 +48,7 @@ class AnkleStops:
         self.ankles = np.array([sole.placement.inverse().translation for sole in soles]) * (1.0, 0.0, 1.0)
         joints = 2 if frames.leaning is None else 1
         self.columns = tuple(tuple(model.joints[j].idx_v for j in list(chain)[-joints:]) for chain in supports)
-        self._lower, self._upper, self._ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
+        self.lower, self.upper, self.ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
 
     def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[Array, float]]:
         """Axes in the frame of sole k about which it is not to turn any further, and the share of it [-].
@@ -55,8 +61,8 @@ class AnkleStops:
         found = []
         for column in self.columns[k]:
             position, velocity = float(terms.q[column + 1]), float(terms.v[column])
-            coming = position + self._ahead * velocity
-            up, down = self._upper[column - 6] - max(position, coming), min(position, coming) - self._lower[column - 6]
+            coming = position + self.ahead * velocity
+            up, down = self.upper[column - 6] - max(position, coming), min(position, coming) - self.lower[column - 6]
             near = float(min(up, down))
             if near >= YIELDING:
                 continue
@@ -137,6 +143,27 @@ class SwingFoot:
             rows[3:] = kept @ rows[3:]
             turn = tuple((kept @ turn).tolist())
         return (*linear, *turn)
+
+    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
+        """See ``CompiledTask.compiled``."""
+        stops, none = self._stops, np.zeros(1)
+        return tick.kernels.bind(
+            "task_swing_foot",
+            bench=bench,
+            stiffness=self._gains[0],
+            damping=self._gains[1],
+            toe=self._toe,
+            lifted=self._lifted,
+            ankle_joints=len(stops.columns[0]) if stops else 0,
+            ankle_columns=np.array(stops.columns if stops else [0], dtype=np.int64),
+            ankles=stops.ankles if stops else none,
+            lower=np.ascontiguousarray(stops.lower, dtype=np.float64) if stops else none,
+            upper=np.ascontiguousarray(stops.upper, dtype=np.float64) if stops else none,
+            ahead=stops.ahead if stops else 0.0,
+            yielding=YIELDING,
+            turned_back=_TURNED_BACK,
+            turned=np.array([-1], dtype=np.int64),
+        )
 
     def _of_ankle(
         self, terms: RobotTerms, reference: WbcReference, k: int, linear: tuple[float, ...], ankle: Array

@@ -6,6 +6,8 @@ from typing import Protocol
 
 import pinocchio as pin
 
+from surefoot.native.library import Bound
+from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.types import Array, WbcReference
 
@@ -52,6 +54,13 @@ class Task(Protocol):
         Returns:
             a, not scaled, ``size`` numbers [m/s^2, rad/s^2, as J makes it].
         """
+
+
+class CompiledTask(Protocol):
+    """A task that has a kernel which does what its ``write`` does."""
+
+    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
+        """The kernel, bound to the terms and the reference of a tick and to the rows of the task."""
 
 
 TaskFactory = Callable[[pin.Model, BodyFrames], Task]

@@ -1,10 +1,13 @@
 """Pelvis and torso stay upright and turn with the heading."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pinocchio as pin
 
+from surefoot.native.library import Bound
+from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
@@ -26,19 +29,23 @@ class HipStops:
         model: the robot.
         frames: its soles.
         limits: of its joints.
+
+    Attributes:
+        hips: of the left and the right hip's roll joint: column of the generalised velocity, sign of its axis ahead,
+            lower and upper end of what it takes alone [-, -, rad, rad].
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
         data = model.createData()
         pin.computeJointJacobians(model, data, pin.neutral(model))
-        self._hips: list[tuple[int, float, float, float]] = []
+        self.hips: list[tuple[int, float, float, float]] = []
         for name in frames.soles:
             above = list(model.supports[model.frames[model.getFrameId(name)].parentJoint])[2:-2]
             ahead = {model.joints[joint].idx_v: float(data.J[3, model.joints[joint].idx_v]) for joint in above}
             column = max(ahead, key=lambda column: abs(ahead[column]))
             lower, upper = float(limits.lower[column - 6]), float(limits.upper[column - 6])
             spared = min(SPARED, 0.25 * (upper - lower))
-            self._hips.append((column, math.copysign(1.0, ahead[column]), lower + spared, upper - spared))
+            self.hips.append((column, math.copysign(1.0, ahead[column]), lower + spared, upper - spared))
 
     def roll(self, terms: RobotTerms) -> tuple[float, float]:
         """Roll of the pelvis, left side up, and its rate [rad, rad/s].
@@ -49,7 +56,7 @@ class HipStops:
         _, y, z = terms.base_rotation[2].tolist()
         now, turning = math.atan2(y, z), float(terms.base_angular_velocity[0])
         roll = rate = 0.0
-        for column, sign, lower, upper in self._hips:
+        for column, sign, lower, upper in self.hips:
             angle = float(terms.q[column + 1]) + sign * now
             beyond, slope = _beyond(angle - upper) if angle > 0.5 * (lower + upper) else _beyond(lower - angle)
             if slope:
@@ -107,6 +114,19 @@ class Pelvis(_Upright):
         roll, rate = self._stops.roll(terms) if self._stops else (0.0, 0.0)
         return x + self._gains[0] * roll + self._gains[1] * rate, y, z
 
+    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
+        """See ``CompiledTask.compiled``."""
+        hips = np.array(self._stops.hips if self._stops else [(0.0, 0.0, 0.0, 0.0)])
+        return tick.kernels.bind(
+            "task_pelvis",
+            bench=bench,
+            stiffness=self._gains[0],
+            damping=self._gains[1],
+            hip_count=len(hips) if self._stops else 0,
+            hips=hips,
+            softened=SOFTENED,
+        )
+
 
 class Torso(_Upright):
     """Angular acceleration of the torso."""
@@ -119,3 +139,8 @@ class Torso(_Upright):
         x, y, z = self._wanted(reference, terms.torso_rotation, terms.torso_velocity)
         bx, by, bz = terms.torso_bias.tolist()
         return x - bx, y - by, z - bz
+
+    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
+        """See ``CompiledTask.compiled``."""
+        stiffness, damping = self._gains
+        return tick.kernels.bind("task_torso", bench=bench, stiffness=stiffness, damping=damping)

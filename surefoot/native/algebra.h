@@ -1,0 +1,75 @@
+/* Vectors of three numbers and rotations, which are nine numbers row by row unless a name says "columns". */
+#ifndef SUREFOOT_ALGEBRA_H
+#define SUREFOOT_ALGEBRA_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+static inline void cross(const double *a, const double *b, double *out) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* R x */
+static inline void rotate(const double *R, const double *x, double *out) {
+    for (int i = 0; i < 3; i++) out[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
+}
+
+/* R' x */
+static inline void rotate_back(const double *R, const double *x, double *out) {
+    for (int i = 0; i < 3; i++) out[i] = R[i] * x[0] + R[3 + i] * x[1] + R[6 + i] * x[2];
+}
+
+/* A B, of two rotations */
+static inline void compose(const double *A, const double *B, double *out) {
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+}
+
+/* A' B, of two rotations */
+static inline void compose_back(const double *A, const double *B, double *out) {
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) out[3 * i + j] = A[i] * B[j] + A[3 + i] * B[3 + j] + A[6 + i] * B[6 + j];
+}
+
+static inline void transpose(const double *R, double *out) {
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) out[3 * j + i] = R[3 * i + j];
+}
+
+/* A motion (linear, angular) seen from a frame with rotation R and origin p. */
+static inline void see_motion(const double *R, const double *p, const double *motion, double *out) {
+    double lever[3], linear[3];
+    cross(p, motion + 3, lever);
+    for (int i = 0; i < 3; i++) linear[i] = motion[i] - lever[i];
+    rotate_back(R, linear, out);
+    rotate_back(R, motion + 3, out + 3);
+}
+
+/* Rotation vector of a rotation, as pinocchio.log3 has it for angles below pi. */
+static inline void rotation_vector(const double *R, double *out) {
+    const double axis[3] = {R[7] - R[5], R[2] - R[6], R[3] - R[1]};
+    const double sine = 0.5 * sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    const double cosine = 0.5 * (R[0] + R[4] + R[8] - 1.0);
+    const double scale = sine < 1e-8 ? 0.5 : 0.5 * atan2(sine, cosine) / sine;
+    for (int i = 0; i < 3; i++) out[i] = scale * axis[i];
+}
+
+/* Four sums beside each other, in this order on every machine: one alone would wait for itself at each term. */
+static inline double dot(const double *a, const double *b, int64_t count) {
+    double sums[4] = {0.0};
+    int64_t i = 0;
+    for (; i + 4 <= count; i += 4)
+        for (int lane = 0; lane < 4; lane++) sums[lane] += a[i + lane] * b[i + lane];
+    for (int lane = 0; i + lane < count; lane++) sums[lane] += a[i + lane] * b[i + lane];
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+static inline double clamp(double value, double least, double most) {
+    return value < least ? least : value > most ? most : value;
+}
+
+#endif

@@ -1,0 +1,65 @@
+"""The C sources of this folder made into one shared library beside them.
+
+The build of the package runs this file by its path, before anything is installed: it imports the standard library
+alone. The same sources and compiler give the same bits: no fused multiplication, no reordering of sums, and of the
+machine's instructions only those that every x86-64 processor since 2009 has.
+"""
+
+import hashlib
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+FOLDER = Path(__file__).parent
+LIBRARY = FOLDER / ("kernels.c" + {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so"))
+"""The library; the dot in its stem tells `pkgutil` that it is no module."""
+
+FLAGS = ("-std=c11", "-O3", "-ffp-contract=off", "-fPIC", "-shared")
+BASELINE = {"x86_64": ("-march=x86-64-v2",), "AMD64": ("-march=x86-64-v2",)}
+"""Further flags by machine."""
+
+
+def digest() -> str:
+    """Digest of the sources and of how they are compiled."""
+    found = hashlib.sha256(repr((FLAGS, BASELINE)).encode())
+    for path in sorted((*FOLDER.glob("*.h"), *FOLDER.glob("*.c"))):
+        found.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return found.hexdigest()[:16]
+
+
+def is_built() -> bool:
+    """Whether there is a library of these very sources. It is not loaded: one that is stale would then stay."""
+    return LIBRARY.exists() and digest().encode() in LIBRARY.read_bytes()
+
+
+def build() -> str:
+    """Compile the library anew and put it in its place at once, so that others may do the same meanwhile.
+
+    The compiler is ``CC``, or ``cc``.
+
+    Returns:
+        Why there is none; empty if there is one.
+    """
+    command = shlex.split(os.environ.get("CC", "cc"))
+    if not command or shutil.which(command[0]) is None:
+        return f"no C compiler '{' '.join(command)}'"
+    flags = (*FLAGS, *BASELINE.get(platform.machine(), ()), f'-DSUREFOOT_DIGEST="{digest()}"')
+    sources = sorted(path.name for path in FOLDER.glob("*.c"))
+    try:
+        with tempfile.TemporaryDirectory(dir=FOLDER) as scratch:
+            made = Path(scratch, LIBRARY.name)
+            done = subprocess.run(
+                [*command, *flags, "-o", str(made), *sources, "-lm"], cwd=FOLDER, capture_output=True, text=True
+            )
+            if done.returncode or not made.exists():
+                said = done.stderr.strip().splitlines()
+                return f"no library: '{shlex.join(command)}' fails" + (f": {said[0]}" if said else "")
+            made.replace(LIBRARY)
+    except OSError as error:
+        return f"no library: {error}"
+    return ""

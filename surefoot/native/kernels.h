@@ -1,0 +1,325 @@
+/*
+ * What Python and C share: structs of numbers and pointers, and the functions that work on them.
+ *
+ * `surefoot.native.library` reads this file, so that each struct is told once. Therefore: one field a line, each an
+ * int64_t, a double, an array of doubles, or a pointer to double, int64_t or a struct above; functions take one struct
+ * pointer, then int64_t or double. Python allocates all memory; matrices lie row by row unless a name says "columns".
+ * Sizes come at run time.
+ */
+#ifndef SUREFOOT_KERNELS_H
+#define SUREFOOT_KERNELS_H
+
+#include <stdint.h>
+
+/* A frame fixed to a joint's body: its placement in Pinocchio's data, and where its motion goes. */
+typedef struct {
+    const double *joint_rotation_columns;
+    const double *joint_position;
+    const double *joint_velocity;
+    const double *joint_acceleration;
+    const double *placement_rotation;
+    const double *placement_position;
+    int64_t supporting;
+    const int64_t *columns;
+    double *rotation_columns;
+    double *position;
+    double *jacobian;
+    double *velocity;
+    double *bias;
+} Frame;
+
+/* A sole: its frame, and what `RobotTerms` tells of it. */
+typedef struct {
+    const Frame *frame;
+    double *position;
+    double *rotation;
+    double *pose;
+    double *contact_position;
+    double *contact_rotation;
+    double *wrench_map;
+} Sole;
+
+/* Counterpart of `wbc.model.RobotTerms`, whose names these are. */
+typedef struct {
+    int64_t nv;
+    double model_mass;
+    double wrench_unit;
+    const double *mass;
+    const double *load_force;
+    const double *load_moment;
+    const double *q;
+    const double *v;
+    const double *joint_jacobian_columns;
+    const double *linear_momentum;
+    const double *angular_momentum;
+    const double *mass_matrix;
+    const double *bias;
+    const double *com;
+    const double *base_rotation_columns;
+    const Sole *left;
+    const Sole *right;
+    const Frame *torso;
+    double *com_velocity;
+    double *base_angular_velocity;
+    double *sole_position;
+    double *contact_position;
+    double *contact_rotation;
+    double *sole_jacobian;
+    double *sole_velocity;
+    double *sole_bias;
+    double *sole_wrench_map;
+    const double *torso_jacobian;
+    const double *torso_velocity;
+    const double *torso_bias;
+    double *to_sole;
+} Terms;
+
+void terms_update(const Terms *terms);
+void terms_unshift(const Terms *terms, int64_t foot);
+void terms_shift(const Terms *terms, int64_t foot, double forward, double pitch);
+
+/* Counterpart of `wbc.types.WbcReference`, as far as kernels need it. */
+typedef struct {
+    double com[3];
+    double com_velocity[3];
+    double com_acceleration[3];
+    double zmp[2];
+    double zmp_offset[2];
+    double swing_position[3];
+    double swing_velocity[3];
+    double swing_acceleration[3];
+    double swing_angular_velocity[3];
+    double swing_angular_acceleration[3];
+    double swing_rotation[9];
+    double ground_normal[6];
+    double omega;
+    double stiffness;
+    double heading;
+    double heading_rate;
+    double load_share[2];
+    double roll[3];
+    double swing_foot;
+    double rolling_foot;
+} Reference;
+
+/* Where a task writes: its own rows of the stack, scaled, and its target, not scaled. */
+typedef struct {
+    const Terms *terms;
+    const Reference *reference;
+    int64_t variables;
+    const double *scale;
+    double *rows;
+    double *target;
+} Bench;
+
+/* Counterpart of `wbc.tasks.momentum.CentreOfMass`, its support region and `wbc.balance.com_acceleration`. */
+typedef struct {
+    const Bench *bench;
+    const double *edges;
+    const int64_t *edge_count;
+    double dcm;
+    double height_stiffness;
+    double height_damping;
+    double gravity;
+} CentreOfMass;
+
+/* Counterpart of `wbc.tasks.momentum.AngularMomentum`. */
+typedef struct {
+    const Bench *bench;
+    double decay;
+} AngularMomentum;
+
+/* Counterpart of `wbc.tasks.trunk.Pelvis`; of each hip's roll joint column, sign, lower and upper bound. */
+typedef struct {
+    const Bench *bench;
+    double stiffness;
+    double damping;
+    int64_t hip_count;
+    const double *hips;
+    double softened;
+} Pelvis;
+
+/* Counterpart of `wbc.tasks.trunk.Torso`. */
+typedef struct {
+    const Bench *bench;
+    double stiffness;
+    double damping;
+} Torso;
+
+/* Counterpart of `wbc.tasks.swing.SwingFoot`; the columns of the left ankle, then those of the right one. */
+typedef struct {
+    const Bench *bench;
+    double stiffness;
+    double damping;
+    double toe;
+    double lifted;
+    int64_t ankle_joints;
+    const int64_t *ankle_columns;
+    const double *ankles;
+    const double *lower;
+    const double *upper;
+    double ahead;
+    double yielding;
+    double turned_back;
+    int64_t *turned;
+} SwingFoot;
+
+void task_centre_of_mass(const CentreOfMass *task);
+void task_angular_momentum(const AngularMomentum *task);
+void task_pelvis(const Pelvis *task);
+void task_torso(const Torso *task);
+void task_swing_foot(const SwingFoot *task);
+
+/* Counterpart of `wbc.tasks.diagonal.Posture` and `wbc.arm_swing.ArmSwing`; without arms their gain is zero. */
+typedef struct {
+    const Terms *terms;
+    int64_t joints;
+    const double *stiffness;
+    const double *damping;
+    const double *pull;
+    double arm_gain;
+    int64_t left_arm;
+    int64_t right_arm;
+    double left_back;
+    double right_back;
+    double *linear;
+} Posture;
+
+/* Counterpart of `wbc.tasks.diagonal.ForceDistribution`. */
+typedef struct {
+    const Terms *terms;
+    const Reference *reference;
+    double force;
+    double gravity;
+    double *linear;
+} ForceDistribution;
+
+/* Counterpart of the end of `wbc.tasks.stack.TaskStack.write`: H and g from rows and targets. */
+typedef struct {
+    int64_t variables;
+    int64_t rows_count;
+    const double *rows;
+    double *target;
+    const double *scale;
+    const double *unscale;
+    const double *diagonal;
+    const double *linear;
+    double *H;
+    double *g;
+} Stack;
+
+void cost_posture(const Posture *term);
+void cost_force_distribution(const ForceDistribution *term);
+void stack_assemble(const Stack *stack);
+
+/* Counterpart of `wbc.dynamics.HardConstraints` and `wbc.limits.AccelerationBounds`. */
+typedef struct {
+    const Terms *terms;
+    const Reference *reference;
+    int64_t variables;
+    double damping;
+    double levelling;
+    int64_t leaning;
+    int64_t free_row;
+    int64_t ankle_joints;
+    const int64_t *ankle_columns;
+    const double *torque_span;
+    double reach_time;
+    double position_rate;
+    double velocity_rate;
+    const double *positions;
+    const double *velocities;
+    double *rates;
+    double *A;
+    double *lower;
+    double *upper;
+} HardRows;
+
+void hard_rows_write(const HardRows *rows, int64_t left, int64_t right, int64_t rolling, double left_cap,
+                     double right_cap);
+
+/* Counterpart of `wbc.separation.Separation._gradient`: two points of two bodies, and the direction from b to a. */
+typedef struct {
+    const Terms *terms;
+    int64_t first_count;
+    const int64_t *first_columns;
+    int64_t second_count;
+    const int64_t *second_columns;
+    const double *points;
+    double *gradient;
+} Distance;
+
+double distance_rate(const Distance *distance);
+
+/* Counterpart of `wbc.solvers.equalities_only`; H is split where its first variables do not meet the others. */
+typedef struct {
+    int64_t variables;
+    int64_t equalities;
+    int64_t rows;
+    const double *H;
+    const double *g;
+    const double *A;
+    const double *lower;
+    const double *upper;
+    double *factor;
+    double *right_sides;
+    double *schur;
+    double *multipliers;
+    double *x;
+} EqualityQp;
+
+double equality_qp_solve(const EqualityQp *qp, int64_t split);
+
+/* Counterpart of `wbc.controller.WholeBodyController.interpret`, for a solution whose wrenches are the soles'. */
+typedef struct {
+    const Terms *terms;
+    const Stack *stack;
+    int64_t joints;
+    const double *torque_rows;
+    const double *torque_limit;
+    const double *x;
+    double *torque;
+    double *acceleration;
+    double *wrench;
+    double *task_error;
+} Answer;
+
+void answer_read(const Answer *answer);
+
+/* Counterpart of `wbc.external.LoadObserver.update` within a span. */
+typedef struct {
+    const Terms *terms;
+    const double *wrench;
+    double *felt;
+    double *com;
+} LoadSums;
+
+void load_sums_add(const LoadSums *sums);
+
+/* Counterpart of `sim.sensors.SensorReader.read`, after mj_rnePostConstraint and without pushes. */
+typedef struct {
+    int64_t nq;
+    int64_t nv;
+    const double *qpos;
+    const double *qvel;
+    const double *base_acceleration;
+    const double *joint_force;
+    const double *base_rotation;
+    const double *gravity;
+    const double *com;
+    const double *left_external;
+    const double *right_external;
+    const double *left_position;
+    const double *right_position;
+    const double *left_rotation;
+    const double *right_rotation;
+    double *q;
+    double *v;
+    double *torque;
+    double *accelerometer;
+    double *wrench;
+} Sensors;
+
+void sensors_read(const Sensors *sensors);
+
+#endif

@@ -1,0 +1,132 @@
+/* Frame kinematics of the soles and the torso, behind pinocchio.computeAllTerms; see `wbc.model.RobotTerms`. */
+#include "algebra.h"
+#include "kernels.h"
+
+/* From a wrench in a frame to force and moment about the origin; `stride`: columns of the matrix that has these six. */
+static void dual_action(const double *R, const double *p, double *out, int stride) {
+    for (int j = 0; j < 3; j++) {
+        const double axis[3] = {R[j], R[3 + j], R[6 + j]};
+        double lever[3];
+        cross(p, axis, lever);
+        for (int i = 0; i < 3; i++) {
+            out[stride * i + j] = axis[i];
+            out[stride * i + 3 + j] = 0.0;
+            out[stride * (3 + i) + j] = lever[i];
+            out[stride * (3 + i) + 3 + j] = axis[i];
+        }
+    }
+}
+
+/* Counterpart of pinocchio's updateFramePlacement, getFrameJacobian, getFrameVelocity and classical acceleration. */
+static void frame_update(const Terms *terms, const Frame *frame) {
+    double joint[9], R[9], centripetal[3];
+    transpose(frame->joint_rotation_columns, joint);
+    compose(joint, frame->placement_rotation, R);
+    transpose(R, frame->rotation_columns);
+    rotate(joint, frame->placement_position, frame->position);
+    for (int i = 0; i < 3; i++) frame->position[i] += frame->joint_position[i];
+
+    see_motion(frame->placement_rotation, frame->placement_position, frame->joint_velocity, frame->velocity);
+    see_motion(frame->placement_rotation, frame->placement_position, frame->joint_acceleration, frame->bias);
+    cross(frame->velocity + 3, frame->velocity, centripetal);
+    for (int i = 0; i < 3; i++) frame->bias[i] += centripetal[i];
+
+    /* Columns of joints that do not move the frame are zero since Python allocated them. */
+    for (int64_t n = 0; n < frame->supporting; n++) {
+        const int64_t column = frame->columns[n];
+        double seen[6];
+        see_motion(R, frame->position, terms->joint_jacobian_columns + 6 * column, seen);
+        for (int i = 0; i < 6; i++) frame->jacobian[terms->nv * i + column] = seen[i];
+    }
+}
+
+/* Counterpart of pinocchio.SE3ToXYZQUAT's quaternion x y z w, which is Eigen's. */
+static void quaternion(const double *R, double *out) {
+    const double trace = R[0] + R[4] + R[8];
+    if (trace > 0.0) {
+        double root = sqrt(trace + 1.0);
+        out[3] = 0.5 * root;
+        root = 0.5 / root;
+        out[0] = (R[7] - R[5]) * root;
+        out[1] = (R[2] - R[6]) * root;
+        out[2] = (R[3] - R[1]) * root;
+        return;
+    }
+    int i = R[4] > R[0] ? 1 : 0;
+    if (R[8] > R[4 * i]) i = 2;
+    const int j = (i + 1) % 3, k = (j + 1) % 3;
+    double root = sqrt(R[4 * i] - R[4 * j] - R[4 * k] + 1.0);
+    out[i] = 0.5 * root;
+    root = 0.5 / root;
+    out[3] = (R[3 * k + j] - R[3 * j + k]) * root;
+    out[j] = (R[3 * j + i] + R[3 * i + j]) * root;
+    out[k] = (R[3 * k + i] + R[3 * i + k]) * root;
+}
+
+/* Counterpart of `RobotTerms._update_sole`. */
+static void sole_update(const Terms *terms, const Sole *sole) {
+    frame_update(terms, sole->frame);
+    transpose(sole->frame->rotation_columns, sole->rotation);
+    memcpy(sole->position, sole->frame->position, 3 * sizeof(double));
+    memcpy(sole->contact_rotation, sole->rotation, 9 * sizeof(double));
+    memcpy(sole->contact_position, sole->position, 3 * sizeof(double));
+    memcpy(sole->pose, sole->position, 3 * sizeof(double));
+    quaternion(sole->rotation, sole->pose + 3);
+    dual_action(sole->rotation, sole->position, sole->wrench_map, 12);
+}
+
+/* Counterpart of `RobotTerms.update` behind computeAllTerms. */
+void terms_update(const Terms *terms) {
+    for (int i = 0; i < 3; i++) {
+        terms->com_velocity[i] = terms->linear_momentum[i] / terms->model_mass;
+        terms->base_angular_velocity[i] = terms->v[3 + i];
+    }
+    sole_update(terms, terms->left);
+    sole_update(terms, terms->right);
+    frame_update(terms, terms->torso);
+}
+
+/* Counterpart of `RobotTerms.unshift`. */
+void terms_unshift(const Terms *terms, int64_t foot) { sole_update(terms, foot ? terms->right : terms->left); }
+
+/* Counterpart of `RobotTerms.shift_foot`, of a sole that does not lean and is not shifted yet. */
+void terms_shift(const Terms *terms, int64_t foot, double forward, double pitch) {
+    const Sole *sole = foot ? terms->right : terms->left;
+    const Frame *frame = sole->frame;
+    const double cosine = cos(pitch), sine = sin(pitch);
+    const double R[9] = {cosine, 0.0, -sine, 0.0, 1.0, 0.0, sine, 0.0, cosine};
+    const double p[3] = {forward, 0.0, 0.0};
+    double inner[3], centripetal[3], seen[6], lever[3];
+
+    cross(frame->velocity + 3, p, inner);
+    cross(frame->velocity + 3, inner, centripetal);
+    for (int64_t n = 0; n < frame->supporting; n++) {
+        double *column = frame->jacobian + frame->columns[n], motion[6];
+        for (int i = 0; i < 6; i++) motion[i] = column[terms->nv * i];
+        see_motion(R, p, motion, seen);
+        for (int i = 0; i < 6; i++) column[terms->nv * i] = seen[i];
+    }
+    see_motion(R, p, frame->velocity, seen);
+    memcpy(frame->velocity, seen, sizeof seen);
+    see_motion(R, p, frame->bias, seen);
+    memcpy(frame->bias, seen, sizeof seen);
+    rotate_back(R, centripetal, lever);
+    for (int i = 0; i < 3; i++) frame->bias[i] += lever[i];
+
+    rotate(sole->rotation, p, sole->contact_position);
+    for (int i = 0; i < 3; i++) sole->contact_position[i] += sole->position[i];
+    compose(sole->rotation, R, sole->contact_rotation);
+    dual_action(sole->contact_rotation, sole->contact_position, sole->wrench_map, 12);
+    dual_action(R, p, terms->to_sole + 36 * foot, 6);
+}
+
+/* Counterpart of `wbc.external.LoadObserver.update` within a span. */
+void load_sums_add(const LoadSums *sums) {
+    const double *map = sums->terms->sole_wrench_map;
+    for (int i = 0; i < 6; i++) {
+        double felt = 0.0;
+        for (int j = 0; j < 12; j++) felt += map[12 * i + j] * sums->wrench[j];
+        sums->felt[i] += felt;
+    }
+    for (int i = 0; i < 3; i++) sums->com[i] += sums->terms->com[i];
+}

@@ -1,0 +1,96 @@
+"""The library: built from its sources, known by them, laid out as its header says, and never needed."""
+
+import ctypes
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from surefoot.native.build import FOLDER, LIBRARY
+from surefoot.native.library import VARIABLE, library
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A checkout with the sources alone."""
+    shutil.copytree(FOLDER, tmp_path / "surefoot" / "native", ignore=shutil.ignore_patterns(LIBRARY.name, "__*__"))
+    for name in ("__init__.py", "__main__.py"):
+        shutil.copy(FOLDER / name, tmp_path / "surefoot" / "native")
+    (tmp_path / "surefoot" / "__init__.py").touch()
+    (tmp_path / "pyproject.toml").touch()
+    return tmp_path
+
+
+def say(folder: Path, **changed: str) -> tuple[str, str]:
+    """What ``python -m surefoot.native`` says there, on its two outputs."""
+    environment = {**os.environ, "PYTHONPATH": str(folder), VARIABLE: "1", **changed}
+    command = [sys.executable, "-m", "surefoot.native"]
+    done = subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0
+    return done.stdout, done.stderr
+
+
+def test_a_checkout_builds_its_library_and_rebuilds_a_stale_one(kernels, checkout):
+    built, source = checkout / "surefoot" / "native" / LIBRARY.name, checkout / "surefoot" / "native" / "rows.c"
+    assert say(checkout) == (f"compiled kernels: {built}\n", "")
+    first = built.read_bytes()
+    assert say(checkout, CC="false") == (f"compiled kernels: {built}\n", "")
+    source.write_text(source.read_text() + "/* A change. */\n")
+    assert say(checkout) == (f"compiled kernels: {built}\n", "")
+    assert built.read_bytes() != first
+
+
+def test_a_stale_library_that_cannot_be_rebuilt_is_told_once_and_not_used(kernels, checkout):
+    say(checkout)
+    (checkout / "surefoot" / "native" / "rows.c").open("a").write("\n")
+    out, err = say(checkout, CC="false")
+    assert out == "plain Python, half as fast, since there is no library: 'false' fails\n"
+    assert err == f"{LIBRARY.name} is of other sources and is not used: there is no library: 'false' fails\n"
+
+
+@pytest.mark.parametrize("compiler", ["false", "no-such-compiler", ""])
+def test_without_a_compiler_plain_python_runs_without_a_warning(checkout, compiler):
+    out, err = say(checkout, CC=compiler)
+    assert out.startswith("plain Python, half as fast, since there is no ")
+    assert err == ""
+    assert not (checkout / "surefoot" / "native" / LIBRARY.name).exists()
+
+
+def test_plain_python_can_be_asked_for(checkout, monkeypatch):
+    assert say(checkout, **{VARIABLE: "0"}) == (f"plain Python, since {VARIABLE} is 0\n", "")
+    monkeypatch.setenv(VARIABLE, "0")
+    assert library() is None
+
+
+def test_structs_are_as_large_as_the_compiler_makes_them(kernels, tmp_path):
+    sizes = "".join(f'  printf("%zu\\n", sizeof({name}));\n' for name in kernels.structs)
+    source, program = tmp_path / "sizes.c", tmp_path / "sizes"
+    source.write_text(f'#include <stdio.h>\n#include "kernels.h"\nint main(void) {{\n{sizes}  return 0;\n}}\n')
+    subprocess.run([os.environ.get("CC", "cc"), "-I", str(FOLDER), "-o", str(program), str(source)], check=True)
+    told = subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout.split()
+    assert [int(size) for size in told] == [ctypes.sizeof(kernels._layouts[name]) for name in kernels.structs]
+    assert len(told) > 10
+
+
+def test_a_struct_is_filled_whole_and_with_what_it_points_to(kernels):
+    decay, bench = 3.0, kernels.fill("Bench")
+    assert kernels.fill("AngularMomentum", bench=bench, decay=decay).struct.decay == decay
+    with pytest.raises(TypeError, match="has the fields"):
+        kernels.fill("AngularMomentum", bench=bench)
+    with pytest.raises(TypeError, match="has the fields"):
+        kernels.fill("AngularMomentum", bench=bench, decay=decay, more=1)
+    with pytest.raises(TypeError, match=r"AngularMomentum\.bench points to Bench"):
+        kernels.fill("AngularMomentum", bench=kernels.fill("Torso"), decay=decay)
+    with pytest.raises(TypeError, match="works on a Torso"):
+        kernels.bind("task_torso", bench)
+    numbers = {"terms": kernels.fill("Terms"), "wrench": np.zeros((2, 6)), "felt": np.zeros(6), "com": np.zeros(3)}
+    kernels.fill("LoadSums", **numbers)
+    for wrong in (np.zeros(6, dtype=np.float32), np.zeros((6, 2))[:, 0]):
+        with pytest.raises(TypeError, match=r"LoadSums\.felt points to double"):
+            kernels.fill("LoadSums", **{**numbers, "felt": wrong})

@@ -1,0 +1,23 @@
+"""The compiled control tick against the plain one, tick by tick, on real walks."""
+
+import pytest
+
+pytestmark = pytest.mark.unit
+
+PUSH = {"pushes": [{"time": 0.6, "duration": 0.3, "force": [60.0, 40.0, 0.0]}], "errors.payload.mass": 10.0}
+WALKS = {
+    "walk": ("walk", 2.0, {}, {"one foot", "held by inequalities"}),
+    "pushed": ("walk", 1.2, PUSH, {"one foot", "force", "weight"}),
+    "stairs": ("stairs-up", 3.0, {}, {"one foot", "ankle at its stop"}),
+    "fast": ("walk-fast", 2.2, {}, {"rolling", "held by inequalities"}),
+    "g1": ("walk", 1.6, {"robot": "g1"}, {"one foot"}),
+    "talos": ("walk", 1.6, {"robot": "talos"}, {"one foot", "limbs near"}),
+}
+
+
+@pytest.mark.parametrize("case", WALKS)
+def test_kernels_do_what_their_counterparts_do(twins, case):
+    name, seconds, overrides, comes_by = WALKS[case]
+    pair = twins(name, seconds, **overrides)
+    assert {what for what, count in pair.seen.items() if count} >= comes_by, pair.seen
+    assert pair.unlike == {}

@@ -1,0 +1,170 @@
+"""What the compiled kernels of a controller share: the terms of its robot and the reference of a tick, in memory.
+
+Each kernel is bound beside its plain counterpart, in the class of that name; see `surefoot.native`.
+"""
+
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.native.library import Bound, Library
+from surefoot.wbc.types import NO_LOAD, Array, ExternalLoad, WbcReference
+
+if TYPE_CHECKING:
+    from surefoot.wbc.model import RobotTerms
+
+
+class CompiledTerms:
+    """Kernels that fill the arrays of a `RobotTerms` behind ``pin.computeAllTerms``.
+
+    Args:
+        kernels: the library.
+        terms: whose arrays these are; Pinocchio's data never moves.
+        soles: frames of the soles, as Pinocchio counts them.
+        torso: that of the torso.
+        torso_motion: where its Jacobian, velocity and bias go, linear and angular, shape (6, nv), (6,) and (6,).
+
+    Attributes:
+        kernels: the library.
+        bound: the terms as other kernels take them.
+    """
+
+    def __init__(
+        self,
+        kernels: Library,
+        terms: "RobotTerms",
+        soles: tuple[int, int],
+        torso: int,
+        torso_motion: tuple[Array, Array, Array],
+    ) -> None:
+        self.kernels = kernels
+        self._q, self._v = np.zeros(terms.model.nq), np.zeros(terms.model.nv)
+        self._mass, self._force, self._moment = np.array([terms.mass]), np.zeros(3), np.zeros(3)
+        self._to_sole, self._loaded = np.zeros((2, 6, 6)), False
+        own = {
+            name: getattr(terms, name)
+            for name in (
+                "model_mass", "wrench_unit", "angular_momentum", "mass_matrix", "bias", "com", "com_velocity",
+                "base_angular_velocity", "sole_position", "contact_position", "contact_rotation", "sole_jacobian",
+                "sole_velocity", "sole_bias", "sole_wrench_map", "torso_jacobian", "torso_velocity", "torso_bias",
+            )
+        }  # fmt: skip
+        self.bound = kernels.fill(
+            "Terms",
+            **own,
+            nv=terms.model.nv,
+            mass=self._mass,
+            load_force=self._force,
+            load_moment=self._moment,
+            q=self._q,
+            v=self._v,
+            joint_jacobian_columns=terms.data.J,
+            linear_momentum=terms.data.hg.linear,
+            base_rotation_columns=terms.base_rotation,
+            left=self._sole(terms, 0, soles[0]),
+            right=self._sole(terms, 1, soles[1]),
+            torso=self._frame(terms, torso, *torso_motion),
+            to_sole=self._to_sole,
+        )
+        self._update = kernels.bind("terms_update", self.bound)
+        self._shift, self.unshift = (kernels.bind(name, self.bound) for name in ("terms_shift", "terms_unshift"))
+
+    def update(self, q: Array, v: Array, mass: float) -> None:
+        """Fill all arrays of the state q, shape (nq,), and v, shape (nv,), with the model's mass [kg] and no load."""
+        np.copyto(self._q, q)
+        np.copyto(self._v, v)
+        if self._loaded:
+            self.bear(mass, NO_LOAD)
+            self._loaded = False
+        self._update()
+
+    def bear(self, mass: float, load: ExternalLoad) -> None:
+        """Let other kernels count with a load and the total mass [kg]."""
+        self._mass[0], self._loaded = mass, True
+        self._force[:], self._moment[:] = load.force, load.moment
+
+    def shift(self, k: int, forward: float, pitch: float) -> Array:
+        """See `RobotTerms.shift_foot`, of a sole that does not lean."""
+        self._shift(k, forward, pitch)
+        to_sole: Array = self._to_sole[k].copy()
+        return to_sole
+
+    def _sole(self, terms: "RobotTerms", k: int, frame: int) -> Bound:
+        motion = terms.sole_jacobian[k], terms.sole_velocity[k], terms.sole_bias[k]
+        return self.kernels.fill(
+            "Sole",
+            frame=self._frame(terms, frame, *motion),
+            position=terms.sole_position[k],
+            rotation=terms.sole_rotation[k],
+            pose=terms.sole_pose[k],
+            contact_position=terms.contact_position[k],
+            contact_rotation=terms.contact_rotation[k],
+            wrench_map=terms.sole_wrench_map.reshape(-1)[6 * k :],
+        )
+
+    def _frame(self, terms: "RobotTerms", frame: int, jacobian: Array, velocity: Array, bias: Array) -> Bound:
+        model, data = terms.model, terms.data
+        joint, placement = model.frames[frame].parentJoint, model.frames[frame].placement
+        columns = moving_columns(model, joint)
+        return self.kernels.fill(
+            "Frame",
+            joint_rotation_columns=data.oMi[joint].rotation,
+            joint_position=data.oMi[joint].translation,
+            joint_velocity=data.v[joint].vector,
+            joint_acceleration=data.a[joint].vector,
+            placement_rotation=np.ascontiguousarray(placement.rotation),
+            placement_position=placement.translation.copy(),
+            supporting=len(columns),
+            columns=np.array(columns, dtype=np.int64),
+            rotation_columns=data.oMf[frame].rotation,
+            position=data.oMf[frame].translation,
+            jacobian=jacobian,
+            velocity=velocity,
+            bias=bias,
+        )
+
+
+def moving_columns(model: pin.Model, joint: int) -> list[int]:
+    """Columns of the generalised velocity that move the body of a joint."""
+    chain = [model.joints[above] for above in model.supports[joint] if above]
+    return [column for moving in chain for column in range(moving.idx_v, moving.idx_v + moving.nv)]
+
+
+_VECTORS = attrgetter(
+    "com", "com_velocity", "com_acceleration", "zmp", "zmp_offset", "swing_position", "swing_velocity",
+    "swing_acceleration", "swing_angular_velocity", "swing_angular_acceleration",
+)  # fmt: skip
+_NUMBERS = attrgetter("omega", "stiffness", "heading", "heading_rate")
+
+
+class CompiledTick:
+    """Terms and reference of a tick, on which the kernels of tasks and rows work.
+
+    Args:
+        terms: of the robot.
+
+    Attributes:
+        kernels: the library.
+        terms: as kernels take them.
+        reference: likewise.
+    """
+
+    def __init__(self, terms: CompiledTerms) -> None:
+        self.kernels, self.terms = terms.kernels, terms.bound
+        self.reference, self._numbers = self.kernels.buffer("Reference")
+
+    def refer(self, reference: WbcReference) -> None:
+        """Take the reference of this tick."""
+        r = reference
+        rest = (*_NUMBERS(r), *r.load_share, *r.roll, r.swing_foot, r.rolling_foot)
+        parts = (*_VECTORS(r), r.swing_rotation.ravel(), r.ground_normal.ravel(), rest)
+        np.concatenate(parts, out=self._numbers)
+
+    def bench(self, scale: Array, rows: Array, target: Array) -> Bound:
+        """Where a task writes: its rows, shape (size, n), and its target; ``scale`` as in ``Task.write``."""
+        shared: dict[str, Any] = {"terms": self.terms, "reference": self.reference}
+        return self.kernels.fill(
+            "Bench", **shared, variables=rows.shape[1], scale=scale.reshape(-1), rows=rows, target=target
+        )

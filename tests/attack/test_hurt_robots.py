@@ -41,3 +41,14 @@ def test_every_robot_file_of_some_is_a_robot_or_a_sentence(tmp_path):
 @pytest.mark.parametrize("first", range(10_000, 11_000, 100))
 def test_every_robot_file_of_many(tmp_path, first):
     assert attack(tmp_path, first, 100) == {"robot", "refused"}
+
+
+@pytest.mark.unit
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="only Linux tells it of the program alone")
+def test_the_memory_is_that_of_the_program_alone():
+    ask = f"import sys; sys.path.insert(0, {str(PROGRAM.parent)!r}); import robots; print(robots.peak_memory())"
+    large = (
+        f"import subprocess, sys; held = b'1' * (1 << 29); subprocess.run([sys.executable, '-c', {ask!r}], check=True)"
+    )
+    told = subprocess.run([sys.executable, "-c", large], capture_output=True, text=True, check=True).stdout
+    assert 0 < int(told) < 200

@@ -247,7 +247,7 @@ def outcome(path: Path) -> dict[str, object]:
 
 
 def peak_memory() -> int:
-    """Most memory that this program held [MB]; of the process that started it, which `ru_maxrss` counts too, nothing."""
+    """Most memory that this program held [MB]; nothing of its parent, which `ru_maxrss` counts too."""
     status = Path("/proc/self/status")
     if not status.exists():
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10

@@ -24,7 +24,7 @@ class KernelHook(BuildHookInterface):
         spec.loader.exec_module(native)
         why = "" if native.is_built() else native.build()
         if why:
-            self.app.display_warning(f"Surefoot runs on plain Python, half as fast, since there is {why}")
+            self.app.display_warning(f"Surefoot runs on plain Python, slower, since there is {why}")
             return
         build_data["artifacts"].append(f"/surefoot/native/{native.LIBRARY.name}")
         build_data["pure_python"] = False

@@ -11,4 +11,4 @@ if __name__ == "__main__":
     elif os.environ.get(VARIABLE) == "0":
         print(f"plain Python, since {VARIABLE} is 0")
     else:
-        print(f"plain Python, half as fast, since there is {build() or 'no library that can be loaded'}")
+        print(f"plain Python, slower, since there is {build() or 'no library that can be loaded'}")

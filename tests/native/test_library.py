@@ -50,14 +50,14 @@ def test_a_stale_library_that_cannot_be_rebuilt_is_told_once_and_not_used(kernel
     say(checkout)
     (checkout / "surefoot" / "native" / "rows.c").open("a").write("\n")
     out, err = say(checkout, CC="false")
-    assert out == "plain Python, half as fast, since there is no library: 'false' fails\n"
+    assert out == "plain Python, slower, since there is no library: 'false' fails\n"
     assert err == f"{LIBRARY.name} is of other sources and is not used: there is no library: 'false' fails\n"
 
 
 @pytest.mark.parametrize("compiler", ["false", "no-such-compiler", ""])
 def test_without_a_compiler_plain_python_runs_without_a_warning(checkout, compiler):
     out, err = say(checkout, CC=compiler)
-    assert out.startswith("plain Python, half as fast, since there is no ")
+    assert out.startswith("plain Python, slower, since there is no ")
     assert err == ""
     assert not (checkout / "surefoot" / "native" / LIBRARY.name).exists()
 

@@ -6,13 +6,16 @@ Masses and shapes are those of the robot upright with straight legs, in MuJoCo.
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.models.types import RobotDescription
 from surefoot.similarity import REFERENCE_SIZE, Similarity
+
+if TYPE_CHECKING:
+    import mujoco
 
 Array = NDArray[np.float64]
 
@@ -173,6 +176,8 @@ def com_height(robot: RobotDescription) -> float:
 
 def swing_acceleration(robot: RobotDescription) -> tuple[float, float]:
     """Of the left leg's sole with the share of its hip's torque, forward and sideways [m/s^2]."""
+    import mujoco
+
     model, data = _upright(robot)
     hips = robot.roles.left_leg[: robot.roles.left_leg.index(robot.roles.knees[0])]
     reached = []
@@ -244,7 +249,7 @@ def _nearest(robot: RobotDescription, joints: tuple[str, ...], axis: Array) -> s
     return max(joints, key=lambda name: abs(float(data.xaxis[model.joint(name).id] @ axis)))
 
 
-def _corners(model: mujoco.MjModel, geom: int) -> Array:
+def _corners(model: "mujoco.MjModel", geom: int) -> Array:
     """Points whose hull is a geom or holds it, in its own frame, shape (m, 3) [m]."""
     mesh = model.geom_dataid[geom]
     if mesh >= 0:
@@ -254,13 +259,15 @@ def _corners(model: mujoco.MjModel, geom: int) -> Array:
     return np.asarray(centre + half * np.array(np.meshgrid(*[(-1.0, 1.0)] * 3)).reshape(3, -1).T)
 
 
-def _upright(robot: RobotDescription) -> tuple[mujoco.MjModel, mujoco.MjData]:
+def _upright(robot: RobotDescription) -> "tuple[mujoco.MjModel, mujoco.MjData]":
     return _compiled(robot.mjcf, tuple(robot.straight_joint_positions.tolist()))
 
 
 @lru_cache(maxsize=8)
-def _compiled(mjcf: str, angles: tuple[float, ...]) -> tuple[mujoco.MjModel, mujoco.MjData]:
+def _compiled(mjcf: str, angles: tuple[float, ...]) -> "tuple[mujoco.MjModel, mujoco.MjData]":
     """A text with its joints at angles, all kinematics made; nobody may write to it."""
+    import mujoco
+
     model = mujoco.MjModel.from_xml_string(mjcf)
     data = mujoco.MjData(model)
     data.qpos[7:] = angles

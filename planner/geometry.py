@@ -8,7 +8,6 @@ the tilt; uphill, pitch is negative.
 import math
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from surefoot.planner.types import Array, Footstep
 
@@ -97,6 +96,8 @@ def convex_hull(points: Array) -> Array:
     Args:
         points: shape (n, 2) [m], at least three that are not on a line.
     """
+    from scipy.spatial import ConvexHull
+
     return np.asarray(points[ConvexHull(points).vertices])
 
 

@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from surefoot.wbc.tunable import check, number
 from surefoot.wbc.types import Array, WbcReference
@@ -53,6 +52,8 @@ class SupportRegion:
 
         Of a rolling foot, the toe edge alone, which is where its frame is.
         """
+        from scipy.spatial import ConvexHull
+
         edge = self._corners * np.array([0.0, 1.0])
         corners = [edge if k == rolling else self._corners for k in (0, 1)]
         soles = [positions[k, :2] + corners[k] @ rotations[k, :2, :2].T for k in (0, 1) if active[k]]

@@ -8,7 +8,6 @@ from typing import Protocol
 import daqp
 import numpy as np
 from proxsuite import proxqp
-from scipy.linalg import lapack
 
 from surefoot.native.library import Library, library
 from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
@@ -149,6 +148,8 @@ def equalities_only(qp: QpData) -> QpSolution | None:
     By the Schur complement (Boyd and Vandenberghe, Convex Optimization, 2004, section 10.4.2): with H = L Lᵀ,
     Y = L⁻¹ Eᵀ and w = L⁻¹ g, the multipliers solve YᵀY λ = e + Yᵀ w, and x = L⁻ᵀ (Y λ - w).
     """
+    from scipy.linalg import lapack
+
     n, eq = qp.g.shape[0], EQUALITY_ROWS
     L, failed = lapack.dpotrf(qp.H.T, lower=1, clean=0)
     if failed:

@@ -1,14 +1,16 @@
 """The QP of one axis, and its solution by the first solver that succeeds."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import daqp
 import numpy as np
-import qpsolvers
 
 from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.types import Array
+
+if TYPE_CHECKING:
+    import qpsolvers
 
 OPTIONS: dict[str, dict[str, Any]] = {
     "daqp": {"primal_tol": 1e-9, "dual_tol": 1e-12},
@@ -40,8 +42,10 @@ class Qp:
     lower: Array
     upper: Array
 
-    def problem(self) -> qpsolvers.Problem:
+    def problem(self) -> "qpsolvers.Problem":
         """The same problem as qpsolvers takes it."""
+        import qpsolvers
+
         return qpsolvers.Problem(self.P, self.q, self.G, self.h, None, None, self.lower, self.upper)
 
 
@@ -71,7 +75,7 @@ def solve(qp: Qp, solvers: tuple[str, ...] = SOLVERS) -> QpSolution:
     for attempt, name in enumerate(solvers):
         try:
             z = _daqp(qp) if name == "daqp" else _wrapped(qp, name)
-        except (ValueError, ArithmeticError, qpsolvers.QPError):
+        except (ValueError, ArithmeticError):
             continue
         if z is not None and np.isfinite(z).all():
             return QpSolution(qp, z, attempt)
@@ -79,7 +83,12 @@ def solve(qp: Qp, solvers: tuple[str, ...] = SOLVERS) -> QpSolution:
 
 
 def _wrapped(qp: Qp, name: str) -> Array | None:
-    solution = qpsolvers.solve_problem(qp.problem(), name, **OPTIONS.get(name, {}))
+    import qpsolvers  # half a second with its sparse matrices, and most walks never need a second solver
+
+    try:
+        solution = qpsolvers.solve_problem(qp.problem(), name, **OPTIONS.get(name, {}))
+    except qpsolvers.QPError:
+        return None
     return solution.x if solution.found else None
 
 

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_discrete_are
 
 from surefoot.planner.laws.dcm_feedback import limited
 from surefoot.planner.laws.law import Motion, MotionProblem
@@ -48,6 +47,8 @@ def preview_gains(
         samples: N_l.
         jerk_weight: R [s^6].
     """
+    from scipy.linalg import solve_discrete_are
+
     A, b = jerk_model(sample_time)
     B = b[:, None]
     C = np.array([[1.0, 0.0, -1.0 / stiffness]])

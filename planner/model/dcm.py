@@ -11,7 +11,6 @@ So the optimiser plans only what differs from this motion.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lapack
 
 from surefoot.planner.types import Array
 
@@ -145,6 +144,8 @@ def nominal_motion(position: Array, zmp: Array, stiffness: Array, sample_time: f
         stiffness: λ, shape (n,) [1/s^2].
         sample_time: T [s].
     """
+    from scipy.linalg import lapack
+
     t = sample_time
     share = stiffness * (t * t / 6.0)
     pull = share[:, None] * zmp

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from surefoot.errors import ParameterError, at_most
 from surefoot.models.facts import ankle_pitch, pitch_joints, shank_outline, yaw_joint
@@ -196,6 +195,8 @@ def _check_ankles(robot: "RobotDescription", angles: Array, way: Rehearsed) -> N
 
 
 def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]) -> None:
+    from scipy.spatial import ConvexHull
+
     _, knees, ankles = joints
     for foot in Foot:
         outline = shank_outline(walk.robot, foot)
@@ -214,6 +215,8 @@ def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]
 
 def _overlap(walk: Walk, way: Rehearsed, foot: int, outline: Array, knees: Array, ankles: Array) -> tuple[float, int]:
     """How deep the shank of a standing foot is in an edge ahead at worst, negative outside, and when [m, ticks]."""
+    from scipy.spatial import ConvexHull
+
     hull, worst, when, known = ConvexHull(outline), -math.inf, 0, (math.nan, math.nan)
     edges = np.zeros((0, 2))
     for k in np.flatnonzero(way.standing[foot]):

@@ -426,6 +426,19 @@ def test_output_that_nobody_takes_is_no_verdict(ended, code, said):
     assert done.stderr.decode() or not said
 
 
+@pytest.mark.parametrize("words", [("list",), ("show", "walk"), ("schema",)], ids=" ".join)
+def test_a_command_that_only_reads_needs_no_engine(words):
+    heavy = ("scipy", "qpsolvers", "mujoco", "matplotlib")
+    code = (
+        f"import runpy, sys; sys.argv[1:] = {words}\n"
+        "try: runpy.run_module('surefoot', run_name='__main__')\n"
+        f"finally: print(*(m for m in {heavy} if m in sys.modules), file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout
+    assert done.stderr.strip() == ""
+
+
 def test_help_needs_no_heavy_package():
     heavy = ("numpy", "mujoco", "pydantic")
     code = f"import sys; import surefoot.scenarios.apps.cli; print(*(m for m in {heavy} if m in sys.modules))"

@@ -33,9 +33,10 @@ class Readings:
         joint_velocity: of encoders that say one, shape (nj,) [rad/s]; None where it must be observed.
         joint_torque: of the motors, shape (nj,) [N·m].
         angular_velocity: gyroscope, in the frame of the IMU, at the instant of the reading, shape (3,) [rad/s].
-        mean_angular_velocity: its mean over the control period that ended there, shape (3,) [rad/s].
-        specific_force: accelerometer, acceleration less gravity in the frame of the IMU, mean over that period, shape
-            (3,) [m/s^2].
+        mean_angular_velocity: that over the control period that ended there: the rotation vector from the IMU's axes at
+            its beginning to those at its end, over its length, shape (3,) [rad/s].
+        specific_force: accelerometer, acceleration less gravity in the axes of the IMU as they turn, mean over that
+            period: the change of velocity less that by gravity, turned back from half the way, shape (3,) [m/s^2].
         wrench: that the ground exerts on each foot, at the sole centre in the sole frame, left first, shape (2, 6)
             [N, N·m]; None for a robot without such sensors.
     """

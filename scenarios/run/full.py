@@ -35,6 +35,7 @@ from surefoot.scenarios.setup.stance import (
     pressed,
 )
 from surefoot.scenarios.setup.walk import Walk
+from surefoot.sim.drives import IDEAL, Drives
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.pushes import Push
@@ -95,7 +96,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     body = body_of(walk.robot)
     posture, leg = made_ready(walk, body)
     q = pressed(disturbed(posture, walk, body), walk.size.length)
-    world = World(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, walk.pushes, walk.size)
+    world = World(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, walk.pushes, walk.size, _drives(walk))
     torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length)
     world.reset(q, torque=torque)
     controller = _controller(walk, body, posture, parts)
@@ -237,6 +238,12 @@ class SimulatedRobot:
     def push(self, push: Push) -> None:
         """See `Walker`."""
         self.world.push(push)
+
+
+def _drives(walk: Walk) -> Drives | None:
+    """The motors of a walk, if they do anything but what is commanded."""
+    errors = walk.hardware.drives
+    return None if errors == IDEAL else Drives(walk.robot, errors, walk.rates.physics, walk.seed)
 
 
 def _estimator(walk: Walk, parts: Parts) -> Estimator:

@@ -7,13 +7,12 @@ from collections.abc import Iterator, Mapping
 from itertools import islice
 from typing import Any
 
-from surefoot.scenarios.errors import Key, Problem, nearest
+from surefoot.scenarios.errors import Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.names import usable
 from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
 from surefoot.scenarios.judge.metric import TRUTH, Metric
 from surefoot.scenarios.judge.metrics import METRICS, known
-from surefoot.scenarios.setup.checks import AVAILABLE
 from surefoot.scenarios.setup.robot import RegisteredRobots
 from surefoot.scenarios.setup.terrain import KINDS
 
@@ -141,8 +140,6 @@ def published() -> dict[str, Any]:
     files = {"type": "string", "pattern": r"\.ya?ml$"}
     keys["robot"] = {**keys["robot"], "anyOf": [{"enum": list(RegisteredRobots().names())}, files]}
     keys["robot"].pop("type")
-    for key, values in AVAILABLE.items():
-        _narrow(schema, key, list(values))
     ground = schema["$defs"]["TerrainSettings"]
     for kind in usable(KINDS):
         own = model_of(TerrainSettings, {"kind": kind}).model_json_schema()
@@ -152,18 +149,6 @@ def published() -> dict[str, Any]:
     keys["criteria"] |= {"properties": bounds, "additionalProperties": False}
     schema["$defs"].pop("Bound")
     return schema
-
-
-def _narrow(schema: dict[str, Any], key: Key, values: list[Any]) -> None:
-    """Leave only some values of a key: of the others the format knows, and this version not."""
-    *groups, name = map(str, key)
-    properties = schema["properties"]
-    for group in groups:
-        properties = schema["$defs"][properties[group]["$ref"].rpartition("/")[2]]["properties"]
-    described = {
-        part: properties[name][part] for part in ("default", "description", "unit") if part in properties[name]
-    }
-    properties[name] = {"enum": values, **described}
 
 
 def _criterion(name: str, metric: Metric[Any]) -> dict[str, Any]:

@@ -63,8 +63,9 @@ def _without_effect(walk: Walk) -> Iterator[str]:
             yield f"{group}.{name} has no effect on a {walker.thing}"
     if walker.has_body:
         return
-    if keys.wbc is not None:
-        yield "wbc has no effect on a pendulum"
+    for group in ("motors", "wbc"):
+        if getattr(keys, group) is not None:
+            yield f"{group} has no effect on a pendulum"
     if keys.rates.physics not in (Rates().physics, clock(Rates(), walk.size.time).physics):
         yield "rates.physics has no effect on a pendulum"
 

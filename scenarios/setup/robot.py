@@ -9,6 +9,7 @@ import numpy as np
 
 from surefoot.models.facts import RobotFacts, facts_of
 from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings
+from surefoot.scenarios.file.sensing import MotorSettings
 from surefoot.streams import Stream, generator
 
 if TYPE_CHECKING:
@@ -84,17 +85,21 @@ def describe(name: str, options: RobotSettings) -> "RobotDescription":
     return describe_robot(name, RobotOptions(**options.model_dump()))
 
 
-def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "RobotDescription":
-    """The robot as it is; itself when nothing about its mass is believed wrongly.
+def true_robot(
+    errors: BeliefErrors, motors: MotorSettings | None, robot: "RobotDescription", seed: int
+) -> "RobotDescription":
+    """The robot as it is; itself when nothing about its mass is believed wrongly, and its joints lose no torque.
 
     What it carries unbeknown comes last, so that it is as heavy as was said, at the true CoM of its body.
     """
     from surefoot.models.belief import (
         with_com_raised,
+        with_joint_losses,
         with_load,
         with_mass_scaled,
         with_masses_scattered,
         with_torso_com_moved,
+        with_torso_mass_scaled,
     )
 
     if errors.com_height != 0.0:
@@ -102,10 +107,14 @@ def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "R
     if errors.mass_scale != 1.0:
         # Of the mass itself the quotient, which logs have to the last digit.
         robot = replace(with_mass_scaled(robot, 1.0 / errors.mass_scale), mass=float(robot.mass) / errors.mass_scale)
+    if errors.torso_mass is not None:
+        robot = with_torso_mass_scaled(robot, 1.0 / errors.torso_mass)
     if any(errors.torso_com or ()):
         robot = with_torso_com_moved(robot, -np.array(errors.torso_com))
     if errors.link_mass_noise:
         robot = with_masses_scattered(robot, errors.link_mass_noise, generator(seed, Stream.MASSES))
     if errors.payload is not None and errors.payload.mass > 0.0:
         robot = with_load(robot, errors.payload.mass, errors.payload.body)
+    if motors is not None and (motors.damping or motors.friction_loss):
+        robot = with_joint_losses(robot, motors.damping or 0.0, motors.friction_loss or 0.0)
     return robot

@@ -132,9 +132,7 @@ class SensedBody:
         spin = imu.rotation @ rate - turning
         position = p - base @ lever
         velocity = base.T @ v - cross(spin, lever) - moving
-        return RobotState(
-            np.concatenate((position, quaternion(base), q)), np.concatenate((velocity, spin, qd))
-        )
+        return RobotState(np.concatenate((position, quaternion(base), q)), np.concatenate((velocity, spin, qd)))
 
 
 def _between(model: pin.Model, carrier: int, soles: tuple[int, ...]) -> Array:

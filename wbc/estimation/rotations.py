@@ -43,6 +43,18 @@ def logarithm(R: Array) -> Array:
     return np.array([scale * x, scale * y, scale * z])
 
 
+def from_quaternion(wxyz: tuple[float, float, float, float]) -> Array:
+    """Rotation of a unit quaternion w x y z, shape (3, 3)."""
+    w, x, y, z = wxyz
+    return np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
+            [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
+            [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    )
+
+
 def quaternion(R: Array) -> tuple[float, float, float, float]:
     """Unit quaternion x y z w of a rotation; by the largest of its four numbers (Shepperd 1978)."""
     (a, b, c), (d, e, f), (g, h, i) = R.tolist()

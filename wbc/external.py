@@ -153,18 +153,19 @@ class LoadObserver:
 
     def _follow(self) -> None:
         """Let the load follow what lasts."""
-        kept_limits, sudden_limits, weight_limits = self._kept, self._sudden, WEIGHT
-        force, moment = self._deviation
-        if force or moment:
-            if not math.isfinite(force + moment):
+        kept_limits, sudden_limits = self._kept, self._sudden
+        weight_limits: tuple[Any, ...] = WEIGHT
+        unsure, turning = self._deviation
+        if unsure or turning:
+            if not math.isfinite(unsure + turning):
                 # What comes first says least, and must not count when the rest is known.
                 self._spans, self._late = self._spans[:0], True
                 return
             if self._late and len(self._spans) < SPANS:
                 return
-            wider = np.repeat([force, moment], _ROWS[:2])
+            wider = np.repeat([unsure, turning], _ROWS[:2])
             kept_limits, sudden_limits = _wider(self._kept, wider, LASTING), _wider(self._sudden, wider, ACTING)
-            weight_limits = _wider(WEIGHT, force / (self._mass * GRAVITY), LASTING)
+            weight_limits = _wider(WEIGHT, unsure / (self._mass * GRAVITY), LASTING)
         lasting, latest = _median(self._spans), _median(self._spans[-LATEST:])
         share = _ramp(np.array([min(max(float(lasting[-1]), -MOST), MOST)]), weight_limits)
         if len(self._spans) < SPANS:
@@ -184,7 +185,7 @@ class LoadObserver:
             self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
 
 
-def _wider(limits: tuple[Any, Any], deviation: Any, times: tuple[float, float]) -> tuple[Any, Any]:
+def _wider(limits: tuple[Any, ...], deviation: Any, times: tuple[float, float]) -> tuple[Any, ...]:
     """Limits that are wider by so many deviations."""
     return limits[0] + times[0] * deviation, limits[1] + times[1] * deviation
 

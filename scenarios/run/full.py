@@ -17,6 +17,7 @@ from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
@@ -110,7 +111,8 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     senses = _senses(walk, world, parts)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    walker = SimulatedRobot(walk, world, controller, senses, body.limits, body_recorder, view)
+    sensed = EstimationRecorder(writer) if senses.suite is not None else None
+    walker = SimulatedRobot(walk, world, controller, senses, body.limits, body_recorder, view, sensed)
     return ClosedLoop.of(walk, walker, planner, recorder)
 
 
@@ -125,6 +127,7 @@ class SimulatedRobot:
         limits: of the joints.
         recorder: of its channels.
         view: of what MCAP viewers show.
+        sensed: records what is made of the sensors; None for an estimator that senses nothing.
 
     Attributes:
         world: the simulated world.
@@ -143,9 +146,10 @@ class SimulatedRobot:
         limits: JointLimits,
         recorder: Recorder,
         view: BodyView,
+        sensed: EstimationRecorder | None = None,
     ) -> None:
         self.world, self.controller, self._senses = world, controller, senses
-        self._recorder, self._view = recorder, view
+        self._recorder, self._view, self._sensed = recorder, view, sensed
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
         known = senses.is_truth and walk.true_robot is walk.robot
         self._own_truth = None if known else RobotTerms(pinocchio_model(walk.true_robot), frames_of(walk.robot))
@@ -211,7 +215,11 @@ class SimulatedRobot:
 
     def record(self, now_ns: int, sample: PlanSample) -> None:
         """See `Walker`."""
-        self._recorder.tick(now_ns, self.measurement, self._truth, self._terms, sample, self.report, self._torque)
+        truth, terms = self._truth, self._terms
+        self._recorder.tick(now_ns, self.measurement, truth, terms, sample, self.report, self._torque)
+        if self._sensed is not None:
+            forces = self.measurement.wrench[:, 2]
+            self._sensed.tick(now_ns, self._estimate, self._wrench, terms, truth, forces)
 
     def fallen(self, sample: PlanSample) -> bool:
         """See `Walker`."""

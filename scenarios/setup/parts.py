@@ -118,7 +118,7 @@ def _wanted(answer: Iterable[float], terms: Any, reference: Any, scale: Array, r
     return wanted
 
 
-ESTIMATE = {"estimate": _state, "sense": _estimate}
+ESTIMATE: dict[str, Callable[..., Any]] = {"estimate": _state, "sense": _estimate}
 TASK = {"write": _wanted}
 """By the methods of an estimator and of a task, what is taken for their answers."""
 

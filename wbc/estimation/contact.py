@@ -101,7 +101,7 @@ class SoleContact:
             return anchored or force[1 - k] < self.threshold
         moment = self.wrench[k, 3:5].tolist()
         reach = p.edge if not self.firm[k] else 1.05
-        return abs(moment[1]) < reach * self._half[0] * load and abs(moment[0]) < reach * self._half[1] * load
+        return bool(abs(moment[1]) < reach * self._half[0] * load and abs(moment[0]) < reach * self._half[1] * load)
 
     def _tare_foot(self, k: int, force: list[float]) -> None:
         swings = not self.felt[k] and force[k] < IN_AIR * self.weight and force[1 - k] > CARRIES * self.weight

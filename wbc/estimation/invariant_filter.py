@@ -40,7 +40,7 @@ _FALL = np.array([0.0, 0.0, -GRAVITY])
 _UNIT = np.eye(3)
 
 GATE = 50.0
-"""Square of a foot's normalised residual from which on it has slipped: of six numbers by chance once in 10^8 ticks [-]."""
+"""Square of the normalised residual of two feet from which on one has slipped: by chance in one of 10^6 ticks [-]."""
 
 
 @dataclass

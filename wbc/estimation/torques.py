@@ -35,7 +35,7 @@ class TorqueWrench:
         self._soles = tuple(model.getFrameId(name) for name in soles)
         self._gain = 1.0 - np.exp(-2.0 * np.pi * BANDWIDTH * period)
         self._residual: Array | None = None
-        self._expected = np.zeros(model.nv)
+        self._momentum, self._driven = np.zeros(model.nv), np.zeros(model.nv)
         self.deviation = 1.0
         """Force that a torque of 1 N·m in every joint comes to [N]."""
 

@@ -50,8 +50,8 @@ class GroundSearch:
     hurry_acceleration: float = quantity(16.0, "m/s^2")
     unsure_speed: float = quantity(40.0, "1/s")
     unsure_acceleration: float = quantity(1500.0, "1/s^2")
-    unsure_aim: float = quantity(1.0, "-")
-    most_unsure: float = quantity(1.5e-3, "m")
+    unsure_aim: float = quantity(1.5, "-")
+    most_unsure: float = quantity(2e-3, "m")
 
     def __post_init__(self) -> None:
         for entry in fields(self):

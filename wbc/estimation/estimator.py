@@ -1,6 +1,7 @@
 """The state of a robot from its sensors: joint observer, contacts, invariant filter, and how sure all of that is."""
 
 import math
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -11,7 +12,7 @@ from surefoot.readings import Reading, Readings
 from surefoot.wbc.estimation.contact import SoleContact
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.invariant_filter import OFFSETS, POSITION, TURN, VELOCITY, InvariantFilter, Stand
-from surefoot.wbc.estimation.joints import JointObserver
+from surefoot.wbc.estimation.joints import KEPT, JointObserver
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
 from surefoot.wbc.estimation.parameters import EstimatorParameters
 from surefoot.wbc.estimation.rotations import exponential, hat, logarithm
@@ -81,12 +82,12 @@ class SensedState:
         self._torques: TorqueWrench | None = None
         self._filter: InvariantFilter | None = None
         self._tick, self._imu_at = -1, 0
-        self._told_base, self._rolling = np.zeros(6), -1
+        self._base_told: deque[Array] = deque(maxlen=KEPT)
+        self._rolling = -1
         self._lost = False
         self._state: RobotState | None = None
-        self._com_velocity = np.zeros(3)
         self._deviation: Deviation | None = None
-        self._sole_ground = np.zeros(2)
+        self._height, self._above = 0.0, [0.0, 0.0]
 
     @property
     def filter(self) -> InvariantFilter:
@@ -97,7 +98,8 @@ class SensedState:
     def told(self, planned: Planned) -> None:
         """Hear what the controller does until the next tick."""
         self._joints.told(planned.acceleration[6:])
-        self._told_base, self._rolling = planned.acceleration[:6].copy(), planned.rolling_foot
+        self._base_told.append(planned.acceleration[:6].copy())
+        self._rolling = planned.rolling_foot
 
     def sense(self, readings: Readings) -> Estimate:
         """The estimate of a tick."""
@@ -106,7 +108,7 @@ class SensedState:
         wrench = self._wrench(readings)
         if self._filter is None:
             self._filter = self._start(readings.joint_position.values)
-            self._contact.update(wrench, -1)
+            self._contact.update(wrench, -1, self._above)
             self._state = self._now(readings, q, qd)
             self._deviation = self._uncertainty(self._body.offset_jacobians())
         elif not self._lost:
@@ -175,7 +177,7 @@ class SensedState:
         if at > self._imu_at:
             filter_.propagate(rate.values, force.values, (at - self._imu_at) * self._period)
             self._imu_at = at
-        contact.update(wrench, self._rolling)
+        contact.update(wrench, self._rolling, self._above)
         body.update(self._known(readings.joint_position.values, filter_.stand.offsets))
         changed = contact.firm != filter_.standing
         due = changed or self._tick % self._every == 0
@@ -195,6 +197,7 @@ class SensedState:
                 filter_.weigh(J)
         if due:
             self._deviation = self._uncertainty(J)
+            self._above = [self._over_ground(k) for k in (0, 1)]
 
     def _change(self, J: Array) -> None:
         filter_, firm = self.filter, self._contact.firm
@@ -214,16 +217,28 @@ class SensedState:
         known = (height, noise.height) if near else None
         filter_.land(k, body.position[k], body.rotation[k], J[k], known, noise.landing, noise.landing_turn)
 
+    def _over_ground(self, k: int) -> float:
+        """How far a sole is over the ground [m]."""
+        s = self.filter.stand
+        x, y, z = (s.p + s.R @ self._body.position[k]).tolist()
+        return z - self._footing.ground(x, y)[0]
+
     def _now(self, readings: Readings, q: Array, qd: Array) -> RobotState:
         """The state now, which is older by the age of the IMU's readings."""
-        filter_, s = self.filter, self.filter.stand
-        age = (self._tick - self._imu_at) * self._period
+        s = self.filter.stand
+        late = self._tick - self._imu_at
         rate = readings.angular_velocity.values - s.gyro_bias
-        R, v, p = s.R, s.v, s.p
-        if age > 0.0:
-            a = filter_.acceleration
-            p, v, R = p + age * v + (0.5 * age * age) * a, v + age * a, R @ exponential(rate * age)
-        return self._body.state(R, p, v, rate, self._known(q, s.offsets), qd)
+        state = self._body.state(s.R, s.p, s.v, rate, self._known(q, s.offsets), qd)
+        if late == 0 or not self._base_told:
+            return state
+        # What the controller has planned since; its velocity is that of the base in its own axes.
+        T, told = self._period, list(self._base_told)[-late:]
+        gained = T * np.sum(told, axis=0)
+        way = late * T * (state.v[:6] + 0.5 * gained)
+        state.v[:6] += gained
+        placed = pin.XYZQUATToSE3(state.q[:7]) * pin.exp6(pin.Motion(way[:3], way[3:]))
+        state.q[:7] = pin.SE3ToXYZQUAT(placed)
+        return state
 
     def _sound(self, state: RobotState) -> bool:
         total = float(np.dot(state.q, state.q) + np.dot(state.v, state.v))
@@ -245,6 +260,7 @@ class SensedState:
             rows[3 + k, TURN] = -hat(s.R @ body.position[k] + s.p)[2]
             rows[3 + k, POSITION.stop - 1] = 1.0
             rows[3 + k, OFFSETS] = -s.R[2] @ J[k, :3]
+        self._height = float(lever @ s.R[2])
         place = np.maximum(np.einsum("ij,jk,ik->i", rows, P, rows), 0.0)
         by_joints[:, body.chain] = 0.0
         com = place[:3] + (by_joints**2).sum(axis=1) * sensors.encoder_offset**2
@@ -263,7 +279,9 @@ class SensedState:
         shaken = self._body.mass * math.sqrt(2.0) * float(np.hypot(*speed[:2])) / SPAN
         leaning = self._weight * tilt
         lateral = math.hypot(shaken, leaning, force)
-        return lateral, math.hypot(self._weight * float(np.hypot(*com[:2])), moment)
+        # What does not change from span to span no median takes out: it counts twice.
+        wrong = math.hypot(self._weight * float(np.hypot(*com[:2])), leaning * self._height, force * self._height)
+        return lateral, math.hypot(2.0 * wrong, moment)
 
 
 def _sole(yaw: float, up: Array) -> Array:

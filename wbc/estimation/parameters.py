@@ -53,7 +53,7 @@ class GroundNoise:
     landing: float = number(5e-4, "m", "of where a sole comes to rest after it is felt")
     landing_turn: float = number(2e-3, "rad", "of how it does so")
     light: float = number(10.0, "-", "creep and rocking of an unloaded sole over those of a loaded one")
-    height: float = number(3e-3, "m", "of the ground's height where a foot lands")
+    height: float = number(2e-3, "m", "of the ground's height where a foot lands")
     level: float = number(5e-4, "rad", "of the soles' tilt to the ground at the start")
     model: float = number(3e-3, "m/s", "of a second's change of velocity, by links that bend and by sampling")
 
@@ -70,13 +70,14 @@ class ContactDetection:
     """
 
     force: float = number(8.0, "N", "normal force that is felt by a sensor without noise")
-    certain: float = number(5.0, "-", "deviations of the filtered force that are felt at least")
+    certain: float = number(4.0, "-", "deviations of the filtered force that are felt at least")
     released: float = number(0.5, "-", "share of that force below which a contact ends")
     ticks: int = number(2, "-", "consecutive ticks of that force before it counts", positive=True)
     anchor: float = number(0.08, "-", "share of the weight from which a sole that lands stands still")
     edge: float = number(0.9, "-", "share of the half sole within which its CoP is where it stands still")
     tare_time: float = number(0.1, "s", "time constant of the tare of a swinging foot's sensor", positive=True)
-    tared_after: float = number(0.2, "s", "swing after which a sensor counts as tared")
+    tare_height: float = number(0.008, "m", "height of a sole over the ground above which its sensor is tared")
+    tared_after: float = number(0.15, "s", "swing after which a sensor counts as tared")
 
     def __post_init__(self) -> None:
         check(self, "estimator", "contact")

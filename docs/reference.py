@@ -45,7 +45,14 @@ from surefoot.wbc.types import RobotState, WbcReference
 
 FOLDER = Path(__file__).parent
 CHANNELS = (
-    *(channels.measurement, channels.truth, channels.point_truth, channels.estimate, channels.contact),
+    *(
+        channels.measurement,
+        channels.readings,
+        channels.truth,
+        channels.point_truth,
+        channels.estimate,
+        channels.contact,
+    ),
     *(
         channels.planner_state,
         channels.reference,

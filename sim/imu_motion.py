@@ -27,14 +27,29 @@ class ImuMotion:
 
 @dataclass(frozen=True, slots=True)
 class _Link:
-    """A body of the chain at zero angle in its parent, and the joint that turns it about a point of its own."""
+    """A body of the chain: its axes and origin in its parent at zero angle, and the joint that turns it.
+
+    Attributes:
+        rotation: of its axes, shape (3, 3).
+        lever: cross product matrix of its origin, shape (3, 3) [m].
+        joint: number of the joint.
+        axis: of the joint in the body, shape (3,).
+        twist: cross product matrix of the axis, and its square, each shape (3, 3).
+        point: of the joint in the body where that is not its origin, shape (3,) [m].
+    """
 
     rotation: Array
-    position: Array
+    lever: Array
     joint: int
     axis: Array
-    twist: Array
-    point: Array
+    twist: tuple[Array, Array]
+    point: Array | None
+
+    def axes(self, angle: float) -> Array:
+        """Its axes in its parent at an angle of the joint [rad], shape (3, 3)."""
+        K, square = self.twist
+        found: Array = self.rotation @ (_UNIT + math.sin(angle) * K + (1.0 - math.cos(angle)) * square)
+        return found
 
 
 class ImuChain:
@@ -63,22 +78,15 @@ class ImuChain:
         x, y, z, w = q[3:7].tolist()
         R, velocity, rate = _matrix(w, x, y, z), v[:3], v[3:6]
         for link in self._links:
-            E, p, rate_joint = self._moved(link, float(q[7 + link.joint])), link.position, float(v[6 + link.joint])
-            if link.point.any():
-                p = p + link.rotation @ link.point - E @ link.point
-            velocity = (velocity - skew(p) @ rate) @ E
-            spin = link.axis * rate_joint
-            velocity = velocity + skew(link.point) @ spin if link.point.any() else velocity
-            rate = rate @ E + spin
-            R = R @ E
+            E, spin = link.axes(float(q[7 + link.joint])), link.axis * float(v[6 + link.joint])
+            lever = link.lever
+            if link.point is not None:
+                lever = lever + skew(link.rotation @ link.point - E @ link.point)
+            velocity, rate, R = (velocity - lever @ rate) @ E, rate @ E + spin, R @ E
+            if link.point is not None:
+                velocity = velocity + skew(link.point) @ spin
         velocity = R @ (velocity - self._lever @ rate)
         return ImuMotion(R @ self._mount, velocity, rate @ self._mount)
-
-    def _moved(self, link: _Link, angle: float) -> Array:
-        """Axes of a body in its parent at an angle of its joint."""
-        K = link.twist
-        found: Array = link.rotation @ (_UNIT + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
-        return found
 
 
 _UNIT = np.eye(3)
@@ -86,15 +94,14 @@ _UNIT = np.eye(3)
 
 def _link(model: mujoco.MjModel, body: int) -> _Link:
     joint = int(model.body_jntadr[body])
-    axis = np.array(model.jnt_axis[joint])
-    # Joint 0 is the floating base.
+    twist, point = skew(np.array(model.jnt_axis[joint])), np.array(model.jnt_pos[joint])
     return _Link(
         rotation=rotation_of(model.body_quat[body]),
-        position=np.array(model.body_pos[body]),
-        joint=joint - 1,
-        axis=axis,
-        twist=skew(axis),
-        point=np.array(model.jnt_pos[joint]),
+        lever=skew(np.array(model.body_pos[body])),
+        joint=joint - 1,  # joint 0 is the floating base
+        axis=np.array(model.jnt_axis[joint]),
+        twist=(twist, twist @ twist),
+        point=point if point.any() else None,
     )
 
 

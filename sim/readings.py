@@ -160,12 +160,18 @@ class _Imu:
         error = self._gyro_noise.added(self._gyro_bias.added(np.zeros(3)))
         force = self._force_noise.added(self._force_bias.added(force))
         most = self._most_rate
-        rate, mean_rate = now.angular_velocity + error, mean_rate + error
-        if most < math.inf:
-            rate, mean_rate = rate.clip(-most, most), mean_rate.clip(-most, most)
-        if self._most_force < math.inf:
-            force = force.clip(-self._most_force, self._most_force)
-        return rate, mean_rate, force
+        return (
+            _within(most, now.angular_velocity + error),
+            _within(most, mean_rate + error),
+            _within(self._most_force, force),
+        )
+
+
+def _within(most: float, values: Array) -> Array:
+    """Values that are at most so large; arrays that are, as nearly all, are not copied."""
+    if max(values.tolist()) <= most and min(values.tolist()) >= -most:
+        return values
+    return values.clip(-most, most)
 
 
 def _white(noise: float, of_period: float, seed: int, of: Stream) -> _Noise:

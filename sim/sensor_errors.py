@@ -168,8 +168,8 @@ CHEAP = SensorErrors(
 0.015 deg/s/√Hz and 300 ug/√Hz (the classes of TDK's ICM-20948 and MPU-9250), with the accelerometer bias of 0.1 m/s^2
 that the Gazebo models of Alexander and TALOS have; load cells; a bus that is late and loses packets.
 
-Those two models have a rate noise of 2e-4 rad/s and an accelerometer noise of 1.7e-2 m/s^2 at 1 kHz, densities of
-6e-6 rad/s/√Hz and 5e-4 m/s^2/√Hz, better than any MEMS IMU."""
+Those two models have a rate noise of 2e-4 rad/s and an accelerometer noise of 1.7e-2 m/s^2 at 1 kHz. As densities, 6e-6
+rad/s/√Hz and 5e-4 m/s^2/√Hz, that is less than either preset has."""
 
 PRESETS: Mapping[str, SensorErrors] = {"perfect": PERFECT, "good": GOOD, "cheap": CHEAP}
 """By the value of ``sensing.preset``."""

@@ -28,11 +28,13 @@ class Box:
         center: box centre in the world frame, shape (3,) [m].
         half_size: half extents along the box axes, shape (3,) [m].
         rotation: box-to-world rotation matrix, shape (3, 3).
+        friction: Coulomb coefficient of its surface; None for that of the terrain [-].
     """
 
     center: NDArray[np.float64]
     half_size: NDArray[np.float64]
     rotation: NDArray[np.float64]
+    friction: float | None = None
 
     def top(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The plane of the top face above or below world points.

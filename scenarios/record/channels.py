@@ -58,6 +58,27 @@ def measurement(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/measurement", "Measurement", fields, measurement.__doc__ or "")
 
 
+def readings(n: Sizes) -> ChannelSpec:
+    """What sensors say to an estimator, every control tick; only in a run whose estimator reads them."""
+    fields = (
+        _real("joint_position", n.nj, "rad", "", "encoders"),
+        _real("joint_velocity", n.nj, "rad/s", "", "encoders; NaN of those that say none"),
+        _real("joint_torque", n.nj, "N m", "", "motors"),
+        _real("angular_velocity", 3, "rad/s", "own imu", "gyroscope, at the instant"),
+        _real("mean_angular_velocity", 3, "rad/s", "own imu", "gyroscope, mean over the tick that ended then"),
+        _real("specific_force", 3, "m/s^2", "own imu", "accelerometer, mean over the tick that ended then"),
+        _real("wrench_left", 6, "N, N m", "left sole", "at the sole centre; NaN without sensors"),
+        _real("wrench_right", 6, "N, N m", "right sole", "at the sole centre; NaN without sensors"),
+        _scalar("joint_age", "s", "of what encoders and motors say"),
+        _scalar("imu_age", "s", "of what the IMU says"),
+        _scalar("wrench_age", "s", "of what the feet say; NaN without sensors"),
+        _int("joint_fresh", "1: it has come since the tick before"),
+        _int("imu_fresh", "1: it has come since the tick before"),
+        _int("wrench_fresh", "1: it has come since the tick before"),
+    )
+    return ChannelSpec("/readings", "Readings", fields, readings.__doc__ or "")
+
+
 def truth(n: Sizes) -> ChannelSpec:
     """The simulator's state, every control tick."""
     fields = (

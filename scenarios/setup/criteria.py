@@ -124,12 +124,13 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 DESCRIPTION = (
     "A walk to simulate and the criteria it must meet. Bare numbers are in SI units and radians; where a key "
-    "has a unit, a string such as '25 cm' may be given instead. `surefoot run` also refuses what a JSON Schema "
-    "cannot tell: a number with a unit that is out of the range of its key; numbers under wbc that the "
-    "controller refuses; rates that do not divide; pushes without a begin or with two, both by force and by "
-    "impulse, in a step that is not walked, or on a body that the robot has not got; gaits and grounds that the "
-    "legs cannot reach or stand on; criteria with min above max, that any run meets, or that the fidelity cannot "
-    "measure; keys given twice; more than 20 levels or half a megabyte."
+    "has a unit, a string such as '25 cm' may be given instead. `surefoot run` also refuses what a JSON Schema"
+    " cannot tell: a number with a unit that is out of the range of its key; numbers under wbc that the "
+    "controller refuses; terms of sensors beside the true state; rates that do not divide; pushes without a "
+    "begin or with two, both by force and by impulse, in a step that is not walked, or on a body that the "
+    "robot has not got; gaits and grounds that the legs cannot reach or stand on; criteria with min above max,"
+    " that any run meets, or that the fidelity cannot measure; keys given twice; more than 20 levels or half a"
+    " megabyte."
 )
 
 

@@ -107,7 +107,7 @@ def true_robot(
     if errors.mass_scale != 1.0:
         # Of the mass itself the quotient, which logs have to the last digit.
         robot = replace(with_mass_scaled(robot, 1.0 / errors.mass_scale), mass=float(robot.mass) / errors.mass_scale)
-    if errors.torso_mass is not None:
+    if errors.torso_mass not in (None, 1.0):
         robot = with_torso_mass_scaled(robot, 1.0 / errors.torso_mass)
     if any(errors.torso_com or ()):
         robot = with_torso_com_moved(robot, -np.array(errors.torso_com))

@@ -40,7 +40,7 @@ from surefoot.scenarios.setup.keys import FIDELITIES, Fidelity
 from surefoot.scenarios.setup.parts import guarded_law
 from surefoot.scenarios.setup.robot import describe, true_robot
 from surefoot.scenarios.setup.terrain import kind_of
-from surefoot.scenarios.setup.terrain.ground import Ground, tiles_of
+from surefoot.scenarios.setup.terrain.ground import Ground, tiles_of, tilt_of
 from surefoot.sim.pushes import Push
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
@@ -186,6 +186,7 @@ class Walk:
             standing_height=self.standing_height,
             tiles=tiles_of(keys, self.size) if self.walker.has_body else None,
             hidden=keys.errors.ground or (),
+            tilt=tilt_of(keys, self.size) if self.walker.has_body else None,
         )
 
     @property

@@ -39,7 +39,10 @@ WITHOUT_OCCASION = {
 
 NOTHING = {
     **dict.fromkeys(("gait.lateral_step", "gait.turn", "start.x", "start.y", "start.yaw"), 1e-300),
-    **dict.fromkeys(("errors.link_mass_noise", "errors.ground_noise"), 0.0),
+    **dict.fromkeys(
+        ("errors.link_mass_noise", "errors.ground_noise", "errors.ground_pitch", "errors.ground_roll"), 0.0
+    ),
+    "errors.torso_mass": 1.0,
     "errors.torso_com": [0, 0, 0],
     "wbc.tasks": [],
 }

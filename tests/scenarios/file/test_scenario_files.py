@@ -102,7 +102,7 @@ CASES = {
     "criteria: {zmp_error_rms: {max: [1, 2, 3]}}": "has 3 elements; give one number, or 2 of them",
     "faults: [{kind: gremlin}]": "faults.0.kind is 'gremlin'; it must be 'torque_loss', 'planner_freeze'",
     "gait: 3": "f.yaml:1:7: gait is 3; give a group of keys",
-    "sensing: {gyro_noise: 1e-3}": "sensing.gyro_noise 0.001 is not available in this version",
+    "sensing: {gyro_noise: 1e-3}": "f.yaml:1:23: sensing.gyro_noise 0.001 beside sensing.source truth, which reads",
     "name: a\nname: b": "f.yaml:2:1: 'name' is given twice, first at line 1; keep one of them",
     "name: ../a": "f.yaml:1:7: name is '../a'; use letters, digits",
     "": "f.yaml:1:1: the file is empty; give at least 'name: f'",

@@ -52,6 +52,11 @@ class Bound:
     struct: Any
     kept: tuple[Any, ...]
 
+    def point(self, **arrays: Any) -> None:
+        """Let fields point to other arrays, as C sees them, which the caller keeps alive; this checks nothing."""
+        for name, array in arrays.items():
+            setattr(self.struct, name, ctypes.addressof(ctypes.c_char.from_buffer(array)))
+
 
 class Library:
     """The functions of a compiled library on structs that Python fills.

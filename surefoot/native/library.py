@@ -52,6 +52,10 @@ class Bound:
     struct: Any
     kept: tuple[Any, ...]
 
+    def point(self, field: str, other: "Bound") -> None:
+        """Let a field point to another struct, which the caller keeps."""
+        setattr(self.struct, field, ctypes.addressof(other.struct))
+
 
 class Library:
     """The functions of a compiled library on structs that Python fills.

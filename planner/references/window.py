@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.forces import ExternalLoad
 from surefoot.native.library import library
 from surefoot.planner.model.dcm import natural_frequency, nominal_motion
 from surefoot.planner.model.leg_chain import LegChain
@@ -28,7 +29,7 @@ from surefoot.planner.references.zmp_reference import (
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
-from surefoot.planner.types import GRAVITY, Array, LastingForce
+from surefoot.planner.types import GRAVITY, Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +111,7 @@ The phases at the samples that are looked at, with one before and one after; ZMP
 """
 
 
-def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array:
+def lean(lasting: ExternalLoad, rotation: Array, height: HeightPreview) -> Array:
     """What a lasting force adds to the ZMP, by which the body has to lean into it, in the plan frame.
 
     The moment balance about the ZMP (see `planner.references.leg_offset`) with a force m f on the body and its moment
@@ -119,17 +120,17 @@ def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array
         p_x = c_x - c_x'' / λ + f_x / λ + n_y / (g + z''),      p_y = c_y - c_y'' / λ + f_y / λ - n_x / (g + z'').
 
     Args:
-        lasting: the force.
+        lasting: the force, per mass.
         rotation: plan frame to world, shape (2, 2).
         height: CoM height over n samples.
 
     Returns:
         Shape (n, 2) [m].
     """
-    x, y = lasting.moment.tolist()
+    x, y = lasting.moment[:2].tolist()
     turning = np.array([y, -x]) @ rotation
     pressing = GRAVITY + height.height[2]
-    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
+    return np.asarray(lasting.force[:2] @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
 
 
 class ReferencePreview:
@@ -176,7 +177,7 @@ class ReferencePreview:
         support: Support,
         position: Array,
         time: float,
-        lasting: LastingForce | None = None,
+        lasting: ExternalLoad | None = None,
     ) -> Window:
         """The window that begins now, as the clock goes.
 

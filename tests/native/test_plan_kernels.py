@@ -21,16 +21,15 @@ NEAR = 1e-11
 """Largest relative difference of what a plan sees and decides from."""
 
 SOON = {"gait.initial_stand": 0.1}
-LONG = {"gait.step_length": 0.36, "gait.single_support": 0.5, "gait.double_support": 0.12, "gait.com_height": 0.95}
-PUSH = {"step": 2, "phase": "single", "fraction": 0.2, "duration": 0.1, "impulse": 0.3, "direction": 0.0}
-ADAPTED = {**SOON, **LONG, "pushes": [PUSH]}
-ASIDE = {**SOON, **LONG, "pushes": [{**PUSH, "impulse": 0.2, "direction": 1.570796}]}
+PUSH = {"step": 3, "phase": "single", "fraction": 0.2, "duration": 0.1}
+ASIDE = {**SOON, "pushes": [{**PUSH, "force": [0, -260, 0]}]}
+HARD = {**SOON, "pushes": [{**PUSH, "force": [0, -320, 0]}]}
 STOOD = {"pushes": [{"time": 0.2, "duration": 0.1, "force": [0, 320, 0]}]}
 FORCED = {**SOON, "pushes": [{"time": 0.6, "duration": 0.5, "force": [60.0, 40.0, 0.0]}]}
 WALKS = {
     "walk": ("walk", 2.5, SOON, {"steady"}),
-    "adapted": ("walk", 3.6, ADAPTED, {"steady", "scaled", "height in transition"}),
-    "aside": ("walk", 2.6, ASIDE, {"steady", "scaled", "height in transition"}),
+    "aside": ("walk", 2.9, ASIDE, {"steady", "scaled", "adapted", "bent", "height in transition"}),
+    "lowered": ("walk", 3.2, HARD, {"adapted", "bent", "lowered", "height in transition"}),
     "stood": ("stand", 1.6, STOOD, {"steady"}),
     "forced": ("walk", 1.6, FORCED, {"steady", "lasting force"}),
     "stairs": ("stairs-up", 3.6, SOON, {"steady"}),
@@ -107,8 +106,11 @@ class Plans:
         update = self.planner.update
 
         def counted(state: Any, feet: Any) -> Any:
-            plan, clock = update(state, feet), self.planner._execution.clock
-            self.seen["steady" if clock.steady else "scaled"] += 1
+            plan, execution = update(state, feet), self.planner._execution
+            self.seen["steady" if execution.clock.steady else "scaled"] += 1
+            self.seen["adapted"] += execution.adapted
+            self.seen["lowered"] += execution.lowering > 0.0
+            self.seen["bent"] += execution.swing is not None and execution.swing.bent
             self.seen["height in transition"] += self.planner._preview._transition is not None
             self.seen["lasting force"] += state.lasting is not None and bool(state.lasting.force.any())
             return plan

@@ -13,6 +13,9 @@ from surefoot.planner.plan import PlanSampler, WalkPlan
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.types import Array, CentroidalState, FeetState
 
+MASS = 100.0
+"""Of the pendulum that walks alone, as of the reference robot [kg]."""
+
 
 def pushing_force(pushes: tuple[Push, ...], time: float) -> Array:
     """Horizontal sum of the pushes at an instant, shape (2,) [N]."""
@@ -170,10 +173,8 @@ def walk_pendulum(
     *,
     com: Array,
     pushes: tuple[Push, ...] = (),
-    mass: float = 100.0,
     feedback: float = 3.0,
     substeps: int = 10,
-    frozen_after: float = float("inf"),
 ) -> PendulumTrace:
     """Walk the pendulum.
 
@@ -185,22 +186,19 @@ def walk_pendulum(
         feet: start feet.
         duration: [s].
         com: start CoM at rest, shape (3,) [m].
-        pushes: forces on the mass.
-        mass: [kg].
+        pushes: forces on the mass, which is `MASS`.
         feedback: k of the DCM feedback, 0 for none [-].
         substeps: control steps per planner tick.
-        frozen_after: instant after which the planner is not asked any more; it always makes the first plan [s].
     """
     t = planner.parameters.sample_time
-    pendulum, ideal = Pendulum(mass, com[:2], np.zeros(2)), IdealFeet(feet)
+    pendulum, ideal = Pendulum(MASS, com[:2], np.zeros(2)), IdealFeet(feet)
     state = CentroidalState(0.0, np.array(com), np.zeros(3))
     rows: list[tuple[float, Array, Array, Array, float]] = []
     plans: list[WalkPlan] = []
     fall_time = None
     while fall_time is None and len(rows) < round(duration / t):
-        if not plans or state.time < frozen_after:
-            plans.append(planner.update(state, ideal.state))
-            sampler = PlanSampler(plans[-1])
+        plans.append(planner.update(state, ideal.state))
+        sampler = PlanSampler(plans[-1])
         margin = _run_tick(pendulum, sampler, pushes, state.time, t / substeps, substeps, feedback)
         now = (len(rows) + 1) * t
         end = sampler.sample(now)

@@ -204,6 +204,9 @@ class RecoveryParameters:
     same_swing: float = quantity(0.005, "m")
 
 
+_ZERO_TOO = ("late_touchdown", "freeze_time", "touchdown_lead", "terminal_weight", "jerk_weight", "compliance_margin")
+
+
 @dataclass(frozen=True, slots=True)
 class PlannerParameters:
     """Parameters of the walking planner; the defaults are the measured robust formulation, for the reference robot.
@@ -283,16 +286,8 @@ class PlannerParameters:
             value = getattr(self, entry.name)
             if not isinstance(value, int | float):
                 continue
-            may_be_zero = entry.name in (
-                "late_touchdown",
-                "freeze_time",
-                "touchdown_lead",
-                "terminal_weight",
-                "jerk_weight",
-                "compliance_margin",
-            )
             key, what = ("parameters", entry.name), f"{entry.name} is {value:g}"
-            if not (value > 0 or (may_be_zero and value == 0)):
+            if not (value > 0 or (entry.name in _ZERO_TOO and value == 0)):
                 raise ParameterError(key, what, "it must be greater than 0")
             if not math.isfinite(value) and entry.name != "jerk_rate_limit":
                 raise ParameterError(key, what, "it must be finite")

@@ -3,6 +3,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
@@ -11,7 +12,6 @@ from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import Box, Terrain, flat
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
 from surefoot.forces import Push
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.references.com_height import Rise, SmoothHeight
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.steps.gait import GaitParameters

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 from scipy.optimize import linprog
 
 from surefoot.forces import Push
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
 from surefoot.planner.recovery.step_adjustment import StepProblem
 from surefoot.planner.references.com_height import HeightPreview

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
 from surefoot.forces import Push
 from surefoot.planner.geometry import quintic
@@ -13,7 +14,6 @@ from surefoot.planner.ground.terrain import Site
 from surefoot.planner.model.dcm import pendulum_com, viability_weights
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepProblem
 from surefoot.planner.references.com_height import HeightPreview, Rise, SmoothHeight
 from surefoot.planner.references.window import Window

@@ -1,25 +1,25 @@
 """Step adjustment: when and where the next step lands so that a pushed body is captured, as one optimisation.
 
 Variables: T_d, T_s, times left of double and single support [s]; c, distance of the CoP from its nominal way [m];
-p, place of the next footstep from its stance foot [m]; s, shift of the footstep after it [m].
+p, place of the next footstep from its stance foot [m]; s, shift of the footstep after it, forward and sideways [m].
 
 Minimise
 
-    shift_weight |p - p̄|²  +  second_weight |s|²  +  time_weight ((T_d - T̄_d)² + (T_s - T̄_s)²) / T²
-        +  stretch_weight r²  +  swing_weight (u² + v²)
+    shift_weight |p - p̄|²  +  second_weight |σ|²  +  time_weight ((T_d - T̄_d)² + (T_s - T̄_s)²) / T²
+        +  stretch_weight r²  +  swing_weight (|u|² + v²)
 
 with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, u, v of three constraints, subject to
 
-- dcm: ξ' = ω (ξ - CoP) from the measured ξ until the landing; with g p of what the DCM there keeps bounded;
+- dcm: ξ' = ω (ξ - CoP) from the measured ξ until the landing; p moves the DCM that stays bounded there by g (p - p̄);
 - cop: |c| ≤ cop_share of the ZMP box, and of what both feet have beyond it in double support;
 - reach: p in one of the boxes of `LegReach.allowed`, and within `radius` of its hip then; the other hip is out of
   reach of the stance foot by r;
 - swing: p where the foot can be swung to until then (`LegReach.edges`), but for u, on a way around the stance leg that
   is too long by v;
-- second: s = e^{ωT} g |p* - p| less what the CoP holds until then, where p* leaves nothing; cross_factor s to a side
-  where that step would have to cross;
-- times: T_d = T̄_d + a member of time_changes, not below least_double, and T_s likewise, nor below what body and foot
-  need to come to the height of the footstep.
+- second: on each axis s = e^{ωT} g |p* - p| less what the CoP holds until then, where p* leaves nothing;
+- cross: σ is s, with its sideways part times cross_factor where that step would have to cross;
+- times: T_d = T̄_d or that and a member of time_changes, not below least_double, and T_s likewise, not below
+  least_single, nor below what body and foot need to come to the height of the footstep.
 
 Solver: for given times p* follows in closed form, since the CoP does what it can; p is p* brought into the limits, the
 boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken. Other

@@ -23,7 +23,7 @@ class SoleContact:
     """Contact of both soles, decided once for filter, controller and planner.
 
     A normal force above a threshold is felt after some ticks, and until it falls below a lower one; a smaller one is
-    felt when it lasts. While a foot swings high its sensor is tared in all six axes, by a slow low pass of what it says.
+    felt when it lasts. While a foot swings high its sensor is tared in all six axes, by a slow low pass.
 
     Args:
         parameters: thresholds.

@@ -221,7 +221,7 @@ class SensedState:
         """How far a sole is over the ground [m]."""
         s = self.filter.stand
         x, y, z = (s.p + s.R @ self._body.position[k]).tolist()
-        return z - self._footing.ground(x, y)[0]
+        return float(z - self._footing.ground(x, y)[0])
 
     def _now(self, readings: Readings, q: Array, qd: Array) -> RobotState:
         """The state now, which is older by the age of the IMU's readings."""

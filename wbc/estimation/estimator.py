@@ -15,7 +15,7 @@ from surefoot.wbc.estimation.invariant_filter import OFFSETS, POSITION, TURN, VE
 from surefoot.wbc.estimation.joints import KEPT, JointObserver
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
 from surefoot.wbc.estimation.parameters import EstimatorParameters
-from surefoot.wbc.estimation.rotations import exponential, hat, logarithm
+from surefoot.wbc.estimation.rotations import exponential, hat, logarithm, quaternion
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.external import SPAN
 from surefoot.wbc.types import GRAVITY, Array, RobotState
@@ -26,8 +26,8 @@ Ground = Callable[[float, float], tuple[float, Array]]
 TRUSTED = 0.06
 """A ground that is farther from a sole that lands is not the one that it lands on [m]."""
 
-FASTEST, FARTHEST = 30.0, 1e4
-"""Speed and place beyond which an estimate has diverged [m/s, m]."""
+FASTEST, FARTHEST = 300.0, 1e5
+"""Speed, of base and joints together, and place beyond which an estimate has diverged [m/s, rad/s, m]."""
 
 ATTITUDE = 0.1
 """How far off the attitude may be before the soles are taken for level [rad]."""
@@ -153,9 +153,8 @@ class SensedState:
         R = turned[0] @ exponential(0.5 * logarithm(turned[0].T @ turned[1]))
         p = (footing.position - body.position @ R.T).mean(axis=0)
         m = len(body.chain)
-        stand = Stand(
-            R, np.zeros(3), p, footing.position.copy(), np.zeros((2, 3, 3)), np.zeros(3), np.zeros(3), np.zeros(m)
-        )
+        columns = np.vstack((np.zeros(3), p, footing.position))
+        stand = Stand(R, columns, np.zeros((2, 3, 3)), np.zeros(3), np.zeros(3), np.zeros(m))
         filter_ = InvariantFilter(stand, self._parameters.sensors, self._parameters.ground, self._period)
         J = body.offset_jacobians()
         normals = np.stack([footing.ground(*footing.position[k, :2].tolist())[1] for k in (0, 1)])
@@ -228,23 +227,21 @@ class SensedState:
         s = self.filter.stand
         late = self._tick - self._imu_at
         rate = readings.angular_velocity.values - s.gyro_bias
-        state = self._body.state(s.R, s.p, s.v, rate, self._known(q, s.offsets), qd)
-        if late == 0 or not self._base_told:
-            return state
-        # What the controller has planned since; its velocity is that of the base in its own axes.
-        T, told = self._period, list(self._base_told)[-late:]
-        gained = T * np.sum(told, axis=0)
-        way = late * T * (state.v[:6] + 0.5 * gained)
-        state.v[:6] += gained
-        placed = pin.XYZQUATToSE3(state.q[:7]) * pin.exp6(pin.Motion(way[:3], way[3:]))
-        state.q[:7] = pin.SE3ToXYZQUAT(placed)
-        return state
+        q = self._known(q, s.offsets)
+        base, p, velocity = self._body.base(s.R, s.p, s.v, rate, q, qd)
+        if late and self._base_told:
+            # What the controller has planned since; its velocity is that of the base in its own axes.
+            told = self._base_told
+            gained = self._period * sum(told[-back] for back in range(1, min(late, len(told)) + 1))
+            way = (late * self._period) * (velocity + 0.5 * gained)
+            half = base @ exponential(0.5 * way[3:])
+            p, base, velocity = p + half @ way[:3], half @ exponential(0.5 * way[3:]), velocity + gained
+        return RobotState(np.concatenate((p, quaternion(base), q)), np.concatenate((velocity, qd)))
 
     def _sound(self, state: RobotState) -> bool:
-        total = float(np.dot(state.q, state.q) + np.dot(state.v, state.v))
-        v, p = state.v[:3], state.q[:3]
-        fine = math.isfinite(total) and self.filter.finite
-        return fine and float(v @ v) < FASTEST**2 and float(p @ p) < FARTHEST**2
+        far, fast = float(state.q[:7] @ state.q[:7]), float(state.v @ state.v)
+        # Nothing that is not finite is less than a number.
+        return far < FARTHEST**2 and fast < FASTEST**2 and (self._tick % self._every != 0 or self.filter.finite)
 
     def _uncertainty(self, J: Array) -> Deviation:
         """Standard deviations by the covariance of the filter; J as of `SensedBody.offset_jacobians`."""

@@ -37,21 +37,20 @@ FIXED = 27
 _SIX = (np.r_[FOOT[0], SOLE[0]], np.r_[FOOT[1], SOLE[1]])
 _BODY = np.r_[POSITION, TURN]
 _FALL = np.array([0.0, 0.0, -GRAVITY])
+_FALLING = hat(_FALL)
 _UNIT = np.eye(3)
 
 GATE = 50.0
 """Square of the normalised residual of two feet from which on one has slipped: by chance in one of 10^6 ticks [-]."""
 
 
-@dataclass
+@dataclass(slots=True)
 class Stand:
     """Where the filter believes that the IMU and the soles are.
 
     Attributes:
         R: orientation of the IMU in the world, shape (3, 3).
-        v: its velocity, world axes, shape (3,) [m/s].
-        p: its position, shape (3,) [m].
-        d: sole centres, shape (2, 3) [m].
+        columns: velocity and position of the IMU, left and right sole centre, world axes, shape (4, 3) [m/s, m].
         Z: orientations of the soles, shape (2, 3, 3).
         gyro_bias: shape (3,) [rad/s].
         force_bias: of the accelerometer, shape (3,) [m/s^2].
@@ -59,29 +58,38 @@ class Stand:
     """
 
     R: Array
-    v: Array
-    p: Array
-    d: Array
+    columns: Array
     Z: Array
     gyro_bias: Array
     force_bias: Array
     offsets: Array
 
-    def moved(self, x: Array) -> "Stand":
-        """exp(x) applied from the left; of the group's V-matrix the identity is taken, for small x."""
+    @property
+    def v(self) -> Array:
+        """Velocity of the IMU, shape (3,) [m/s]."""
+        velocity: Array = self.columns[0]
+        return velocity
+
+    @property
+    def p(self) -> Array:
+        """Position of the IMU, shape (3,) [m]."""
+        position: Array = self.columns[1]
+        return position
+
+    @property
+    def d(self) -> Array:
+        """Sole centres, shape (2, 3) [m]."""
+        return self.columns[2:]
+
+    def move(self, x: Array) -> None:
+        """Apply exp(x) from the left; of the group's V-matrix the identity is taken, for small x."""
         E = exponential(x[TURN])
-        columns = np.vstack((self.v, self.p, self.d)) @ E.T + x[3:15].reshape(4, 3)
-        Z = np.stack([exponential(x[SOLE[k]]) @ self.Z[k] for k in (0, 1)])
-        return Stand(
-            E @ self.R,
-            columns[0],
-            columns[1],
-            columns[2:],
-            Z,
-            self.gyro_bias + x[GYRO],
-            self.force_bias + x[FORCE],
-            self.offsets + x[OFFSETS],
-        )
+        self.R = E @ self.R
+        self.columns = self.columns @ E.T + x[3:15].reshape(4, 3)
+        self.Z = np.stack((exponential(x[SOLE[0]]) @ self.Z[0], exponential(x[SOLE[1]]) @ self.Z[1]))
+        self.gyro_bias = self.gyro_bias + x[GYRO]
+        self.force_bias = self.force_bias + x[FORCE]
+        self.offsets = self.offsets + x[OFFSETS]
 
 
 class InvariantFilter:
@@ -159,7 +167,7 @@ class InvariantFilter:
         K = np.linalg.solve(S, PH.T).T
         self.P = self.P - K @ PH.T
         self.P = 0.5 * (self.P + self.P.T)
-        self.stand = self.stand.moved(K @ wanted)
+        self.stand.move(K @ wanted)
 
     def propagate(self, rate: Array, force: Array, time: float) -> None:
         """Go on with what the IMU says.
@@ -170,34 +178,38 @@ class InvariantFilter:
             time: that both are of [s].
         """
         s = self.stand
-        turn = exponential((rate - s.gyro_bias) * time)
         # The mean force is of the frame half way through the turn.
         half = exponential((rate - s.gyro_bias) * (0.5 * time))
-        self.acceleration = a = s.R @ (half @ (force - s.force_bias)) + _FALL
-        s.p = s.p + time * s.v + (0.5 * time * time) * a
-        s.v = s.v + time * a
-        s.R = s.R @ turn
+        middle = s.R @ half
+        self.acceleration = a = middle @ (force - s.force_bias) + _FALL
+        v, p = s.columns[:2]
+        s.columns[1] = p + time * v + (0.5 * time * time) * a
+        s.columns[0] = v + time * a
+        s.R = middle @ half
         self._since += time
         self._ticks += 1
 
+    def transition(self, time: float) -> tuple[Array, Array]:
+        """What becomes of an error over a time [s], shape (n, n), and what turns about world axes do, shape (15, 3)."""
+        s, F, B = self.stand, self._F, np.empty((15, 3))
+        B[:3] = _UNIT
+        for i, column in enumerate(s.columns):
+            B[3 + 3 * i : 6 + 3 * i] = hat(column)
+        F[VELOCITY, TURN] = time * _FALLING
+        F[POSITION, VELOCITY] = time * _UNIT
+        F[POSITION, TURN] = (0.5 * time * time) * _FALLING
+        F[:15, GYRO] = -time * (B @ s.R)
+        F[VELOCITY, FORCE] = -time * s.R
+        return F, B
+
     def spread(self, loads: tuple[float, float]) -> None:
         """Covariance of the way since it was computed last; loads are shares of the weight on the soles [-]."""
-        s, P, dt = self.stand, self.P, self._since
-        self._since = 0.0
+        dt, self._since = self._since, 0.0
         if dt <= 0.0:
             return
         sensors, ground = self._sensors, self._ground
-        B = np.empty((15, 3))
-        B[:3] = _UNIT
-        for i, column in enumerate((s.v, s.p, s.d[0], s.d[1])):
-            B[3 + 3 * i : 6 + 3 * i] = hat(column)
-        F = self._F
-        F[VELOCITY, TURN] = dt * hat(_FALL)
-        F[POSITION, VELOCITY] = dt * _UNIT
-        F[POSITION, TURN] = (0.5 * dt * dt) * hat(_FALL)
-        F[:15, GYRO] = -dt * (B @ s.R)
-        F[VELOCITY, FORCE] = -dt * s.R
-        P = F @ P @ F.T
+        F, B = self.transition(dt)
+        P = F @ self.P @ F.T
         P[:15, :15] += (sensors.gyro_density**2 * dt) * (B @ B.T)
         D = np.einsum("ii->i", P)
         D[VELOCITY] += (sensors.accelerometer_density**2 + ground.model**2) * dt
@@ -225,8 +237,7 @@ class InvariantFilter:
             turn: likewise of how it is turned [rad].
         """
         s, n = self.stand, len(self.P)
-        s.d, s.Z = s.d.copy(), s.Z.copy()
-        s.d[k], s.Z[k] = s.p + s.R @ y, s.R @ Y
+        s.columns[2 + k], s.Z[k] = s.p + s.R @ y, s.R @ Y
         T = np.eye(n)
         i, j = FOOT[k], SOLE[k]
         T[i], T[j] = 0.0, 0.0
@@ -275,7 +286,7 @@ class InvariantFilter:
         """How far the standing feet are from where the kinematics say, shape (6 feet,) [m, rad]."""
         s, found = self.stand, np.empty(6 * len(self._feet))
         for i, k in enumerate(self._feet):
-            found[6 * i : 6 * i + 3] = s.R @ y[k] - s.d[k] + s.p
+            found[6 * i : 6 * i + 3] = s.R @ y[k] - s.columns[2 + k] + s.columns[1]
             found[6 * i + 3 : 6 * i + 6] = logarithm(s.R @ Y[k] @ s.Z[k].T)
         return found
 
@@ -290,7 +301,7 @@ class InvariantFilter:
         r = self.residual(y, Y)
         if len(self._feet) == 2 and float(r @ self._weights @ r) > GATE:
             return self._slipped(r)
-        self.stand = self.stand.moved(self._gain @ r)
+        self.stand.move(self._gain @ r)
         return None
 
     def _slipped(self, r: Array) -> int:
@@ -302,5 +313,4 @@ class InvariantFilter:
     @property
     def finite(self) -> bool:
         """Whether state and covariance are numbers."""
-        s = self.stand
-        return bool(np.isfinite(s.p @ s.p + s.v @ s.v + s.R.sum() + s.d.sum() + np.trace(self.P)))
+        return bool(np.isfinite(self.stand.columns.sum() + np.trace(self.P)))

@@ -1,13 +1,13 @@
-"""Where the soles are from the IMU, how encoder zeros move them, and the base's state from that of the IMU."""
+"""Where the soles are from the IMU, how encoder zeros move them, and where the base is from the IMU."""
 
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.wbc.estimation.rotations import hat, quaternion
+from surefoot.wbc.estimation.rotations import hat
 from surefoot.wbc.model import cross
-from surefoot.wbc.types import Array, RobotState
+from surefoot.wbc.types import Array
 
 _LOCAL = pin.ReferenceFrame.LOCAL
 
@@ -57,6 +57,7 @@ class SensedBody:
             self._placement = model.frames[self._carrier].placement * self._placement
         parent = 1 if self._carrier is None else model.frames[self._carrier].parentJoint
         self._parent = parent
+        self._at_base = not self._behind and self._placement.isIdentity(1e-12)
         self.chain = _between(model, parent, self._soles)
         self._q, self._v = pin.neutral(model), np.zeros(model.nv)
         self._imu = self._placement
@@ -70,7 +71,9 @@ class SensedBody:
         if self._behind:
             self._imu = self._data.oMi[self._parent] * self._placement
         for k, frame in enumerate(self._soles):
-            placed = self._imu.actInv(pin.updateFramePlacement(self.model, self._data, frame))
+            placed = pin.updateFramePlacement(self.model, self._data, frame)
+            if not self._at_base:
+                placed = self._imu.actInv(placed)
             self.position[k], self.rotation[k] = placed.translation, placed.rotation
 
     def offset_jacobians(self) -> Array:
@@ -108,8 +111,8 @@ class SensedBody:
         to_imu = self._imu.rotation.T
         return to_imu @ (data.com[0] - placed.translation), to_imu @ (J - sole), to_imu @ J
 
-    def state(self, R: Array, p: Array, v: Array, rate: Array, q: Array, qd: Array) -> RobotState:
-        """The robot's state from that of the IMU.
+    def base(self, R: Array, p: Array, v: Array, rate: Array, q: Array, qd: Array) -> tuple[Array, Array, Array]:
+        """The base from the IMU: orientation (3, 3), position (3,) [m], velocity in its axes (6,) [m/s, rad/s].
 
         Args:
             R: orientation of the IMU in the world, shape (3, 3).
@@ -119,6 +122,8 @@ class SensedBody:
             q: joint angles, shape (nj,) [rad].
             qd: joint velocities, shape (nj,) [rad/s].
         """
+        if self._at_base:
+            return R, p, np.concatenate((v @ R, rate))
         imu, turning, moving = self._placement, np.zeros(3), np.zeros(3)
         if self._behind:
             self._q[7:], self._v[6:] = q, qd
@@ -127,12 +132,10 @@ class SensedBody:
             motion, turned = self._data.v[self._parent], self._data.oMi[self._parent].rotation
             turning = turned @ motion.angular
             moving = turned @ (motion.linear + cross(motion.angular, self._placement.translation))
-        base = R @ imu.rotation.T
-        lever = imu.translation
+        base, lever = R @ imu.rotation.T, imu.translation
         spin = imu.rotation @ rate - turning
-        position = p - base @ lever
         velocity = base.T @ v - cross(spin, lever) - moving
-        return RobotState(np.concatenate((position, quaternion(base), q)), np.concatenate((velocity, spin, qd)))
+        return base, p - base @ lever, np.concatenate((velocity, spin))
 
 
 def _between(model: pin.Model, carrier: int, soles: tuple[int, ...]) -> Array:

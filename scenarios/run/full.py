@@ -111,7 +111,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     senses = _senses(walk, world, parts)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    sensed = EstimationRecorder(writer) if senses.suite is not None else None
+    sensed = EstimationRecorder(writer, sizes) if senses.suite is not None else None
     walker = SimulatedRobot(walk, world, controller, senses, body.limits, body_recorder, view, sensed)
     return ClosedLoop.of(walk, walker, planner, recorder)
 
@@ -216,7 +216,7 @@ class SimulatedRobot:
         self._recorder.tick(now_ns, self.measurement, truth, terms, sample, self.report, self._torque)
         if self._sensed is not None:
             forces = self.measurement.wrench[:, 2]
-            self._sensed.tick(now_ns, self._estimate, self._wrench, terms, truth, forces)
+            self._sensed.tick(now_ns, self._senses.readings, self._estimate, self._wrench, terms, truth, forces)
 
     def fallen(self, sample: PlanSample) -> bool:
         """See `Walker`."""

@@ -28,9 +28,8 @@ def test_where_the_height_is_known_nothing_changes():
 
 def test_the_search_is_the_faster_the_less_sure_the_height_is_up_to_a_bound():
     usual = GroundSearch()
-    speeds, aims = zip(
-        *((usual.unsure(d)[0].touchdown_speed, usual.unsure(d)[1]) for d in (2e-4, 1e-3, 1.0)), strict=True
-    )
+    found = [usual.unsure(deviation) for deviation in (2e-4, 1e-3, 1.0)]
+    speeds, aims = [search.touchdown_speed for search, _ in found], [aim for _, aim in found]
     assert usual.touchdown_speed < speeds[0] < speeds[1] < speeds[2] < 0.1
     assert 0.0 < aims[0] < aims[1] < aims[2] < 0.004
     assert usual.unsure(1e-3)[0].touchdown_speed == pytest.approx(0.05, abs=0.005)
@@ -47,4 +46,4 @@ def test_a_footstep_is_aimed_below_the_ground_and_stays_where_it_is_planned(heig
     top = max(trajectory.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.8, 401))
     assert top == pytest.approx(max(sure.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.8, 401)), abs=1e-9)
     moved = trajectory.retargeted(2.2, trajectory.target + np.array([0.05, 0.0, 0.02, 0.0, 0.0, 0.0]))
-    np.testing.assert_allclose(moved.footstep, place[:3] + [0.05, 0.0, 0.02], atol=1e-12)
+    np.testing.assert_allclose(moved.footstep, place[:3] + np.array([0.05, 0.0, 0.02]), atol=1e-12)

@@ -180,11 +180,12 @@ class WalkingPlanner:
             support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         step = StepProblem.of(time, execution, feet, support)
-        balance = self._recovery.balance(step, local, support, window, self._plan)
-        adjusted = self._recovery.adjusted(step, local, window)
+        unsure = self._unsure(state, window)
+        balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
+        adjusted = self._recovery.adjusted(step, local, window, unsure)
         if adjusted is not None and adjusted.more and self._recovery.adds_steps(balance.planned):
             support, local, window = self._sight(state)
-            adjusted = self._recovery.adjusted(StepProblem.of(time, execution, feet, support), local, window)
+            adjusted = self._recovery.adjusted(StepProblem.of(time, execution, feet, support), local, window, unsure)
         left = execution.time_left
         if adjusted is not None and execution.end_in(adjusted.left, time):
             window = self._window(state, support, local)
@@ -200,6 +201,12 @@ class WalkingPlanner:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
         return self._plan
+
+    @staticmethod
+    def _unsure(state: CentroidalState, window: Window) -> float:
+        """Two standard deviations of the DCM [m]."""
+        com, velocity = state.deviation
+        return 2.0 * math.hypot(com, velocity / float(window.omega[0]))
 
     def _sight(self, state: CentroidalState) -> tuple[Support, Array, Window]:
         """What carries the robot now, its CoM in that plan frame, and the references from now on."""

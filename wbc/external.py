@@ -40,6 +40,10 @@ walks leave 1.2 N and 1.2 N·m."""
 SUDDEN = (10.0, 20.0)
 """Likewise of what acts now; walking at 1 m/s leaves 8 N and 6 N·m."""
 
+LASTING, ACTING = (1.0, 2.0), (4.0, 7.0)
+"""Deviations of one span by which the limits of what lasts and of what acts now are wider where the state is estimated;
+a median of 13 spans has a third of that deviation, one of three two thirds [-]."""
+
 BOUND = (40.0, 12.0)
 """No more force and moment counts of what acts now and has not lasted: it may be a push, soon over [N, N·m]."""
 
@@ -94,6 +98,8 @@ class LoadObserver:
         self._bound, self._push = np.repeat(BOUND, _ROWS[:2]) * pull, size.times(PUSH, "N")
         self._kept, self._sudden = (tuple(limit * pull for limit in limits) for limits in (KEPT, SUDDEN))
         self._estimate = np.zeros(sum(_ROWS))
+        self._deviation = (0.0, 0.0)
+        self._late = False
         self.load = NO_LOAD
         self._wrench, self._add = np.zeros((2, 6)), None
         if compiled is not None:
@@ -101,13 +107,16 @@ class LoadObserver:
                 "load_sums_add", terms=compiled.bound, wrench=self._wrench, felt=self._felt, com=self._com
             )
 
-    def update(self, terms: RobotTerms, wrench: Array) -> ExternalLoad:
+    def update(self, terms: RobotTerms, wrench: Array, deviation: tuple[float, float] = (0.0, 0.0)) -> ExternalLoad:
         """The load as it is now known; call it once per control tick.
 
         Args:
             terms: of the state now.
             wrench: of the soles, in their frames, shape (2, 6) [N, N·m].
+            deviation: of a force and a moment of one span by what state and wrenches are unsure of; limits are wider by
+                multiples of it, and nothing is found where it is infinite [N, N·m].
         """
+        self._deviation = deviation
         if self._momentum is None:
             self._momentum = self._moving(terms)
             return self.load
@@ -145,14 +154,27 @@ class LoadObserver:
 
     def _follow(self) -> None:
         """Let the load follow what lasts."""
+        kept_limits, sudden_limits = self._kept, self._sudden
+        weight_limits: tuple[Any, ...] = WEIGHT
+        unsure, turning = self._deviation
+        if unsure or turning:
+            if not math.isfinite(unsure + turning):
+                # What comes first says least, and must not count when the rest is known.
+                self._spans, self._late = self._spans[:0], True
+                return
+            if self._late and len(self._spans) < SPANS:
+                return
+            wider = np.repeat([unsure, turning], _ROWS[:2])
+            kept_limits, sudden_limits = _wider(self._kept, wider, LASTING), _wider(self._sudden, wider, ACTING)
+            weight_limits = _wider(WEIGHT, unsure / (self._mass * GRAVITY), LASTING)
         lasting, latest = _median(self._spans), _median(self._spans[-LATEST:])
-        share = _ramp(np.array([min(max(float(lasting[-1]), -MOST), MOST)]), WEIGHT)
+        share = _ramp(np.array([min(max(float(lasting[-1]), -MOST), MOST)]), weight_limits)
         if len(self._spans) < SPANS:
             pull = np.zeros(len(lasting) - 1)
         else:
             kept = np.where(lasting * latest > 0.0, np.minimum(np.abs(lasting), np.abs(latest)), 0.0)
-            kept = _ramp(np.copysign(kept, latest)[:-1], self._kept)
-            sudden = np.clip(_ramp(latest[:-1], self._sudden), -self._bound, self._bound)
+            kept = _ramp(np.copysign(kept, latest)[:-1], kept_limits)
+            sudden = np.clip(_ramp(latest[:-1], sudden_limits), -self._bound, self._bound)
             none, push = self._push
             sudden = sudden * min(max((push - math.hypot(*latest[:2])) / (push - none), 0.0), 1.0)
             pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
@@ -162,6 +184,11 @@ class LoadObserver:
         if self._estimate.any():
             x, y, *moment, more = self._estimate.tolist()
             self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
+
+
+def _wider(limits: tuple[Any, ...], deviation: Any, times: tuple[float, float]) -> tuple[Any, ...]:
+    """Limits that are wider by so many deviations."""
+    return limits[0] + times[0] * deviation, limits[1] + times[1] * deviation
 
 
 def _ramp(values: Array, limits: tuple[Any, ...]) -> Array:

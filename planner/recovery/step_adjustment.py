@@ -146,7 +146,9 @@ class StepAdjustment:
         self._authority = np.array(parameters.cop_authority)
         self._changes = np.array(parameters.recovery.time_changes)
 
-    def solve(self, com: Array, dcm: Array, window: Window, step: StepProblem) -> StepBounds | None:
+    def solve(
+        self, com: Array, dcm: Array, window: Window, step: StepProblem, unsure: float = 0.0
+    ) -> StepBounds | None:
         """The solution; None where nothing has to be adjusted, or the step has no place to land.
 
         Args:
@@ -154,6 +156,7 @@ class StepAdjustment:
             dcm: now, likewise.
             window: references.
             step: as scheduled.
+            unsure: error of the DCM that is no error, since it is not known better [m].
         """
         t, numbers, count = self._sample_time, self._numbers, len(window.stiffness)
         lift = min(round(step.double / t), count - 3)
@@ -171,7 +174,7 @@ class StepAdjustment:
         fade = float(decays(window.stiffness[: land + 1], window.omega[: land + 1], t)[-1])
         own = np.minimum(box, self._authority)
         missed = np.where(own < box, fade * numbers.unheld_share * box, fade * numbers.tolerance)
-        fine = bool((np.abs(dcm - bounded[0, :2]) <= (1.0 - fade) * own + more + missed).all())
+        fine = bool((np.abs(dcm - bounded[0, :2]) <= (1.0 - fade) * own + more + missed + unsure).all())
         if fine and not step.adapted:
             return None
         times, held = self._times(step, fine), numbers.cop_share * own

@@ -44,6 +44,7 @@ class SwingTrajectory:
         target: touchdown position and angles, shape (6,).
         clearance: height of the apex above the higher of lift-off and touchdown [m].
         search: how it goes on after the touchdown time, if it feels no ground.
+        aim: how far the target lies below the footstep, where the ground's height is unsure [m].
         level: coefficients of all but z from `start_time`, shape (6, 5).
         rise_start: local time zero of the rise [s].
         rise: coefficients of z until the apex, shape (6, 1).
@@ -68,6 +69,14 @@ class SwingTrajectory:
     fall: Array
     bend_time: float = math.inf
     onward: Array = field(default_factory=lambda: np.zeros((6, len(_GLIDING))))
+    aim: float = 0.0
+
+    @property
+    def footstep(self) -> Array:
+        """Where the foot is to land, its target without what it is aimed below that, shape (3,) [m]."""
+        place = self.target[:3].copy()
+        place[2] += self.aim
+        return place
 
     @property
     def bent(self) -> bool:
@@ -141,7 +150,9 @@ class SwingTrajectory:
         moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target), bend_time=math.inf)
         if target[2] == self.target[2]:
             return moved
-        return moved._with_height(time, state[:, 2:3], max(float(state[0, 2]), float(target[2])) + self.clearance)
+        return moved._with_height(
+            time, state[:, 2:3], max(float(state[0, 2]), float(target[2]) + self.aim) + self.clearance
+        )
 
     def around(self, corner: Array, grid: float) -> "SwingTrajectory":
         """The trajectory that passes a corner on its way to the same target at the same time, with the least jerk.
@@ -260,18 +271,28 @@ def swing_times(start: float, samples: float, course: SwingCourse, parameters: P
 
 
 def start_swing(
-    foot: Foot, pose: Array, target: Array, times: SwingTimes, clearance: float, parameters: PlannerParameters
+    foot: Foot,
+    pose: Array,
+    footstep: Array,
+    times: SwingTimes,
+    clearance: float,
+    parameters: PlannerParameters,
+    deviation: float = 0.0,
 ) -> SwingTrajectory:
     """Swing from rest.
 
     Args:
         foot: the foot that swings.
         pose: lift-off position and angles, shape (6,).
-        target: touchdown position and angles, shape (6,).
+        footstep: touchdown position and angles, shape (6,).
         times: of the swing.
         clearance: height of the apex above the higher of both ends [m].
         parameters: give the search for the ground.
+        deviation: standard deviation of the sole's height over the ground [m].
     """
+    search, aim = parameters.search.unsure(deviation)
+    target = np.array(footstep)
+    target[2] -= aim
     rest = np.zeros((3, 6))
     rest[0] = pose
     trajectory = SwingTrajectory(
@@ -280,16 +301,17 @@ def start_swing(
         glide_end=times.glide_end,
         apex_time=times.apex,
         touchdown_time=times.touchdown,
-        target=np.array(target),
+        target=target,
         clearance=clearance,
-        search=parameters.search,
+        search=search,
         level=_to_rest(rest[:, _GLIDING], target[_GLIDING], times.glide_end - times.glide_start),
         rise_start=times.lift,
         rise=np.zeros((6, 1)),
         fall_start=times.apex,
         fall=np.zeros((6, 1)),
+        aim=aim,
     )
-    return trajectory._with_height(times.lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
+    return trajectory._with_height(times.lift, rest[:, 2:3], max(float(pose[2]), float(footstep[2])) + clearance)
 
 
 def detour(time: float, duration: float) -> tuple[Array, Array]:

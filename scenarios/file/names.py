@@ -12,7 +12,7 @@ from surefoot.scenarios.errors import Key, Problem, dotted
 TERRAIN_KINDS: Registry[Any] = Registry("surefoot.terrains", object, ("flat", "stairs", "blocks", "slope"))
 """Of ``terrain.kind``; what builds the ground, `surefoot.scenarios.setup.terrain` brings."""
 
-SOURCES: Registry[Any] = Registry("surefoot.estimators", None, ("truth",))
+SOURCES: Registry[Any] = Registry("surefoot.estimators", None, ("truth", "ekf"))
 """Of ``sensing.source``; what estimates the state, `surefoot.scenarios.run.sensing` brings."""
 
 

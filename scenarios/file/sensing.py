@@ -4,7 +4,7 @@ Null is what ``sensing.preset`` has, or an ideal motor; what each term means is 
 `surefoot.sim.sensor_errors` and `surefoot.sim.drives`.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -30,6 +30,7 @@ class Sensing(Group):
     source: Annotated[str, OneOf("sensing", "source")] = key(
         DEFAULTS["sensing"], "estimator of the state that controller and planner are given"
     )
+    options: dict[str, Any] | None = key(None, "given to that estimator by name, null: none")
     preset: Literal["perfect", "good", "cheap"] | None = key(
         None, "sensors that the estimator reads, each of whose terms another key may replace, null: perfect"
     )
@@ -97,7 +98,7 @@ class Sensing(Group):
     )
 
 
-OF_THE_PLANNER = ("source", "zmp_noise", "com_noise", "force_estimate")
+OF_THE_PLANNER = ("source", "options", "zmp_noise", "com_noise", "force_estimate")
 """Keys of `sensing` that are of no sensor."""
 
 SENSOR_KEYS = tuple(name for name in Sensing.model_fields if name not in OF_THE_PLANNER)

@@ -21,6 +21,7 @@ from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
+from surefoot.scenarios.record.readings import ReadingsRecorder
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.planning import FaultSchedule, RunFault, whole_body_reference
 from surefoot.scenarios.run.sensed import Senses, foot_sensing, unsure
@@ -28,6 +29,7 @@ from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator, SensorEstimato
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look
 from surefoot.scenarios.setup.feasible import made_ready
+from surefoot.scenarios.setup.hardware import refuse_unread
 from surefoot.scenarios.setup.parts import TASK, guarded
 from surefoot.scenarios.setup.stance import (
     Body,
@@ -111,7 +113,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     senses = _senses(walk, world, parts)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    sensed = EstimationRecorder(writer) if senses.suite is not None else None
+    sensed = None if senses.suite is None else (ReadingsRecorder(writer, sizes), EstimationRecorder(writer))
     walker = SimulatedRobot(walk, world, controller, senses, body.limits, body_recorder, view, sensed)
     return ClosedLoop.of(walk, walker, planner, recorder)
 
@@ -127,7 +129,7 @@ class SimulatedRobot:
         limits: of the joints.
         recorder: of its channels.
         view: of what MCAP viewers show.
-        sensed: records what is made of the sensors; None for an estimator that senses nothing.
+        sensed: record what sensors say and what is made of it; None for an estimator that senses nothing.
 
     Attributes:
         world: the simulated world.
@@ -146,7 +148,7 @@ class SimulatedRobot:
         limits: JointLimits,
         recorder: Recorder,
         view: BodyView,
-        sensed: EstimationRecorder | None = None,
+        sensed: tuple[ReadingsRecorder, EstimationRecorder] | None = None,
     ) -> None:
         self.world, self.controller, self._senses = world, controller, senses
         self._recorder, self._view, self._sensed = recorder, view, sensed
@@ -216,7 +218,9 @@ class SimulatedRobot:
         self._recorder.tick(now_ns, self.measurement, truth, terms, sample, self.report, self._torque)
         if self._sensed is not None:
             forces = self.measurement.wrench[:, 2]
-            self._sensed.tick(now_ns, self._estimate, self._wrench, terms, truth, forces)
+            readings, estimation = self._sensed
+            readings.tick(now_ns, self._senses.readings)
+            estimation.tick(now_ns, self._estimate, self._wrench, terms, truth, forces)
 
     def fallen(self, sample: PlanSample) -> bool:
         """See `Walker`."""
@@ -261,7 +265,10 @@ def _senses(walk: Walk, world: World, parts: Parts) -> Senses:
     make = parts.estimator or ESTIMATORS[source]
     guard = ESTIMATORS.guard(source) if parts.estimator is None else Guard.of_program("estimator", make)
     with guard.making:
-        return Senses(make(walk, **(walk.sensing.options or {})), guard, world, walk)
+        senses = Senses(make(walk, **(walk.sensing.options or {})), guard, world, walk)
+    if senses.suite is None:
+        refuse_unread(walk.sensing)
+    return senses
 
 
 def _tasks(walk: Walk, body: Body, parts: Parts) -> Iterator[Task]:

@@ -12,6 +12,7 @@ from surefoot.guard import Guard, MisfitError
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.planner.types import CentroidalState, FeetState
+from surefoot.readings import Readings
 from surefoot.scenarios.setup.parts import ESTIMATE, guarded
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
@@ -117,6 +118,7 @@ class Senses:
     Attributes:
         is_truth: whether it hands on the true state.
         suite: sensors that it reads; None where it is given the measurement.
+        readings: what they have said last.
 
     Raises:
         MisfitError: it is of neither kind.
@@ -129,6 +131,7 @@ class Senses:
         part = guarded(estimator, guard, ESTIMATE)
         self.is_truth = not senses and bool(part.is_truth)
         self.suite: SensorSuite | None = None
+        self.readings: Readings
         if senses:
             self.suite = SensorSuite(world, walk.hardware.sensors, walk.rates.control, walk.seed)
             self._sense = part.sense
@@ -140,7 +143,8 @@ class Senses:
         """The estimate of a tick."""
         if self.suite is None:
             return Estimate(self._estimate(measurement))
-        estimate: Estimate = self._sense(self.suite.read(measurement, tick))
+        self.readings = self.suite.read(measurement, tick)
+        estimate: Estimate = self._sense(self.readings)
         return estimate
 
     def told(self, reference: WbcReference, report: WbcReport) -> None:

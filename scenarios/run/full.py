@@ -28,6 +28,7 @@ from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator, SensorEstimato
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look
 from surefoot.scenarios.setup.feasible import made_ready
+from surefoot.scenarios.setup.hardware import refuse_unread
 from surefoot.scenarios.setup.parts import TASK, guarded
 from surefoot.scenarios.setup.stance import (
     Body,
@@ -127,7 +128,7 @@ class SimulatedRobot:
         limits: of the joints.
         recorder: of its channels.
         view: of what MCAP viewers show.
-        sensed: records what is made of the sensors; None for an estimator that senses nothing.
+        sensed: record what sensors say and what is made of it; None for an estimator that senses nothing.
 
     Attributes:
         world: the simulated world.
@@ -261,7 +262,10 @@ def _senses(walk: Walk, world: World, parts: Parts) -> Senses:
     make = parts.estimator or ESTIMATORS[source]
     guard = ESTIMATORS.guard(source) if parts.estimator is None else Guard.of_program("estimator", make)
     with guard.making:
-        return Senses(make(walk, **(walk.sensing.options or {})), guard, world, walk)
+        senses = Senses(make(walk, **(walk.sensing.options or {})), guard, world, walk)
+    if senses.suite is None:
+        refuse_unread(walk.sensing)
+    return senses
 
 
 def _tasks(walk: Walk, body: Body, parts: Parts) -> Iterator[Task]:

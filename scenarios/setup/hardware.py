@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
+from surefoot.errors import ParameterError
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.names import DEFAULTS
 from surefoot.scenarios.file.sensing import SENSOR_KEYS, MotorSettings, Sensing
@@ -59,6 +60,27 @@ def sensor_errors(sensing: Sensing, size: Similarity) -> SensorErrors:
     return replace(preset, **changed)
 
 
+def refuse_unread(sensing: Sensing) -> None:
+    """Refuse terms of sensors beside an estimator that is given the measurement and reads none.
+
+    Raises:
+        ParameterError: there is one.
+    """
+    for name, value in _given(sensing).items():
+        what = f"sensing.{name} {value} beside an estimator that reads no sensor"
+        raise ParameterError(("sensing", name), what, "let sensing.source name another, or leave it out")
+
+
+def _given(sensing: Sensing) -> dict[str, Any]:
+    """Terms of sensors that a scenario has, but for zeros of earlier logs."""
+    values = ((name, getattr(sensing, name)) for name in SENSOR_KEYS)
+    return {
+        name: value
+        for name, value in values
+        if value is not None and not (value == 0.0 and name in _ZERO_MEANS_NOTHING)
+    }
+
+
 def _delivery(sensing: Sensing, group: str, usual: Delivery) -> Delivery:
     """How the readings of a group come: as its own keys say, else as those of all groups, else as the preset."""
     found = {}
@@ -76,12 +98,11 @@ def hardware_problems(sensing: Sensing, motors: MotorSettings | None, physics_ra
         motors: likewise.
         physics_rate: steps of the world in a second [Hz].
     """
-    given = {name: value for name in SENSOR_KEYS if (value := getattr(sensing, name)) is not None}
+    given = _given(sensing)
     if sensing.source == DEFAULTS["sensing"]:
         for name, value in given.items():
-            if value != 0.0 or name not in _ZERO_MEANS_NOTHING:
-                what = f"sensing.{name} {value} beside sensing.source {sensing.source}, which reads no sensor"
-                yield Problem(("sensing", name), what, "name an estimator as sensing.source, or leave it out")
+            what = f"sensing.{name} {value} beside sensing.source {sensing.source}, which reads no sensor"
+            yield Problem(("sensing", name), what, "name an estimator as sensing.source, or leave it out")
         given = {}
     if sensing.wrench == "none":
         for name in (name for name in _FEET if name in given):

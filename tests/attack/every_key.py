@@ -12,8 +12,12 @@ from surefoot.scenarios.file.group import Group, controller_parameters
 from surefoot.scenarios.file.schema import PlannerSettings, Scenario
 from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
-NOT_YET = {f"sensing.{name}" for name in SENSOR_KEYS}
-"""Keys that are refused beside the truth."""
+NOT_YET = {"sensing.options"}
+"""Keys whose values are what an estimator takes."""
+
+_SENSORS = {"preset": "cheap", "wrench": "feet", "encoder_velocity": True, "encoder_bits": 16, "latency": 0.002}
+SENSORS = {name: _SENSORS.get(name, 10.0 if name.endswith("_range") else 1e-3) for name in SENSOR_KEYS}
+"""Every key of the sensors."""
 
 TEXTS = {
     "options": """
@@ -140,6 +144,7 @@ RECOVERY = _of_controller(RecoveryParameters(), next(_groups(PlannerSettings.mod
 
 SCENARIOS: dict[str, dict[str, Any]] = {
     **{name: yaml.safe_load(text) for name, text in TEXTS.items()},
+    "sensors": {"duration": 0.06, "sensing": {"source": "ekf", **SENSORS}},
     "wbc": {"duration": 0.06, "wbc": WBC},
     "recovery": {"duration": 0.06, "fidelity": "pendulum", "planner": {"recovery": RECOVERY}},
     **{f"wbc-{name}": {"duration": 0.06, "wbc": {name: value}} for name, value in WBC.items()},

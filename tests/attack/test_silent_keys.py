@@ -20,6 +20,7 @@ WITHOUT_OCCASION = {
     "terrain.friction": "a bound of the contact forces, which they may stay within",
     "wbc.friction": "likewise, as it is believed",
     "errors.friction": "likewise",
+    "motors.torque_speed": "a bound of the torques, which they may stay within",
     "wbc.second_solver": "acts when the first one fails",
     "wbc.weights.swing": "acts on a foot that swings",
     **dict.fromkeys(

@@ -78,6 +78,7 @@ PLACES = {
     "humanoid100": ImuPlace(),
     "humanoid100 on its torso": ImuPlace("torso", (0.05, -0.02, 0.1), (0.5, 0.5, -0.5, 0.5)),
     "humanoid100 on a foot": ImuPlace("left_foot", (0.05, 0.0, 0.02), (0.6, 0.0, 0.8, 0.0)),
+    "humanoid100 with an axis beside its waist": ImuPlace("torso", (0.05, -0.02, 0.1), (0.5, 0.5, -0.5, 0.5)),
     "talos": None,
     "g1": None,
 }
@@ -85,6 +86,10 @@ PLACES = {
 
 def placed(name):
     robot = describe(name.split()[0], RobotOptions())
+    if "beside" in name:
+        joint = f'<joint name="{robot.roles.waist[0]}"'
+        assert joint in robot.mjcf
+        robot = replace(robot, mjcf=robot.mjcf.replace(joint, f'{joint} pos="0.05 0.03 -0.02"'))
     return robot if PLACES[name] is None else replace(robot, imu=PLACES[name])
 
 

@@ -29,6 +29,9 @@ from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
 
 _OPTIONS = ("sensing", "options")
 
+SWAY, SWAY_TIME = (0.3, 1.0), 0.1
+"""Angular velocity and acceleration of a pelvis that walks, RMS, and how long they keep their sign [rad/s, m/s^2, s]."""
+
 
 def sensed_state(walk: Walk, **options: Any) -> SensedState:
     """The invariant filter of a walk's sensors, which knows of them no more than their data sheets say.
@@ -71,12 +74,14 @@ def sensor_noise(errors: SensorErrors, period: float) -> SensorNoise:
     """
     rounding = math.tau / 2**errors.encoder_bits / math.sqrt(12.0) if errors.encoder_bits else 0.0
     root = math.sqrt(period)
+    # An IMU that is mounted wrongly takes turns and accelerations for ones about other axes.
+    turning, pushing = (errors.imu_misalignment * size * math.sqrt(SWAY_TIME) for size in SWAY)
     return SensorNoise(
-        gyro_density=math.hypot(errors.gyro_density, errors.gyro_noise * root),
+        gyro_density=math.hypot(errors.gyro_density, errors.gyro_noise * root, turning),
         gyro_bias=errors.gyro_bias,
         gyro_walk=errors.gyro_walk,
-        accelerometer_density=math.hypot(errors.accelerometer_density, errors.accelerometer_noise * root),
-        # An IMU that is mounted wrongly takes a share of gravity for an acceleration.
+        accelerometer_density=math.hypot(errors.accelerometer_density, errors.accelerometer_noise * root, pushing),
+        # Likewise a share of gravity for an acceleration.
         accelerometer_bias=math.hypot(errors.accelerometer_bias, GRAVITY * errors.imu_misalignment),
         accelerometer_walk=errors.accelerometer_walk,
         encoder=math.hypot(errors.encoder_noise, rounding),

@@ -70,12 +70,12 @@ class SoleContact:
         """Whether the wrenches have no bias any more."""
         return self._bias == 0.0 or min(self.tared) >= self._parameters.tared_after
 
-    def update(self, reading: Reading, rolling: int, above: Sequence[float]) -> None:
+    def update(self, reading: Reading, still: Sequence[bool], above: Sequence[float]) -> None:
         """Take the wrenches of a tick.
 
         Args:
             reading: of the sensors in the feet.
-            rolling: the foot that rolls about its toe edge, -1 for none.
+            still: soles that the controller means to stand still.
             above: how far each sole is over the ground [m].
         """
         if self._filtered is None:
@@ -91,7 +91,7 @@ class SoleContact:
         if not any(self.felt) and max(force) > self.threshold:
             self.felt[int(force[1] > force[0])] = True
         for k in (0, 1):
-            self.firm[k] = self.felt[k] and self._flat(k, force) and k != rolling
+            self.firm[k] = self.felt[k] and self._flat(k, force) and still[k]
         if not any(self.firm):
             carrying = int(force[1] > force[0])
             self.firm[carrying] = self.felt[carrying]

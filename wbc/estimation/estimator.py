@@ -83,7 +83,7 @@ class SensedState:
         self._filter: InvariantFilter | None = None
         self._tick, self._imu_at = -1, 0
         self._base_told: deque[Array] = deque(maxlen=KEPT)
-        self._rolling = -1
+        self._still = [True, True]
         self._lost = False
         self._state: RobotState | None = None
         self._deviation: Deviation | None = None
@@ -99,7 +99,7 @@ class SensedState:
         """Hear what the controller does until the next tick."""
         self._joints.told(planned.acceleration[6:])
         self._base_told.append(planned.acceleration[:6].copy())
-        self._rolling = planned.rolling_foot
+        self._still = [planned.contact[k] and k != planned.rolling_foot for k in (0, 1)]
 
     def sense(self, readings: Readings) -> Estimate:
         """The estimate of a tick."""
@@ -108,7 +108,7 @@ class SensedState:
         wrench = self._wrench(readings)
         if self._filter is None:
             self._filter = self._start(readings.joint_position.values)
-            self._contact.update(wrench, -1, self._above)
+            self._contact.update(wrench, self._still, self._above)
             self._state = self._now(readings, q, qd)
             self._deviation = self._uncertainty(self._body.offset_jacobians())
         elif not self._lost:
@@ -176,7 +176,7 @@ class SensedState:
         if at > self._imu_at:
             filter_.propagate(rate.values, force.values, (at - self._imu_at) * self._period)
             self._imu_at = at
-        contact.update(wrench, self._rolling, self._above)
+        contact.update(wrench, self._still, self._above)
         body.update(self._known(readings.joint_position.values, filter_.stand.offsets))
         changed = contact.firm != filter_.standing
         due = changed or self._tick % self._every == 0

@@ -31,7 +31,7 @@ class Feet:
             wrench[0, 4] = -cop * HALF[0] * wrench[0, 2]
             noise = np.repeat([self.sensors.wrench_force, self.sensors.wrench_moment], 3)
             said = wrench + self.bias + noise * self.rng.normal(size=(2, 6))
-            self.contact.update(Reading(said, 0.0, True), rolling, above)
+            self.contact.update(Reading(said, 0.0, True), [k != rolling for k in (0, 1)], above)
             if felt is None and self.contact.felt[0]:
                 felt = tick + 1
         return felt

@@ -30,7 +30,7 @@ from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
 _OPTIONS = ("sensing", "options")
 
 SWAY, SWAY_TIME = (0.3, 1.0), 0.1
-"""Angular velocity and acceleration of a pelvis that walks, RMS, and how long they keep their sign [rad/s, m/s^2, s]."""
+"""Angular velocity and acceleration of a walking pelvis, RMS, and how long they keep their sign [rad/s, m/s^2, s]."""
 
 
 def sensed_state(walk: Walk, **options: Any) -> SensedState:

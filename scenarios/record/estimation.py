@@ -5,10 +5,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from surefoot.readings import Readings
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import RowLayout, Rows
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
 from surefoot.scenarios.record import channels
+from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.record.readings import ReadingsRecorder
 from surefoot.wbc.estimation.estimate import Deviation, Estimate
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import Array
@@ -28,10 +31,11 @@ _MORE = dict(zip(_STATES, (3, 3, 9, 3, 3, 9, 14), strict=True))
 
 
 class EstimationRecorder:
-    """The channel of an estimator that senses, one row per control tick, and one of what else it tells."""
+    """The channels of an estimator that senses, a row each per control tick: readings, estimate, what else it tells."""
 
-    def __init__(self, writer: LogWriter) -> None:
-        """Open its channel."""
+    def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
+        """Open its channels."""
+        self._readings = ReadingsRecorder(writer, sizes)
         channel = writer.channel(channels.estimation())
         vectors = ((channel, (*_POSES, *_WRENCHES, *_DEVIATIONS)),)
         numbers = ((channel, ("contact", *_LOAD)),)
@@ -41,18 +45,21 @@ class EstimationRecorder:
         self._told: Mapping[str, Array] | None = None
 
     def tick(
-        self, time_ns: int, estimate: Estimate, wrench: Array, terms: RobotTerms, truth: RobotTerms, forces: Array
-    ) -> None:
+        self, time_ns: int, readings: Readings, estimate: Estimate, wrench: Array, terms: RobotTerms,
+        truth: RobotTerms, forces: Array,
+    ) -> None:  # fmt: skip
         """A control tick.
 
         Args:
             time_ns: simulated time [ns].
+            readings: that the estimator was given.
             estimate: of the estimator.
             wrench: of the soles, that controller and planner were given, shape (2, 6) [N, N·m].
             terms: of the robot model in the estimated state.
             truth: of the true robot in its true state.
             forces: true normal forces on the soles, shape (2,) [N].
         """
+        self._readings.tick(time_ns, readings)
         sure, told = estimate.deviation or _UNKNOWN, estimate.contact or (False, False)
         self._row.append(
             time_ns,

@@ -21,7 +21,6 @@ from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
-from surefoot.scenarios.record.readings import ReadingsRecorder
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.planning import FaultSchedule, RunFault, whole_body_reference
 from surefoot.scenarios.run.sensed import Senses, foot_sensing, unsure
@@ -113,7 +112,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     senses = _senses(walk, world, parts)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    sensed = None if senses.suite is None else (ReadingsRecorder(writer, sizes), EstimationRecorder(writer))
+    sensed = EstimationRecorder(writer, sizes) if senses.suite is not None else None
     walker = SimulatedRobot(walk, world, controller, senses, body.limits, body_recorder, view, sensed)
     return ClosedLoop.of(walk, walker, planner, recorder)
 
@@ -148,7 +147,7 @@ class SimulatedRobot:
         limits: JointLimits,
         recorder: Recorder,
         view: BodyView,
-        sensed: tuple[ReadingsRecorder, EstimationRecorder] | None = None,
+        sensed: EstimationRecorder | None = None,
     ) -> None:
         self.world, self.controller, self._senses = world, controller, senses
         self._recorder, self._view, self._sensed = recorder, view, sensed
@@ -218,9 +217,7 @@ class SimulatedRobot:
         self._recorder.tick(now_ns, self.measurement, truth, terms, sample, self.report, self._torque)
         if self._sensed is not None:
             forces = self.measurement.wrench[:, 2]
-            readings, estimation = self._sensed
-            readings.tick(now_ns, self._senses.readings)
-            estimation.tick(now_ns, self._estimate, self._wrench, terms, truth, forces)
+            self._sensed.tick(now_ns, self._senses.readings, self._estimate, self._wrench, terms, truth, forces)
 
     def fallen(self, sample: PlanSample) -> bool:
         """See `Walker`."""

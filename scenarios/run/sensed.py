@@ -118,7 +118,7 @@ class Senses:
     Attributes:
         is_truth: whether it hands on the true state.
         suite: sensors that it reads; None where it is given the measurement.
-        readings: what they have said last.
+        readings: the last that it was given; there are none of one that is given the measurement.
 
     Raises:
         MisfitError: it is of neither kind.
@@ -143,8 +143,8 @@ class Senses:
         """The estimate of a tick."""
         if self.suite is None:
             return Estimate(self._estimate(measurement))
-        self.readings = self.suite.read(measurement, tick)
-        estimate: Estimate = self._sense(self.readings)
+        self.readings = readings = self.suite.read(measurement, tick)
+        estimate: Estimate = self._sense(readings)
         return estimate
 
     def told(self, reference: WbcReference, report: WbcReport) -> None:

@@ -61,7 +61,7 @@ class SoleContact:
         self._bias = sensors.wrench_bias
         self._filtered: Array | None = None
         self._tare = np.zeros((2, 6))
-        self._count = [parameters.ticks, parameters.ticks]
+        self._count = [0, 0]
         self.felt, self.firm, self.tared = [True, True], [True, True], [0.0, 0.0]
         self.wrench = np.zeros((2, 6))
 
@@ -103,9 +103,10 @@ class SoleContact:
         if self.felt[k]:
             touches = force[k] > p.released * (self.threshold + more)
         else:
-            touches = force[k] > self.threshold + more or self._slow[k] > self._lasting + more
-        self._count[k] = self._count[k] + 1 if touches else 0
-        self.felt[k] = self._count[k] >= (1 if self.felt[k] else p.ticks)
+            touches = bool(force[k] > self.threshold + more or self._slow[k] > self._lasting + more)
+        self._count[k] = self._count[k] + 1 if touches != self.felt[k] else 0
+        if self._count[k] >= p.ticks:
+            self.felt[k], self._count[k] = touches, 0
 
     def _flat(self, k: int, force: list[float]) -> bool:
         p, load = self._parameters, force[k]

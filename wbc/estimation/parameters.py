@@ -72,7 +72,7 @@ class ContactDetection:
     force: float = number(8.0, "N", "normal force that is felt by a sensor without noise")
     certain: float = number(4.0, "-", "deviations of the filtered force that are felt at least")
     released: float = number(0.5, "-", "share of that force below which a contact ends")
-    ticks: int = number(2, "-", "consecutive ticks of that force before it counts", positive=True)
+    ticks: int = number(2, "-", "consecutive ticks after which a contact begins or ends", positive=True)
     anchor: float = number(0.08, "-", "share of the weight from which a sole that lands stands still")
     edge: float = number(0.9, "-", "share of the half sole within which its CoP is where it stands still")
     tare_time: float = number(0.1, "s", "time constant of the tare of a swinging foot's sensor", positive=True)

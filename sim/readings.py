@@ -222,7 +222,10 @@ class _Line:
             return tuple(Reading(values, 0.0, True) for values in sample)
         self._send(tick, sample)
         now, before = tick * self._period + _SOON, self._taken
+        newest = now - self._delivery.latency
         for arrival, sent, values in self._under_way:
+            if sent * self._period > newest:  # none of the rest can have arrived
+                break
             if arrival <= now and sent > self._taken:
                 self._taken, self._values = sent, values
         if self._taken != before:

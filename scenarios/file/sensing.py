@@ -105,6 +105,15 @@ SENSOR_KEYS = tuple(name for name in Sensing.model_fields if name not in OF_THE_
 """Those that say what the sensors of an estimator add to the truth."""
 
 
+SENSOR_SIZES = tuple(
+    name for name in SENSOR_KEYS if name not in ("preset", "wrench", "encoder_velocity", "encoder_bits")
+)
+"""Those that are a size."""
+
+MOTOR_SIZES = ("damping", "friction_loss", "delay", "noise")
+"""Keys of `motors` that are one."""
+
+
 class MotorSettings(Group):
     """What the motors add that planner and controller do not know of."""
 

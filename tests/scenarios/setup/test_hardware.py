@@ -141,6 +141,12 @@ def test_a_delay_of_less_than_half_a_step_of_the_physics_is_refused():
     assert told(Sensing(), MotorSettings(delay=6e-4)) == []
 
 
+@pytest.mark.parametrize("key", ["motors.noise", "errors.ground_pitch"])
+def test_sizes_that_change_nothing_are_refused(key):
+    with pytest.raises(ScenarioError, match=f"{key} 1e-300 is too small to change anything"):
+        load("walk", {key: 1e-300})
+
+
 def test_motors_of_a_pendulum_are_told_to_have_no_effect():
     from surefoot.scenarios.setup.notes import notes
 

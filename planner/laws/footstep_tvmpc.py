@@ -5,10 +5,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from surefoot.native.library import Library, library
+from surefoot.native.library import Block, Library, library
 from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem, StepContext
 from surefoot.planner.laws.qp import AxesSolver, Qp, QpSolution
-from surefoot.planner.model.dcm import NominalMotion, jerk_range, no_motion, nominal_motion, viability_weights
+from surefoot.planner.model.dcm import (
+    NominalMotion,
+    bind_motion,
+    jerk_range,
+    no_motion,
+    nominal_motion,
+    viability_weights,
+)
 from surefoot.planner.model.jerk import Prediction, block_moves, predict, zmp_response
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.leg_offset import softening
@@ -218,26 +225,13 @@ class _CompiledQps:
         p, most = parameters, parameters.horizon + parameters.preview + 1
         m, rows = len(p.moves), 2 * p.horizon + 2
         size = m + _EXTRA
-        self._position, self._state, self._lower, self._upper = np.empty(2), np.empty((2, 3)), *np.empty((2, 2, 2))
-        self._stiffness, self._omega = np.empty((2, most))
-        self._zmp, self._gain, self._half_size, com, velocity, acceleration = np.empty((6, most, 2))
+        self._state, (self._lower, self._upper) = np.empty((2, 3)), np.empty((2, 2, 2))
+        self._omega, (self._gain, self._half_size) = np.empty(most), np.empty((2, most, 2))
         shapes = (size, size), (2, size), (rows, size), (2, rows), (2, size), (2, size), (most, 2)
-        ends = np.cumsum([math.prod(shape) for shape in shapes]).tolist()
-        self._out, self._horizon = np.empty(ends[-1]), p.horizon
-        self._parts = [(slice(end - math.prod(shape), end), shape) for end, shape in zip(ends, shapes, strict=True)]
-        P, q, G, h, lower, upper, jerk = self._views(self._out)
-        motion = kernels.fill(
-            "NominalMotion",
-            sample_time=p.sample_time,
-            position=self._position,
-            zmp=self._zmp,
-            stiffness=self._stiffness,
-            upper=np.empty(most),
-            com=com,
-            velocity=velocity,
-            acceleration=acceleration,
-            jerk=jerk,
-        )
+        self._block, self._horizon = Block(*shapes), p.horizon
+        P, q, G, h, lower, upper, jerk = self._block.arrays
+        motion, own = bind_motion(kernels, p.sample_time, most, jerk=jerk)
+        self._position, self._stiffness, self._zmp = own["position"], own["stiffness"], own["zmp"]
         numbers = ("jerk_limit", "jerk_weight", "step_weight", "terminal_weight", "terminal_margin")
         self._run = kernels.bind(
             "footstep_qps_make",
@@ -273,12 +267,9 @@ class _CompiledQps:
         self._zmp[:n], self._gain[:n], self._half_size[:n] = reference.point, reference.gain, reference.half_size
         self._lower[:], self._upper[:] = steps.lower, steps.upper
         self._run(n)
-        P, q, G, h, lower, upper, jerk = self._views(self._out.copy())
+        P, q, G, h, lower, upper, jerk = self._block.copied()
         axes = Qp(P, q[0], G, h[0], lower[0], upper[0]), Qp(P, q[1], G, h[1], lower[1], upper[1])
         return BuiltQps(axes, jerk[: self._horizon], _UNSHIFTED)
-
-    def _views(self, out: Array) -> list[Array]:
-        return [out[where].reshape(shape) for where, shape in self._parts]
 
 
 class ConstantHeightTvmpc(FootstepTvmpc):

@@ -486,4 +486,27 @@ typedef struct {
 
 void footstep_qps_make(const FootstepQps *qps, int64_t samples);
 
+/* Counterpart of `planner.model.jerk.WorldMotion._plain`, whose names these are, over `samples` and the one now. */
+typedef struct {
+    double sample_time;
+    int64_t samples;
+    const double *state;
+    const double *jerk;
+    const double *stiffness;
+    const double *height;
+    const double *offset;
+    const double *point;
+    const double *gain;
+    const double *shifts;
+    const double *rotation;
+    const double *origin;
+    double *com;
+    double *world_jerk;
+    double *zmp;
+    double *world_offset;
+    double *reference;
+} MotionInWorld;
+
+void motion_in_world(const MotionInWorld *motion);
+
 #endif

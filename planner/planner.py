@@ -169,7 +169,8 @@ class WalkingPlanner:
         Raises:
             ValueError: the measured CoM or feet are not finite.
         """
-        if not math.isfinite(float(state.com.sum() + state.com_velocity.sum() + feet.position.sum() + feet.yaw.sum())):
+        measured = (*state.com.tolist(), *state.com_velocity.tolist(), *feet.position.flat, *feet.yaw.tolist())
+        if not all(map(math.isfinite, measured)):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         execution, time = self._execution, state.time
         execution.advance(feet)
@@ -272,7 +273,8 @@ class WalkingPlanner:
     def _step_context(self, support: Support, feet: FeetState, adjusted: AdjustedStep | None) -> StepContext:
         execution, schedule, phase = self._execution, self._execution.schedule, self._execution.phase
         landed, swing, increment = execution.landed, phase.swing_foot, np.zeros((2, 2))
-        ahead = np.diff(schedule.positions[schedule.index(landed) :][:3, :2], axis=0) @ support.rotation
+        places = schedule.positions[schedule.index(landed) :][:3, :2]
+        ahead = (places[1:] - places[:-1]) @ support.rotation
         increment[: len(ahead)] = ahead
         side, left, transfer = schedule.step(landed).place.foot.other.side, 0.0, 0.0
         here = None if swing is None else (feet.position[swing, :2] - support.origin) @ support.rotation

@@ -312,7 +312,7 @@ class _CompiledOffset:
         places = np.empty((last + 1, 4))
         places[:, :2], places[:, 2], places[:, 3] = (position[:, :2] - origin) @ rotation, position[:, 2], schedule.yaws
         self._feet.struct.heading_of_frame = math.atan2(rotation[1, 0], rotation[0, 0])
-        self._feet.look_at(phases=phases, steps=places)
+        self._feet.point(phases=phases, steps=places)
         self._place_feet(count)
         if flown is not None:
             foot = flown[0].foot

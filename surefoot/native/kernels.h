@@ -509,4 +509,62 @@ typedef struct {
 
 void motion_in_world(const MotionInWorld *motion);
 
+/* Counterpart of `planner.steps.phases.PhaseTable` and of a `planner.references.zmp_reference.Support`. */
+typedef struct {
+    int64_t phases;
+    const double *start;
+    const double *length;
+    const double *rest;
+    const int64_t *kind;
+    const int64_t *support;
+    const int64_t *contacts;
+    int64_t first;
+    int64_t points;
+    const double *table;
+    const double *heights;
+    const double *on_left;
+} Sight;
+
+/* Counterpart of `planner.references.window.ReferencePreview`: one sample before a window, those of it, one after. */
+typedef struct {
+    const Sight *sight;
+    int64_t samples;
+    int64_t counted;
+    double sample_time;
+    double gravity;
+    double standing;
+    const double *apexes;
+    int64_t early;
+    const double *early_shares;
+    double least_pressing;
+    double least_height;
+    double softening;
+    int64_t looked_at;
+    const double *course;
+    int64_t *which;
+    int64_t *kind;
+    int64_t *index;
+    int64_t *contacts;
+    double *clock;
+    double *rate;
+    double *bend;
+    double *elapsed;
+    double *length;
+    double *fraction;
+    double *fraction_rate;
+    double *point;
+    double *gain;
+    double *half_size;
+    double *ground;
+    double *load_left;
+    double *height;
+    double *stiffness;
+    double *softened;
+    double *omega;
+} Preview;
+
+void preview_look(const Preview *preview, int64_t steady, double now, int64_t lifts);
+void preview_weigh(const Preview *preview);
+int64_t preview_transition(const Preview *preview, int64_t soonest, double bound, double z, double speed, double bend);
+
 #endif

@@ -55,10 +55,11 @@ class Bound:
     struct: Any
     kept: tuple[Any, ...]
 
-    def look_at(self, **arrays: Any) -> None:
-        """Let fields point to other arrays, as C sees them, which the caller keeps alive; this checks nothing."""
-        for name, array in arrays.items():
-            setattr(self.struct, name, ctypes.addressof(ctypes.c_char.from_buffer(array)))
+    def point(self, **others: Any) -> None:
+        """Let fields point to other structs or arrays, as C sees them, which the caller keeps; this checks nothing."""
+        for name, other in others.items():
+            memory = other.struct if isinstance(other, Bound) else ctypes.c_char.from_buffer(other)
+            setattr(self.struct, name, ctypes.addressof(memory))
 
 
 class Block:

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
 from surefoot.forces import Push
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.parameters import LegInertia, PlannerParameters, RecoveryParameters
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.references.leg_offset import LegOffset
 from surefoot.planner.references.window import OffsetTable
 from surefoot.planner.references.zmp_reference import SupportKey

@@ -21,6 +21,7 @@ NOTICED = {
     "ground.terrain._KEPT": "tests/planner/ground/test_room.py",
     "ground.terrain._SHANK": "tests/planner/ground/test_room.py",
     "laws.footstep_tvmpc._EXTRA": "tests/planner/laws/test_tvmpc.py",
+    "laws.qp._TOLERANCE": "tests/native/test_bounded_qp.py",
     "model.jerk.BLOCK_STARTS": "tests/planner/laws/test_tvmpc.py",
     "plan._COLUMNS": "tests/planner/test_sampling.py",
     "recovery.step_adjustment._NO_GAIN": "tests/planner/recovery/test_step_adjustment.py",

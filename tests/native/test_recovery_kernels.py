@@ -77,7 +77,7 @@ def test_margins_are_those_of_plain_python(made, adaptation):
         one, other = plain.margins(*given), compiled.margins(*given)
         np.testing.assert_allclose(other, one, rtol=1e-11, atol=1e-11)
         seen |= {(one[-1] > 0.0, given[-1])}
-    assert len(seen) >= 3
+    assert {fixed for _, fixed in seen} == {True, False}
 
 
 @pytest.mark.parametrize("adaptation", ADAPTATIONS)

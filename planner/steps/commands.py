@@ -189,7 +189,7 @@ def fastest(twist: Twist, duration: float, width: float, region: StepRegion) -> 
 
 
 def _half_width(gait: GaitParameters, foot: Foot) -> Array:
-    return np.array([0.0, 0.5 * gait.step_width if foot is Foot.LEFT else -0.5 * gait.step_width])
+    return np.array([0.0, 0.5 * gait.step_width * foot.side])
 
 
 def _stride_to(footstep: Footstep, stance: Array, yaw: float, gait: GaitParameters) -> Twist:

@@ -14,7 +14,7 @@ from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import StepSource
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg
-from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind
 
 _LEAST_LEFT = 3.0
@@ -260,8 +260,7 @@ class Execution:
             yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
             pose = sole_pose(feet.position[foot], yaw, leaving.normal)
             course = self.schedule.step(self.phase.step).course
-            times = swing_times(time, self.left, course, self._parameters)
-            self.swing = start_swing(foot, pose, target, times, course.height, self._parameters)
+            self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters)
         elif not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
             # Over edges the foot keeps to the times in which its course clears them.
             gliding = self.adapted and self._wide

@@ -14,7 +14,7 @@ from surefoot.planner.swing.course import Ground, swing_course
 from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
 from surefoot.planner.swing.leg_reach import PEAK, LegReach
 from surefoot.planner.swing.step_region import check_reach
-from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, Foot, Footstep, Twist
 
 _MEASURED = 6
@@ -297,5 +297,5 @@ def _hardest(swing: SwingTrajectory, way: float) -> float:
 
 def unit_swing(samples: float, climb: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTrajectory:
     """A swing of so many samples from the origin at time 0 to a footstep one metre ahead that lies higher [m]."""
-    end, times = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), swing_times(0.0, samples, course, parameters)
-    return start_swing(Foot.LEFT, np.zeros(6), end, times, course.height, parameters)
+    end = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0])
+    return start_swing(Foot.LEFT, np.zeros(6), end, 0.0, samples, course, parameters)

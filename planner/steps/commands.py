@@ -167,13 +167,9 @@ def fitted(gait: GaitParameters, region: StepRegion) -> GaitParameters:
 
 
 def fastest(twist: Twist, duration: float, width: float, region: StepRegion) -> Twist:
-    """The command of the same direction, at most as fast, whose steps are just within a region.
+    """The velocity of the same direction, at most as fast, whose steps of a duration [s] are just within a region.
 
-    Args:
-        twist: the command.
-        duration: of a step [s].
-        width: nominal step width [m].
-        region: where feet may land.
+    They are as near to the nominal width as the region lets them be [m].
     """
 
     def inside(factor: float) -> bool:

@@ -42,7 +42,7 @@ class Execution:
     Args:
         schedule: the steps in sight.
         window: how far a plan looks ahead [samples].
-        legs: what they can do; None where it is not known.
+        legs: see the attribute.
 
     Attributes:
         schedule: the steps in sight, which reach as far as any plan of the present phase looks.

@@ -241,15 +241,9 @@ def lay(
 
 
 def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
-    """By which a step may be moved on its face from where it now is to land.
+    """By which a step may be moved on its face from where it now is to land, in the heading of its stance foot.
 
-    Args:
-        step: the step.
-        stance: gives the heading in which that is told.
-        parallel: angle up to which the room is the same there [rad].
-
-    Returns:
-        Least and greatest way, shape (2, 2) [m].
+    Told as `turned_room` is.
     """
     yaw = step.nominal.yaw
     way = (step.place.position - step.nominal.position)[:2] @ frame_rotation(yaw)
@@ -257,15 +251,9 @@ def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
 
 
 def turned_room(room: Array, angle: float, parallel: float) -> Array:
-    """The part of a room around a footstep that is a box in another frame.
+    """The part of a room around a footstep that is a box in another frame, where the footstep has a heading [rad].
 
-    Args:
-        room: least and greatest way in the footstep's heading, shape (2, 2) [m].
-        angle: heading of the footstep in that frame [rad].
-        parallel: angle up to which it is the same there [rad].
-
-    Returns:
-        Least and greatest way in that frame, shape (2, 2) [m].
+    Rooms are told as least and greatest way, shape (2, 2) [m]; up to the angle `parallel` both are the same [rad].
     """
     if not np.isfinite(room).all() or abs(angle) < parallel:
         return room
@@ -278,13 +266,7 @@ def turned_room(room: Array, angle: float, parallel: float) -> Array:
 
 
 def shortest_swing(step: Step, legs: LegReach, lifting: float) -> float:
-    """Shortest time in which body and foot can come to the height of a step [s].
-
-    Args:
-        step: the step.
-        legs: give the acceleration of the foot.
-        lifting: vertical acceleration of the body [m/s^2].
-    """
+    """Shortest time in which body, with an acceleration [m/s^2], and foot can come to the height of a step [s]."""
     return math.sqrt(max(PEAK * abs(step.lift) / lifting, step.hardest / legs.acceleration[0]))
 
 

@@ -105,12 +105,7 @@ def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]
 
 
 def check_reach(number: int, place: Footstep, parameters: PlannerParameters) -> None:
-    """Refuse a nominal footstep outside the reach box.
-
-    Args:
-        number: of the footstep, from 1.
-        place: where it lands, seen from its stance foot.
-        parameters: give the box.
+    """Refuse a nominal footstep of a number that lands outside the reach box, seen from its stance foot.
 
     Raises:
         ParameterError: it is out of reach; its key is ("footsteps", number - 1, "ahead" or "beside").

@@ -126,11 +126,7 @@ class Execution:
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
     def advance(self, feet: FeetState) -> None:
-        """Go on by one tick.
-
-        Args:
-            feet: the measured feet.
-        """
+        """Go on by one tick, with the measured feet."""
         following = self.clock.after(1.0)
         phase, swing = self.phase, self.phase.swing_foot
         over = following >= phase.end - CLOCK_ROUNDING
@@ -198,11 +194,7 @@ class Execution:
         return True
 
     def fix(self, position: Array) -> None:
-        """Decide the next footstep.
-
-        Args:
-            position: where it lands, shape (3,) [m].
-        """
+        """Decide where the next footstep lands, shape (3,) [m]."""
         self.schedule = self.schedule.moved(self.landed + 1, position)
         self.fixed = True
 

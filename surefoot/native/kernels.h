@@ -420,6 +420,64 @@ typedef struct {
 
 void leg_offset_make(const LegOffset *legs, int64_t samples, int64_t passes);
 
+/* Counterpart of `planner.steps.phases.PhaseTable` and of a `planner.references.zmp_reference.Support`. */
+typedef struct {
+    int64_t phases;
+    const double *start;
+    const double *length;
+    const double *rest;
+    const int64_t *kind;
+    const int64_t *support;
+    const int64_t *contacts;
+    int64_t first;
+    int64_t points;
+    const double *table;
+    const double *heights;
+    const double *on_left;
+} Sight;
+
+/* Counterpart of `planner.references.window.ReferencePreview`: one sample before a window, those of it, one after. */
+typedef struct {
+    const Sight *sight;
+    int64_t samples;
+    int64_t counted;
+    double sample_time;
+    double gravity;
+    double standing;
+    const double *apexes;
+    int64_t early;
+    const double *early_shares;
+    double least_pressing;
+    double least_height;
+    double softening;
+    int64_t looked_at;
+    const double *course;
+    int64_t *which;
+    int64_t *kind;
+    int64_t *index;
+    int64_t *contacts;
+    double *clock;
+    double *rate;
+    double *bend;
+    double *elapsed;
+    double *length;
+    double *fraction;
+    double *fraction_rate;
+    double *point;
+    double *gain;
+    double *half_size;
+    double *ground;
+    double *load_left;
+    double *height;
+    double *stiffness;
+    double *softened;
+    double *omega;
+} Preview;
+
+void preview_look(const Preview *preview, int64_t steady, double now, int64_t lifts);
+void preview_weigh(const Preview *preview);
+int64_t preview_transition(const Preview *preview, int64_t soonest, double bound, double z, double speed, double bend);
+
 /*
  * Counterpart of `planner.laws.qp.solve` with its first solver; its fields are those of `planner.laws.qp.Qp`.
  *
@@ -509,62 +567,106 @@ typedef struct {
 
 void motion_in_world(const MotionInWorld *motion);
 
-/* Counterpart of `planner.steps.phases.PhaseTable` and of a `planner.references.zmp_reference.Support`. */
+/* Counterpart of a `planner.references.window.Window`, as far as recovery looks at it. */
 typedef struct {
-    int64_t phases;
-    const double *start;
-    const double *length;
-    const double *rest;
-    const int64_t *kind;
-    const int64_t *support;
-    const int64_t *contacts;
-    int64_t first;
-    int64_t points;
-    const double *table;
-    const double *heights;
-    const double *on_left;
-} Sight;
-
-/* Counterpart of `planner.references.window.ReferencePreview`: one sample before a window, those of it, one after. */
-typedef struct {
-    const Sight *sight;
-    int64_t samples;
-    int64_t counted;
+    int64_t count;
     double sample_time;
-    double gravity;
-    double standing;
-    const double *apexes;
-    int64_t early;
-    const double *early_shares;
-    double least_pressing;
-    double least_height;
-    double softening;
-    int64_t looked_at;
-    const double *course;
-    int64_t *which;
-    int64_t *kind;
-    int64_t *index;
-    int64_t *contacts;
-    double *clock;
-    double *rate;
-    double *bend;
-    double *elapsed;
-    double *length;
-    double *fraction;
-    double *fraction_rate;
-    double *point;
-    double *gain;
-    double *half_size;
-    double *ground;
-    double *load_left;
-    double *height;
-    double *stiffness;
-    double *softened;
-    double *omega;
-} Preview;
+    const double *stiffness;
+    const double *omega;
+    const double *point;
+    const double *gain;
+    const double *half_size;
+    double *decay;
+} Outlook;
 
-void preview_look(const Preview *preview, int64_t steady, double now, int64_t lifts);
-void preview_weigh(const Preview *preview);
-int64_t preview_transition(const Preview *preview, int64_t soonest, double bound, double z, double speed, double bend);
+double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin);
+
+/* Counterpart of `planner.swing.leg_reach.LegReach`; its unit ways are rows of values at so many shares of a swing. */
+typedef struct {
+    double radius;
+    double hip_width;
+    int64_t crosses;
+    double across;
+    const double *acceleration;
+    double touchdown_lead;
+    double sample_time;
+    int64_t shares;
+    const double *at_rest;
+    const double *moving;
+    const double *around;
+    const double *dearer;
+} Legs;
+
+/* Counterpart of `planner.recovery.step_adjustment.StepProblem`, with the state that is to be captured, and what of the
+ * legs depends on the step's turn. */
+typedef struct {
+    double com[2];
+    double dcm[2];
+    double omega;
+    double nominal[2];
+    double side;
+    double swing[4];
+    double double_left;
+    double single_left;
+    double cycle;
+    double shortest;
+    double face[4];
+    double crosses;
+    double last;
+    double adapted;
+    double near;
+    double clear;
+} Landing;
+
+/* Counterpart of `planner.recovery.capture_margin.CaptureMargin`; of the four edges see there. */
+typedef struct {
+    const Legs *legs;
+    const Landing *step;
+    double cycle;
+    int64_t timing;
+    const double *half;
+    const double *apart;
+    const double *middle;
+    int64_t time_count;
+    const double *times;
+    double least_double;
+    double least_single;
+    double longer;
+    double *captured;
+    double *margins;
+} Capture;
+
+void capture_margins(const Capture *capture, int64_t steps, int64_t fixed);
+
+/* Counterpart of `planner.recovery.step_adjustment.StepAdjustment`; its result are time, box, and whether there is
+ * more to catch. */
+typedef struct {
+    const Legs *legs;
+    const Landing *step;
+    const Outlook *ahead;
+    int64_t timing;
+    const double *authority;
+    int64_t change_count;
+    const double *changes;
+    double *times;
+    double shift_weight;
+    double second_weight;
+    double time_weight;
+    double stretch_weight;
+    double swing_weight;
+    double cross_factor;
+    double least_saving;
+    double cop_share;
+    double landing_share;
+    double landing_spare;
+    double tolerance;
+    double unheld_share;
+    double stand_share;
+    double least_double;
+    double least_single;
+    double *result;
+} Adjustment;
+
+int64_t adjustment_solve(const Adjustment *program);
 
 #endif

@@ -369,9 +369,9 @@ typedef struct {
 /*
  * Counterpart of `planner.references.leg_offset.nominal_feet` without a swing that is flown.
  *
- * Of each phase from that of the first sample on `phases` has 35 numbers: rows of `steps` before, stance and after; 1 for
- * a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of the
- * swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
+ * Of each phase from that of the first sample on `phases` has 35 numbers: rows of `steps` before, stance and after; 1
+ * for a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of
+ * the swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
  * the coefficients of progress, rise and fall. Soles and angles have rows of `most` samples.
  */
 typedef struct {
@@ -394,8 +394,8 @@ void nominal_feet_make(const NominalFeet *feet, int64_t samples);
 /*
  * Counterpart of `planner.references.leg_offset.LegOffset.made` with feet that are there.
  *
- * Feet have rows of `most` + 1 samples, heights of `most`. In `scratch`, `points` and `bends` a row takes `stride`, which
- * is 8 more than that; they have 23 rows, and 3 for each point.
+ * Feet have rows of `most` + 1 samples, heights of `most`. In `scratch`, `points` and `bends` a row takes `stride`,
+ * which is 8 more than that; they have 23 rows, and 3 for each point.
  */
 typedef struct {
     const LegChain *chain;

@@ -21,6 +21,7 @@ NOTICED = {
     "ground.terrain._KEPT": "tests/planner/ground/test_room.py",
     "ground.terrain._SHANK": "tests/planner/ground/test_room.py",
     "laws.footstep_tvmpc._EXTRA": "tests/planner/laws/test_tvmpc.py",
+    "geometry._STRAIGHT": "tests/planner/test_polygon.py",
     "laws.qp._TOLERANCE": "tests/native/test_bounded_qp.py",
     "model.jerk.BLOCK_STARTS": "tests/planner/laws/test_tvmpc.py",
     "plan._COLUMNS": "tests/planner/test_sampling.py",

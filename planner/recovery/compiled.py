@@ -11,7 +11,7 @@ from surefoot.planner.swing.leg_reach import AROUND, AT_REST, DEARER, MOVING, Le
 from surefoot.planner.types import Array
 
 if TYPE_CHECKING:
-    from surefoot.planner.recovery.step_adjustment import NextStep
+    from surefoot.planner.recovery.step_adjustment import StepProblem
 
 
 class CompiledStep:
@@ -45,11 +45,11 @@ class CompiledStep:
         )
         self.bound, self._numbers = kernels.buffer("Landing")
 
-    def tell(self, com: Array, dcm: Array, omega: float, step: "NextStep") -> None:
+    def tell(self, com: Array, dcm: Array, omega: float, step: "StepProblem") -> None:
         """Let kernels count with a step and a state; arguments as of `CaptureMargin.margins`."""
-        legs = self._legs.turned(step.turn)
+        foot, legs = step.place, self._legs.turned(step.place.yaw)
         rest = (step.double, step.single, step.cycle, step.shortest, *step.face.ravel().tolist(), step.crosses)
-        place = (omega, *step.nominal.tolist(), step.side, *step.swing.ravel().tolist())
+        place = (omega, *foot.position[:2].tolist(), foot.foot.side, *step.swing.ravel().tolist())
         now = (*com.tolist(), *dcm.tolist(), *place)
         self._numbers[:] = (*now, *rest, step.last, step.adapted, legs.near, legs.clear)
 
@@ -130,7 +130,7 @@ class CompiledMargins:
             margins=self._margins,
         )
 
-    def margins(self, com: Array, dcm: Array, omega: float, step: "NextStep", steps: int, fixed: bool) -> Array:
+    def margins(self, com: Array, dcm: Array, omega: float, step: "StepProblem", steps: int, fixed: bool) -> Array:
         """See `CaptureMargin.margins`, for no more steps than the planner counts with."""
         self._step.tell(com, dcm, omega, step)
         self._run(steps, fixed)
@@ -169,7 +169,7 @@ class CompiledAdjustment:
             **{name: getattr(numbers, name) for name in names},
         )
 
-    def solve(self, com: Array, dcm: Array, window: Window, step: "NextStep") -> tuple[float, Array, bool] | None:
+    def solve(self, com: Array, dcm: Array, window: Window, step: "StepProblem") -> tuple[float, Array, bool] | None:
         """See `StepAdjustment.solve`: time left, box, and whether there is more to catch."""
         self._step.tell(com, dcm, float(window.omega[0]), step)
         self._outlook.tell(window)

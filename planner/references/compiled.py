@@ -128,7 +128,7 @@ class CompiledPreview:
             heights=np.ascontiguousarray(support.heights),
             on_left=support.on_left,
         )
-        self._bound.point("sight", self._sight)
+        self._bound.point(sight=self._sight)
         self._support = support
 
     def _copy(self) -> Any:

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 
 from surefoot.forces import ExternalLoad
 from surefoot.native.library import library
-from surefoot.planner.model.dcm import natural_frequency, nominal_motion
-from surefoot.planner.model.leg_chain import LegChain
+from surefoot.planner.model.dcm import natural_frequency
 from surefoot.planner.model.time_scaling import Course, TimeScaling
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import HeightPreview, HeightProfile, preview_height
 from surefoot.planner.references.compiled import CompiledPreview
 from surefoot.planner.references.height_transition import HeightTransition
-from surefoot.planner.references.leg_offset import Feet, nominal_feet, softening, zmp_offset
+from surefoot.planner.references.leg_offset import LegOffset, softening
 from surefoot.planner.references.zmp_reference import (
     Support,
     SupportKey,
@@ -153,6 +152,7 @@ class ReferencePreview:
         self._numbers = parameters.recovery
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
+        self._legs = LegOffset(self._leg, float(half_size[0]), parameters.sample_time, self.reach)
         # Of the last plan its tick, the course of the clock, the height, and how much lower than by its law that is.
         self._transition: HeightTransition | None = None
         self._before: tuple[int, Course, Array, float] | None = None
@@ -257,8 +257,8 @@ class ReferencePreview:
         time: float,
     ) -> Array:
         """What the legs add to the ZMP, shape (n, 2) [m]; arguments as of `window`."""
-        chain, count, clock = self._leg.chain, self._count, execution.clock
-        if chain is None:
+        count, clock = self._count, execution.clock
+        if self._leg.chain is None:
             return np.zeros((count, 2))
         last, table, key, aim = samples.phases[-1], self._offsets, support.key, execution.aim
         # In the final standing, where the walk's clock does not matter, none serves: its values go on with time.
@@ -270,27 +270,11 @@ class ReferencePreview:
             count += int(min(self._numbers.offset_ticks - 1, max(left, 0.0) + 1))
             frame = support.rotation, support.origin
             flown = None if execution.swing is None or aim is None else (execution.swing, time)
-            feet = nominal_feet(samples, execution.aimed, frame, flown)
+            moving = samples, execution.aimed, frame, flown
             # While a step is adapted it is made from the last one.
             guess = None
             if table is not None and (aim is not None or not clock.steady):
                 guess = table.guess(clock.ticks, key, count)
-            values = self._made_offset(chain, feet, point[:count], height.part(count), position, guess)
+            values = self._legs.made(moving, point[:count], height.part(count), position, guess)
             table = self._offsets = OffsetTable(clock.ticks, key, clock.course, aim, values, self._numbers.offset_ticks)
         return table.since(clock.ticks, self._count)
-
-    def _made_offset(
-        self,
-        chain: LegChain,
-        feet: Feet,
-        point: Array,
-        height: HeightPreview,
-        position: Array,
-        guess: Array | None,
-    ) -> Array:
-        """That for a CoM on the nominal motion, which itself depends on it: two passes, or one, leave a millimetre."""
-        stiffness, offset = self._softening * height.stiffness, np.zeros_like(point) if guess is None else guess
-        for _ in range(2 if guess is None else 1):
-            motion = nominal_motion(position, point - offset, stiffness, self._sample_time)
-            offset = zmp_offset(chain, feet, float(self._half_size[0]), motion, height, stiffness)
-        return offset

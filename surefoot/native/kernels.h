@@ -322,6 +322,104 @@ typedef struct {
 
 void sensors_read(const Sensors *sensors);
 
+/* Counterpart of `planner.model.dcm.nominal_motion`; `upper` is scratch. */
+typedef struct {
+    double sample_time;
+    const double *position;
+    const double *zmp;
+    const double *stiffness;
+    double *upper;
+    double *com;
+    double *velocity;
+    double *acceleration;
+    double *jerk;
+} NominalMotion;
+
+void nominal_motion_make(const NominalMotion *motion, int64_t samples);
+
+/* Counterpart of `planner.model.leg_chain.LegChain`, as `planner.references.leg_offset` fills it. */
+typedef struct {
+    double hip_half_width;
+    double hip_lever[2];
+    double trunk[3];
+    double ankle[3];
+    double foot_centre[3];
+    double foot_outward;
+    int64_t rolls_first;
+    double length[2];
+    double ahead[2];
+    double outward[2];
+    double mass_ahead[2];
+    double trunk_mass;
+    double foot_mass;
+    double at_hip;
+    double at_knee;
+    double at_ankle;
+    double carried;
+    double guess;
+    double bend;
+    double least_reach;
+    int64_t corrections;
+    int64_t points;
+    int64_t pair_count;
+    const int64_t *pairs;
+    const double *pair_mass;
+} LegChain;
+
+/*
+ * Counterpart of `planner.references.leg_offset.nominal_feet` without a swing that is flown.
+ *
+ * Of each phase from that of the first sample on `phases` has 35 numbers: rows of `steps` before, stance and after; 1 for
+ * a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of the
+ * swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
+ * the coefficients of progress, rise and fall. Soles and angles have rows of `most` samples.
+ */
+typedef struct {
+    double sample_time;
+    double touching;
+    double heading_of_frame;
+    int64_t most;
+    const int64_t *which;
+    const double *elapsed;
+    const double *clock;
+    const double *phases;
+    const double *steps;
+    double *soles;
+    double *heading;
+    double *pitch;
+} NominalFeet;
+
+void nominal_feet_make(const NominalFeet *feet, int64_t samples);
+
+/*
+ * Counterpart of `planner.references.leg_offset.LegOffset.made` with feet that are there.
+ *
+ * Feet have rows of `most` + 1 samples, heights of `most`. In `scratch`, `points` and `bends` a row takes `stride`, which
+ * is 8 more than that; they have 23 rows, and 3 for each point.
+ */
+typedef struct {
+    const LegChain *chain;
+    const NominalMotion *motion;
+    int64_t most;
+    int64_t stride;
+    double toe;
+    double gravity;
+    const double *point;
+    const double *stiffness;
+    const double *height;
+    const double *soles;
+    const double *heading;
+    const double *pitch;
+    double *zmp;
+    double *com;
+    double *scratch;
+    double *points;
+    double *bends;
+    double *offset;
+} LegOffset;
+
+void leg_offset_make(const LegOffset *legs, int64_t samples, int64_t passes);
+
 /* Counterpart of `planner.steps.phases.PhaseTable` and of a `planner.references.zmp_reference.Support`. */
 typedef struct {
     int64_t phases;
@@ -410,7 +508,7 @@ typedef struct {
     const double *dearer;
 } Legs;
 
-/* Counterpart of `planner.recovery.step_adjustment.NextStep`, with the state that is to be captured, and what of the
+/* Counterpart of `planner.recovery.step_adjustment.StepProblem`, with the state that is to be captured, and what of the
  * legs depends on the step's turn. */
 typedef struct {
     double com[2];

@@ -52,9 +52,11 @@ class Bound:
     struct: Any
     kept: tuple[Any, ...]
 
-    def point(self, field: str, other: "Bound") -> None:
-        """Let a field point to another struct, which the caller keeps."""
-        setattr(self.struct, field, ctypes.addressof(other.struct))
+    def point(self, **others: Any) -> None:
+        """Let fields point to other structs or arrays, as C sees them, which the caller keeps; this checks nothing."""
+        for name, other in others.items():
+            memory = other.struct if isinstance(other, Bound) else ctypes.c_char.from_buffer(other)
+            setattr(self.struct, name, ctypes.addressof(memory))
 
 
 class Library:

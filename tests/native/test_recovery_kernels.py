@@ -8,8 +8,9 @@ import pytest
 from surefoot.native.library import VARIABLE
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.recovery.capture_margin import CaptureMargin
-from surefoot.planner.recovery.step_adjustment import NextStep, StepAdjustment
+from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepProblem
 from surefoot.planner.swing.leg_reach import ANYWHERE
+from surefoot.planner.types import Foot, Footstep
 from surefoot.scenarios.log import NoLog
 from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.setup.load import load
@@ -26,10 +27,9 @@ def a_step(rng, window):
     nominal = np.array([rng.uniform(-0.3, 0.4), side * rng.uniform(0.15, 0.35)])
     here = np.array([rng.uniform(-0.4, 0.4), side * rng.uniform(-0.2, 0.35)])
     face = ANYWHERE if rng.random() < 0.5 else nominal + np.array([[-0.1, -0.05], [0.15, 0.1]])
-    step = NextStep(
-        nominal=nominal,
-        side=side,
-        turn=rng.choice([0.0, rng.uniform(-0.4, 0.4)]),
+    turn = rng.choice([0.0, rng.uniform(-0.4, 0.4)])
+    step = StepProblem(
+        place=Footstep(Foot.LEFT if side > 0.0 else Foot.RIGHT, np.append(nominal, 0.0), turn),
         swing=np.stack((here, rng.uniform(-1.5, 1.5, 2))),
         double=double,
         single=rng.uniform(0.05, 0.8),
@@ -93,7 +93,7 @@ def test_steps_are_adjusted_as_by_plain_python(made, adaptation):
             np.testing.assert_allclose(other.left, one.left, rtol=1e-12)
             assert other.more is one.more
             seen |= {("other time", one.left not in (step.double, step.single)), ("more", one.more)}
-            seen |= {("crosses", bool((step.side * one.box[:, 1] < 0.0).all()))}
+            seen |= {("crosses", bool((step.place.foot.side * one.box[:, 1] < 0.0).all()))}
     assert ("more", True) in seen
     assert (("more", False) in seen) is (("other time", True) in seen)
     assert (("other time", True) in seen) is (adaptation != "location")

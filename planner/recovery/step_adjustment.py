@@ -31,18 +31,19 @@ and with the limits of the legs as they are, over a list of times in place of a 
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from surefoot.native.library import library
-from surefoot.planner.geometry import seen_from
+from surefoot.planner.geometry import seen_from, wrap_angle
 from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.recovery.compiled import CompiledAdjustment
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.execution import Execution
-from surefoot.planner.steps.step import room_left, shortest_swing
+from surefoot.planner.steps.step import Step, room_left, shortest_swing
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseKind
 
@@ -97,14 +98,14 @@ class StepProblem:
         if not phase.leads_to:
             return None
         schedule, clock, landed = execution.schedule, execution.clock, execution.landed
-        step, stance = schedule.step(landed + 1), schedule.step(landed).place
+        step = schedule.step(landed + 1)
         swings, foot, numbers = phase.kind is PhaseKind.SINGLE, step.place.foot, schedule.ground.parameters.recovery
         yet = min(1.0, (step.touchdown - clock.now) / step.single)
         legs = execution.legs
         shortest = 0.0 if legs is None else shortest_swing(step, legs, numbers.lifting)
         if execution.swing is not None:
             moving = execution.swing.evaluate(time)[1, :2] @ rotation
-        place = replace(seen_from(stance, step.place), yaw=schedule.turn(step.number))
+        place, face = _landing_place(step, schedule.step(landed), numbers.parallel)
         return cls(
             place=place,
             swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
@@ -112,11 +113,18 @@ class StepProblem:
             single=phase.left if swings else step.single * clock.sample_time,
             cycle=schedule.gait.period,
             shortest=yet * shortest,
-            face=place.position[:2] + room_left(step, stance, numbers.parallel),
+            face=face,
             crosses=schedule.may_cross(step.number),
             last=schedule.stops(clock.now),
             adapted=execution.adapted,
         )
+
+
+@lru_cache(maxsize=2)
+def _landing_place(step: Step, stance: Step, parallel: float) -> tuple[Footstep, Array]:
+    """Place and face of a `StepProblem`, the same from plan to plan; `parallel` as of `room_left`."""
+    place = replace(seen_from(stance.place, step.place), yaw=wrap_angle(step.place.yaw - stance.place.yaw))
+    return place, place.position[:2] + room_left(step, stance.place, parallel)
 
 
 @dataclass(frozen=True, slots=True)

@@ -142,6 +142,7 @@ class Support:
         outer: support polygon of the planned soles, shape (v, 2) [m].
         inner: support polygon of the soles shrunk to the ZMP margin, shape (v, 2) [m].
         footholds: where the left and the right foot stand, or stood last.
+        standing: those on which the robot stands.
     """
 
     key: SupportKey
@@ -153,6 +154,7 @@ class Support:
     outer: Array
     inner: Array
     footholds: tuple[Footstep, Footstep]
+    standing: tuple[Footstep, ...]
 
 
 def load_left(samples: PhaseSamples, support: Support) -> Array:
@@ -178,11 +180,14 @@ def present_support(
     if last is not None and last.key == key:
         return last
     latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
-    standing = [latest] if phase.kind is PhaseKind.SINGLE else [latest, before]
-    outer, inner = (
-        convex_hull(np.concatenate([sole_corners(foot, scale * half_size) for foot in standing]))
-        for scale in (1.0, margin)
-    )
+    standing = (latest,) if phase.kind is PhaseKind.SINGLE else (latest, before)
+    if last is not None and [*map(id, last.standing)] == [*map(id, standing)]:
+        outer, inner = last.outer, last.inner
+    else:
+        outer, inner = (
+            convex_hull(np.concatenate([sole_corners(foot, scale * half_size) for foot in standing]))
+            for scale in (1.0, margin)
+        )
     stay = not schedule.ground.terrain.footholds.follow
     return Support(
         key=key,
@@ -194,4 +199,5 @@ def present_support(
         outer=outer,
         inner=inner,
         footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),
+        standing=standing,
     )

@@ -1,5 +1,6 @@
 """ZMP planner: the present support, and the ZMP reference over a window, linear in the next two footsteps."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -164,7 +165,12 @@ def load_left(samples: PhaseSamples, support: Support) -> Array:
 
 
 def present_support(
-    last: Support | None, execution: Execution, half_size: Array, margin: float, room: tuple[float, float]
+    last: Support | None,
+    execution: Execution,
+    half_size: Array,
+    margin: float,
+    room: tuple[float, float],
+    tabulated: Callable[..., Array] = support_table,
 ) -> Support:
     """The support of this tick, the last one while its key stays.
 
@@ -174,6 +180,7 @@ def present_support(
         half_size: half of the sole's length and width, shape (2,) [m].
         margin: share of the sole in which the ZMP must stay [-].
         room: what of the half size the ankles can bear, forward and sideways [m].
+        tabulated: `support_table`, or a kernel in its place.
     """
     schedule, landed, phase = execution.schedule, execution.landed, execution.phase
     key = SupportKey(schedule, landed, phase.start, execution.free)
@@ -193,7 +200,7 @@ def present_support(
         key=key,
         rotation=frame_rotation(latest.yaw),
         origin=latest.position[:2],
-        table=support_table(schedule, landed, key.free, np.minimum(margin * half_size, room), stay),
+        table=tabulated(schedule, landed, key.free, np.minimum(margin * half_size, room), stay),
         heights=schedule.support_points[:, 2],
         on_left=schedule.at_supports(np.array([float(step.place.foot is Foot.LEFT) for step in schedule.steps])),
         outer=outer,

@@ -431,10 +431,27 @@ typedef struct {
     const int64_t *contacts;
     int64_t first;
     int64_t points;
-    const double *table;
+    const double *values;
+    const double *steps;
     const double *heights;
     const double *on_left;
 } Sight;
+
+/* Counterpart of `planner.references.zmp_reference.support_table`, of the steps of a schedule. */
+typedef struct {
+    int64_t points;
+    int64_t stance;
+    int64_t stay;
+    const double *free;
+    const double *positions;
+    const double *yaws;
+    const int64_t *supports;
+    const double *half_size;
+    double *values;
+    double *steps;
+} SupportTable;
+
+void support_table_fill(const SupportTable *table);
 
 /* Counterpart of `planner.references.window.ReferencePreview`: one sample before a window, those of it, one after. */
 typedef struct {

@@ -39,7 +39,7 @@ from surefoot.native.library import library
 from surefoot.planner.geometry import seen_from, wrap_angle
 from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.recovery.compiled import CompiledAdjustment
+from surefoot.planner.recovery.compiled import CompiledAdjustment, CompiledOutlook
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.execution import Execution
@@ -148,14 +148,15 @@ class StepAdjustment:
     Args:
         legs: what they can do.
         parameters: of the planner.
+        outlook: where kernels are told of windows, if others have it in common; one of its own by default.
     """
 
-    def __init__(self, legs: LegReach, parameters: PlannerParameters) -> None:
+    def __init__(self, legs: LegReach, parameters: PlannerParameters, outlook: CompiledOutlook | None = None) -> None:
         self._legs, self._timing = legs, parameters.step_adaptation.timing
         self._sample_time, self._numbers = parameters.sample_time, parameters.recovery
         self._authority = np.array(parameters.cop_authority)
         self._changes, kernels = np.array(parameters.recovery.time_changes), library()
-        self._compiled = None if kernels is None else CompiledAdjustment(kernels, legs, parameters)
+        self._compiled = None if kernels is None else CompiledAdjustment(kernels, legs, parameters, outlook)
 
     def solve(self, com: Array, dcm: Array, window: Window, step: StepProblem) -> StepBounds | None:
         """The solution; None where nothing has to be adjusted, or the step has no place to land.

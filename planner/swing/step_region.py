@@ -150,6 +150,12 @@ def shifts_within(boxes: Array, increment: Array, free: tuple[bool, bool]) -> Sh
     return lower, upper
 
 
+def unshifted(free: tuple[bool, bool]) -> Shifts:
+    """Those of footsteps that stay where they are."""
+    bounds = [[0.0, 0.0] if moves else [_UNUSED, _UNUSED] for moves in free]
+    return -np.array(bounds), np.array(bounds)
+
+
 def reachable_shifts(
     parameters: PlannerParameters,
     increment: Array,

@@ -507,6 +507,7 @@ typedef struct {
     double *decay;
 } Outlook;
 
+void outlook_decay(const Outlook *ahead);
 double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin);
 
 /* Counterpart of `planner.swing.leg_reach.LegReach`; its unit ways are rows of values at so many shares of a swing. */

@@ -47,9 +47,9 @@ class CompiledStep:
 
     def tell(self, com: Array, dcm: Array, omega: float, step: "StepProblem") -> None:
         """Let kernels count with a step and a state; arguments as of `CaptureMargin.margins`."""
-        foot, legs = step.place, self._legs.turned(step.place.yaw)
+        legs = self._legs.turned(step.place.yaw)
         rest = (step.double, step.single, step.cycle, step.shortest, *step.face.ravel().tolist(), step.crosses)
-        place = (omega, *foot.position[:2].tolist(), foot.foot.side, *step.swing.ravel().tolist())
+        place = (omega, *step.nominal.tolist(), step.place.foot.side, *step.swing.ravel().tolist())
         now = (*com.tolist(), *dcm.tolist(), *place)
         self._numbers[:] = (*now, *rest, step.last, step.adapted, legs.near, legs.clear)
 

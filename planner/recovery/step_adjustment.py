@@ -22,12 +22,8 @@ with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, 
   least_single, nor below what body and foot need to come to the height of the footstep.
 
 Solver: for given times p* follows in closed form, since the CoP does what it can; p is p* brought into the limits, the
-boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken. Other
-times than planned have to save `least_saving`. Nothing is solved while the CoP alone brings the DCM back until the foot
-lands, but for `tolerance`: without need nothing is adapted.
-
-It is the law of Khadiv et al. (IEEE Transactions on Robotics 2020) with the CoP as one more means, with double support,
-and with the limits of the legs as they are, over a list of times in place of a QP.
+boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken.
+docs/recovery.md says more of it.
 """
 
 from dataclasses import dataclass, replace

@@ -495,6 +495,95 @@ void preview_look(const Preview *preview, int64_t steady, double now, int64_t li
 void preview_weigh(const Preview *preview);
 int64_t preview_transition(const Preview *preview, int64_t soonest, double bound, double z, double speed, double bend);
 
+/*
+ * Counterpart of `planner.laws.qp.solve` with its first solver; its fields are those of `planner.laws.qp.Qp`.
+ *
+ * `tolerance` is that of a bound over 1 and its variable's size, and of a row over the row's. From `factor` on all is
+ * scratch: matrices of n rows and columns, `share` of a number a row, `taken` of one a bound and row, `work` of 4 n.
+ */
+typedef struct {
+    int64_t variables;
+    int64_t rows;
+    double tolerance;
+    const double *P;
+    const double *q;
+    const double *G;
+    const double *h;
+    const double *lower;
+    const double *upper;
+    double *x;
+    double *factor;
+    double *inverse;
+    double *rotated;
+    double *triangle;
+    double *share;
+    double *multipliers;
+    double *work;
+    int64_t *active;
+    int64_t *taken;
+} BoundedQp;
+
+int64_t bounded_qp_solve(const BoundedQp *qp, int64_t same);
+
+/*
+ * Counterpart of `planner.laws.footstep_tvmpc.FootstepTvmpc.build` without a limit on the jerk's rate.
+ *
+ * `motion` has the ZMP of the reference, the stiffness and the place now. Responses to the moves are those of
+ * `planner.model.jerk.Prediction`; `weights` is scratch of the length of the preview.
+ */
+typedef struct {
+    const NominalMotion *motion;
+    int64_t horizon;
+    int64_t moves;
+    const int64_t *starts;
+    const double *response;
+    double jerk_limit;
+    double jerk_weight;
+    double step_weight;
+    double terminal_weight;
+    double terminal_margin;
+    double zmp_slack[2];
+    double terminal_slack[2];
+    const double *state;
+    const double *omega;
+    const double *gain;
+    const double *half_size;
+    const double *step_lower;
+    const double *step_upper;
+    double *weights;
+    double *P;
+    double *q;
+    double *G;
+    double *h;
+    double *lower;
+    double *upper;
+} FootstepQps;
+
+void footstep_qps_make(const FootstepQps *qps, int64_t samples);
+
+/* Counterpart of `planner.model.jerk.WorldMotion._plain`, whose names these are, over `samples` and the one now. */
+typedef struct {
+    double sample_time;
+    int64_t samples;
+    const double *state;
+    const double *jerk;
+    const double *stiffness;
+    const double *height;
+    const double *offset;
+    const double *point;
+    const double *gain;
+    const double *shifts;
+    const double *rotation;
+    const double *origin;
+    double *com;
+    double *world_jerk;
+    double *zmp;
+    double *world_offset;
+    double *reference;
+} MotionInWorld;
+
+void motion_in_world(const MotionInWorld *motion);
+
 /* Counterpart of a `planner.references.window.Window`, as far as recovery looks at it. */
 typedef struct {
     int64_t count;

@@ -1,4 +1,4 @@
-"""The kernels of window and recovery against their plain counterparts, plan by plan, on real walks."""
+"""The compiled kernels of a plan against their plain counterparts, plan by plan, on real walks."""
 
 from collections import Counter
 from collections.abc import Callable

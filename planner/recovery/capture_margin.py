@@ -50,17 +50,20 @@ class PlannedMargin:
 
     Args:
         parameters: of the planner.
+
+    Attributes:
+        outlook: where kernels are told of windows; None without kernels.
     """
 
     def __init__(self, parameters: PlannerParameters) -> None:
         self._sample_time, self._foot_margin, kernels = parameters.sample_time, parameters.foot_margin, library()
-        self._outlook = None if kernels is None else CompiledOutlook(kernels, parameters)
+        self.outlook = None if kernels is None else CompiledOutlook(kernels, parameters)
 
     def margin(self, dcm: Array, window: Window) -> float:
         """See `planned_margin`."""
-        if self._outlook is None or self._outlook.count != len(window.stiffness):
+        if self.outlook is None or self.outlook.count != len(window.stiffness):
             return planned_margin(dcm, window, self._sample_time, self._foot_margin)
-        return self._outlook.margin(dcm, window, self._foot_margin)
+        return self.outlook.margin(dcm, window, self._foot_margin)
 
 
 class CaptureMargin:

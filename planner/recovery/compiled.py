@@ -73,7 +73,8 @@ class CompiledOutlook:
         self.bound: Bound = kernels.fill(
             "Outlook", count=n, sample_time=parameters.sample_time, decay=np.zeros(n), **self._arrays
         )
-        self._margin = kernels.bind("outlook_margin", self.bound)
+        self._margin, self._decay = (kernels.bind(name, self.bound) for name in ("outlook_margin", "outlook_decay"))
+        self._window: Window | None = None
 
     def margin(self, dcm: Array, window: Window, foot_margin: float) -> float:
         """See `planner.recovery.capture_margin.planned_margin`."""
@@ -83,12 +84,15 @@ class CompiledOutlook:
 
     def tell(self, window: Window) -> None:
         """Let kernels look at a window, which has as many samples."""
-        arrays, driving = self._arrays, window.driving
+        if window is self._window:
+            return
+        self._window, arrays, driving = window, self._arrays, window.driving
         np.copyto(arrays["stiffness"], window.stiffness)
         np.copyto(arrays["omega"], window.omega)
         np.copyto(arrays["point"], driving.point)
         np.copyto(arrays["gain"], driving.gain)
         np.copyto(arrays["half_size"], driving.half_size)
+        self._decay()
 
 
 class CompiledMargins:
@@ -144,11 +148,14 @@ class CompiledAdjustment:
         kernels: the library.
         legs: what they can do.
         parameters: of the planner.
+        outlook: where windows are told to kernels.
     """
 
-    def __init__(self, kernels: Library, legs: LegReach, parameters: PlannerParameters) -> None:
+    def __init__(
+        self, kernels: Library, legs: LegReach, parameters: PlannerParameters, outlook: CompiledOutlook | None
+    ) -> None:
         numbers = parameters.recovery
-        self._step, self._outlook = CompiledStep(kernels, legs), CompiledOutlook(kernels, parameters)
+        self._step, self._outlook = CompiledStep(kernels, legs), outlook or CompiledOutlook(kernels, parameters)
         self._result, self.count = np.zeros(6), self._outlook.count
         names = (
             "shift_weight", "second_weight", "time_weight", "stretch_weight", "swing_weight", "cross_factor",

@@ -220,21 +220,21 @@ class Execution:
             time: now [s].
             shifts: shifts of the first two from their nominal increments, in the world frame, shape (2, 2) [m].
         """
-        planned, shift, free = [], np.zeros(2), self.free
-        for ahead, step in enumerate(self.schedule.after(self.landed)[:_TOLD]):
+        planned, ahead, left = [], 0.0, 0.0
+        ways = [*zip(self.free, shifts.tolist(), strict=True), *(_TOLD - len(shifts)) * [(False, [0.0, 0.0])]]
+        for step, (free, way) in zip(self.schedule.after(self.landed), ways, strict=False):
             place = step.place
-            position, normal = place.position.copy(), place.normal
-            if ahead < len(free) and free[ahead]:
-                shift = shift + shifts[ahead] if self._wide else shifts[ahead]
-            elif not self._wide:
-                shift = np.zeros(2)
-            position[:2] += shift
-            if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND * self._size.length:
-                x, y = float(position[0]), float(position[1])
-                position[2] = self._terrain.height(x, y)
+            (x, y, z), normal = place.position.tolist(), place.normal
+            if not self._wide:
+                ahead = left = 0.0
+            if free:
+                ahead, left = ahead + way[0], left + way[1]
+            x, y = x + ahead, y + left
+            if abs(ahead) + abs(left) > _SAME_GROUND * self._size.length:
+                z = self._terrain.height(x, y)
                 normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
             touchdown = time + self.clock.until(step.touchdown) * self._parameters.sample_time
-            planned.append(Footstep(place.foot, position, place.yaw, normal, step.number, touchdown))
+            planned.append(Footstep(place.foot, np.array([x, y, z]), place.yaw, normal, step.number, touchdown))
         return tuple(planned)
 
     def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool) -> None:

@@ -137,12 +137,18 @@ def shifts_within(boxes: Array, increment: Array, free: tuple[bool, bool]) -> Sh
         increment: nominal increments.
         free: whether each of them may be shifted.
     """
-    lower, upper = np.full((2, 2), -_UNUSED), np.full((2, 2), _UNUSED)
-    for j in np.flatnonzero(np.array(free)):
-        lower[j], upper[j] = boxes[j] - increment[j]
+    moves = np.array(free)[:, None]
+    lower = np.where(moves, boxes[:, 0] - increment, -_UNUSED)
+    upper = np.where(moves, boxes[:, 1] - increment, _UNUSED)
     if free[1]:
         lower[1], upper[1] = np.minimum(lower[1], 0.0), np.maximum(upper[1], 0.0)
     return lower, upper
+
+
+def unshifted(free: tuple[bool, bool]) -> Shifts:
+    """Those of footsteps that stay where they are."""
+    bounds = [[0.0, 0.0] if moves else [_UNUSED, _UNUSED] for moves in free]
+    return -np.array(bounds), np.array(bounds)
 
 
 def reachable_shifts(

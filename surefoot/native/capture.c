@@ -17,7 +17,7 @@ typedef struct {
 static double square(double x) { return x * x; }
 
 /* Counterpart of `planner.model.dcm.decays`. */
-static void decays(const Outlook *ahead) {
+void outlook_decay(const Outlook *ahead) {
     double sum = 0.0, before = ahead->stiffness[0] / ahead->omega[0];
     ahead->decay[0] = 1.0;
     for (int64_t k = 1; k < ahead->count; k++) {
@@ -33,7 +33,6 @@ double outlook_margin(const Outlook *ahead, double x, double y, double foot_marg
     const int64_t last = ahead->count - 1;
     const double *decay = ahead->decay, dcm[2] = {x, y};
     double point[2] = {0.0}, half[2] = {0.0}, margin = INFINITY;
-    decays(ahead);
     for (int64_t k = 0; k <= last; k++) {
         const double before = k > 0 ? 0.5 * (decay[k - 1] - decay[k]) : 0.0;
         const double weight = before + (k < last ? 0.5 * (decay[k] - decay[k + 1]) : decay[k]);
@@ -116,20 +115,22 @@ static void margins_at(const Capture *capture, const Box *boxes, int64_t box_cou
         under[e] = com / growth + step->side * (e % 2 ? sign * 0.5 * legs->hip_width : 0.0);
     }
     for (int64_t b = 0; b < box_count; b++) {
+        double ahead[4], spanned[4], nearest[4];
+        for (int e = 0; e < 4; e++) {
+            const double sign = e < 2 ? 1.0 : -1.0, box = e < 2 ? boxes[b].high[e % 2] : -boxes[b].low[e % 2];
+            const double place = fixed ? sign * step->nominal[e % 2] : fmin(box, swung[e]);
+            ahead[e] = (place - away[e]) * shrunk - here[e];
+            spanned[e] = (legs->radius + under[e] - away[e]) * spread - here[e];
+            nearest[e] = (place + (legs->radius - under[e])) * by - here[e];
+        }
         for (int64_t m = 0; m < steps; m++) {
             double least = INFINITY;
             for (int e = 0; e < 4; e++) {
-                const double sign = e < 2 ? 1.0 : -1.0, captured = capture->captured[4 * m + e];
-                const double box = e < 2 ? boxes[b].high[e % 2] : -boxes[b].low[e % 2];
-                const double place = fixed ? sign * step->nominal[e % 2] : fmin(box, swung[e]);
-                double ahead = (place - away[e]) * shrunk - here[e] + captured * shrunk;
-                if (!fixed) {
-                    const double spanned = (legs->radius + under[e] - away[e]) * spread - here[e] + captured * spread;
-                    const double near = (place + (legs->radius - under[e])) * by - here[e];
-                    ahead = fmin(fmin(ahead, spanned), near);
-                }
-                if (m == 0) ahead = fmax(ahead, (capture->half[e] - away[e]) * shrunk - here[e]);
-                least = fmin(least, ahead);
+                const double captured = capture->captured[4 * m + e];
+                double margin = ahead[e] + captured * shrunk;
+                if (!fixed) margin = fmin(fmin(margin, spanned[e] + captured * spread), nearest[e]);
+                if (m == 0) margin = fmax(margin, (capture->half[e] - away[e]) * shrunk - here[e]);
+                least = fmin(least, margin);
             }
             capture->margins[m] = fmax(capture->margins[m], least);
         }
@@ -365,23 +366,24 @@ static int64_t cheapest(const Adjustment *program, const Bounded *bounded, int64
     return 1;
 }
 
-/* Counterpart of `planner.model.dcm.nominal_dcm` for the columns of `StepAdjustment.solve`, at one sample. */
-static void nominal_dcm(const Outlook *ahead, int64_t lift, int64_t at, double *dcm) {
+/* Counterpart of `planner.model.dcm.nominal_dcm` for the columns of `StepAdjustment.solve`, at three samples. */
+static void nominal_dcm(const Outlook *ahead, int64_t lift, int64_t lands, double *now, double *off, double *there) {
     const int64_t last = ahead->count - 1;
-    double sum[5] = {0.0}, one[5], next[5] = {0.0};
-    for (int64_t k = last; k >= at; k--) {
-        for (int i = 0; i < 2; i++) {
-            one[i] = ahead->point[2 * k + i];
-            one[3 + i] = k < lift ? ahead->half_size[2 * k + i] - ahead->half_size[2 * lift + i] : 0.0;
-        }
-        one[2] = ahead->gain[2 * k];
-        const double share = k < last ? 0.5 * (ahead->decay[k] - ahead->decay[k + 1]) : 0.0;
+    const double *decay = ahead->decay, *box = ahead->half_size + 2 * lift;
+    double sum[5] = {0.0}, next[5] = {0.0};
+    for (int64_t k = last; k >= 0; k--) {
+        const double *point = ahead->point + 2 * k, *half = ahead->half_size + 2 * k;
+        const double wider = k < lift ? 1.0 : 0.0, share = k < last ? 0.5 * (decay[k] - decay[k + 1]) : decay[last];
+        const double one[5] = {point[0], point[1], ahead->gain[2 * k], wider * (half[0] - box[0]),
+                               wider * (half[1] - box[1])};
         for (int i = 0; i < 5; i++) {
-            sum[i] += k < last ? share * (one[i] + next[i]) : ahead->decay[last] * one[i];
+            sum[i] += share * (one[i] + next[i]);
             next[i] = one[i];
         }
+        double *at = k == 0 ? now : k == lift ? off : k == lands ? there : NULL;
+        for (int i = 0; at && i < 5; i++) at[i] = sum[i] / decay[k];
+        if (k == 0 && lift == 0) memcpy(off, now, sizeof sum);
     }
-    for (int i = 0; i < 5; i++) dcm[i] = sum[i] / ahead->decay[at];
 }
 
 /* Counterpart of `planner.recovery.step_adjustment.StepAdjustment.solve`; 0 where that is None. */
@@ -395,10 +397,7 @@ int64_t adjustment_solve(const Adjustment *program) {
     if (lands > ahead->count - 2) lands = ahead->count - 2;
     double now[5], off[5], there[5];
     Bounded bounded;
-    decays(ahead);
-    nominal_dcm(ahead, lift, 0, now);
-    nominal_dcm(ahead, lift, lift, off);
-    nominal_dcm(ahead, lift, lands, there);
+    nominal_dcm(ahead, lift, lands, now, off, there);
     bounded.gain = fmax(there[2], no_gain);
     const double fade = ahead->decay[lands];
     for (int i = 0; i < 2; i++) {

@@ -431,10 +431,27 @@ typedef struct {
     const int64_t *contacts;
     int64_t first;
     int64_t points;
-    const double *table;
+    const double *values;
+    const double *steps;
     const double *heights;
     const double *on_left;
 } Sight;
+
+/* Counterpart of `planner.references.zmp_reference.support_table`, of the steps of a schedule. */
+typedef struct {
+    int64_t points;
+    int64_t stance;
+    int64_t stay;
+    const double *free;
+    const double *positions;
+    const double *yaws;
+    const int64_t *supports;
+    const double *half_size;
+    double *values;
+    double *steps;
+} SupportTable;
+
+void support_table_fill(const SupportTable *table);
 
 /* Counterpart of `planner.references.window.ReferencePreview`: one sample before a window, those of it, one after. */
 typedef struct {
@@ -579,6 +596,7 @@ typedef struct {
     double *decay;
 } Outlook;
 
+void outlook_decay(const Outlook *ahead);
 double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin);
 
 /* Counterpart of `planner.swing.leg_reach.LegReach`; its unit ways are rows of values at so many shares of a swing. */

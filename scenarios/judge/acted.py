@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.planner.geometry import headings
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import CommandSettings
-from surefoot.scenarios.judge.body import headings
 from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, Mask, RunView
 from surefoot.scenarios.judge.feet import terrain_of
 from surefoot.scenarios.judge.walking import fall_time, runs_of

@@ -8,7 +8,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.judge.body import headings, knees
+from surefoot.planner.geometry import headings
+from surefoot.scenarios.judge.body import knees
 from surefoot.scenarios.judge.columns import Columns
 from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.record.provenance import RunConstants

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry import seen_from
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.record.provenance import RECORD
@@ -145,18 +146,6 @@ class LogView:
         if not len(rows):
             raise MissingError(f"{topic} in this window")
         return rows
-
-
-def seen_from(poses: Array, points: Array) -> Array:
-    """Points of the ground plane ahead and to the left of poses, shape (n, 2) [m].
-
-    Args:
-        poses: x y z yaw, shape (n, 4) or (4,) [m, rad].
-        points: in the world, shape (n, 2) [m].
-    """
-    sine, cosine = np.sin(poses[..., 3]), np.cos(poses[..., 3])
-    x, y = (points - poses[..., :2]).T
-    return np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
 
 
 def rows_at(clock: Array, times: Array) -> NDArray[np.intp]:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from surefoot.models.pinocchio import pinocchio_model
+from surefoot.planner.geometry import seen_from
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import Foot, Footstep
 from surefoot.scenarios import palette
@@ -18,7 +19,7 @@ from surefoot.scenarios.record.body import contact_points
 from surefoot.scenarios.run.simulation import Tick
 from surefoot.scenarios.setup.stance import frames_of
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.scenarios.show.logview import FOOT_NAMES, seen_from
+from surefoot.scenarios.show.logview import FOOT_NAMES
 from surefoot.scenarios.show.replay.content import PUSH_SHOWN, Array, Facts, Replay, Track, sole_corners, tracks
 from surefoot.scenarios.show.replay.extract import surfaces
 from surefoot.sim.bodies import BodyPoses

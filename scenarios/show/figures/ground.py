@@ -14,15 +14,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry import headings, level_corners, rotations, seen_from
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.body import headings, level_corners, rotations
 from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.palette import BLACK, COM, FEET, FOOTSTEP, GREY, SUPPORT, ZMP
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.kit.figures import Area, curve, heading, kept_of_path, legend, note, or_say
 from surefoot.scenarios.show.kit.shading import Background, Panel, draw_panels
-from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED, LogView, MissingError, seen_from
+from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED, LogView, MissingError
 
 Array = NDArray[np.float64]
 

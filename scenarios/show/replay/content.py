@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry import level_corners, rotations
 from surefoot.scenarios import palette
-from surefoot.scenarios.judge.body import level_corners, rotations
 from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.logview import FOOT_NAMES
 

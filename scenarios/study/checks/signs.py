@@ -11,9 +11,9 @@ from functools import partial
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, headings
 from surefoot.planner.types import GRAVITY
-from surefoot.scenarios.judge.body import headings, leg
+from surefoot.scenarios.judge.body import leg
 from surefoot.scenarios.judge.digest import Array, RunView
 from surefoot.scenarios.judge.walking import runs_of
 from surefoot.scenarios.log import Log

@@ -77,8 +77,7 @@ def _with_article(kind: str) -> str:
     return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
 
 
-METRE, SECOND, RADIAN, NEWTON, KILOGRAM, HERTZ = map(Unit, ("m", "s", "rad", "N", "kg", "Hz"))
-METRE_PER_SECOND, RADIAN_PER_SECOND = Unit("m/s"), Unit("rad/s")
+METRE, SECOND, RADIAN = map(Unit, ("m", "s", "rad"))
 
 
 def meant(value: float, si: str, most: float) -> str:

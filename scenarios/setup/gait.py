@@ -26,14 +26,7 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.source import CommandSource, steps_ordered
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PhaseKind
-from surefoot.scenarios.file.schema import (
-    CommandSettings,
-    FootstepSettings,
-    Gait,
-    PushSettings,
-    Start,
-    VelocitySettings,
-)
+from surefoot.scenarios.file import schema
 
 EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
@@ -48,17 +41,17 @@ FINAL_STAND = 2.5
 """Standing after the last double support that ends a run whose duration is not given, of the reference robot [s]."""
 
 
-def commanded(keys: Gait) -> bool:
+def commanded(keys: schema.Gait) -> bool:
     """Whether the gait is given by a velocity or by footsteps."""
     return bool(keys.velocity or keys.footsteps)
 
 
-def uncommanded(keys: Gait) -> Gait:
+def uncommanded(keys: schema.Gait) -> schema.Gait:
     """The same gait without velocity and footsteps."""
     return keys.model_copy(update={"velocity": (), "footsteps": ()})
 
 
-def gait_of(keys: Gait) -> GaitParameters:
+def gait_of(keys: schema.Gait) -> GaitParameters:
     """The gait in the planner's terms; the widths of its strides are not yet fitted to where feet may land.
 
     Raises:
@@ -94,12 +87,12 @@ def longest_landing(gait: GaitParameters) -> float:
     return max((abs(place.ahead) for place in places), default=0.0)
 
 
-def twist_of(command: VelocitySettings) -> Twist:
+def twist_of(command: schema.VelocitySettings) -> Twist:
     """The velocity that a command asks for."""
     return Twist(command.v_x, command.v_y, command.yaw_rate)
 
 
-def timeline_of(commands: Sequence[VelocitySettings]) -> VelocityTimeline:
+def timeline_of(commands: Sequence[schema.VelocitySettings]) -> VelocityTimeline:
     """Velocity commands in the planner's terms.
 
     Raises:
@@ -108,12 +101,12 @@ def timeline_of(commands: Sequence[VelocitySettings]) -> VelocityTimeline:
     return VelocityTimeline([VelocityCommand(command.time, twist_of(command)) for command in commands])
 
 
-def footsteps_of(footsteps: Sequence[FootstepSettings]) -> list[Footstep]:
+def footsteps_of(footsteps: Sequence[schema.FootstepSettings]) -> list[Footstep]:
     """Footsteps in the planner's terms, in the frame between the start feet."""
     return [Footstep(Foot[step.foot.upper()], np.array([step.x, step.y, 0.0]), step.yaw) for step in footsteps]
 
 
-def timed_command(settings: CommandSettings) -> TimedCommand:
+def timed_command(settings: schema.CommandSettings) -> TimedCommand:
     """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
     velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
     twist = None if velocity == (None, None, None) else Twist(*(value or 0.0 for value in velocity))
@@ -123,14 +116,14 @@ def timed_command(settings: CommandSettings) -> TimedCommand:
     return TimedCommand(settings.time, Command(twist, places, *gait))
 
 
-def waypoints_of(keys: Gait, start: Start) -> tuple[Pose, ...]:
+def waypoints_of(keys: schema.Gait, start: schema.Start) -> tuple[Pose, ...]:
     """The places of `gait.waypoints` in the world frame."""
     origin, rotation = np.array([start.x, start.y]), frame_rotation(start.yaw)
     places = ((origin + rotation @ (to.x, to.y), to.yaw + start.yaw) for to in keys.waypoints)
     return tuple(Pose(float(place[0]), float(place[1]), heading) for place, heading in places)
 
 
-def told_until(gait: GaitParameters, command: CommandSettings) -> float:
+def told_until(gait: GaitParameters, command: schema.CommandSettings) -> float:
     """Time at which the robot stands after a command that lets it stop, or a little later [s]."""
     return command.time + _STOPPING * gait.period
 
@@ -187,7 +180,7 @@ def longest_step(leg_length: float, hip_height: float, hip_width: float, step_wi
     return 2 * math.sqrt(square) if square >= 0 else math.nan
 
 
-def push_time(gait: GaitParameters, push: PushSettings) -> float:
+def push_time(gait: GaitParameters, push: schema.PushSettings) -> float:
     """Begin [s] of a push, given directly or by step, phase and fraction of that phase.
 
     Raises:
@@ -218,7 +211,7 @@ class PushPoint:
     promised: bool = True
 
     @classmethod
-    def of(cls, push: PushSettings) -> "PushPoint | None":
+    def of(cls, push: schema.PushSettings) -> "PushPoint | None":
         """The point of a push; None of one that begins at a time."""
         if push.step is None or push.phase is None:
             return None
@@ -235,7 +228,7 @@ class PushPoint:
         return f"fraction {self.fraction:g} of the {self.kind.name.lower()} support of step {self.step}"
 
 
-def push_force(push: PushSettings, mass: float) -> Array:
+def push_force(push: schema.PushSettings, mass: float) -> Array:
     """Force of a push, given directly or by its impulse per mass [kg], shape (3,) [N]."""
     if push.impulse is None:
         return np.array(push.force or np.zeros(3))

@@ -23,15 +23,7 @@ from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.encoding import MAGIC
-from surefoot.scenarios.record.provenance import (
-    AFTER_FALL,
-    COMMAND_RECORD,
-    END_RECORD,
-    PARTS_RECORD,
-    PUSH_RECORD,
-    SCENARIO_FILE,
-    STOPPED,
-)
+from surefoot.scenarios.record import provenance
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria import criteria_problems
 from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
@@ -70,17 +62,20 @@ def attached_scenario(path: str) -> tuple[str, str]:
     """
     try:
         log = read(path)
-        text = _as_run(decoded(BytesIO(log.attachments[SCENARIO_FILE]), f"{path}/{SCENARIO_FILE}"), log.metadata)
+        text = _as_run(
+            decoded(BytesIO(log.attachments[provenance.SCENARIO_FILE]), f"{path}/{provenance.SCENARIO_FILE}"),
+            log.metadata,
+        )
     except LogError as error:
         raise ScenarioError([str(error)]) from None
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError):
-        what = f"{path}: carries no readable {SCENARIO_FILE}, so it cannot be run again"
+        what = f"{path}: carries no readable {provenance.SCENARIO_FILE}, so it cannot be run again"
         raise ScenarioError([f"{what}; give a log that `surefoot run` has written"]) from None
-    if PARTS_RECORD in log.metadata:
-        parts = ", ".join(f"{name} {part}" for name, part in log.metadata[PARTS_RECORD].items())
+    if provenance.PARTS_RECORD in log.metadata:
+        parts = ", ".join(f"{name} {part}" for name, part in log.metadata[provenance.PARTS_RECORD].items())
         what = f"{path}: was made by a program with parts of its own ({parts}), which no log can carry"
         raise ScenarioError([f"{what}; run that program again"])
-    return text, f"{path}/{SCENARIO_FILE}"
+    return text, f"{path}/{provenance.SCENARIO_FILE}"
 
 
 def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
@@ -94,19 +89,19 @@ def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
             for name, record in metadata.items()
             if name.startswith(kind)
         ]
-        for keys, kind in (("pushes", PUSH_RECORD), ("commands", COMMAND_RECORD))
+        for keys, kind in (("pushes", provenance.PUSH_RECORD), ("commands", provenance.COMMAND_RECORD))
     }
-    end = metadata.get(END_RECORD, {})
-    if not any(given.values()) and end.get("reason") != STOPPED:
+    end = metadata.get(provenance.END_RECORD, {})
+    if not any(given.values()) and end.get("reason") != provenance.STOPPED:
         return text
-    keys = parse(text, SCENARIO_FILE).value
+    keys = parse(text, provenance.SCENARIO_FILE).value
     keys |= {name: [*keys.get(name, []), *values] for name, values in given.items() if values}
     if end:
-        keys["duration"] = float(end["time"]) + (AFTER_FALL if end["kind"] == "fall" else 0.0)
+        keys["duration"] = float(end["time"]) + (provenance.AFTER_FALL if end["kind"] == "fall" else 0.0)
         for name in ("pushes", "commands", "faults"):
             # What was to come later has not acted.
             keys[name] = [entry for entry in keys.get(name, []) if (entry.get("time") or 0.0) < keys["duration"]]
-        if end.get("reason") == STOPPED or end["kind"] == "fall":
+        if end.get("reason") == provenance.STOPPED or end["kind"] == "fall":
             for name in ("pushes", "commands"):
                 keys[name] = [{**entry, "live": True} for entry in keys[name]]
             keys["faults"] = [_until(keys["duration"], entry) for entry in keys["faults"]]

@@ -89,23 +89,19 @@ def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "R
 
     What it carries unbeknown comes last, so that it is as heavy as was said, at the true CoM of its body.
     """
-    from surefoot.models.belief import (
-        with_com_raised,
-        with_load,
-        with_mass_scaled,
-        with_masses_scattered,
-        with_torso_com_moved,
-    )
+    from surefoot.models import belief
 
     if errors.com_height != 0.0:
-        robot = with_com_raised(robot, -errors.com_height)
+        robot = belief.with_com_raised(robot, -errors.com_height)
     if errors.mass_scale != 1.0:
         # Of the mass itself the quotient, which logs have to the last digit.
-        robot = replace(with_mass_scaled(robot, 1.0 / errors.mass_scale), mass=float(robot.mass) / errors.mass_scale)
+        robot = replace(
+            belief.with_mass_scaled(robot, 1.0 / errors.mass_scale), mass=float(robot.mass) / errors.mass_scale
+        )
     if any(errors.torso_com or ()):
-        robot = with_torso_com_moved(robot, -np.array(errors.torso_com))
+        robot = belief.with_torso_com_moved(robot, -np.array(errors.torso_com))
     if errors.link_mass_noise:
-        robot = with_masses_scattered(robot, errors.link_mass_noise, generator(seed, Stream.MASSES))
+        robot = belief.with_masses_scattered(robot, errors.link_mass_noise, generator(seed, Stream.MASSES))
     if errors.payload is not None and errors.payload.mass > 0.0:
-        robot = with_load(robot, errors.payload.mass, errors.payload.body)
+        robot = belief.with_load(robot, errors.payload.mass, errors.payload.body)
     return robot

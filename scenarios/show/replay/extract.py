@@ -14,19 +14,8 @@ from surefoot.scenarios.log import Log
 from surefoot.scenarios.palette import FEET, Color
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.show.logview import FOOT_NAMES, rows_at
-from surefoot.scenarios.show.replay.content import (
-    PUSH_SHOWN,
-    Array,
-    Facts,
-    Footprint,
-    Frames,
-    Replay,
-    ReplayWindow,
-    SoleSize,
-    Surface,
-    sole_corners,
-    tracks,
-)
+from surefoot.scenarios.show.replay import content
+from surefoot.scenarios.show.replay.content import Array, Frames, Replay, ReplayWindow
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.shapes import drawn_shapes
 from surefoot.sim.triangles import Triangles, merged, triangles
@@ -94,7 +83,7 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
         body_position=position,
         body_quaternion=quaternion,
         surfaces=surfaces(model),
-        tracks=tuple(tracks(facts)),
+        tracks=tuple(content.tracks(facts)),
         footprints=tuple(_taken_footprints(run, frames, facts.sole)),
         mjcf=mjcf,
     )
@@ -136,7 +125,7 @@ def _pushed_body(log: Log, run: RunView) -> str:
     return bodies[0] if len(bodies) == 1 else torso(run.constants.roles)
 
 
-def _facts(run: RunView, frames: Frames, pushed: Array) -> Facts:
+def _facts(run: RunView, frames: Frames, pushed: Array) -> content.Facts:
     """What the marks tell; the push is the strongest of the last moments, at a place of shape (n, 3) [m]."""
     rows, count = frames.rows, len(frames.rows)
     ahead, ahead_foot = np.empty((count, 0, 4)), np.empty((count, 0))
@@ -145,7 +134,7 @@ def _facts(run: RunView, frames: Frames, pushed: Array) -> Facts:
         then = rows_at(planned.time, frames.time)
         ahead, ahead_foot = planned.field("next")[then], planned.field("next_foot")[then]
     push = run.field("/measurement", "external_force")
-    return Facts(
+    return content.Facts(
         com=run.field("/truth", "com")[rows],
         dcm=run.field("/estimate", "dcm")[rows],
         zmp=run.field("/contact", "zmp")[rows],
@@ -159,31 +148,33 @@ def _facts(run: RunView, frames: Frames, pushed: Array) -> Facts:
         force=np.stack([run.field("/measurement", f"wrench_{side}")[rows, :3] for side in FOOT_NAMES], axis=1),
         ahead=ahead,
         ahead_foot=ahead_foot,
-        push=push[frames.strongest(np.linalg.norm(push, axis=1), run.time, PUSH_SHOWN)],
+        push=push[frames.strongest(np.linalg.norm(push, axis=1), run.time, content.PUSH_SHOWN)],
         pushed=pushed,
         sole=(run.constants.foot_length, run.constants.foot_width),
     )
 
 
-def _taken_footprints(run: RunView, frames: Frames, sole: SoleSize) -> Iterator[Footprint]:
+def _taken_footprints(run: RunView, frames: Frames, sole: content.SoleSize) -> Iterator[content.Footprint]:
     """Where the feet stood at first, and every touchdown until the last frame."""
     if run.has("/footsteps"):
         first = run.log["/footsteps"]
         for color, name in zip(FEET, FOOT_NAMES, strict=True):
-            yield Footprint(color, sole_corners(first.field(f"current_{name}")[:1], sole)[0], float(first.time[0]))
+            yield content.Footprint(
+                color, content.sole_corners(first.field(f"current_{name}")[:1], sole)[0], float(first.time[0])
+            )
     if run.has("/footstep"):
         taken = run.log["/footstep"]
-        corners = sole_corners(taken.field("actual"), sole)
+        corners = content.sole_corners(taken.field("actual"), sole)
         for time, foot, place in zip(taken.time.tolist(), taken.field("foot").tolist(), corners, strict=True):
             if time <= frames.time[-1] and np.isfinite(place).all():
-                yield Footprint(FEET[foot == 1], place, time)
+                yield content.Footprint(FEET[foot == 1], place, time)
 
 
-def surfaces(model: mujoco.MjModel) -> tuple[Surface, ...]:
+def surfaces(model: mujoco.MjModel) -> tuple[content.Surface, ...]:
     """Every visible geom but the endless ground, geoms of one body and one colour merged."""
     groups: dict[tuple[int, Color], list[Triangles]] = {}
     for shape in drawn_shapes(model):
         vertices, faces = triangles(shape)
         placed = vertices @ shape.rotation.T + shape.position, faces
         groups.setdefault((shape.body, shape.color[:3]), []).append(placed)
-    return tuple(Surface(body, color, *merged(parts)) for (body, color), parts in groups.items())
+    return tuple(content.Surface(body, color, *merged(parts)) for (body, color), parts in groups.items())

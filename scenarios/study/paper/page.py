@@ -13,18 +13,8 @@ from matplotlib.figure import Figure
 
 from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.run.run import made_folder
-from surefoot.scenarios.show.kit.html import (
-    MISSING,
-    PageTable,
-    TableCell,
-    TableRow,
-    details,
-    document,
-    escape,
-    figure_html,
-    section,
-    tag,
-)
+from surefoot.scenarios.show.kit import html
+from surefoot.scenarios.show.kit.html import MISSING, PageTable, TableCell, TableRow, escape, section, tag
 from surefoot.scenarios.show.kit.html import tally as tally_html
 from surefoot.scenarios.study.campaigns.engine import Worker, local_workers
 from surefoot.scenarios.study.campaigns.sweep import CampaignBar
@@ -191,7 +181,7 @@ def runs_table(results: Results) -> str:
     ]
     failures = PageTable("failures", ("could not run", "why"), failed).html if failed else ""
     table = PageTable("runs-table", ("run", "end", "command"), rows, kind="runs").html
-    return failures + details(f"All {len(rows)} runs with their commands", table, name="all-runs")
+    return failures + html.details(f"All {len(rows)} runs with their commands", table, name="all-runs")
 
 
 _BALANCES: dict[str, tuple[str, tuple[Study, ...]]] = {
@@ -221,7 +211,7 @@ def page(results: Results, plates: Plates = PLATES) -> str:
     }
     content["pushes"].append(shove_table(results).html)
     written = (_section(part, content.get(part.name, []), results, plates) for part in every)
-    return document(TITLE, "\n".join((_top(results, found), _contents(every), *written)))
+    return html.document(TITLE, "\n".join((_top(results, found), _contents(every), *written)))
 
 
 def tally(claims: Judged) -> dict[Grade, int]:
@@ -253,7 +243,7 @@ def _section(part: PageSection, content: Sequence[str], results: Results, plates
     """Its text, its figures, its tables."""
     points = tag("ul", "".join(tag("li", entry) for entry in part.points)) if part.points else ""
     figures = (
-        figure_html(plates[one["name"]](results), one["caption"], one["name"], "half" if one.get("half") else "")
+        html.figure_html(plates[one["name"]](results), one["caption"], one["name"], "half" if one.get("half") else "")
         for one in part.figures
         if one["name"] in plates
     )
@@ -269,7 +259,7 @@ def _claims_table(claims: Judged) -> str:
 def _claim_row(claim: Claim, found: Assessment) -> TableRow:
     where = tag("span", f"section {escape(claim.section)}", kind="section", id=claim.name)
     verdict = tag("span", found.verdict, kind=f"verdict {_KINDS[found.verdict]}")
-    says = f"{escape(claim.text)} {where}{details('rule', escape(claim.rule))}"
+    says = f"{escape(claim.text)} {where}{html.details('rule', escape(claim.rule))}"
     return says, _sentences(found.pendulum), _sentences(found.full), verdict
 
 

@@ -20,15 +20,8 @@ from surefoot.scenarios.study.campaigns.engine import Worker
 from surefoot.scenarios.study.campaigns.journal import Journal
 from surefoot.scenarios.study.campaigns.points import Point, Record, Single
 from surefoot.scenarios.study.campaigns.sweep import CampaignBar, run_cells
-from surefoot.scenarios.study.paper.studies import (
-    PROFILES,
-    SHOVE_IMPULSES,
-    WORLD_SETTINGS,
-    Experiment,
-    PaperWorld,
-    Study,
-    shove,
-)
+from surefoot.scenarios.study.paper import studies
+from surefoot.scenarios.study.paper.studies import Experiment, PaperWorld, Study
 
 ENDED = ("completed", "fall")
 """How a run ends that is a result; a fall is one."""
@@ -210,15 +203,15 @@ class Results:
         """Runs of a study with some profiles."""
         return [self.sample(study, profile, world) for profile in profiles]
 
-    def samples(self, studies: Iterable[Study]) -> list[Sample]:
+    def samples(self, some: Iterable[Study]) -> list[Sample]:
         """Every sample of some studies that was run: study by study, world by world, in the order of the profiles."""
         kinds = {_kind(outcome.experiment) for outcome in self.outcomes}
-        every = product(studies, WORLD_SETTINGS, PROFILES)
+        every = product(some, studies.WORLD_SETTINGS, studies.PROFILES)
         return [self.sample(*kind) for study, world, profile in every if (kind := (study, profile, world)) in kinds]
 
     def survived(self, adaptation: str, direction: str) -> list[int] | None:
         """Impulses of a direction that did not make the robot fall [N s]; None when one of the runs is missing."""
-        samples = {i: self.sample(shove(i, direction, adaptation), "default") for i in SHOVE_IMPULSES}
+        samples = {i: self.sample(studies.shove(i, direction, adaptation), "default") for i in studies.SHOVE_IMPULSES}
         if not all(sample.complete for sample in samples.values()):
             return None
         return [impulse for impulse, sample in samples.items() if not sample.falls]

@@ -75,12 +75,7 @@ class TerrainSettings(Group):
 
 
 def model_of(model: type[BaseModel], values: Any) -> type[BaseModel]:
-    """The model of a group with these values: of the ground, the one that its kind brings if it has keys of its own.
-
-    Args:
-        model: of the group, as the schema has it.
-        values: plain ones, of which any may be wrong.
-    """
+    """The model of a group with plain values, also wrong ones: of the ground that of its kind, if it has own keys."""
     kind = values.get("kind") if model is TerrainSettings and isinstance(values, dict) else None
     if not isinstance(kind, str) or kind == DEFAULTS["terrain"]:
         return model

@@ -221,10 +221,6 @@ Overrides = Sequence[str] | Mapping[str, Any]
 def apply_overrides(source: Source, overrides: Overrides) -> None:
     """Set values in place, in order; list elements are reached by index.
 
-    Args:
-        source: the scenario's values.
-        overrides: what to set.
-
     Raises:
         ScenarioError: one is no setting, or its key leads into a scalar or past the end of a list.
     """

@@ -26,13 +26,7 @@ _SAME_TIME = 1e-6
 
 
 def not_there(metrics: Mapping[str, object], criteria: Mapping[str, Bound], length: float) -> Iterator[str]:
-    """Say what of its way the robot has not gone, unless a criterion says how far from it it may be.
-
-    Args:
-        metrics: of the run.
-        criteria: that are asked.
-        length: of the robot over that of the reference [-].
-    """
+    """Say what of its way a robot of a length [-] has not gone, unless a criterion says how far from it it may be."""
     for name, near, unit in (("place_error", AT_PLACE * length, "m"), ("heading_error", AT_HEADING, "rad")):
         error = metrics.get(name)
         if isinstance(error, float) and name not in criteria and error > near:
@@ -169,13 +163,7 @@ def _stands_on(soles: Array, half: Array, number: int, ground: Terrain) -> bool:
 
 
 def _touches(soles: Array, half: Array, box: Box) -> Mask:
-    """Which soles have a part over a box: two rectangles on the ground are apart if an axis of one of them parts them.
-
-    Args:
-        soles: places and headings, shape (n, 3).
-        half: half length and width of a sole, shape (2,) [m].
-        box: of the ground.
-    """
+    """Which soles, shape (n, 3), have a part over a box: rectangles are apart if an axis of one of them parts them."""
     centre, size, axes = box.center[:2], box.half_size[:2], box.rotation[:2, :2].T
     c, s = np.cos(soles[:, 2]), np.sin(soles[:, 2])
     own = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=1)

@@ -114,10 +114,7 @@ def compute(log: Log | Digest) -> dict[str, Any]:
 
 
 def measure(log: Log | Digest) -> Measured:
-    """Compute every metric; one of another package that fails is None and a note.
-
-    Args:
-        log: a log of a run, whole or truncated, or its digest.
+    """Compute every metric of a log, whole or truncated; one of another package that fails is None and a note.
 
     Raises:
         LogError: the log does not describe a run.

@@ -187,11 +187,7 @@ class Verdict:
 
 
 def judge(log: Log, gathered: Digest | None = None) -> Verdict:
-    """Judge a run by its log alone.
-
-    Args:
-        log: the log.
-        gathered: its digest, where it was gathered before.
+    """Judge a run by its log alone, or by the digest of it that was gathered before.
 
     Raises:
         LogError: the log does not describe a run.
@@ -286,11 +282,7 @@ def _unfinished(log: Log) -> list[str]:
 
 
 def agenda_of(log: Log, scenario: Scenario) -> Agenda:
-    """What was to happen in a run; of a log that does not tell, as far as its scenario does.
-
-    Args:
-        log: of the run.
-        scenario: that it carries.
+    """What was to happen in the run of a log; of one that does not tell, as far as its scenario does.
 
     Raises:
         LogError: what the log tells of it cannot be read.

@@ -27,12 +27,7 @@ def compress(data: bytes, method: str) -> bytes:
 
 
 def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:
-    """Decompress a chunk.
-
-    Args:
-        data: compressed bytes.
-        method: as of `compress`.
-        size: bytes that must come out.
+    """Decompress a chunk, of which so many bytes must come out, by a method as of `compress`.
 
     Raises:
         LogError: the bytes are damaged or the method is unknown.

@@ -38,11 +38,6 @@ class Recovery:
 def recover(source: str | Path, target: str | Path, replace: bool = False) -> Recovery:
     """Write everything sound of a log to a new file, which appears under its name only when it is whole.
 
-    Args:
-        source: a log.
-        target: the file.
-        replace: an existing file.
-
     Raises:
         LogError: the source is no MCAP file, the target is the source, exists or cannot be written.
     """

@@ -19,12 +19,7 @@ from surefoot.scenarios.setup.terrain import KINDS
 
 
 def criteria_problems(criteria: Mapping[str, Bound], fidelity: str) -> list[Problem]:
-    """List criteria that check nothing, one fault each; names that are no metrics are for others to say.
-
-    Args:
-        criteria: as the user gave them.
-        fidelity: of the run.
-    """
+    """List criteria that check nothing in a fidelity, a fault each; names that are no metrics are for others to say."""
     found = [(name, bound, known(name)) for name, bound in criteria.items()]
     metrics = [metric for _, _, metric in found if metric is not None]
     problems = [
@@ -37,12 +32,7 @@ def criteria_problems(criteria: Mapping[str, Bound], fidelity: str) -> list[Prob
 
 
 def comparable(name: str, metric: Metric[Any]) -> tuple[str, ...]:
-    """Names of the metrics that a metric may be required to equal: of its kind, and one of the two always there.
-
-    Args:
-        name: of the metric, or of a part of it.
-        metric: itself.
-    """
+    """Names of metrics that a metric, or its part, may be required to equal: of its kind, one of both always there."""
     if name != metric.name or metric.size > 1:
         return ()
     others = ((other, known(other)) for other in METRICS if other != name)

@@ -71,14 +71,9 @@ def _value(key: str, value: Any) -> str:
 
 
 def proposed(walk: Walk, body: Body, key: Key) -> Proposal | None:
-    """What to set over a walk that a robot cannot do, of which it can do the result; None if nothing was found.
+    """What to set over a walk, refused at a key, of which its robot can do the result; None if nothing was found.
 
     Whatever the next refusal is about gives way next.
-
-    Args:
-        walk: that is refused.
-        body: its robot.
-        key: at which it is.
     """
     from surefoot.scenarios.setup.load import read_scenario
 

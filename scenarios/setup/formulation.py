@@ -165,14 +165,7 @@ def region_of(parameters: PlannerParameters, facts: RobotFacts, com_height: floa
 
 
 def leg_reach(parameters: PlannerParameters, facts: RobotFacts, com_height: float, standing_height: float) -> LegReach:
-    """What the legs can do to catch the body.
-
-    Args:
-        parameters: of the planner.
-        facts: of the robot.
-        com_height: of the gait [m].
-        standing_height: CoM over the soles at which the walk begins and ends [m].
-    """
+    """What the legs can do to catch a body with its CoM at a height in the gait, and at one in standing [m]."""
     recovery = parameters.recovery
     return LegReach(
         radius=0.5 * LEG_SHARE * leg_span(com_height, facts),
@@ -188,13 +181,7 @@ def leg_reach(parameters: PlannerParameters, facts: RobotFacts, com_height: floa
 
 
 def cop_room(leg: LegInertia, facts: RobotFacts, mass: float) -> tuple[float, float]:
-    """How far from a sole's centre the ankle's torques bear the robot, ahead and behind, and to both sides [m].
-
-    Args:
-        leg: of the robot.
-        facts: of the robot.
-        mass: that it bears [kg].
-    """
+    """How far from a sole's centre ankles bear a mass [kg], ahead and behind, and to both sides [m]."""
     if leg.chain is None:
         return math.inf, math.inf
     levers = [ANKLE_SHARE * torque / (GRAVITY * mass) for torque in facts.ankle_torque]

@@ -150,12 +150,7 @@ def step_region(
 
 
 def leg_span(com_height: float, facts: RobotFacts) -> float:
-    """Largest distance between two soles with the hips over their middle, less the hip width sideways [m].
-
-    Args:
-        com_height: of the gait [m].
-        facts: of the robot.
-    """
+    """Largest distance between two soles, CoM over their middle at a height, less the hip width sideways [m]."""
     span = longest_step(facts.leg_length, com_height - facts.com_above_hip, facts.hip_width, facts.hip_width)
     return 0.0 if math.isnan(span) else span
 

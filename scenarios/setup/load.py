@@ -117,10 +117,7 @@ def _until(end: float, fault: dict[str, Any]) -> dict[str, Any]:
 
 
 def written(reference: str) -> Written:
-    """The text of a scenario.
-
-    Args:
-        reference: as of `load`.
+    """The text of a scenario, by a reference as of `load`.
 
     Raises:
         ScenarioError: it cannot be found or read.
@@ -166,13 +163,7 @@ def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None
 
 
 def locate(reference: str, overrides: Overrides, refusal: SetupError) -> ScenarioError:
-    """Say where the cause of a refusal stands: at the key that it names, else at the scenario's begin.
-
-    Args:
-        reference: as given to `load`, as are the overrides.
-        overrides: ``key=value``.
-        refusal: of a part of the stack.
-    """
+    """Say where the cause of a refusal stands: at the key that it names, else at the begin; arguments of `load`."""
     source = _source(written(reference), overrides, RegisteredRobots())
     return ScenarioError([source.describe(refusal.problem)])
 
@@ -209,14 +200,7 @@ def key_problems(written: Written, overrides: Overrides) -> list[Problem]:
 def for_robot(
     written: Written, values: Mapping[str, Any], origin: str, robot: str | None, robots: Robots
 ) -> dict[str, Any]:
-    """What values that are set over a scenario are for another robot, without those that it has of its own.
-
-    Args:
-        written: the scenario.
-        values: by dotted key.
-        origin: the robot that they are written for.
-        robot: the one that walks; None for the scenario's own.
-        robots: that may be named.
+    """What values by key, for an origin, are for a robot, or the scenario's own; without those that it has itself.
 
     Raises:
         ScenarioError: the scenario cannot be read, or a key leads nowhere.

@@ -16,12 +16,7 @@ _PLANT_READS = {"pendulum": ("feedback",), "cart_table": ()}
 
 
 def notes(walk: Walk, driven: bool = False) -> tuple[str, ...]:
-    """List them, one sentence each.
-
-    Args:
-        walk: the scenario.
-        driven: whether its robot was told by hand how to walk.
-    """
+    """List them, one sentence each; those of a robot that was told by hand how to walk if it was ``driven``."""
     still = () if driven or walk.keys.gait.steps or commanded(walk.keys.gait) or walk.told else _without_steps(walk)
     return (*_unlikely(walk), *_without_effect(walk), *_without_occasion(walk), *still, *_cut_short(walk))
 

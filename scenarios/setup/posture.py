@@ -39,11 +39,7 @@ Rule = Callable[[float, RobotFacts, RobotFacts], float]
 
 
 def rules(nearer: float) -> dict[Key, Rule]:
-    """Keys that follow from more of a robot than its size.
-
-    Args:
-        nearer: how much nearer than its step width the feet of the walk land (see `nearer_landings`) [m].
-    """
+    """Keys that follow from more than a robot's size, where feet land that much nearer (see `nearer_landings`) [m]."""
     return {
         ("gait", "com_height"): similar_com_height,
         ("gait", "step_width"): partial(similar_step_width, nearer=nearer),

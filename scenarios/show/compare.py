@@ -121,12 +121,7 @@ class Comparison:
 
 
 def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[Comparison, Log, Log]:
-    """Compare two logs, also truncated ones and ones of different versions.
-
-    Args:
-        path_a: first log.
-        path_b: second log.
-        tolerance: as of `compare_channels`.
+    """Compare two logs, also truncated ones and ones of different versions; a tolerance as of `compare_channels`.
 
     Returns:
         the comparison, and both logs.
@@ -159,14 +154,7 @@ def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[C
 
 
 def draw(found: Comparison, a: Log, b: Log, out: Path, replace: bool = False) -> None:
-    """Draw both runs over each other.
-
-    Args:
-        found: their comparison.
-        a: first log.
-        b: second log.
-        out: file to write, PNG, SVG or PDF by its ending.
-        replace: an existing file.
+    """Draw two runs that were compared over each other, as PNG, SVG or PDF by the file's ending.
 
     Raises:
         LogError: there is nothing to draw, or the file exists or cannot be written.

@@ -32,11 +32,7 @@ WIDTH = 10_000
 
 
 class TerminalLine:
-    """One line on standard error for as long as its context, only on a terminal.
-
-    Args:
-        columns: that it shows.
-    """
+    """One line of some columns on standard error for as long as its context, only on a terminal."""
 
     def __init__(self, *columns: ProgressColumn) -> None:
         console = Console(stderr=True)

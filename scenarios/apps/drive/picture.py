@@ -54,11 +54,8 @@ class Picture(Replay):
 class Pictures:
     """Makes the pictures of a walk's runs.
 
-    Args:
-        walk: what is simulated, in full physics.
-
     Attributes:
-        walk: likewise.
+        walk: what is simulated, in full physics.
         sole: length and width of the robot's [m].
     """
 

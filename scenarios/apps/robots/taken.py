@@ -122,12 +122,7 @@ _STYLES = {"walks": "bold green", "accepted": None, "fails": "bold red", "refuse
 
 
 class CatalogueBar(TerminalLine):
-    """Prints each row as it is known, and on a terminal how much simulated time is left and how long that takes.
-
-    Args:
-        console: gets the rows; None where nobody is to see them.
-        names: of the scenarios.
-    """
+    """Prints each row on a console, if any; on a terminal how much simulated time is left, and how long that takes."""
 
     def __init__(self, console: Console | None, names: Sequence[str]) -> None:
         left = (TextColumn("left"), TimeRemainingColumn(elapsed_when_finished=True))

@@ -216,14 +216,7 @@ _BOTH = (
 
 
 def overlay(a: LogView, b: LogView, header: str, divergence: float | None) -> Figure:
-    """Draw both runs on one page.
-
-    Args:
-        a: first run.
-        b: second run.
-        header: says which they are.
-        divergence: time at which they part [s], None when they do not.
-    """
+    """Draw both runs on one page below a header, with a line where they part [s], None when they do not."""
 
     def both(axes: Axes, _: LogView, topic: str, name: str, axis: int) -> None:
         """Draw a channel of both runs; one that has not got it is left out, and named when neither has."""

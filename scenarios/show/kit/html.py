@@ -42,12 +42,7 @@ def tag(name: str, content: str, **attributes: str) -> str:
 
 
 def document(title: str, body: str) -> str:
-    """A whole page.
-
-    Args:
-        title: of the window.
-        body: HTML.
-    """
+    """A whole page: the title of its window, and its body, HTML."""
     style = (files(__package__) / "page.css").read_text(encoding="utf-8")
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
     return (

@@ -160,12 +160,7 @@ def background(view: LogView) -> Background:
 
 
 def stretches(time: np.ndarray, values: np.ndarray) -> tuple[Stretch, ...]:
-    """Times in which a row of integers stayed the same.
-
-    Args:
-        time: shape (n,) [s].
-        values: shape (n, k).
-    """
+    """Times in which a row of integers, shape (n, k), stayed the same, on a clock of shape (n,) [s]."""
     starts = np.flatnonzero(np.concatenate(([True], np.any(values[1:] != values[:-1], axis=1))))
     ends = np.append(starts[1:], len(time) - 1)
     rows = np.nan_to_num(values[starts]).astype(int).tolist()

@@ -51,11 +51,7 @@ def choose_frames(run: RunView, window: ReplayWindow) -> Frames:
 
 
 def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
-    """Read what there is to show.
-
-    Args:
-        log: of a run in full physics, also a truncated one.
-        window: what part of it; all by default.
+    """Read what there is to show in a window of a log of full physics, also a truncated one; all of it by default.
 
     Raises:
         LogError: the log does not describe such a run, or has nothing in that window.

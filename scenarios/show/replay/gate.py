@@ -98,13 +98,7 @@ class Gate:
         return None
 
     def answered(self, connection: "ServerConnection", request: "Request", viewer: Answer) -> "Response | None":
-        """The answer to a request; None makes it a websocket.
-
-        Args:
-            connection: that the request came on.
-            request: in question.
-            viewer: answers with the viewer's own page.
-        """
+        """The answer to a request, with the viewer's own page where that is asked for; None makes it a websocket."""
         if (refusal := self.refusal(request)) is not None:
             return connection.respond(HTTPStatus.FORBIDDEN, refusal + "\n")
         name = self._name(request)

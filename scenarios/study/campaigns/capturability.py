@@ -44,13 +44,9 @@ _EVERY, _LATER = 0.04, 0.2
 
 
 def moment_of(log: Path, push: int) -> Moment | None:
-    """The state of a run as a push begins; None where there is none of the kind that has a limit.
+    """The state of a run as a push begins, counted from 0; None where there is none of the kind that has a limit.
 
     It has one on flat ground, before the last foot has landed.
-
-    Args:
-        log: of the run.
-        push: its number, from 0.
     """
     try:
         scenario = load(log)
@@ -82,15 +78,7 @@ def _moment(scenario: Scenario, walk: Walk, view: LogView, push: int) -> Moment 
 
 
 def _ways(walk: Walk, view: LogView, swing: Foot, at: tuple[int, float], left: tuple[float, float]) -> Iterator[Way]:
-    """Ways to land: as planned, and as steps may be adapted.
-
-    Args:
-        walk: that was resolved.
-        view: of its log.
-        swing: the foot that is to land.
-        at: row of the tick before the push, in the channels of every control tick, and time from then to it [s].
-        left: double and single support that are left by the clock [s].
-    """
+    """Ways to land: as planned, and as steps may be adapted; ``at`` a row and a time after it, supports left [s]."""
     row, since = at
     seen = max(int(np.searchsorted(view.time("/footsteps"), view.time("/truth")[row] + _TICK)) - 1, 0)
     poses = [view.field("/footsteps", f"current_{foot}", 4)[seen][[0, 1, 3]] for foot in FOOT_NAMES]
@@ -171,12 +159,7 @@ class Limits:
         return bool(self._moments)
 
     def at(self, labels: Mapping[str, Any], direction: float | None) -> float | None:
-        """The limit of a search, None where it is not known [N·s/kg].
-
-        Args:
-            labels: of the search.
-            direction: of the push, None for its own [rad].
-        """
+        """The limit of a search in a direction, None for its push's own [rad]; None where it is not known [N·s/kg]."""
         moment = self._moments.get(self._name(labels))
         return None if moment is None else moment.limit(moment.direction if direction is None else direction)
 

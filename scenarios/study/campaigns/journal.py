@@ -57,12 +57,7 @@ class MadeOf:
         self._base, self._robot = lru_cache(maxsize=None)(_named), lru_cache(maxsize=None)(robot_digest)
 
     def of(self, point: Point, anywhere: bool = False) -> str:
-        """Digest of all that the result of a run depends on but its scenario.
-
-        Args:
-            point: the run.
-            anywhere: leave out in what the machines of a cluster may differ.
-        """
+        """Digest of all that a run's result depends on but its scenario; ``anywhere``: that is one on every machine."""
         base = self._base(point.base.written)
         words = frozenset((*base.words, *_words(dict(point.settings))))
         versions = {name: one for name, one in self._versions().items() if not (anywhere and name in OF_A_MACHINE)}
@@ -224,13 +219,7 @@ class Journal:
 
 
 def outcome_of(cell: Searched, journal: Journal, made: Callable[[Point], bool] = lambda _: True) -> Outcome:
-    """What became of a cell, by the results that are there.
-
-    Args:
-        cell: that was asked for.
-        journal: has the results.
-        made: is asked of each run before its result is looked up, and says whether to go on.
-    """
+    """What became of a cell by the results of a journal; ``made`` says of each run before whether to go on."""
     runs: list[tuple[Point, Record]] = []
     search = cell.search()
     try:

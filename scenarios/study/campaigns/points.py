@@ -126,12 +126,7 @@ class Cell:
         return None
 
     def point(self, seed: int, searched: Mapping[str, Any]) -> Point:
-        """A run of this cell.
-
-        Args:
-            seed: of everything random in it, and of what is drawn.
-            searched: values of keys that are searched.
-        """
+        """A run of this cell with a seed, also of what is drawn, and with values of the keys that are searched."""
         spec = self.campaign.spec
         drawn = {key: draw_value(draw, spec.seed, key, seed) for key, draw in spec.sample.items()}
         own = {key: value for key, value in self.keys.items() if not key.startswith(SEARCH)}

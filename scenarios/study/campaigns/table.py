@@ -153,10 +153,6 @@ def wilson(successes: int, trials: int) -> SuccessRate:
     """A success rate with its 95 % interval by Wilson's score, which holds near 0 and 1 and for few trials too.
 
     E. B. Wilson, Probable inference, the law of succession, and statistical inference, JASA 22, 1927.
-
-    Args:
-        successes: how many.
-        trials: of how many, 1 or more.
     """
     interval = binomtest(successes, trials).proportion_ci(0.95, "wilson")
     return SuccessRate(successes / trials, float(interval.low), float(interval.high))

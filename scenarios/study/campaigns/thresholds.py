@@ -66,14 +66,7 @@ class Found(NamedTuple):
 
 
 def compass(found: Sequence[Found], axes: Sequence[Axis], key: str, limit: LimitOf) -> Figure:
-    """Thresholds around the compass: a panel for each value of the first axes, a curve for each of the last one.
-
-    Args:
-        found: every search.
-        axes: with more than one value.
-        key: that was searched.
-        limit: drawn dashed where there is one.
-    """
+    """Thresholds by direction: panels by the first axes, a curve for each value of the last one, limits dashed."""
     angle = angle_of(axes)
     assert angle is not None
     others = [axis for axis in axes if axis is not angle]

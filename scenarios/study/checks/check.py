@@ -185,13 +185,7 @@ def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Check
 
 
 def compared(case: Case, before: Baseline, now: Baseline) -> Checked:
-    """What a run is by its baseline alone.
-
-    Args:
-        case: that was run.
-        before: its baseline.
-        now: what the run would be as one.
-    """
+    """What a run is by its baseline alone."""
     if others := before.others(case.scenario.name, case.settings):
         return Checked(case, "other scenario", tuple(others))
     gaps, world = before.gaps(now, case.scenario.criteria), before.other_world(now)

@@ -257,13 +257,7 @@ def _plan_time_text(sample: Sample) -> str:
 
 
 def saving(results: Results, metric: str, name: str) -> Assessment:
-    """Whether stretched knees take less effort than bent ones at the same speed.
-
-    Args:
-        results: of the knee studies.
-        metric: that measures the effort.
-        name: of it.
-    """
+    """Whether stretched knees take less effort, by a metric and its name, than bent ones at the same speed."""
     found = {gait: _saving(results, gait, metric) for gait in studies.GAITS}
     parts = [f"{gait} gait {_share_text(saved)}" for gait, saved in found.items()]
     text = f"{name}, stretched against bent knees: {', '.join(parts)}"

@@ -65,13 +65,7 @@ class ExperimentResult:
 def run_experiments(
     experiments: Sequence[Experiment], folder: Path, workers: Sequence[Worker], bar: CampaignBar | None = None
 ) -> tuple[ExperimentResult, ...]:
-    """Run what has not been run; one that fails does not stop the others.
-
-    Args:
-        experiments: to run.
-        folder: of all runs.
-        workers: that make the runs.
-        bar: is told each.
+    """Run what has not been run, telling a bar each; one that fails does not stop the others.
 
     Returns:
         an outcome for each experiment, in their order.

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import Field as DataclassField
 from dataclasses import fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
@@ -27,6 +27,14 @@ class Group(BaseModel):
 def key(default: Any, description: str) -> Any:
     """A key with its default, and what it is in a few words."""
     return Field(default=default, description=description)
+
+
+def groups_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    """The groups that an annotation names, however deep in it."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from groups_in(part)
 
 
 def as_tuple(value: Any) -> Any:

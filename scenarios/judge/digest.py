@@ -163,10 +163,7 @@ LAG_NS = 100_000_000
 
 
 def _in_step(windows: Iterable[dict[str, ChannelData]]) -> Iterator[dict[str, ChannelData]]:
-    """The same windows, each with whole control ticks.
-
-    A chunk ends with a tick whose last messages are in the next one; such a tick is put off until it is whole.
-    """
+    """The same windows, each with whole control ticks: one whose last messages are in the next chunk is put off."""
     rest: dict[str, ChannelData] = {}
     for channels in windows:
         joined = {topic: rest[topic].joined(channel) if rest else channel for topic, channel in channels.items()}

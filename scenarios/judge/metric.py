@@ -249,11 +249,7 @@ def metric(
 
 
 def _check(made: Metric[Any]) -> None:
-    """Refuse what could not be computed, shown or bounded.
-
-    Raises:
-        ParameterError: it is such.
-    """
+    """Refuse, by a ParameterError, what could not be computed, shown or bounded."""
     who = f"metric {made.name}"
     if not made.name.isidentifier() or keyword.iskeyword(made.name) or made.name in RESERVED:
         raise ParameterError(("name",), f"{who}: not a name for a metric", f"none of {', '.join(RESERVED)}, and a word")

@@ -83,12 +83,7 @@ def _meant(name: str) -> str:
 
 
 def _usable(name: str) -> Metric[Any]:
-    """The metric of a name.
-
-    Raises:
-        KeyError: there is none.
-        PluginError: its package cannot be loaded, or has it under another name.
-    """
+    """The metric of a name; KeyError for none, PluginError where its package is broken or names it otherwise."""
     found = METRICS[name]
     if found.name != name:
         raise PluginError(f"'{name}' in {GROUP} is named '{found.name}' where it is made", "give both one name")
@@ -212,11 +207,7 @@ def digest(log: Log) -> Digest:
 
 
 def _check_joints(log: Log, joints: int) -> None:
-    """Refuse a log whose joints are not as many as its run has.
-
-    Raises:
-        LogError: it is such a log.
-    """
+    """Refuse, by a LogError, a log whose joints are not as many as its run has."""
     for topic, name in (("/torque", "command"), ("/measurement", "joint_position")):
         shapes = [field.shape for field in log.fields(topic) if field.name == name] if topic in log.numeric else []
         if shapes and shapes != [(joints,)]:

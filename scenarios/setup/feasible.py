@@ -96,11 +96,7 @@ def proposed(walk: Walk, body: Body, key: Key) -> Proposal | None:
 
 
 def _fit(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia]":
-    """See `made_ready`; says what is wrong and not what would be right.
-
-    Raises:
-        ParameterError: the robot cannot do the walk.
-    """
+    """See `made_ready`; its ParameterError says what is wrong and not what would be right."""
     posture = start_posture(walk, body)
     check_stances(walk, body, posture)
     leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)

@@ -219,11 +219,7 @@ def for_robot(
 
 
 def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
-    """The values of a scenario's text, as they are for its robot, with what is set over them.
-
-    Raises:
-        ScenarioError: it is no group of keys, or an override leads nowhere.
-    """
+    """The values of a scenario's text, as they are for its robot, with what is set over them; or a ScenarioError."""
     name = written.place
     source = parse(written.text, name)
     if source.value is None:

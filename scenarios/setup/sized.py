@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeVar
 
 from pydantic import BaseModel
 from pydantic_core import PydanticCustomError
@@ -22,6 +22,7 @@ from surefoot.planner.parameters import RecoveryParameters
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.group import groups_in
 from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario, model_of
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
@@ -316,15 +317,8 @@ def _against(after: Similarity, before: Similarity, unit: str) -> float:
 def _entries(model: type[BaseModel]) -> Iterator[tuple[str, str, type[BaseModel] | None]]:
     """Keys of a group with their units and, where they hold groups, the type of these."""
     for name, field in model.model_fields.items():
-        inner = None if name == "criteria" else next(_groups(field.annotation), None)
+        inner = None if name == "criteria" else next(groups_in(field.annotation), None)
         yield name, unit_of(field.annotation, field.metadata), inner
-
-
-def _groups(annotation: Any) -> Iterator[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _groups(part)
 
 
 def _is_number(value: Any) -> bool:

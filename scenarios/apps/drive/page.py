@@ -181,11 +181,7 @@ class DrivePage:
         return {"impulse": size, "specific": size / self._pictures.walk.true_mass}
 
     def _take(self, given: Mapping[str, Any]) -> None:
-        """Take what the page sends.
-
-        Raises:
-            ValueError: it is not what the page would send.
-        """
+        """Take what the page sends; ValueError where it is not what the page would send."""
         kind = given.get("kind")
         if kind == "click":
             self._impulse = _above_zero(given, "impulse", self._size.times(GREATEST_IMPULSE, "N·s"))

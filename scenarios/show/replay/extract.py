@@ -86,11 +86,7 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
 
 
 def _world(log: Log) -> tuple[str, mujoco.MjModel]:
-    """The world that was simulated, as MJCF and compiled.
-
-    Raises:
-        LogError: the log has none, or it is damaged.
-    """
+    """The world that was simulated, as MJCF and compiled; LogError where the log has none, or it is damaged."""
     try:
         text = log.attachments[WORLD_FILE].decode()
     except (KeyError, UnicodeDecodeError):

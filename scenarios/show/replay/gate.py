@@ -291,11 +291,7 @@ _NO_GET = (
 
 
 def _bound(port: int | None) -> socket.socket:
-    """A socket that listens on a port, the first free one if None.
-
-    Raises:
-        LogError: it is taken.
-    """
+    """A socket that listens on a port, the first free one if None; LogError where it is taken."""
     for tried in range(PORT, PORT + TRIES) if port is None else ():
         with contextlib.suppress(OSError):
             return socket.create_server((LOCALHOST, tried))

@@ -121,11 +121,7 @@ def serve(path: Path, window: ReplayWindow, say: Callable[[str], None]) -> None:
 
 
 def _size(path: Path) -> int:
-    """Of a log that is followed [B].
-
-    Raises:
-        LogError: it is there no more.
-    """
+    """Of a log that is followed [B]; LogError where it is there no more."""
     try:
         return path.stat().st_size
     except OSError as error:

@@ -123,11 +123,7 @@ class Film:
 
 
 def _camera(asked: str) -> Camera:
-    """A camera by name, or by azimuth, elevation [deg] and distance [m]; that one follows.
-
-    Raises:
-        LogError: there is none of that name, and it is no direction either.
-    """
+    """A camera by name, or one that follows by azimuth, elevation [deg] and distance [m]; or a LogError."""
     if asked in CAMERAS:
         return CAMERAS[asked]
     try:

@@ -85,10 +85,7 @@ class Campaign:
         return str(keys.get(SCENARIO, self.spec.scenario))
 
     def _sized(self, keys: dict[str, Any], robots: Robots) -> dict[str, Any]:
-        """Settings with those that are written for another robot than they name as they are for that one.
-
-        Values of lists, and those that are drawn or searched, stand in tables and mean what they say.
-        """
+        """Settings as they are for the robot that they name; lists and what is drawn or searched mean what they say."""
         origin, base = self.spec.sized_for, self.bases.get(self.base(keys))
         if base is None or origin in (None, keys.get("robot")):
             return keys

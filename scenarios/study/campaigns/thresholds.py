@@ -218,10 +218,7 @@ def _draw_searches(axes: Axes, found: Sequence[Found], shades: Axis, groups: Axi
 
 
 def _draw_limits(axes: Axes, top: float, limits: Sequence[tuple[float, float | None]], shades: Axis) -> None:
-    """Draw limits across their bars, and let the axes end where all else does, or at limits that are not far above.
-
-    One that is far beyond is told at the upper edge.
-    """
+    """Draw limits across their bars, in axes that end where all else does or not far above; beyond, they are told."""
     known = [(at, most) for at, most in limits if most is not None]
     top = max([top, *(1.06 * most for _, most in known if most <= 1.5 * top)])
     beyond = [(at, most) for at, most in known if most > top]

@@ -181,12 +181,7 @@ def _spoilt(what: str) -> ScenarioError:
 
 
 def _of_values(data: Any, path: Path) -> Baseline:
-    """A baseline of what its file holds.
-
-    Raises:
-        ScenarioError: its settings are no YAML.
-        ValueError: it is none; says why.
-    """
+    """A baseline of what its file holds; ScenarioError or ValueError where it is none."""
     groups = {"scenario": object, "settings": str, "metrics": dict, "trace": list}
     values = data if isinstance(data, dict) else {}
     if wrong := [name for name, kind in groups.items() if name not in values or not isinstance(values[name], kind)]:
@@ -219,11 +214,7 @@ def write_baseline(path: Path, baseline: Baseline) -> None:
 
 
 def _world(log: Log) -> Mapping[str, Option]:
-    """Options of the world that a log carries; none of a pendulum's.
-
-    Raises:
-        LogError: it is damaged.
-    """
+    """Options of the world that a log carries, none of a pendulum's; LogError where it is damaged."""
     try:
         return world_options(log.attachments[WORLD_FILE].decode()) if WORLD_FILE in log.attachments else {}
     except ValueError as error:

@@ -125,11 +125,7 @@ def cases(references: Sequence[str], folder: Path | None = None, overrides: Sequ
 
 
 def _unfolded(reference: str) -> list[str]:
-    """The scenario files of a folder, or the reference itself.
-
-    Raises:
-        ScenarioError: the folder holds none.
-    """
+    """The scenario files of a folder, or the reference itself; ScenarioError for a folder without any."""
     folder = Path(reference)
     if reference in catalogue.OURS or not folder.is_dir():
         return [reference]

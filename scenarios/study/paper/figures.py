@@ -98,11 +98,7 @@ def _draw_column(axes: Sequence[Axes], column: PanelColumn, rows: Sequence[Panel
 
 
 def _view(sample: Sample) -> LogView:
-    """The first run of a sample.
-
-    Raises:
-        MissingError: there is none.
-    """
+    """The first run of a sample; MissingError where there is none."""
     if not sample.outcomes:
         raise MissingError("not run")
     first = sample.outcomes[0]

@@ -244,7 +244,7 @@ def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     of, walk = (_sound({**one, "robot": name}, robots) for one, name in zip((before, source.value), names, strict=True))
     if of is None or walk is None:
         return
-    from surefoot.scenarios.setup.posture import bent_alike
+    from surefoot.scenarios.setup.stances import bent_alike
 
     with suppress(ParameterError):
         source.value["gait"]["com_height"] = bent_alike(of, walk)

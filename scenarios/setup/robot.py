@@ -1,13 +1,15 @@
-"""The robot of a scenario: its description with the chosen options, what bounds its walk, and what it is in truth."""
+"""The robot of a scenario: what bounds its walk, what it is in truth, and which keys follow from more than its size."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Protocol
+from functools import cached_property, lru_cache, partial
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from surefoot.models.facts import RobotFacts, facts_of
+from surefoot.models.facts import RobotFacts, facts_of, similar_com_height, similar_step_width, similar_tread
+from surefoot.scenarios.errors import Key
 from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings
 from surefoot.streams import Stream, generator
 
@@ -105,3 +107,36 @@ def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "R
     if errors.payload is not None and errors.payload.mass > 0.0:
         robot = belief.with_load(robot, errors.payload.mass, errors.payload.body)
     return robot
+
+
+def nearer_landings(gait: Mapping[str, Any], told: bool) -> float:
+    """How much nearer than its step width the feet of a walk land; infinite where they may land anywhere [m].
+
+    Args:
+        gait: keys of the group ``gait`` that are given.
+        told: whether the walk hears while it goes on where to go.
+    """
+    velocity = gait.get("velocity")
+    commands = velocity if isinstance(velocity, list | tuple) else ()
+    sideways = any(isinstance(one, Mapping) and (one.get("v_y") or one.get("yaw_rate")) for one in commands)
+    if told or sideways or any(gait.get(name) for name in ("turn", "footsteps", "waypoints")):
+        return math.inf
+    aside = gait.get("lateral_step", 0.0)
+    return abs(aside) if isinstance(aside, int | float) else math.inf
+
+
+Rule = Callable[[float, RobotFacts, RobotFacts], float]
+"""Gives the value of a key for another robot, from the value for one, facts of that one, and facts of the other."""
+
+
+def rules(nearer: float) -> dict[Key, Rule]:
+    """Keys that follow from more than a robot's size, where feet land that much nearer (see `nearer_landings`) [m]."""
+    return {
+        ("gait", "com_height"): similar_com_height,
+        ("gait", "step_width"): partial(similar_step_width, nearer=nearer),
+        ("terrain", "tread"): similar_tread,
+    }
+
+
+POSTURE = ("com_height", "step_width")
+"""Those of them that every walk has."""

@@ -28,8 +28,7 @@ from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
-from surefoot.scenarios.setup.posture import POSTURE, Rule, nearer_landings, rules
-from surefoot.scenarios.setup.robot import Robots, is_known
+from surefoot.scenarios.setup.robot import POSTURE, Robots, Rule, is_known, nearer_landings, rules
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters

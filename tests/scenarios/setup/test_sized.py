@@ -18,8 +18,7 @@ from surefoot.scenarios.file.schema import Rates, RobotSettings
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.notes import notes
-from surefoot.scenarios.setup.posture import nearer_landings
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import RegisteredRobots, nearer_landings
 from surefoot.scenarios.setup.sized import clock
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.similarity import Similarity

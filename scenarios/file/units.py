@@ -73,6 +73,11 @@ def _si(value: Decimal, spelling: str) -> float | int:
     return int(value) if value == value.to_integral_value() and abs(value) < 10**15 else float(value)
 
 
+def is_number(value: Any) -> bool:
+    """Whether a value is a number, be it NaN or infinite, and no truth value."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
 def _with_article(kind: str) -> str:
     return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
 

@@ -1,7 +1,7 @@
 """The metrics there are, ours and those of other packages, and their values for a log."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from types import ModuleType
@@ -156,19 +156,19 @@ def _foreign_value(run: RunView, name: str, notes: list[str]) -> Any:
 def _value(run: RunView, metric: Metric[Any]) -> Any:
     if not metric.applies(run.constants.fidelity) or not run.has(*metric.needs):
         return None
-    return _plain(metric(run))
+    return plain(metric(run))
 
 
-def _plain(value: Any) -> Any:
-    """The value for JSON: what is not a finite number becomes None, and a number of a class of its own a plain one."""
+def plain(value: Any, lost: Callable[[float], str | None] = lambda _: None) -> Any:
+    """The value for JSON: numbers of classes of their own as plain ones, and what is ``lost``: those not finite."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, list | tuple):
-        return [_plain(element) for element in value]
+        return [plain(element, lost) for element in value]
     if isinstance(value, dict):
-        return {key: _plain(element) for key, element in value.items()}
+        return {key: plain(element, lost) for key, element in value.items()}
     if isinstance(value, float):
-        return float.__pos__(value) if math.isfinite(value) else None
+        return float.__pos__(value) if math.isfinite(value) else lost(value)
     return int.__pos__(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 

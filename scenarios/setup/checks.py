@@ -323,7 +323,8 @@ def _too_fast(gait: Gait, twist: Twist, region: StepRegion) -> str | None:
     limit = fastest(twist, _period(gait), gait.step_width, region)
     if limit == twist:
         return None
-    speeds = ", ".join(f"{name} {_toward_zero(getattr(limit, name)):g}" for name in ("v_x", "v_y", "yaw_rate"))
+    never_faster = {name: math.trunc(1000.0 * getattr(limit, name)) / 1000.0 for name in ("v_x", "v_y", "yaw_rate")}
+    speeds = ", ".join(f"{name} {value:g}" for name, value in never_faster.items())
     return f"the fastest in this direction is {speeds}; or take faster steps"
 
 
@@ -335,8 +336,3 @@ def _period(gait: Gait) -> float:
 def _step_text(stride: Stride) -> str:
     named = ((stride.length, "m ahead"), (stride.lateral, "m to the left"), (stride.turn, "rad of turn"))
     return " and ".join(f"{value:.3g} {unit}" for value, unit in named if value)
-
-
-def _toward_zero(value: float) -> float:
-    """Three decimals, never faster."""
-    return math.trunc(1000.0 * value) / 1000.0

@@ -25,7 +25,7 @@ from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import groups_in
 from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario, model_of
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
-from surefoot.scenarios.file.units import Unit, unit_of
+from surefoot.scenarios.file.units import Unit, is_number, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.robot import POSTURE, Robots, Rule, is_known, nearer_landings, rules
@@ -218,13 +218,13 @@ class _Translation:
         if metric.name != _TORQUE:
             return _times(limit, _against(self.after.size, self.before.size, metric.unit))
         scaled = _times(limit, self.effort)
-        return max(limit, min(scaled, 1.0 - _RESERVE)) if _is_number(limit) else limit
+        return max(limit, min(scaled, 1.0 - _RESERVE)) if is_number(limit) else limit
 
     def _number(self, value: Any, unit: str, key: Key) -> Any:
         """The value for the other robot."""
         with suppress(PydanticCustomError):
             value = Unit(unit).number(value)
-        rule = self.rules.get(key) if _is_number(value) else None
+        rule = self.rules.get(key) if is_number(value) else None
         if rule is not None:
             return rule(value, self.before, self.after)
         return _times(value, _against(self.after.size, self.before.size, unit))
@@ -320,10 +320,6 @@ def _entries(model: type[BaseModel]) -> Iterator[tuple[str, str, type[BaseModel]
         yield name, unit_of(field.annotation, field.metadata), inner
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
 def _times(value: Any, factor: float | list[float]) -> Any:
     """A number, or a list or tuple of numbers, times a factor or one for each; all else as it is."""
     if isinstance(value, list | tuple):
@@ -331,5 +327,5 @@ def _times(value: Any, factor: float | list[float]) -> Any:
         return type(value)(_times(part, one) for part, one in zip(value, factors, strict=False))
     if isinstance(factor, list):
         return value
-    plain = _is_number(value) and math.isfinite(value)
+    plain = is_number(value) and math.isfinite(value)
     return value * factor if plain and factor != 1.0 else value

@@ -8,7 +8,7 @@ from typing import Any
 from rich.table import Table
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.judge.metrics import known, plain
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
@@ -107,13 +107,13 @@ class Comparison:
             "identical": self.identical,
             "summary": self.summary,
             "tolerance": self.tolerance,
-            "first_divergence": None if self.first is None else _plain(asdict(self.first)),
+            "first_divergence": None if self.first is None else plain(asdict(self.first), str),
             "versions": [asdict(one) for one in self.versions],
-            "settings": _plain([asdict(one) for one in self.settings]),
+            "settings": plain([asdict(one) for one in self.settings], str),
             "files": list(self.files),
             "records": list(self.records),
             "metrics": {one.name: {"a": one.a, "b": one.b, "difference": one.delta} for one in self.metrics},
-            "channels": [{**_plain(asdict(one)), "same": one.same} for one in self.channels],
+            "channels": [{**plain(asdict(one), str), "same": one.same} for one in self.channels],
             "only_a": list(self.only_a),
             "only_b": list(self.only_b),
             "notes": [*self.notes, *self.unread],
@@ -186,15 +186,6 @@ def _damage(name: str, log: Log, common: tuple[str, ...]) -> list[str]:
     notes = [f"{name} is truncated: it can be read up to {log.time_range()[1]:.3f} s"] if log.truncated else []
     notes += [f"{name}: {damage}" for damage in dict.fromkeys(log.damage)]
     return notes + [f"{topic} of {name} has no layout of fixed size: not compared" for topic in unreadable(log, common)]
-
-
-def _plain(value: Any) -> Any:
-    """The value for JSON: tuples as lists, what is not a finite number as text."""
-    if isinstance(value, dict):
-        return {key: _plain(part) for key, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def print_comparison(found: Comparison) -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.source import parse
+from surefoot.scenarios.file.units import is_number
 from surefoot.scenarios.judge.metrics import measure
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE
@@ -238,8 +239,7 @@ class Difference:
     @property
     def delta(self) -> float | None:
         """Second minus first, when both are numbers."""
-        numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in (self.a, self.b))
-        return float(self.b - self.a) if numbers else None
+        return float(self.b - self.a) if is_number(self.a) and is_number(self.b) else None
 
 
 def differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[Difference, ...]:

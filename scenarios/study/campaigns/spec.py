@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 from surefoot.scenarios.errors import nearest
 from surefoot.scenarios.file.group import WHOLE, Group
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.units import is_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -165,11 +166,6 @@ class Axis(NamedTuple):
     def heading(self) -> str:
         """Name and unit."""
         return with_unit(self.name)
-
-
-def is_number(value: Any) -> bool:
-    """Whether a value is a number, be it NaN or infinite, and no truth value."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def with_unit(key: str) -> str:

@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.units import is_number
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.palette import FAIL, GREY, PASS, paler
 from surefoot.scenarios.setup.load import read_scenario
@@ -23,7 +24,6 @@ from surefoot.scenarios.study.campaigns.spec import (
     MOST_PANELS,
     Axis,
     combinations,
-    is_number,
     name_axis,
     text,
     title,

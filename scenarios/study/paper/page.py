@@ -271,13 +271,6 @@ def _sentences(text: str) -> str:
 PAGE_NAME, NUMBERS_NAME, RUNS_NAME = "paper.html", "paper.json", "runs"
 
 
-class PaperWritten(NamedTuple):
-    """What the command left behind: the page, and the results that it is of."""
-
-    page: Path
-    results: Results
-
-
 def paper(
     out: Path,
     jobs: int,
@@ -285,7 +278,7 @@ def paper(
     every: Sequence[Experiment] | None = None,
     workers: Callable[[Path, int, bool], Sequence[Worker]] = local_workers,
     plates: Plates = PLATES,
-) -> PaperWritten:
+) -> tuple[Path, Results]:
     """Run what has not been run and write the page.
 
     Args:
@@ -309,7 +302,7 @@ def paper(
     return write(results, out, replace, plates)
 
 
-def write(results: Results, out: Path, replace: bool = False, plates: Plates = PLATES) -> PaperWritten:
+def write(results: Results, out: Path, replace: bool = False, plates: Plates = PLATES) -> tuple[Path, Results]:
     """Write the page with these figures, and the numbers behind it.
 
     Raises:
@@ -319,7 +312,7 @@ def write(results: Results, out: Path, replace: bool = False, plates: Plates = P
         temporary.write_text(page(results, plates), encoding="utf-8")
     with write_whole(out / NUMBERS_NAME, replace) as temporary:
         temporary.write_text(json.dumps(_numbers(results), indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    return PaperWritten(out / PAGE_NAME, results)
+    return out / PAGE_NAME, results
 
 
 def _numbers(results: Results) -> dict[str, object]:

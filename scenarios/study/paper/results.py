@@ -253,10 +253,6 @@ def _range(spread: Spread, scale: float, digits: int = 3) -> str:
     return "" if least == greatest else f"{least} … {greatest}"
 
 
-def _fell_text(sample: Sample) -> str:
-    return f"{sample.falls} of {len(sample.runs)}"
-
-
 def first_fall(sample: Sample) -> str:
     """When the first of those that fell did, in a phrase; empty when none fell."""
     return f"from {number(min(sample.values('fall_time')))} s on" if sample.falls else ""
@@ -264,7 +260,7 @@ def first_fall(sample: Sample) -> str:
 
 def fell_text(sample: Sample) -> str:
     """How many of how many fell, and when the first of them."""
-    return ", ".join(filter(None, (_fell_text(sample), first_fall(sample))))
+    return ", ".join(filter(None, (f"{sample.falls} of {len(sample.runs)}", first_fall(sample))))
 
 
 def balance_text(samples: Sequence[Sample]) -> str:

@@ -86,13 +86,7 @@ METRE, SECOND, RADIAN = map(Unit, ("m", "s", "rad"))
 
 
 def meant(value: float, si: str, most: float) -> str:
-    """What a bare number that is too large was probably meant to be, as the end of a sentence; empty when unclear.
-
-    Args:
-        value: as given, in SI.
-        si: unit of its key.
-        most: greatest size that the key may have.
-    """
+    """What a number in SI, beyond the most of a key, was probably meant to be, as a sentence's end; or empty."""
     for spelling in {"m": ("cm", "mm"), "s": ("ms",), "rad": (_DEGREE,), "rad/s": (f"{_DEGREE}/s",)}.get(si, ()):
         factor = _SPELLINGS[si][1][spelling]
         if (

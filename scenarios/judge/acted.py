@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.planner.geometry import headings
-from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import CommandSettings
-from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, Mask, RunView
+from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, RunView
 from surefoot.scenarios.judge.feet import terrain_of
 from surefoot.scenarios.judge.walking import fall_time, runs_of
 from surefoot.scenarios.record.provenance import END_RECORD
@@ -126,7 +125,7 @@ def unmet_ground(run: RunView) -> Iterator[str]:
     for key, numbers in unforeseen.items():
         # Noise leaves the ground as it is believed to be where the robot starts; a box may lie there too.
         stances = soles if key.startswith("errors.ground.") else later
-        if not any(_stands_on(stances, half, number, ground) for number in numbers):
+        if not any(ground.carries(stances, half, number) for number in numbers):
             yield f"{key} never acted: no foot came upon ground that is not as believed"
 
 
@@ -139,39 +138,6 @@ def _stances(run: RunView, start: int) -> Array:
         sole = run.sole(foot)[rows]
         found.append(np.column_stack([sole[:, :2], headings(sole[:, 3:])]))
     return np.concatenate(found)
-
-
-_PATCH = np.stack(np.meshgrid(np.linspace(-1.0, 1.0, 9), np.linspace(-1.0, 1.0, 5)), axis=-1).reshape(-1, 2)
-"""Points of a sole at which the ground under it is looked at, in its half sizes [-]."""
-
-_ABOVE = 1e-6
-"""Height by which other ground lies above a box that it buries [m]."""
-
-
-def _stands_on(soles: Array, half: Array, number: int, ground: Terrain) -> bool:
-    """Whether a sole has a part over a box of the ground, and other ground does not bury the box there."""
-    box = ground.boxes[number]
-    over = soles[_touches(soles, half, box)]
-    ahead = np.stack([np.cos(over[:, 2]), np.sin(over[:, 2])], axis=-1)
-    left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
-    points = over[:, None, :2] + (_PATCH * half) @ np.stack([ahead, left], axis=1)
-    top, inside = box.top(points.reshape(-1, 2))
-    under = ground.heights(points.reshape(-1, 2)) > top + _ABOVE
-    within, free = (mask.reshape(-1, len(_PATCH)) for mask in (inside >= 0.0, (inside >= 0.0) & ~under))
-    # A corner of the box between the points counts as free.
-    return bool((free.any(axis=1) | ~within.any(axis=1)).any())
-
-
-def _touches(soles: Array, half: Array, box: Box) -> Mask:
-    """Which soles, shape (n, 3), have a part over a box: rectangles are apart if an axis of one of them parts them."""
-    centre, size, axes = box.center[:2], box.half_size[:2], box.rotation[:2, :2].T
-    c, s = np.cos(soles[:, 2]), np.sin(soles[:, 2])
-    own = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=1)
-    between = centre - soles[:, :2]
-    across = np.abs(own @ axes.T)  # of each axis of the sole along each of the box
-    apart_by_sole = np.abs(np.einsum("nij,nj->ni", own, between)) > half + across @ size
-    apart_by_box = np.abs(between @ axes.T) > size + np.einsum("nij,i->nj", across, half)
-    return np.asarray(~(apart_by_sole.any(axis=1) | apart_by_box.any(axis=1)))
 
 
 def contradictions(run: RunView) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 import tempfile
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import headings
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import knees
-from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import RunConstants
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.log import ChannelData, Log
 
 Reads = Mapping[str, tuple[str, ...]]
 """Names of fields by topic."""
@@ -123,7 +125,7 @@ class Columns:
 class KeptChannel:
     """Fields of a channel over the whole run; one that was not kept is read from the log when it is asked for."""
 
-    def __init__(self, log: Log, topic: str, columns: Columns) -> None:
+    def __init__(self, log: "Log", topic: str, columns: Columns) -> None:
         self._log, self._topic = log, topic
         self._columns = columns
 
@@ -146,7 +148,7 @@ class KeptChannel:
         return self._columns[kept] if kept in self._columns else self._log[self._topic].field(name)
 
 
-Channel = ChannelData | KeptChannel
+Channel: TypeAlias = "ChannelData | KeptChannel"
 
 
 class Window:
@@ -158,7 +160,7 @@ class Window:
         metadata: of the log.
     """
 
-    def __init__(self, log: Log, channels: Mapping[str, Channel]) -> None:
+    def __init__(self, log: "Log", channels: Mapping[str, Channel]) -> None:
         self.path, self.size, self.metadata = log.path, log.size, log.metadata
         self._channels = channels
 
@@ -169,7 +171,7 @@ class Window:
         return self._channels[topic]
 
 
-Source = Log | Window
+Source: TypeAlias = "Log | Window"
 
 Reduce = Callable[[Source], Mapping[Any, NDArray[Any]]]
 """Reduces a part of a log to narrow arrays by key, in order of time."""
@@ -182,14 +184,8 @@ class Digest(Window):
         reduced: what `reduce` gave, over the whole run.
     """
 
-    def __init__(self, log: Log, reads: Iterable[Reads], reduce: Reduce) -> None:
-        """Go through the log once; its damage is then known.
-
-        Args:
-            log: a log.
-            reads: fields that are held for the whole run; wider ones are reduced tick by tick.
-            reduce: is applied to every part.
-        """
+    def __init__(self, log: "Log", reads: Iterable[Reads], reduce: Reduce) -> None:
+        """Go through the log once, reducing every part and holding narrow fields; its damage is then known."""
         held = _united((HELD, *reads))
         topics = [topic for topic in held if topic in log.numeric]
         kept, self.reduced = Columns(), Columns()
@@ -208,7 +204,7 @@ LAG_NS = 100_000_000
 """What is put off at most [ns]."""
 
 
-def _in_step(windows: Iterable[dict[str, ChannelData]]) -> Iterator[dict[str, ChannelData]]:
+def _in_step(windows: Iterable[dict[str, "ChannelData"]]) -> Iterator[dict[str, "ChannelData"]]:
     """The same windows, each with whole control ticks: one whose last messages are in the next chunk is put off."""
     rest: dict[str, ChannelData] = {}
     for channels in windows:

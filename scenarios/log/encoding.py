@@ -156,13 +156,7 @@ class Summary:
         self._times = min(first, chunk.message_start_time), max(last, chunk.message_end_time)
 
     def finish(self, position: int, counts: Mapping[int, int], crc: int) -> bytes:
-        """Give the end of the file: end of data, summary, footer, magic.
-
-        Args:
-            position: where it will stand in the file.
-            counts: messages by channel.
-            crc: CRC-32 of everything before it.
-        """
+        """Give the end of the file at a position: end of data with the CRC-32 of all before, summary, footer, magic."""
         end = encoded(records.DataEnd(crc))
         start = position + len(end)
         groups: list[tuple[Opcode, list[bytes]]] = [

@@ -52,11 +52,7 @@ class FieldSpec:
         return prod(self.shape)
 
     def columns(self, joints: Sequence[str] = ()) -> Iterator["Column"]:
-        """Every element as a column of a table.
-
-        Args:
-            joints: names of the robot's joints in order; () when they are not known.
-        """
+        """Every element as a column of a table, called by the robot's joints in order where they are known."""
         units, names = self._element_units(), self._joint_names(joints)
         for place in np.ndindex(self.shape):
             name = f"{self.name}.{names[place[0]]}" if names else "_".join((self.name, *map(str, place)))

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from surefoot.errors import ParameterError, at_least, at_most
-from surefoot.models.facts import RobotFacts
+from surefoot.models.facts import RobotFacts, longest_step
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.references.com_height import highest_apex
 from surefoot.planner.steps.commands import Twist, fastest
@@ -22,7 +22,7 @@ from surefoot.scenarios.file.schema import Gait, Sensing
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.events import cut_off, idle_commands, never_act, slight, told_problems
 from surefoot.scenarios.setup.formulation import LONGEST_REACH
-from surefoot.scenarios.setup.gait import commanded, leg_span, longest_step, step_region, twist_of, uncommanded
+from surefoot.scenarios.setup.gait import commanded, step_region, twist_of, uncommanded
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot import Robots, is_known
 from surefoot.scenarios.setup.terrain.ground import uneven_problems
@@ -283,7 +283,7 @@ def _command_problems(walk: Walk) -> list[Problem]:
 def _commanded_step_problems(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:
     """Name velocities whose steps are out of reach with the fastest possible, or the first footstep that is."""
     gait = walk.keys.gait
-    sole, span = (facts.foot_length, facts.foot_width), leg_span(gait.com_height, facts)
+    sole, span = (facts.foot_length, facts.foot_width), facts.leg_span(gait.com_height)
     parameters = replace(walk.formulation.usual, reach_length=LONGEST_REACH * walk.size.length)
     region = step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
     for index, command in enumerate(gait.velocity):

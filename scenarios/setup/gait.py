@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.errors import ParameterError
-from surefoot.models.facts import RobotFacts
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.commands import (
@@ -147,32 +146,6 @@ def step_region(
     width = (max(near, shank_spacing), far)
     gap = parameters.recovery.sole_gap
     return StepRegion(parameters.reach_length, width, sole, gap, leg_span=leg_span, hip_width=hip_width)
-
-
-def leg_span(com_height: float, facts: RobotFacts) -> float:
-    """Largest distance between two soles, CoM over their middle at a height, less the hip width sideways [m]."""
-    span = longest_step(facts.leg_length, com_height - facts.com_above_hip, facts.hip_width, facts.hip_width)
-    return 0.0 if math.isnan(span) else span
-
-
-def longest_step(leg_length: float, hip_height: float, hip_width: float, step_width: float) -> float:
-    """Longest step with flat soles, the CoM halfway between the feet at touchdown.
-
-    Each straight leg then spans half the step forward, half the difference of foot and hip spacing sideways and the hip
-    height upward.
-
-    Args:
-        leg_length: hip centre to sole with the knee straight [m].
-        hip_height: hip centre above the soles at touchdown [m].
-        hip_width: distance between the hip centres [m].
-        step_width: lateral distance between the soles' centres [m].
-
-    Returns:
-        forward distance between the soles' centres [m]; NaN when the hips are out of reach of feet side by side.
-    """
-    sideways = (step_width - hip_width) / 2
-    square = leg_length**2 - hip_height**2 - sideways**2
-    return 2 * math.sqrt(square) if square >= 0 else math.nan
 
 
 def push_time(gait: GaitParameters, push: schema.PushSettings) -> float:

@@ -75,12 +75,7 @@ class Stance:
 
 
 def check_stances(walk: Walk, body: Body, q: Array) -> None:
-    """Refuse a walk some stance of which the joints do not reach or hold.
-
-    Args:
-        walk: the walk.
-        body: that shall walk it.
-        q: where it stands at the start, shape (nq,).
+    """Refuse a walk some stance of which a body's joints do not reach or hold; ``q`` is its start, shape (nq,).
 
     Raises:
         ParameterError: says at which footstep, and which joint is at the end of its range or would need more than its

@@ -310,12 +310,7 @@ class Walk:
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:
-    """Say what a checked scenario means.
-
-    Args:
-        scenario: fit to run.
-        robot: in place of the one that it names.
-        profile: in place of the planner's profile that it names.
+    """Say what a checked scenario means, with a robot and a profile, if given, in place of those that it names.
 
     Raises:
         ParameterError: a part refuses its parameters.

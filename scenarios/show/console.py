@@ -177,14 +177,7 @@ _ROWS_AT_ONCE = 4096
 
 
 def selected(log: Log, topic: str, start: float | None, end: float | None, field: str | None) -> ChannelData:
-    """Messages of a topic in a window of time, with one field or all.
-
-    Args:
-        log: the log.
-        topic: its topic.
-        start: first time [s]; None from the beginning.
-        end: last time [s]; None to the end.
-        field: the field; None for all.
+    """Messages of a topic in a window of time, open where an end is None [s], with one field or all.
 
     Raises:
         LogError: there is no such topic or field, its messages are not of a fixed layout, or none is in the window.

@@ -87,12 +87,7 @@ class LogView:
         return np.asarray(self._channel(topic).time[self._rows(topic)])
 
     def field(self, topic: str, name: str, *shape: int) -> Array:
-        """Values of a field in the window, shape (n, *shape); what is no number or absurd is NaN.
-
-        Args:
-            topic: of the channel.
-            name: of its field.
-            shape: that each value must have; -1 for any extent.
+        """Values of a field in the window, shape (n, *shape), -1 for any extent; what is no number or absurd is NaN.
 
         Raises:
             MissingError: there is no such field of that shape, or no message of it.

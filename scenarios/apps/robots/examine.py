@@ -19,7 +19,6 @@ from surefoot.models.types import RobotDescription, RobotError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.judge.metrics import plain
-from surefoot.scenarios.setup.gait import leg_span
 from surefoot.scenarios.setup.stance import Body, TorqueMargin, body_of, on_one_foot, standing
 from surefoot.scenarios.show.console import plain_table
 
@@ -139,7 +138,7 @@ def examine(robot: RobotDescription) -> Examination:
         one_foot=one,
         both_height=_other_height(body, both, lambda other: standing(other, 0.0)[0]),
         one_height=_other_height(body, one, on_one_foot),
-        longest_step=leg_span(robot.com_height, facts_of(robot)),
+        longest_step=facts_of(robot).leg_span(robot.com_height),
         touching=_touching(robot, q),
     )
 

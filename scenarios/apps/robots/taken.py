@@ -67,17 +67,9 @@ def chosen(names: Sequence[str]) -> tuple[str, ...]:
 def rows(
     robot: str, names: Sequence[str], walk: bool, jobs: int, out: Path, begun: Callable[[int, float], None]
 ) -> Iterator[CatalogueRow]:
-    """Scenarios of the catalogue on a robot, each looked at once, as they are known.
+    """Scenarios on a robot as they are known; ``begun`` is told how many runs of how many seconds in all are to come.
 
     The longest runs come first, so that no process waits for the others at the end.
-
-    Args:
-        robot: name or path of its file.
-        names: of the scenarios.
-        walk: whether to run what it accepts.
-        jobs: runs at once.
-        out: directory of the logs.
-        begun: is told how many runs of how much simulated time in all [s] are to come.
     """
     if not walk:
         yield from (_look(name, robot).row for name in names)

@@ -125,16 +125,7 @@ def draw_panels(
     panels: Sequence[Panel],
     stretch: tuple[float, float] | None = None,
 ) -> list[Axes]:
-    """Draw panels; gives their axes, top first.
-
-    Args:
-        area: to fill.
-        view: gives the window.
-        behind: what happened in it.
-        title: of the family; none if empty.
-        panels: top first.
-        stretch: of time to show, the whole window by default [s].
-    """
+    """Draw panels under a title, if any, over a stretch of time, all by default [s]; gives their axes, top first."""
     heights = [panel.height for panel in panels]
     axes: list[Axes] = list(area.subplots(len(panels), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0])
     if title:

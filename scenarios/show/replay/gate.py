@@ -175,10 +175,7 @@ def _hostname(host: str) -> str | None:
 
 @contextlib.contextmanager
 def serving(gate: Gate | None = None) -> "Iterator[viser.ViserServer]":
-    """A viewer for as long as the context lasts; it says nothing on standard output.
-
-    Args:
-        gate: who may come in; nobody can connect if None.
+    """A viewer for as long as the context lasts, silent on standard output; nobody can connect without a gate.
 
     Raises:
         MissingExtraError: viser is not installed.

@@ -155,15 +155,7 @@ def are_named(axes: Sequence[Axis]) -> bool:
 def bars(
     found: Sequence[Found], axes: Sequence[Axis], key: str, limit: LimitOf, records: Sequence[Published] = ()
 ) -> Figure:
-    """Thresholds as bars: groups by the last axis, shades by the one before it, a panel for each of those before.
-
-    Args:
-        found: every search that came to its end.
-        axes: all of them, two or more.
-        key: that was searched.
-        limit: drawn across its bar where there is one.
-        records: published values, drawn at the group that they are of, or across all groups.
-    """
+    """Thresholds as bars: groups by the last axis, shades by the one before it, a panel for each of those before."""
     *others, shades, groups = axes
     every = [labels for labels in combinations(others) if any(_is_of(one.labels, labels) for one in found)]
     columns = max(1, min(len(others[-1].values) if others else 1, MOST_COLUMNS))

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Mapping
 from decimal import Decimal
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
@@ -97,8 +97,9 @@ def meant(value: float, si: str, most: float) -> str:
     return ""
 
 
-def unit_of(annotation: Any, metadata: list[Any]) -> str:
-    """SI unit of a key, or of the elements of a list; empty when it has none."""
+def unit_of(annotation: Any, metadata: list[Any], elements: bool = True) -> str:
+    """SI unit of a key, or else of the elements of a list; empty when it has none."""
     found = next((one.si for one in metadata if isinstance(one, Unit)), "")
-    inner = (unit_of(part, list(getattr(part, "__metadata__", ()))) for part in get_args(annotation))
+    parts = () if get_origin(annotation) is tuple and not elements else get_args(annotation)
+    inner = (unit_of(part, list(getattr(part, "__metadata__", ())), elements) for part in parts)
     return found or next(filter(None, inner), "")

@@ -185,8 +185,7 @@ def _names(rows: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _of_key(name: str, values: Sequence[Any]) -> TableColumn:
-    said = described(name)
-    return _column(name, values, str(said.get("unit", "")), str(said.get("description", "")))
+    return _column(name, values, *described(name))
 
 
 def _column(name: str, values: Sequence[Any], unit: str, meaning: str) -> TableColumn:

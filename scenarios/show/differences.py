@@ -224,13 +224,7 @@ VERSIONS_RECORD = "versions"
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A value of two logs.
-
-    Attributes:
-        name: what it is.
-        a: in the first log, None when it is not there.
-        b: in the second log, None when it is not there.
-    """
+    """A named value of two logs, None in the one in which it is not there."""
 
     name: str
     a: Any

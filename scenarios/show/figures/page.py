@@ -132,12 +132,7 @@ _REASON = 90
 
 @dataclass(frozen=True, slots=True)
 class Plotted:
-    """What was drawn.
-
-    Attributes:
-        path: of the file.
-        notes: what of the log could not be read, in words.
-    """
+    """The file that was drawn, and what of the log could not be read, in words."""
 
     path: Path
     notes: tuple[str, ...]

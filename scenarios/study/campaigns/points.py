@@ -95,14 +95,7 @@ Search = Generator[Point, Record, Threshold | None]
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """Runs that are made one after another: a single one, or a search.
-
-    Attributes:
-        campaign: that it is of.
-        labels: of the grid.
-        keys: that the grid sets.
-        seeds: of its runs.
-    """
+    """Runs that are made one after another, a single one or a search: of some labels, keys and seeds of a campaign."""
 
     campaign: Campaign
     labels: Mapping[str, Any]

@@ -146,12 +146,7 @@ MOST_PANELS = 12
 
 
 class Axis(NamedTuple):
-    """An axis of a campaign.
-
-    Attributes:
-        name: of its key or its own.
-        values: labels of its settings.
-    """
+    """An axis of a campaign: the name of its key, or its own, and the labels of its settings."""
 
     name: str
     values: tuple[Any, ...]

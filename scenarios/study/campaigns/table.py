@@ -48,11 +48,7 @@ class TableColumn:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Columns of the same length.
-
-    Attributes:
-        columns: in order.
-    """
+    """Columns of the same length, in order."""
 
     columns: tuple[TableColumn, ...]
 

@@ -40,13 +40,7 @@ LimitOf = Callable[[Mapping[str, Any], float | None], float | None]
 
 
 class Found(NamedTuple):
-    """Where a search ended.
-
-    Attributes:
-        labels: by axis.
-        threshold: its end.
-        range: in which it searched, low and high.
-    """
+    """Where a search of some labels, by axis, ended in its range, low and high."""
 
     labels: Mapping[str, Any]
     threshold: Threshold

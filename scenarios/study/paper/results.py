@@ -115,14 +115,7 @@ class Spread(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """Runs that differ in their seed alone.
-
-    Attributes:
-        study: that was run.
-        profile: of the planner.
-        world: in which.
-        outcomes: by seed.
-    """
+    """Runs of a study, with a profile, in a world, that differ in their seed alone."""
 
     study: Study
     profile: str
@@ -180,11 +173,7 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Results:
-    """All outcomes.
-
-    Attributes:
-        outcomes: in the order of the experiments.
-    """
+    """All outcomes, in the order of the experiments."""
 
     outcomes: tuple[ExperimentResult, ...]
 

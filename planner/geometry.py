@@ -6,6 +6,7 @@ the tilt; uphill, pitch is negative.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,6 +22,13 @@ def frame_rotation(yaw: float) -> Array:
 def wrap_angle(angle: float) -> float:
     """The same angle in [-pi, pi) [rad]."""
     return (angle + math.pi) % (2.0 * math.pi) - math.pi
+
+
+def seen_from(stance: Footstep, place: Footstep) -> Footstep:
+    """A foothold in the frame of another one, that of its stance foot; its turn is not wrapped."""
+    rotation, way = frame_rotation(stance.yaw), place.position - stance.position
+    position, normal = (np.append(vector[:2] @ rotation, vector[2]) for vector in (way, place.normal))
+    return replace(place, position=position, yaw=place.yaw - stance.yaw, normal=normal)
 
 
 def sole_angles(normal: Array, yaw: float) -> tuple[float, float]:
@@ -140,7 +148,7 @@ def level_corners(places: Array, length: float, width: float) -> Array:
     return np.stack((x, y), axis=2)
 
 
-def seen_from(poses: Array, points: Array) -> Array:
+def points_seen_from(poses: Array, points: Array) -> Array:
     """Points of the ground plane ahead and to the left of poses, shape (n, 2) [m].
 
     Args:

@@ -18,7 +18,7 @@ from surefoot.planner.recovery.step_adjustment import AdjustedStep, NextStep
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import ReferencePreview, Window
 from surefoot.planner.references.zmp_reference import Support
-from surefoot.planner.steps.commands import Command, Orders, Twist
+from surefoot.planner.steps.commands import STANDING, Command
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
@@ -31,7 +31,7 @@ from surefoot.planner.types import (
     Balance,
     CentroidalState,
     FeetState,
-    PlannedFootstep,
+    Footstep,
     PlanStatus,
     SolverStatus,
 )
@@ -115,15 +115,15 @@ class WalkingPlanner:
         return self._execution.schedule
 
     @property
-    def orders(self) -> Orders:
-        """What the walk does of what it has been told."""
+    def orders(self) -> Command:
+        """What the walk does of what it has been told, with the velocity that it follows."""
         source, gait = self._source, self._execution.schedule.gait
-        durations = gait.single_support, gait.double_support
+        now = Command(None, None, gait.single_support, gait.double_support, gait.swing_height)
         if source is None:
-            return Orders(None, None, None, *durations, gait.swing_height)
+            return now
         if source.places:
-            return Orders(None, None, source.places[-1], *durations, gait.swing_height)
-        return Orders(source.twist, source.followed(gait.period), None, *durations, gait.swing_height)
+            return replace(now, places=source.places)
+        return replace(now, twist=source.twist, followed=source.followed(gait.period))
 
     def command(self, command: Command) -> None:
         """Do something else from the next plan on; of two commands before it the later one holds.
@@ -148,7 +148,7 @@ class WalkingPlanner:
         # Steps of a source that is kept are asked for anew, too: their strides follow from the durations.
         source = told or self._source
         if command.twist is not None or command.places is not None:
-            size, twist = self.parameters.size, command.twist or Twist()
+            size, twist = self.parameters.size, command.twist or STANDING
             source = CommandSource(self.gait, self._region, twist, command.places or (), size)
         self._told = gait, source
 
@@ -197,7 +197,7 @@ class WalkingPlanner:
         if execution.free[0]:
             balance = replace(balance, shift=shifts[0])
         if execution.phase.swing_foot is not None:
-            execution.swing_to(footsteps[0].footstep, time, feet, motion.solver is SolverStatus.HELD)
+            execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
         return self._plan
 
@@ -218,7 +218,7 @@ class WalkingPlanner:
         window: Window,
         local: Array,
         motion: Motion,
-        footsteps: tuple[PlannedFootstep, ...],
+        footsteps: tuple[Footstep, ...],
         balance: Balance,
     ) -> WalkPlan:
         """What a tick has decided, in the world frame."""

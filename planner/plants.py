@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.forces import Push
 from surefoot.planner.geometry import nearest_point, signed_distance
 from surefoot.planner.model.dcm import dcm
 from surefoot.planner.model.jerk import jerk_model
@@ -13,27 +14,12 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.types import Array, CentroidalState, FeetState
 
 
-@dataclass(frozen=True, slots=True)
-class PointPush:
-    """A force on the point mass.
-
-    Attributes:
-        time: when it begins [s].
-        duration: how long it lasts [s].
-        force: horizontal force, shape (2,) [N].
-    """
-
-    time: float
-    duration: float
-    force: Array
-
-
-def pushing_force(pushes: tuple[PointPush, ...], time: float) -> Array:
-    """Sum of the pushes at an instant, shape (2,) [N]."""
+def pushing_force(pushes: tuple[Push, ...], time: float) -> Array:
+    """Horizontal sum of the pushes at an instant, shape (2,) [N]."""
     force = np.zeros(2)
     for push in pushes:
         if push.time - 1e-9 <= time < push.time + push.duration - 1e-9:
-            force = force + push.force
+            force = force + push.force[:2]
     return force
 
 
@@ -183,7 +169,7 @@ def walk_pendulum(
     duration: float,
     *,
     com: Array,
-    pushes: tuple[PointPush, ...] = (),
+    pushes: tuple[Push, ...] = (),
     mass: float = 100.0,
     feedback: float = 3.0,
     substeps: int = 10,
@@ -231,7 +217,7 @@ def walk_pendulum(
 def _run_tick(
     pendulum: Pendulum,
     sampler: PlanSampler,
-    pushes: tuple[PointPush, ...],
+    pushes: tuple[Push, ...],
     start: float,
     step: float,
     count: int,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.footholds import Faces, FreeGround
-from surefoot.planner.types import FootstepPlan
+from surefoot.planner.types import Footstep
 
 HALF_WIDTH = 1.0
 """Half of the lateral extent of stairs and slopes [m]."""
@@ -212,7 +212,7 @@ def flat(friction: float = 0.8) -> Terrain:
     return Terrain(boxes=(), friction=friction)
 
 
-def _unknown() -> FootstepPlan:
+def _unknown() -> tuple[Footstep, ...]:
     raise ParameterError(("terrain", "footsteps"), "this ground is laid under footsteps", "give its site the footsteps")
 
 
@@ -224,12 +224,12 @@ class Site:
         origin: start of the walk in the world frame, x, y, shape (2,) [m].
         yaw: heading of the walk [rad].
         friction: Coulomb coefficient of every surface [-].
-        footsteps: gives the footsteps, heights do not matter; asked by ground that is laid under them.
+        footsteps: gives start feet and footsteps, heights do not matter; asked by ground that is laid under them.
         rng: draws what is random.
     """
 
     origin: NDArray[np.float64]
     yaw: float
     friction: float
-    footsteps: Callable[[], FootstepPlan] = _unknown
+    footsteps: Callable[[], tuple[Footstep, ...]] = _unknown
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))

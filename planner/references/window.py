@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.forces import ExternalLoad
 from surefoot.planner.model.dcm import natural_frequency, nominal_motion
 from surefoot.planner.model.leg_chain import LegChain
 from surefoot.planner.model.time_scaling import Course, TimeScaling
@@ -24,7 +25,7 @@ from surefoot.planner.references.zmp_reference import (
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
-from surefoot.planner.types import GRAVITY, Array, LastingForce
+from surefoot.planner.types import GRAVITY, Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +99,7 @@ class Window:
     contacts: NDArray[np.bool_]
 
 
-def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array:
+def lean(lasting: ExternalLoad, rotation: Array, height: HeightPreview) -> Array:
     """What a lasting force adds to the ZMP, by which the body has to lean into it, in the plan frame.
 
     The moment balance about the ZMP (see `planner.references.leg_offset`) with a force m f on the body and its moment
@@ -107,17 +108,17 @@ def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array
         p_x = c_x - c_x'' / λ + f_x / λ + n_y / (g + z''),      p_y = c_y - c_y'' / λ + f_y / λ - n_x / (g + z'').
 
     Args:
-        lasting: the force.
+        lasting: the force, per mass.
         rotation: plan frame to world, shape (2, 2).
         height: CoM height over n samples.
 
     Returns:
         Shape (n, 2) [m].
     """
-    x, y = lasting.moment.tolist()
+    x, y = lasting.moment[:2].tolist()
     turning = np.array([y, -x]) @ rotation
     pressing = GRAVITY + height.height[2]
-    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
+    return np.asarray(lasting.force[:2] @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
 
 
 class ReferencePreview:
@@ -160,7 +161,7 @@ class ReferencePreview:
         support: Support,
         position: Array,
         time: float,
-        lasting: LastingForce | None = None,
+        lasting: ExternalLoad | None = None,
     ) -> Window:
         """The window that begins now, as the clock goes.
 

@@ -5,17 +5,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, seen_from
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import Path
-from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
+from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, in_samples
 from surefoot.planner.swing.course import Ground, swing_course
 from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
 from surefoot.planner.swing.leg_reach import PEAK, LegReach
-from surefoot.planner.swing.step_region import Landing, check_reach
+from surefoot.planner.swing.step_region import check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
-from surefoot.planner.types import Array, Foot, Footstep
+from surefoot.planner.types import Array, Foot, Footstep, Twist
 
 _MEASURED = 6
 """Decimals to which heights of footholds are compared: start feet may be some nanometres off the ground [-]."""
@@ -85,7 +85,7 @@ class Step:
     number: int
     ordinal: int
     inserted: bool
-    stride: Stride
+    stride: Twist
     path: Path
     nominal: Footstep
     place: Footstep
@@ -170,13 +170,13 @@ def ramp_before(before: Step, stop: Stop | None) -> float:
 
 def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, ground: Ground) -> Step:
     """A start foot, as a step from which others are laid."""
-    course, zero = SwingCourse(0.5, 0.0, 1.0, 0.0), Stride(0.0, 0.0, 0.0, gait.step_width)
+    course = SwingCourse(0.5, 0.0, 1.0, 0.0)
     single, _ = durations(gait, ground.parameters.sample_time)
     return Step(
         number=number,
         ordinal=number,
         inserted=False,
-        stride=zero,
+        stride=Twist(width=gait.step_width),
         path=path,
         nominal=place,
         place=place,
@@ -196,7 +196,7 @@ def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, g
 
 
 def lay(
-    stride: Stride, before: tuple[Step, Step], gait: GaitParameters, ground: Ground, stop: Stop | None, inserted: bool
+    stride: Twist, before: tuple[Step, Step], gait: GaitParameters, ground: Ground, stop: Stop | None, inserted: bool
 ) -> Step:
     """The step after two others, where it nominally lands.
 
@@ -246,7 +246,7 @@ def lay(
         double=double,
         roll=roll_span(ramp_before(last, stop), lift_off, single, gait.heel_off) if heel_off else None,
     )
-    check_reach(number, Landing.between(stance, place), parameters)
+    check_reach(number, seen_from(stance, place), parameters)
     return step
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import seen_from
+from surefoot.planner.geometry import points_seen_from
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.record.provenance import RECORD
@@ -125,7 +125,7 @@ class LogView:
         rows = rows_at(planned, times)
         left, right = (self.field("/footsteps", f"current_{name}", 4)[rows] for name in FOOT_NAMES)
         pose = np.select([foot[:, None] == 0, foot[:, None] == 1], [left, right], (left + right) / 2)
-        seen = seen_from(pose, points)
+        seen = points_seen_from(pose, points)
         seen[1:][np.diff(foot) != 0] = np.nan
         return seen
 

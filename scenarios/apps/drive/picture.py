@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.planner.geometry import seen_from
+from surefoot.planner.geometry import points_seen_from
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import Foot, Footstep
 from surefoot.scenarios import palette
@@ -117,7 +117,7 @@ class Pictures:
         if plan.phase.stance is not None:
             self._alone = plan.phase.stance
         feet = plan.footholds if self._alone is None else (plan.footholds[self._alone],)
-        ahead, left = seen_from(np.mean([_pose(foot) for foot in feet], axis=0), points).T
+        ahead, left = points_seen_from(np.mean([_pose(foot) for foot in feet], axis=0), points).T
         margins = [plan.balance.planned, plan.balance.movable]
         return ahead.tolist(), left.tolist(), margins, measurement.wrench[:, 2].tolist()
 
@@ -131,7 +131,7 @@ class Pictures:
         measurement, plan, now, terms = tick.measurement, tick.plan, tick.reference, self._terms
         assert measurement is not None
         zmp, cop = contact_points(measurement.wrench[None], terms.sole_position[None], terms.sole_rotation[None])
-        steps = [planned.footstep for planned in plan.footsteps]
+        steps = plan.footsteps
         free = 3 - len(steps)
         push, pushed = self._push_at(tick.time)
         yield from tracks(

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
+from surefoot.forces import Push
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import PointPush, walk_pendulum
+from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
 from surefoot.planner.recovery.step_adjustment import NextStep
 from surefoot.planner.references.com_height import HeightPreview
@@ -238,7 +239,7 @@ GAIT = GaitParameters(steps=5, step_length=0.3, single_support=0.5, double_suppo
 def plans(stand, impulse=0.0, **keys):
     parameters, begin = replace(P, **keys), GAIT.lift_off(3) + 0.25
     planner = WalkingPlanner(GAIT, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
-    push = PointPush(begin, 0.1, 1000.0 * impulse * np.array([1.0, 0.0]))
+    push = Push(begin, 0.1, 1000.0 * impulse * np.array([1.0, 0.0, 0.0]))
     com = np.array([0.0, 0.0, GAIT.com_height])
     trace = walk_pendulum(planner, stand(), GAIT.duration + 0.5, com=com, pushes=(push,) if impulse else ())
     return begin, trace.plans, trace.fall_time
@@ -272,7 +273,7 @@ def test_a_push_is_told_by_the_margins_and_what_is_made_of_the_step(stand):
     assert landing > 0.05
     swung = [plan for plan in after if plan.swing is not None][-1]
     nominal = GAIT.lift_off(3) + GAIT.single_support
-    assert swung.footsteps[0].footstep.position[0] - 0.9 == pytest.approx(swung.balance.shift[0], abs=5e-3)
+    assert swung.footsteps[0].position[0] - 0.9 == pytest.approx(swung.balance.shift[0], abs=5e-3)
     assert swung.footsteps[0].touchdown_time - nominal == pytest.approx(swung.balance.delay, abs=1.5 * T)
 
 

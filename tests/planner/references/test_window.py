@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from surefoot.forces import Push
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.parameters import LegInertia, PlannerParameters, RecoveryParameters
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import PointPush, walk_pendulum
+from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.references import window
 from surefoot.planner.references.leg_offset import nominal_feet
 from surefoot.planner.references.window import OffsetTable
@@ -88,7 +89,7 @@ def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch
         return nominal_feet(samples, schedule, frame, flown)
 
     monkeypatch.setattr(window, "nominal_feet", counted)
-    usual, push = planner(), PointPush(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0]))
+    usual, push = planner(), Push(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0, 0.0]))
     end, com = gait.lift_off(2) + 0.48, np.array([0.0, 0.0, 0.95])
     plans = walk_pendulum(usual, stand(), end, com=com, pushes=(push,)).plans
     assert 10 < sum(adapts for *_, adapts in usual.given) > 2 * sum(made)

@@ -38,14 +38,7 @@ def not_there(metrics: Mapping[str, object], criteria: Mapping[str, Bound], leng
 
 @dataclass(frozen=True, slots=True)
 class _Gait:
-    """When a run planned, and what its feet did.
-
-    Attributes:
-        plans: times of the plans, shape (n,) [s].
-        time: of the control ticks, shape (m,) [s].
-        phase: 0 standing, 1 double, 2 single support, shape (m,).
-        swings: first and last tick of each swing.
-    """
+    """Times of plans and ticks [s], phases (0 stand, 1 double, 2 single), first and last tick of each swing of a run."""
 
     plans: Array
     time: Array

@@ -14,7 +14,7 @@ from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
 from surefoot.scenarios.judge.metric import TRUTH, Metric
 from surefoot.scenarios.judge.metrics import METRICS, known
 from surefoot.scenarios.setup.checks import AVAILABLE
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.terrain import KINDS
 
 
@@ -129,7 +129,7 @@ def published() -> dict[str, Any]:
     schema = {"$schema": DIALECT, **Scenario.model_json_schema(), "description": DESCRIPTION}
     keys = schema["properties"]
     files = {"type": "string", "pattern": r"\.ya?ml$"}
-    keys["robot"] = {**keys["robot"], "anyOf": [{"enum": list(RegisteredRobots().names())}, files]}
+    keys["robot"] = {**keys["robot"], "anyOf": [{"enum": list(Robots().names())}, files]}
     keys["robot"].pop("type")
     for key, values in AVAILABLE.items():
         _narrow(schema, key, list(values))

@@ -107,15 +107,7 @@ def _fit(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia]":
 
 @dataclass(frozen=True, slots=True)
 class _Calm:
-    """How far a walk gives way.
-
-    Attributes:
-        steps: share of its steps [-].
-        ground: share of what makes its ground uneven [-].
-        time: of a single support, over that of the walk [-].
-        posture: 0 for its own, then in turn the robot's usual one, a lower and a higher one.
-        refused: how often something else than speed, ground or start was in the way.
-    """
+    """Shares of steps, ground and time to give way by, a posture to take, how often something else was in the way."""
 
     steps: float = 1.0
     ground: float = 1.0

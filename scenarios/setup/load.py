@@ -26,7 +26,7 @@ from surefoot.scenarios.log.encoding import MAGIC
 from surefoot.scenarios.record import provenance
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria import criteria_problems
-from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
+from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.sized import say_for, walk_of
 from surefoot.scenarios.setup.terrain import kind_of
 
@@ -164,7 +164,7 @@ def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None
 
 def locate(reference: str, overrides: Overrides, refusal: SetupError) -> ScenarioError:
     """Say where the cause of a refusal stands: at the key that it names, else at the begin; arguments of `load`."""
-    source = _source(written(reference), overrides, RegisteredRobots())
+    source = _source(written(reference), overrides, Robots())
     return ScenarioError([source.describe(refusal.problem)])
 
 
@@ -172,7 +172,7 @@ def read_scenario(
     text: str, place: str, stem: str, overrides: Overrides = (), robots: Robots | None = None
 ) -> Scenario:
     """Check a scenario as it is `Written`; other arguments and errors as of `load`."""
-    robots = robots or RegisteredRobots()
+    robots = robots or Robots()
     source = _source(Written(text, place, stem), overrides, robots)
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
@@ -194,7 +194,7 @@ def key_problems(written: Written, overrides: Overrides) -> list[Problem]:
     Raises:
         ScenarioError: it is no scenario, or an override leads nowhere.
     """
-    return _validated(_source(written, overrides, RegisteredRobots()).value)[1]
+    return _validated(_source(written, overrides, Robots()).value)[1]
 
 
 def for_robot(

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property, lru_cache, partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,34 +17,8 @@ if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
 
 
-class Robots(Protocol):
-    """The robots that scenarios may name."""
-
-    def names(self) -> tuple[str, ...]:
-        """Names of all robots."""
-        ...
-
-    def facts(self, name: str, options: RobotSettings) -> RobotFacts:
-        """Facts of a robot with its options.
-
-        Raises:
-            ValueError: the robot cannot have these options.
-        """
-        ...
-
-    def one_foot_share(self, name: str, options: RobotSettings) -> float:
-        """Share of some joint's torque that standing on one foot takes, of the joint that it takes most of [-].
-
-        Infinite where the robot cannot stand so at its nominal CoM height.
-
-        Raises:
-            ValueError: the robot cannot have these options.
-        """
-        ...
-
-
-class RegisteredRobots:
-    """The robots of ``models``, each looked at once: a robot file that changes meanwhile takes another object."""
+class Robots:
+    """Robots that scenarios may name, each looked at once: a robot file that changes meanwhile takes another object."""
 
     @cached_property
     def _facts(self) -> Callable[[str, RobotSettings], RobotFacts]:
@@ -57,11 +31,11 @@ class RegisteredRobots:
         return robot_names()
 
     def facts(self, name: str, options: RobotSettings) -> RobotFacts:
-        """Facts of a robot with its options; which body carries the payload does not matter to them."""
+        """Facts of a robot, whichever body carries its payload; ValueError where it cannot have these options."""
         return self._facts(name, options.model_copy(update={"payload_body": None}))
 
     def one_foot_share(self, name: str, options: RobotSettings) -> float:
-        """See `Robots`."""
+        """Greatest share of a joint's torque that standing on one foot takes, infinite where it cannot stand so [-]."""
         from surefoot.scenarios.setup.stance import body_of, on_one_foot
 
         return on_one_foot(body_of(describe(name, options))).share

@@ -128,16 +128,7 @@ def _soles(values: Any) -> RobotSettings:
 
 @dataclass(frozen=True, slots=True)
 class _Translation:
-    """From a robot to another one.
-
-    Attributes:
-        source: the file.
-        origin: name of the robot that it is written for.
-        before: facts of that one, with the soles that the file gives it.
-        after: of the one that it is run with.
-        effort: how many times the share of its motors' torque that one takes to stand on one foot.
-        rules: of the keys that follow from more than its size.
-    """
+    """From a robot, with the soles that its file gives it, to another; the rules are of keys beyond what size says."""
 
     source: Source
     origin: str

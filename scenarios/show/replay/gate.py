@@ -239,12 +239,7 @@ def _note(_: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
 
 @dataclass(slots=True)
 class _Connections:
-    """All connections to a server.
-
-    Attributes:
-        loop: of the server.
-        made: those that are still there.
-    """
+    """All connections to the server of a loop that are still there."""
 
     loop: asyncio.AbstractEventLoop
     made: WeakSet[Any] = field(default_factory=WeakSet)

@@ -38,7 +38,7 @@ def not_there(metrics: Mapping[str, object], criteria: Mapping[str, Bound], leng
 
 @dataclass(frozen=True, slots=True)
 class _Gait:
-    """Times of plans and ticks [s], phases (0 stand, 1 double, 2 single), first and last tick of each swing of a run."""
+    """Times of plans and ticks [s], phases (0 stand, 1 double, 2 single), and first and last ticks of the swings."""
 
     plans: Array
     time: Array

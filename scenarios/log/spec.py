@@ -16,10 +16,11 @@ from dataclasses import dataclass
 from functools import cache
 from math import prod
 from operator import itemgetter
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from google.protobuf import descriptor_pb2
+from google.protobuf.message import Message
 from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
@@ -222,14 +223,6 @@ SECONDS, NANOS = (1 << 34) + 0x5EED5, (1 << 29) + 0xF00D
 _SLOT = 0x7E57_AB1E_0000_0000
 _STAMP = struct.Struct("<B5sB5s")
 _SECONDS_TAG, _NANOS_TAG = 0x08, 0x10
-
-
-class Message(Protocol):
-    """What is used of a protobuf message."""
-
-    def SerializeToString(self, *, deterministic: bool = ...) -> bytes:  # noqa: N802  protobuf's name
-        """Encode."""
-        ...
 
 
 def slot(index: int) -> float:

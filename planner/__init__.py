@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from surefoot.planner.parameters import LegInertia, PlannerParameters, StepAdaptation
     from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
     from surefoot.planner.planner import WalkingPlanner
-    from surefoot.planner.plants import IdealFeet, Pendulum, walk_pendulum
+    from surefoot.planner.plants import IdealFeet, Pendulum
     from surefoot.planner.steps.commands import Command, velocity_bouts, walk_of
     from surefoot.planner.steps.gait import Bout, GaitParameters
     from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind, Twist
@@ -63,7 +63,6 @@ __all__ = [
     "solve",
     "velocity_bouts",
     "walk_of",
-    "walk_pendulum",
 ]
 
 if not TYPE_CHECKING:  # a type checker shall still refuse names that are not there
@@ -77,7 +76,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),
             "plan": ("PlanSample", "PlanSampler", "Planner", "WalkPlan"),
             "planner": ("WalkingPlanner",),
-            "plants": ("IdealFeet", "Pendulum", "walk_pendulum"),
+            "plants": ("IdealFeet", "Pendulum"),
             "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "PhaseKind", "Twist"),
             "steps.commands": ("Command", "velocity_bouts", "walk_of"),
             "steps.gait": ("Bout", "GaitParameters"),

@@ -14,7 +14,7 @@ from surefoot.planner.model.jerk import block_moves, predict, trajectory
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.recovery import Recovery
-from surefoot.planner.recovery.step_adjustment import AdjustedStep, NextStep
+from surefoot.planner.recovery.step_adjustment import StepBounds, StepProblem
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import ReferencePreview, Window
 from surefoot.planner.references.zmp_reference import Support
@@ -179,12 +179,12 @@ class WalkingPlanner:
         if self._recovery.steps_out(local, window):
             support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
-        step = NextStep.of(time, execution, feet, support)
+        step = StepProblem.of(time, execution, feet, support)
         balance = self._recovery.balance(step, local, support, window, self._plan)
         adjusted = self._recovery.adjusted(step, local, window)
         if adjusted is not None and adjusted.more and self._recovery.adds_steps(balance.planned):
             support, local, window = self._sight(state)
-            adjusted = self._recovery.adjusted(NextStep.of(time, execution, feet, support), local, window)
+            adjusted = self._recovery.adjusted(StepProblem.of(time, execution, feet, support), local, window)
         left = execution.time_left
         if adjusted is not None and execution.end_in(adjusted.left, time):
             window = self._window(state, support, local)
@@ -256,7 +256,7 @@ class WalkingPlanner:
         )
 
     def _problem(
-        self, local: Array, feet: FeetState, support: Support, window: Window, adjusted: AdjustedStep | None
+        self, local: Array, feet: FeetState, support: Support, window: Window, adjusted: StepBounds | None
     ) -> MotionProblem:
         jerk = np.zeros((self.parameters.horizon + 1, 2))
         if self._plan is not None:
@@ -272,7 +272,7 @@ class WalkingPlanner:
             rotation=support.rotation,
         )
 
-    def _step_context(self, support: Support, feet: FeetState, adjusted: AdjustedStep | None) -> StepContext:
+    def _step_context(self, support: Support, feet: FeetState, adjusted: StepBounds | None) -> StepContext:
         execution, schedule, phase = self._execution, self._execution.schedule, self._execution.phase
         landed, swing, increment = execution.landed, phase.swing_foot, np.zeros((2, 2))
         ahead = np.diff(schedule.positions[schedule.index(landed) :][:3, :2], axis=0) @ support.rotation

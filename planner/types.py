@@ -39,10 +39,6 @@ class PhaseKind(IntEnum):
     SINGLE = 2
 
 
-def _upwards() -> Array:
-    return np.array([0.0, 0.0, 1.0])
-
-
 @dataclass(frozen=True, slots=True)
 class Footstep:
     """A foothold: where a foot stands, stood, or is to land.
@@ -62,7 +58,7 @@ class Footstep:
     foot: Foot
     position: Array
     yaw: float
-    normal: Array = field(default_factory=_upwards)
+    normal: Array = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
     step: int = 0
     touchdown_time: float = math.nan
 

@@ -15,7 +15,7 @@ from surefoot.planner.geometry import wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.footsteps import start_footholds
 from surefoot.planner.steps.gait import GaitParameters, in_samples
-from surefoot.planner.steps.phases import Phase, PhaseSamples, phases_of
+from surefoot.planner.steps.phases import Phase, PhaseSamples, PhaseTable, phases_of
 from surefoot.planner.steps.source import GaitSource, StepSource
 from surefoot.planner.steps.step import Step, Stop, durations, lay, start_step
 from surefoot.planner.swing.course import Ground
@@ -76,6 +76,11 @@ class Schedule:
     def phases(self) -> tuple[Phase, ...]:
         """The phases in sight in order, without gaps."""
         return tuple(p for p in phases_of(self.steps, self.stands) if p.end > self.begin + CLOCK_ROUNDING)
+
+    @cached_property
+    def phase_table(self) -> PhaseTable:
+        """The same as columns."""
+        return PhaseTable.of(self.phases)
 
     @cached_property
     def first_support(self) -> int:
@@ -153,7 +158,7 @@ class Schedule:
 
     def samples(self, clock: Array, rate: tuple[Array, Array] | None = None) -> PhaseSamples:
         """The phases where the clock shows some instants; arguments as of `PhaseSamples`."""
-        return PhaseSamples.of(self.phases, clock, self.ground.parameters.sample_time, self.first_support, rate)
+        return PhaseSamples.of(self.phase_table, clock, self.ground.parameters.sample_time, self.first_support, rate)
 
     def usual_samples(self, phase: Phase) -> float:
         """How long a phase would last that had not begun [samples]."""

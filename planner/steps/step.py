@@ -1,7 +1,7 @@
 """A step: where and when it lands, and what its swing over the ground takes."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -68,11 +68,11 @@ class Step:
         nominal: its footstep as it was laid.
         place: its footstep now: moved, or measured once it has landed. Landing errors do not enter its heading, which
             therefore does not drift.
+        course: of its swing over the ground.
+        swing: that swing to a footstep one metre ahead, in its own time.
         climb: height of its nominal footstep above where its foot nominally stood before [m].
         lift: by which the lower of both feet, which the body follows, is higher with it than before [m].
         room: by which it may land elsewhere on its face, least and greatest way in its own heading, shape (2, 2) [m].
-        course: of its swing over the ground.
-        swing: that swing to a footstep one metre ahead, in its own time.
         hardest: greatest acceleration of its foot over edges, times the square of its duration; zero without edges [m].
         support: number in the walk of the support point of the ZMP on its stance foot.
         stop: standing before it; None where it follows a step.
@@ -89,18 +89,18 @@ class Step:
     path: Path
     nominal: Footstep
     place: Footstep
-    climb: float
-    lift: float
-    room: Array
     course: SwingCourse
     swing: SwingTrajectory
-    hardest: float
-    support: int
-    stop: Stop | None
-    lift_off: float
-    single: float
-    double: float
-    roll: RollSpan | None
+    climb: float = 0.0
+    lift: float = 0.0
+    room: Array = field(default_factory=lambda: np.zeros((2, 2)))
+    hardest: float = 0.0
+    support: int = -1
+    stop: Stop | None = None
+    lift_off: float = 0.0
+    single: float = 0.0
+    double: float = 0.0
+    roll: RollSpan | None = None
 
     @property
     def touchdown(self) -> float:
@@ -180,18 +180,8 @@ def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, g
         path=path,
         nominal=place,
         place=place,
-        climb=0.0,
-        lift=0.0,
-        room=np.zeros((2, 2)),
         course=course,
         swing=unit_swing(single, 0.0, course, ground.parameters),
-        hardest=0.0,
-        support=-1,
-        stop=None,
-        lift_off=0.0,
-        single=0.0,
-        double=0.0,
-        roll=None,
     )
 
 

@@ -52,6 +52,12 @@ class Bound:
     struct: Any
     kept: tuple[Any, ...]
 
+    def point(self, **others: Any) -> None:
+        """Let fields point to other structs or arrays, as C sees them, which the caller keeps; this checks nothing."""
+        for name, other in others.items():
+            memory = other.struct if isinstance(other, Bound) else ctypes.c_char.from_buffer(other)
+            setattr(self.struct, name, ctypes.addressof(memory))
+
 
 class Library:
     """The functions of a compiled library on structs that Python fills.

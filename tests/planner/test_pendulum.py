@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
+from pendulum_walk import pushing_force
 
 from surefoot.forces import Push
-from surefoot.planner.plants import Pendulum, pushing_force
+from surefoot.planner.plants import Pendulum
 
 pytestmark = pytest.mark.unit
 

@@ -3,6 +3,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
@@ -11,7 +12,6 @@ from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import Box, Terrain, flat
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters
@@ -98,8 +98,20 @@ def test_a_push_past_the_capture_limit_falls(walk):
     assert walk(GaitParameters(lateral_step=0.1), pushes=(push,))[1].fall_time is not None
 
 
-def test_a_frozen_plan_falls(walk):
-    trace = walk(GaitParameters(lateral_step=0.1), frozen_after=2.5)[1]
+class Frozen(WalkingPlanner):
+    """Gives its last plan again after 2.5 s."""
+
+    last = None
+
+    def update(self, state, feet):
+        if self.last is None or state.time < 2.5:
+            self.last = super().update(state, feet)
+        return self.last
+
+
+def test_a_frozen_plan_falls(stand):
+    planner = Frozen(GaitParameters(lateral_step=0.1), stand(), 0.075, 0.075)
+    trace = walk_pendulum(planner, stand(), 12.0, com=np.array([0.0, 0.0, 1.0]), substeps=3)
     assert trace.fall_time is not None
     assert trace.fall_time > 2.5
 

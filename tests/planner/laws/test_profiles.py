@@ -5,13 +5,13 @@ from functools import cache
 import numpy as np
 import pytest
 import qpsolvers
+from pendulum_walk import walk_pendulum
 
 from surefoot.forces import Push
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.laws.qp import OPTIONS
 from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import SolverStatus
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
 from surefoot.forces import Push
 from surefoot.planner.geometry import quintic
@@ -13,15 +14,14 @@ from surefoot.planner.ground.terrain import Site
 from surefoot.planner.model.dcm import pendulum_com, viability_weights
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
-from surefoot.planner.recovery.step_adjustment import NextStep, StepAdjustment
+from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepProblem
 from surefoot.planner.references.com_height import HeightPreview, Rise, SmoothHeight
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import ANYWHERE, PEAK, LegReach
-from surefoot.planner.types import PhaseKind
+from surefoot.planner.types import Foot, Footstep, PhaseKind
 
 pytestmark = pytest.mark.unit
 
@@ -29,12 +29,13 @@ P = PlannerParameters()
 T, OMEGA = P.sample_time, 3.2
 LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
 NOMINAL = np.array([0.36, 0.2])
+PLACE = Footstep(Foot.LEFT, np.append(NOMINAL, 0.0), 0.0)
 HALF = np.array([0.1, 0.05])
 LIFTING = P.recovery.lifting
 
 
 @dataclass(frozen=True, slots=True)
-class Pushed(NextStep):
+class Pushed(StepProblem):
     """A step as scheduled, with the body's state and what is known of the window."""
 
     com: np.ndarray
@@ -56,7 +57,7 @@ def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 
         "com": bounded - (0.1, 0.0), "dcm": bounded + error,
         "window": Window(reference, reference, point, HeightPreview(np.ones((3, count)), stiffness), stiffness, omega,
                          omega, point > 0.0),
-        "nominal": NOMINAL, "side": 1.0, "swing": np.array(swing), "double": 0.0, "turn": 0.0,
+        "place": PLACE, "swing": np.array(swing), "double": 0.0,
         "single": landed, "cycle": 0.62, "shortest": 0.0, "face": ANYWHERE,
         "adapted": False, "last": False, "crosses": True,
     }  # fmt: skip
@@ -182,7 +183,8 @@ def test_who_is_pushed_over_the_stance_foot_crosses_where_it_may():
 def test_a_foot_that_turns_lands_the_farther_beside_its_stance_foot(turn):
     """Pushed over the stance foot: one that lands on it would be held off it in the air."""
     legs = replace(LEGS, across=None, sole=(0.22, 0.11))
-    caught = adjusted(situation((0.0, -0.1), 0.4, swing=((0.0, 0.2), (0.0, 0.0)), turn=turn), legs=legs)
+    now = situation((0.0, -0.1), 0.4, swing=((0.0, 0.2), (0.0, 0.0)), place=replace(PLACE, yaw=turn))
+    caught = adjusted(now, legs=legs)
     assert caught.box[0, 1] == pytest.approx(legs.turned(turn).near)
     assert legs.turned(0.3).near > legs.near + 0.025
 

@@ -1,4 +1,4 @@
-"""The tables of docs/recovery.md, run by run: `pytest -m long tests/scenarios/run/test_push_tables.py`.
+"""The tables of docs/recovery-results.md, run by run: `pytest -m long tests/scenarios/run/test_push_tables.py`.
 
 Each is one replica. Near a threshold the last bits decide, so that a cell may fall on one machine and not on another;
 what falls as far as it is known is marked so, and none of it is asked for.

@@ -4,10 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.steps.gait import Bout, GaitParameters
 from surefoot.planner.types import FeetState, PhaseKind, Twist
 from surefoot.scenarios.run.planning import whole_body_reference

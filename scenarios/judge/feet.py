@@ -131,13 +131,7 @@ def stances(run: RunView, until: int | None = None) -> list[Stance]:
 
 @dataclass(frozen=True, slots=True)
 class Slip:
-    """How far a sole moved during a stance.
-
-    Attributes:
-        foot: 0 left, 1 right.
-        tick: tick at which the sole was farthest from where it began.
-        distance: horizontal distance of its farthest corner then [m].
-    """
+    """How far the farthest corner of a sole (0 left, 1 right) moved in a stance [m], and at which tick it was there."""
 
     foot: int
     tick: int

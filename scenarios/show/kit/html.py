@@ -69,14 +69,7 @@ def details(summary: str, content: str, name: str = "") -> str:
 
 @dataclass(frozen=True, slots=True)
 class TableCell:
-    """A cell of a table.
-
-    Attributes:
-        text: as shown.
-        kind: CSS classes.
-        value: the number behind the text, in SI units; None for words.
-        below: a second, quiet line.
-    """
+    """A cell of a table: its text, CSS classes, the number in SI behind the text, and a second, quiet line."""
 
     text: str
     kind: str = ""

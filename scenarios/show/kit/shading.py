@@ -26,13 +26,7 @@ _MOST_NAMED = 80
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A time in which one thing lasted.
-
-    Attributes:
-        start: [s].
-        end: [s].
-        value: what lasted.
-    """
+    """A time from its start to its end [s] in which a value lasted."""
 
     start: float
     end: float

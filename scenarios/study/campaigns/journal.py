@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 from pydantic import TypeAdapter
 
@@ -38,13 +38,6 @@ OF_A_MACHINE = ("machine", "python")
 """Versions in which the machines of a cluster may differ from each other."""
 
 
-class _Names(NamedTuple):
-    """What a scenario names: its robot, a robot file by its full path, and every word of its keys and values."""
-
-    robot: str
-    words: frozenset[str]
-
-
 class MadeOf:
     """Digests of versions, code and robots, each robot looked at once: what changes meanwhile takes another object.
 
@@ -58,10 +51,10 @@ class MadeOf:
 
     def of(self, point: Point, anywhere: bool = False) -> str:
         """Digest of all that a run's result depends on but its scenario; ``anywhere``: that is one on every machine."""
-        base = self._base(point.base.written)
-        words = frozenset((*base.words, *_words(dict(point.settings))))
+        own, named = self._base(point.base.written)
+        words = frozenset((*named, *_words(dict(point.settings))))
         versions = {name: one for name, one in self._versions().items() if not (anywhere and name in OF_A_MACHINE)}
-        robot = self._robot(str(point.settings.get("robot", base.robot)))
+        robot = self._robot(str(point.settings.get("robot", own)))
         return _digest([versions, dict(packages_of(words)), robot])
 
 
@@ -73,13 +66,13 @@ def robot_digest(name: str) -> str:
         return _digest(f"{type(error).__name__}: {error}")
 
 
-def _named(written: Written) -> _Names:
-    """What a scenario names."""
+def _named(written: Written) -> tuple[str, frozenset[str]]:
+    """A scenario's robot, a robot file by its full path, and every word of its keys and values."""
     values = parse(written.text, written.place).value
     robot = str(values.get("robot", Scenario.model_fields["robot"].default)) if isinstance(values, dict) else ""
     if is_file(robot):
         robot = os.path.normpath(Path(written.place).parent.absolute() / robot)
-    return _Names(robot, frozenset(_words(values)))
+    return robot, frozenset(_words(values))
 
 
 def _words(value: Any) -> Iterator[str]:

@@ -51,13 +51,7 @@ UNTOLD: tuple[CheckStatus, ...] = ("could not run", "could not write", "unreadab
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A scenario and its baseline.
-
-    Attributes:
-        reference: as the user gave it: a catalogue name or a file.
-        scenario: fit to run.
-        baseline: where its baseline is, or would be.
-    """
+    """A scenario, fit to run, that a user referred to, and where its baseline is, or would be."""
 
     reference: str
     scenario: Scenario

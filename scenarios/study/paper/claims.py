@@ -42,13 +42,7 @@ SAMPLE_TIME, _ROUNDING = 0.02, 1e-6
 
 
 class Assessment(NamedTuple):
-    """What was found about a claim.
-
-    Attributes:
-        pendulum: what the point-mass worlds show, in a sentence.
-        full: what full physics shows, in a sentence.
-        verdict: by the claim's rule.
-    """
+    """What the point-mass worlds and full physics show of a claim, in a sentence each, and the verdict by its rule."""
 
     pendulum: str
     full: str
@@ -56,15 +50,7 @@ class Assessment(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """A claim of the paper.
-
-    Attributes:
-        name: its anchor.
-        section: of the paper.
-        text: what the paper says.
-        rule: how the verdict follows from the numbers, in words.
-        judge: the same as a function.
-    """
+    """A claim of the paper: its anchor, section and words, and the rule of its verdict in words and as a function."""
 
     name: str
     section: str

@@ -27,12 +27,7 @@ _HEAD = 0.55
 
 @dataclass(frozen=True, slots=True)
 class PanelColumn:
-    """Runs drawn in the same axes, most often one.
-
-    Attributes:
-        title: above the column.
-        samples: label and sample of each run; the run of the first seed is drawn.
-    """
+    """Runs drawn in the same axes, most often one: a title, and label and sample of each, whose first seed is drawn."""
 
     title: str
     samples: tuple[tuple[str, Sample], ...]

@@ -5,7 +5,7 @@ import numpy as np
 from surefoot.planner.geometry import signed_distance
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
+from surefoot.planner.recovery.capture_margin import CaptureMargin, PlannedMargin
 from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepBounds, StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
@@ -31,6 +31,7 @@ class Recovery:
         self._execution, legs = execution, execution.legs
         self._parameters = p = execution.schedule.ground.parameters
         self.adjustment = None if legs is None else StepAdjustment(legs, p)
+        self._planned = PlannedMargin(p)
         self._movable = None if legs is None else CaptureMargin(legs, p, half_size)
 
     def steps_out(self, local: Array, window: Window) -> bool:
@@ -89,7 +90,7 @@ class Recovery:
             last: the plan before; None for the first.
         """
         execution, p, dcm = self._execution, self._parameters, _dcm(local, window)
-        planned = movable = planned_margin(dcm, window, p.sample_time, p.foot_margin)
+        planned = movable = self._planned.margin(dcm, window)
         if step is None:
             planned = movable = max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm))
         elif self._movable is not None and execution.adapts:

@@ -22,21 +22,19 @@ with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, 
   least_single, nor below what body and foot need to come to the height of the footstep.
 
 Solver: for given times p* follows in closed form, since the CoP does what it can; p is p* brought into the limits, the
-boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken. Other
-times than planned have to save `least_saving`. Nothing is solved while the CoP alone brings the DCM back until the foot
-lands, but for `tolerance`: without need nothing is adapted.
-
-It is the law of Khadiv et al. (IEEE Transactions on Robotics 2020) with the CoP as one more means, with double support,
-and with the limits of the legs as they are, over a list of times in place of a QP.
+boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken.
+docs/recovery.md says more of it.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from surefoot.native.library import library
 from surefoot.planner.geometry import seen_from
 from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.recovery.compiled import CompiledAdjustment
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.execution import Execution
@@ -144,7 +142,8 @@ class StepAdjustment:
         self._legs, self._timing = legs, parameters.step_adaptation.timing
         self._sample_time, self._numbers = parameters.sample_time, parameters.recovery
         self._authority = np.array(parameters.cop_authority)
-        self._changes = np.array(parameters.recovery.time_changes)
+        self._changes, kernels = np.array(parameters.recovery.time_changes), library()
+        self._compiled = None if kernels is None else CompiledAdjustment(kernels, legs, parameters)
 
     def solve(self, com: Array, dcm: Array, window: Window, step: StepProblem) -> StepBounds | None:
         """The solution; None where nothing has to be adjusted, or the step has no place to land.
@@ -156,6 +155,9 @@ class StepAdjustment:
             step: as scheduled.
         """
         t, numbers, count = self._sample_time, self._numbers, len(window.stiffness)
+        if self._compiled is not None and count == self._compiled.count:
+            found = self._compiled.solve(com, dcm, window, step)
+            return None if found is None else StepBounds(*found)
         lift = min(round(step.double / t), count - 3)
         land = min(max(round((step.double + step.single) / t), lift + 1), count - 2)
         # The DCM that keeps bounded what comes, and what a shift of the step does to it.

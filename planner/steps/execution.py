@@ -14,7 +14,7 @@ from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import StepSource
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg
-from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind
 
 _LEAST_LEFT = 3.0
@@ -42,7 +42,7 @@ class Execution:
     Args:
         schedule: the steps in sight.
         window: how far a plan looks ahead [samples].
-        legs: what they can do; None where it is not known.
+        legs: see the attribute.
 
     Attributes:
         schedule: the steps in sight, which reach as far as any plan of the present phase looks.
@@ -126,11 +126,7 @@ class Execution:
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
     def advance(self, feet: FeetState) -> None:
-        """Go on by one tick.
-
-        Args:
-            feet: the measured feet.
-        """
+        """Go on by one tick, with the measured feet."""
         following = self.clock.after(1.0)
         phase, swing = self.phase, self.phase.swing_foot
         over = following >= phase.end - CLOCK_ROUNDING
@@ -198,11 +194,7 @@ class Execution:
         return True
 
     def fix(self, position: Array) -> None:
-        """Decide the next footstep.
-
-        Args:
-            position: where it lands, shape (3,) [m].
-        """
+        """Decide where the next footstep lands, shape (3,) [m]."""
         self.schedule = self.schedule.moved(self.landed + 1, position)
         self.fixed = True
 
@@ -260,8 +252,7 @@ class Execution:
             yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
             pose = sole_pose(feet.position[foot], yaw, leaving.normal)
             course = self.schedule.step(self.phase.step).course
-            times = swing_times(time, self.left, course, self._parameters)
-            self.swing = start_swing(foot, pose, target, times, course.height, self._parameters)
+            self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters)
         elif not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
             # Over edges the foot keeps to the times in which its course clears them.
             gliding = self.adapted and self._wide

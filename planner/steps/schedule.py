@@ -273,12 +273,7 @@ class Schedule:
         return kept
 
     def retimed(self, gait: GaitParameters, now: float) -> "Schedule":
-        """All phases to come have the durations of a gait; those that have begun keep theirs on the clock.
-
-        Args:
-            gait: what all steps to come have in common.
-            now: [samples].
-        """
+        """All phases to come have the durations of a gait; those that have begun by now keep theirs on the clock."""
         begun, steps = self.phase(now).start, [self.steps[0]]
         single, double = durations(gait, self.ground.parameters.sample_time)
         for step in self.steps[1:]:

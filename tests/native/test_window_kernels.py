@@ -82,6 +82,13 @@ class Plans:
         self.unlike: dict[str, float] = {}
         self.seen: Counter[str] = Counter()
         self._pair(self.planner._preview, compiled._preview, "window")
+        plain, twin = self.planner._recovery, compiled._recovery
+        self._pair(plain._planned, twin._planned, "margin")
+        if plain.adjustment is not None:
+            assert plain.adjustment._compiled is None
+            assert twin.adjustment._compiled is not None
+            self._pair(plain._movable, twin._movable, "margins")
+            self._pair(plain.adjustment, twin.adjustment, "solve")
 
     def _pair(self, plain: Any, compiled: Any, method: str) -> None:
         """Have a method of one object also asked of another one, and what both say compared."""

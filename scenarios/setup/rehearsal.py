@@ -58,12 +58,7 @@ class Rehearsed:
 
 
 def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
-    """Refuse a walk whose first steps the legs cannot make.
-
-    Args:
-        walk: what is to run.
-        feet: where the feet stand at the start.
-        leg: the legs.
+    """Refuse a walk whose first steps the legs cannot make from where the feet stand at the start.
 
     Raises:
         ParameterError: a joint would have to be faster than it can, or go farther, or a shank would meet an edge.

@@ -231,11 +231,7 @@ class Walk:
         return leg_reach(self.parameters, self.facts, self.gait.com_height, self.standing_height)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
-        """The planner of this walk: the profile's own, or the walking planner with the profile's law.
-
-        Args:
-            feet: where the feet stand at the start.
-            leg: inertia of the legs.
+        """The planner of this walk, of feet and legs at its start: the profile's own, or the walking one with its law.
 
         Raises:
             ParameterError: it cannot plan this gait.
@@ -314,12 +310,7 @@ class Walk:
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:
-    """Say what a checked scenario means.
-
-    Args:
-        scenario: fit to run.
-        robot: in place of the one that it names.
-        profile: in place of the planner's profile that it names.
+    """Say what a checked scenario means, with a robot and a profile, if given, in place of those that it names.
 
     Raises:
         ParameterError: a part refuses its parameters.

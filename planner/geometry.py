@@ -90,17 +90,6 @@ def sole_corners(footstep: Footstep, half_size: Array) -> Array:
     return np.asarray(footstep.position[:2] + (CORNERS * half_size) @ rotation[:2, :2].T)
 
 
-def convex_hull(points: Array) -> Array:
-    """Vertices of the convex hull, anticlockwise, shape (v, 2).
-
-    Args:
-        points: shape (n, 2) [m], at least three that are not on a line.
-    """
-    from scipy.spatial import ConvexHull
-
-    return np.asarray(points[ConvexHull(points).vertices])
-
-
 def signed_distance(polygon: Array, point: Array) -> float:
     """Distance to the nearest edge's line, positive inside [m]; outside it is a lower bound of the true distance."""
     edge = np.roll(polygon, -1, axis=0) - polygon

@@ -80,9 +80,8 @@ class WalkingPlanner:
         region: StepRegion | None = None,
         legs: LegReach | None = None,
     ) -> None:
-        # Here, so that the first tick does not wait for them: its time is recorded.
-        import scipy.linalg
-        import scipy.spatial  # noqa: F401
+        # Here, so that the first tick does not wait for it: its time is recorded.
+        import scipy.linalg  # noqa: F401
 
         self.gait = gait
         self.parameters = parameters or profile.parameters

@@ -121,7 +121,7 @@ def list_(as_json: AsJson = False) -> None:
 @app.command()
 def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocompletion=scenarios_from)]) -> None:
     """Print the YAML of a scenario or campaign, to start from."""
-    from surefoot.scenarios.apps.listing import starter
+    from surefoot.scenarios.apps.starter import starter
 
     typer.echo(starter(scenario), nl=False)
 
@@ -157,7 +157,7 @@ def run(told: RunOptions) -> None:
     from surefoot.scenarios.run.run import run_scenario
     from surefoot.scenarios.setup.load import load, locate
     from surefoot.scenarios.show.console import ProgressLine, print_result
-    from surefoot.scenarios.show.replay.live import LiveView, check
+    from surefoot.scenarios.show.replay.beside import LiveView, check
 
     asked = overrides(told.set_, told.seed)
     loaded = load(told.scenario, asked)

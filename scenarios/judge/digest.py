@@ -3,15 +3,17 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.scenarios.judge.body import headings, knees
 from surefoot.scenarios.judge.columns import Columns
-from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.record.provenance import RunConstants
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.log import ChannelData, Log
 
 Reads = Mapping[str, tuple[str, ...]]
 """Names of fields by topic."""
@@ -77,7 +79,7 @@ class Source(Protocol):
 class Window:
     """A part of a log."""
 
-    def __init__(self, log: Log, channels: Mapping[str, Channel]) -> None:
+    def __init__(self, log: "Log", channels: Mapping[str, Channel]) -> None:
         self.path, self.size, self.metadata = log.path, log.size, log.metadata
         self._channels = channels
 
@@ -91,7 +93,7 @@ class Window:
 class KeptChannel:
     """Fields of a channel over the whole run; one that was not kept is read from the log when it is asked for."""
 
-    def __init__(self, log: Log, topic: str, columns: Columns) -> None:
+    def __init__(self, log: "Log", topic: str, columns: Columns) -> None:
         self._log, self._topic = log, topic
         self._columns = columns
 
@@ -128,7 +130,7 @@ class Digest:
         reduced: what `reduce` gave, over the whole run.
     """
 
-    def __init__(self, log: Log, reads: Iterable[Reads], reduce: Reduce) -> None:
+    def __init__(self, log: "Log", reads: Iterable[Reads], reduce: Reduce) -> None:
         """Go through the log once; its damage is then known.
 
         Args:
@@ -161,7 +163,7 @@ LAG_NS = 100_000_000
 """What is put off at most [ns]."""
 
 
-def _in_step(windows: Iterable[dict[str, ChannelData]]) -> Iterator[dict[str, ChannelData]]:
+def _in_step(windows: Iterable[dict[str, "ChannelData"]]) -> Iterator[dict[str, "ChannelData"]]:
     """The same windows, each with whole control ticks.
 
     A chunk ends with a tick whose last messages are in the next one; such a tick is put off until it is whole.

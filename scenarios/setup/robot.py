@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from surefoot.models.facts import RobotFacts, facts_of
+from surefoot.models.names import ROBOTS, is_file
 from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings
 from surefoot.streams import Stream, generator
 
@@ -50,9 +51,7 @@ class RegisteredRobots:
 
     def names(self) -> tuple[str, ...]:
         """Names of all robots."""
-        from surefoot.models.registry import robot_names
-
-        return robot_names()
+        return tuple(ROBOTS)
 
     def facts(self, name: str, options: RobotSettings) -> RobotFacts:
         """Facts of a robot with its options; which body carries the payload does not matter to them."""
@@ -71,8 +70,6 @@ def _registered(name: str, options: RobotSettings) -> RobotFacts:
 
 def is_known(name: object, robots: Robots) -> bool:
     """Whether a scenario may name that robot: one of the robots, or a robot file, whatever is in it."""
-    from surefoot.models.registry import is_file
-
     return isinstance(name, str) and (is_file(name) or name in robots.names())
 
 

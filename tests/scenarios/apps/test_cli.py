@@ -13,11 +13,11 @@ import yaml
 from typer.main import get_command
 
 from surefoot.errors import ParameterError
-from surefoot.models.registry import SHIPPED
+from surefoot.models.names import SHIPPED
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.apps import cli
 from surefoot.scenarios.apps.cli import app
-from surefoot.scenarios.apps.listing import starter
+from surefoot.scenarios.apps.starter import starter
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.metrics import OWN
@@ -424,23 +424,3 @@ def test_output_that_nobody_takes_is_no_verdict(ended, code, said):
     assert said in done.stderr.decode()
     assert "Traceback" not in done.stderr.decode()
     assert done.stderr.decode() or not said
-
-
-@pytest.mark.parametrize("words", [("list",), ("show", "walk"), ("schema",)], ids=" ".join)
-def test_a_command_that_only_reads_needs_no_engine(words):
-    heavy = ("scipy", "qpsolvers", "mujoco", "matplotlib")
-    code = (
-        f"import runpy, sys; sys.argv[1:] = {words}\n"
-        "try: runpy.run_module('surefoot', run_name='__main__')\n"
-        f"finally: print(*(m for m in {heavy} if m in sys.modules), file=sys.stderr)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout
-    assert done.stderr.strip() == ""
-
-
-def test_help_needs_no_heavy_package():
-    heavy = ("numpy", "mujoco", "pydantic")
-    code = f"import sys; import surefoot.scenarios.apps.cli; print(*(m for m in {heavy} if m in sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == ""

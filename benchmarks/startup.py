@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from benchmarks.table import Section
+
 COMMANDS: dict[str, tuple[str, ...]] = {
     "--help": ("--help",),
     "list": ("list",),
@@ -60,3 +62,15 @@ def _run(words: Sequence[str], folder: str) -> None:
     )
     if done.returncode not in (0, 1):
         raise RuntimeError(done.stderr)
+
+
+def startup(quick: bool) -> Section:
+    """What each command costs before it does anything."""
+    rows = []
+    for name, words in COMMANDS.items():
+        modules = imported(words)
+        own = sum(module.partition(".")[0] == "surefoot" for module in modules)
+        rows.append((name, processor_time(words, 1 if quick else 5), len(modules), own))
+    help_, listed = rows[0][1], rows[1][1]
+    columns = ("command", "processor s", "modules", "of surefoot")
+    return Section("start-up", columns, tuple(rows), "the least of five", {"list over --help": listed / help_})

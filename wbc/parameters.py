@@ -103,7 +103,7 @@ class WbcParameters:
         contact: gains of the rigid contacts.
         schedule: thresholds of the contact schedule.
         separation: when limbs keep away from each other.
-        solver: the solver tried first, chosen by ``benchmarks/qp_solvers.py``.
+        solver: the solver tried first, chosen by ``python -m benchmarks solvers``.
         second_solver: the one tried when the first fails.
         arm_swing: swing of the shoulders per stride.
         size: of the robot, for what is no parameter.

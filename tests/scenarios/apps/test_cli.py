@@ -1,5 +1,6 @@
 """The command line: exit codes, one message for what a user can mend, JSON alone on standard output."""
 
+import importlib
 import json
 import os
 import re
@@ -424,3 +425,15 @@ def test_output_that_nobody_takes_is_no_verdict(ended, code, said):
     assert said in done.stderr.decode()
     assert "Traceback" not in done.stderr.decode()
     assert done.stderr.decode() or not said
+
+
+@pytest.mark.parametrize("missed", [True, False])
+def test_a_run_says_once_that_it_went_without_compiled_kernels(surefoot, scenario, tmp_path, monkeypatch, missed):
+    native = importlib.import_module("surefoot.native.library")
+    monkeypatch.setattr(native, "library", lambda: None if missed else object())
+    monkeypatch.delenv(native.VARIABLE, raising=False)
+    _, out, err = surefoot("run", scenario, "--out", tmp_path, "--json")
+    assert json.loads(out)
+    assert err.count("plain Python, which is slower") == missed
+    monkeypatch.setenv(native.VARIABLE, "0")
+    assert "plain Python" not in surefoot("run", scenario, "--out", tmp_path)[2], "it was asked for"

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.ground.footholds import Faces, FreeGround
-from surefoot.planner.types import FootstepPlan
+from surefoot.planner.geometry import CORNERS, frame_rotation
+from surefoot.planner.ground.footholds import Footholds
+from surefoot.planner.types import Array, Footstep
 
 HALF_WIDTH = 1.0
 """Half of the lateral extent of stairs and slopes [m]."""
@@ -17,7 +17,7 @@ HALF_WIDTH = 1.0
 DEEPER = 0.05
 """How far tilted solids reach below the ground plane at least, and the lowest blocks rise above it [m]."""
 
-_FREE, _FACES = FreeGround(), Faces()
+_FREE, _FACES = Footholds(follow=True), Footholds(follow=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +30,11 @@ class Box:
         rotation: box-to-world rotation matrix, shape (3, 3).
     """
 
-    center: NDArray[np.float64]
-    half_size: NDArray[np.float64]
-    rotation: NDArray[np.float64]
+    center: Array
+    half_size: Array
+    rotation: Array
 
-    def top(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def top(self, points: Array) -> tuple[Array, Array]:
         """The plane of the top face above or below world points.
 
         Args:
@@ -49,6 +49,22 @@ class Box:
         z = face[2] - (points - face[:2]) @ normal[:2] / normal[2]
         local = (np.column_stack((points, z)) - self.center) @ self.rotation[:, :2]
         return z, np.min(self.half_size[:2] - np.abs(local), axis=1)
+
+    def touched(self, soles: Array, half: Array) -> NDArray[np.bool_]:
+        """Which soles have a part over it: rectangles on the ground are apart if an axis of one of them parts them.
+
+        Args:
+            soles: places and headings, shape (n, 3) [m, rad].
+            half: half length and width of a sole, shape (2,) [m].
+        """
+        centre, size, axes = self.center[:2], self.half_size[:2], self.rotation[:2, :2].T
+        c, s = np.cos(soles[:, 2]), np.sin(soles[:, 2])
+        own = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=1)
+        between = centre - soles[:, :2]
+        across = np.abs(own @ axes.T)  # of each axis of the sole along each of the box
+        apart_by_sole = np.abs(np.einsum("nij,nj->ni", own, between)) > half + across @ size
+        apart_by_box = np.abs(between @ axes.T) > size + np.einsum("nij,i->nj", across, half)
+        return np.asarray(~(apart_by_sole.any(axis=1) | apart_by_box.any(axis=1)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +92,7 @@ class Terrain:
         return bool(self.boxes)
 
     @property
-    def footholds(self) -> FreeGround:
+    def footholds(self) -> Footholds:
         """What may be done with footsteps: they were chosen for its faces unless these are wide, or there are none."""
         return _FREE if self.wide or not self.boxes else _FACES
 
@@ -84,7 +100,7 @@ class Terrain:
         """Ground height [m] at the world point (x, y)."""
         return float(self.heights(np.array([[x, y]]))[0])
 
-    def heights(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def heights(self, points: Array) -> Array:
         """Ground heights at world points x, y, shape (k, 2) [m]; shape (k,) [m]."""
         highest = np.full(len(points), self.plane)
         for box in self.boxes:
@@ -92,11 +108,11 @@ class Terrain:
             highest = np.where(inside >= 0.0, np.maximum(highest, top), highest)
         return highest
 
-    def normal(self, x: float, y: float) -> NDArray[np.float64]:
+    def normal(self, x: float, y: float) -> Array:
         """Unit normal of the ground at the world point (x, y), shape (3,) [-]."""
         return np.asarray(self.normals(np.array([[x, y]]))[0])
 
-    def normals(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def normals(self, points: Array) -> Array:
         """Unit normals of the faces that carry world points x, y, shape (k, 2) [m]; shape (k, 3) [-]."""
         highest, normals = np.full(len(points), self.plane), np.tile([0.0, 0.0, 1.0], (len(points), 1))
         for box in self.boxes:
@@ -106,7 +122,7 @@ class Terrain:
             normals[carrying] = box.rotation[:, 2]
         return normals
 
-    def edge_margins(self, centers: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    def edge_margins(self, centers: Array, corners: Array) -> Array:
         """Least distance of each sole's corners from the edge of the face that carries the sole's centre.
 
         Negative when a corner is beyond the edge: it hangs over, or stands in a riser. On the ground plane the edges
@@ -131,9 +147,20 @@ class Terrain:
             margins[carrying] = corner_inside.min(axis=1)[carrying]
         return margins
 
-    def free_area(
-        self, position: NDArray[np.float64], yaw: float, half_size: NDArray[np.float64], length: float = 1.0
-    ) -> NDArray[np.float64]:
+    def carries(self, soles: Array, half: Array, number: int) -> bool:
+        """Whether a sole has a part over a box, and other ground does not bury the box there; as of `Box.touched`."""
+        box = self.boxes[number]
+        over = soles[box.touched(soles, half)]
+        ahead = np.stack([np.cos(over[:, 2]), np.sin(over[:, 2])], axis=-1)
+        left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
+        points = over[:, None, :2] + (_PATCH * half) @ np.stack([ahead, left], axis=1)
+        top, inside = box.top(points.reshape(-1, 2))
+        under = self.heights(points.reshape(-1, 2)) > top + _ABOVE
+        within, free = (mask.reshape(-1, len(_PATCH)) for mask in (inside >= 0.0, (inside >= 0.0) & ~under))
+        # A corner of the box between the points counts as free.
+        return bool((free.any(axis=1) | ~within.any(axis=1)).any())
+
+    def free_area(self, position: Array, yaw: float, half_size: Array, length: float = 1.0) -> Array:
         """How far a sole may be moved on the face that carries it, ahead and to the left of where it was to land.
 
         Args:
@@ -149,7 +176,7 @@ class Terrain:
             return np.array([[-np.inf] * 2, [np.inf] * 2])
         axes, ways, kept = frame_rotation(yaw).T, length * _WAYS, length * _KEPT
         moved = position[:2] + (np.vstack((-axes, axes))[:, None] * ways[:, None]).reshape(-1, 2)
-        soles = moved[:, None] + (half_size * _CORNERS) @ axes
+        soles = moved[:, None] + (half_size * CORNERS) @ axes
         level = position[2] - (moved - position[:2]) @ (normal := self.normal(*position[:2]))[:2] / normal[2]
         off = (self.edge_margins(moved, soles) < kept) | (np.abs(self.heights(moved) - level) > kept)
         # A shank leans over its foot: beyond it nothing may rise so near.
@@ -163,7 +190,11 @@ class Terrain:
 _WAYS = 0.01 * np.arange(1.0, 81.0)
 """Ways by which a sole might be moved on its face, of the reference robot as all lengths here [m]."""
 
-_CORNERS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+_PATCH = np.stack(np.meshgrid(np.linspace(-1.0, 1.0, 9), np.linspace(-1.0, 1.0, 5)), axis=-1).reshape(-1, 2)
+"""Points of a sole at which the ground under it is looked at, in its half sizes [-]."""
+
+_ABOVE = 1e-6
+"""Height by which other ground lies above a box that it buries [m]."""
 
 _SHANK = 0.04
 """Way beyond a sole in which the ground must not rise for it to be moved there [m]."""
@@ -177,7 +208,7 @@ def flat(friction: float = 0.8) -> Terrain:
     return Terrain(boxes=(), friction=friction)
 
 
-def _unknown() -> FootstepPlan:
+def _unknown() -> tuple[Footstep, ...]:
     raise ParameterError(("terrain", "footsteps"), "this ground is laid under footsteps", "give its site the footsteps")
 
 
@@ -189,12 +220,12 @@ class Site:
         origin: start of the walk in the world frame, x, y, shape (2,) [m].
         yaw: heading of the walk [rad].
         friction: Coulomb coefficient of every surface [-].
-        footsteps: gives the footsteps, heights do not matter; asked by ground that is laid under them.
+        footsteps: gives start feet and footsteps, heights do not matter; asked by ground that is laid under them.
         rng: draws what is random.
     """
 
-    origin: NDArray[np.float64]
+    origin: Array
     yaw: float
     friction: float
-    footsteps: Callable[[], FootstepPlan] = _unknown
+    footsteps: Callable[[], tuple[Footstep, ...]] = _unknown
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))

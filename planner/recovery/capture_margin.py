@@ -16,9 +16,11 @@ import math
 
 import numpy as np
 
+from surefoot.native.library import library
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.recovery.step_adjustment import NextStep
+from surefoot.planner.recovery.compiled import CompiledMargins, CompiledOutlook
+from surefoot.planner.recovery.step_adjustment import StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.swing.leg_reach import ANYWHERE, PEAK, LegReach
 from surefoot.planner.types import Array
@@ -41,6 +43,27 @@ def planned_margin(dcm: Array, window: Window, sample_time: float, foot_margin: 
     weights, reference = viability_weights(window.stiffness, window.omega, sample_time), window.driving
     half = weights @ reference.half_size / foot_margin
     return float((half - np.abs(dcm - weights @ reference.point)).min())
+
+
+class PlannedMargin:
+    """`planned_margin` of the windows of a planner.
+
+    Args:
+        parameters: of the planner.
+
+    Attributes:
+        outlook: where kernels are told of windows; None without kernels.
+    """
+
+    def __init__(self, parameters: PlannerParameters) -> None:
+        self._sample_time, self._foot_margin, kernels = parameters.sample_time, parameters.foot_margin, library()
+        self.outlook = None if kernels is None else CompiledOutlook(kernels, parameters)
+
+    def margin(self, dcm: Array, window: Window) -> float:
+        """See `planned_margin`."""
+        if self.outlook is None or self.outlook.count != len(window.stiffness):
+            return planned_margin(dcm, window, self._sample_time, self._foot_margin)
+        return self.outlook.margin(dcm, window, self._foot_margin)
 
 
 class CaptureMargin:
@@ -66,6 +89,8 @@ class CaptureMargin:
         self._hip = _edges(*2 * (np.array([0.0, 0.5 * legs.hip_width]),))[:, None]
         self._apart = 0.5 * _edges(near - far, far - near)[:, None]
         self._middle = 0.5 * _edges(near + far, near + far)[:, None]
+        kernels, edges = library(), (self._half, self._apart, self._middle)
+        self._compiled = None if kernels is None else CompiledMargins(kernels, legs, parameters, self.cycle, edges)
 
     def landed(self, growth: float, side: float, count: int) -> Array:
         """Edges of what one that has just landed captures, from its last foot, with 0, ... count - 1 steps more.
@@ -82,7 +107,9 @@ class CaptureMargin:
         wide, off = k / (1.0 - k) * (1.0 - k**steps), side * k / (1.0 + k) * (1.0 - (-k) ** steps)
         return np.asarray(self._half + wide * self._apart + off * self._middle)
 
-    def margins(self, com: Array, dcm: Array, omega: float, step: NextStep, steps: int, fixed: bool = False) -> Array:
+    def margins(
+        self, com: Array, dcm: Array, omega: float, step: StepProblem, steps: int, fixed: bool = False
+    ) -> Array:
         """How far the DCM is inside what is captured within 1, ... steps landings, shape (steps,) [m].
 
         The body rests over the last foot, after a single landing perhaps over its stance foot as well.
@@ -95,6 +122,8 @@ class CaptureMargin:
             steps: how many there are, at least 1.
             fixed: the present step is not moved any more.
         """
+        if self._compiled is not None and steps <= self._numbers.most_steps:
+            return self._compiled.margins(com, dcm, omega, step, steps, fixed)
         half, here, com = self._half, _edges(dcm, dcm)[:, None], _edges(com, com)[:, None]
         doubles, singles = self._times(step, fixed)
         single = np.exp(omega * singles)
@@ -109,13 +138,13 @@ class CaptureMargin:
             away = away + single * (1.0 - double) * first
         com, shrunk = com / growth, 1.0 / growth
         cycle = min(self.cycle, step.cycle) if self._timing else step.cycle
-        captured = self.landed(math.exp(omega * cycle), -step.side, steps)[:, None]
+        captured = self.landed(math.exp(omega * cycle), -step.place.foot.side, steps)[:, None]
         places, alone = self._places(step, singles, fixed), ((half - away) * shrunk - here)[:, :, None]
         ahead = (((places - away[:, :, None]) * shrunk[:, None]) - here[:, :, None])[..., None]
         ahead = ahead + (captured * shrunk[:, None])[:, :, None]
         if not fixed:
             spread = 2.0 / (growth + shrunk)
-            under = com + step.side * self._hip
+            under = com + step.place.foot.side * self._hip
             spanned = ((self._legs.radius + under - away) * spread - here)[..., None] + captured * spread[:, None]
             by = 2.0 / np.maximum(growth - shrunk, 1e-9)
             near = (places + (self._legs.radius - under)[:, :, None]) * by[:, None] - here[:, :, None]
@@ -123,7 +152,7 @@ class CaptureMargin:
         ahead[..., 0] = np.maximum(ahead[..., 0], alone)
         return np.asarray(np.maximum.accumulate(ahead.min(axis=0).reshape(-1, steps).max(axis=0)))
 
-    def _times(self, step: NextStep, fixed: bool) -> tuple[Array, Array]:
+    def _times(self, step: StepProblem, fixed: bool) -> tuple[Array, Array]:
         """Pairs of times of double and single support, the present one last, shape (n,) each [s]."""
         if fixed or not self._timing:
             return np.array([step.double]), np.array([step.single])
@@ -135,11 +164,11 @@ class CaptureMargin:
         doubles = (min(step.double, numbers.least_double), step.double)
         return np.repeat(doubles, len(singles)), np.array(2 * singles)
 
-    def _places(self, step: NextStep, singles: Array, fixed: bool) -> Array:
+    def _places(self, step: StepProblem, singles: Array, fixed: bool) -> Array:
         """Edges of where the step may land in times, shape (4, n, boxes) [m]."""
         if fixed:
             return _edges(step.nominal, step.nominal)[:, None, None]
-        legs = self._legs.turned(step.turn)
-        boxes = legs.allowed(step.side, step.face, step.crosses)
+        legs = self._legs.turned(step.place.yaw)
+        boxes = legs.allowed(step.place.foot.side, step.face, step.crosses)
         swung = legs.edges(step.swing, step.nominal, singles)
         return np.minimum(_edges(boxes[:, 0], boxes[:, 1]).T[:, None], swung[..., None])

@@ -5,14 +5,14 @@ import numpy as np
 from surefoot.planner.geometry import signed_distance
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
-from surefoot.planner.recovery.step_adjustment import AdjustedStep, NextStep, StepAdjustment
+from surefoot.planner.recovery.capture_margin import CaptureMargin, PlannedMargin
+from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepBounds, StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.adaptation import with_step_in_place, with_steps_repeated
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import room_left
-from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_within
+from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_within, unshifted
 from surefoot.planner.types import Array, Balance, Foot, PhaseKind
 
 
@@ -30,7 +30,8 @@ class Recovery:
     def __init__(self, execution: Execution, half_size: Array) -> None:
         self._execution, legs = execution, execution.legs
         self._parameters = p = execution.schedule.ground.parameters
-        self.adjustment = None if legs is None else StepAdjustment(legs, p)
+        self._planned = PlannedMargin(p)
+        self.adjustment = None if legs is None else StepAdjustment(legs, p, self._planned.outlook)
         self._movable = None if legs is None else CaptureMargin(legs, p, half_size)
 
     def steps_out(self, local: Array, window: Window) -> bool:
@@ -77,7 +78,7 @@ class Recovery:
         return False
 
     def balance(
-        self, step: NextStep | None, local: Array, support: Support, window: Window, last: WalkPlan | None
+        self, step: StepProblem | None, local: Array, support: Support, window: Window, last: WalkPlan | None
     ) -> Balance:
         """How far the DCM is inside what is captured, and what the last plan has made of the landing to come.
 
@@ -89,7 +90,7 @@ class Recovery:
             last: the plan before; None for the first.
         """
         execution, p, dcm = self._execution, self._parameters, _dcm(local, window)
-        planned = movable = planned_margin(dcm, window, p.sample_time, p.foot_margin)
+        planned = movable = self._planned.margin(dcm, window)
         if step is None:
             planned = movable = max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm))
         elif self._movable is not None and execution.adapts:
@@ -105,7 +106,7 @@ class Recovery:
             outside = outside + 1 if movable < -p.recovery.fall_margin else 0
         return Balance(planned, movable, shift, delay, outside)
 
-    def adjusted(self, step: NextStep | None, local: Array, window: Window) -> AdjustedStep | None:
+    def adjusted(self, step: StepProblem | None, local: Array, window: Window) -> StepBounds | None:
         """What is made of the next step where the CoP alone does not hold the body."""
         execution = self._execution
         if self.adjustment is None or step is None or not execution.free[0]:
@@ -116,7 +117,7 @@ class Recovery:
         execution.adapted |= adjusted is not None
         return adjusted
 
-    def bounds(self, increment: Array, here: Array | None, left: float, adjusted: AdjustedStep | None) -> Shifts:
+    def bounds(self, increment: Array, here: Array | None, left: float, adjusted: StepBounds | None) -> Shifts:
         """Where the next two footsteps may land.
 
         Args:
@@ -129,6 +130,8 @@ class Recovery:
         stance, free, legs = schedule.step(landed).place, execution.free, execution.legs
         if legs is None:
             return reachable_shifts(self._parameters, increment, stance.foot.other.side, free, here, left)
+        if adjusted is None and not execution.adapted:
+            return unshifted(free)
         boxes = np.stack((increment, increment), axis=1)
         for n, step in enumerate(schedule.after(landed)[:2] if execution.adapted else ()):
             room = increment[n] + room_left(step, stance, self._parameters.recovery.parallel)

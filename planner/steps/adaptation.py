@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.steps.gait import Stride
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import Stop
 from surefoot.planner.swing.heel_off import roll_span, stretched
-from surefoot.planner.types import Foot, PhaseKind
+from surefoot.planner.types import Foot, PhaseKind, Twist
 
 
 def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None, at_once: bool = True) -> Schedule:
@@ -35,19 +34,13 @@ def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None,
         here, usual = (float(np.hypot(*way)) for way in kept.apart(stand.step))
         farther = 1.0 if at_once else max(1.0, here / usual)
         stop = Stop(stood, double, 0.0) if at_once else Stop.usual(stood, double, farther)
-    return kept.followed(Stride(0.0, 0.0, 0.0, schedule.gait.step_width), stop, inserted=True)
+    return kept.followed(Twist(width=schedule.gait.step_width), stop, inserted=True)
 
 
 def with_steps_repeated(schedule: Schedule, number: int) -> Schedule:
-    """After a step both feet land once more where they are, before anything else.
-
-    Args:
-        schedule: the steps in sight.
-        number: of the step, which is being swung.
-    """
+    """After the step of a number, which is being swung, both feet land once more where they are, before all else."""
     stride = schedule.step(number).stride
-    back = replace(stride, length=-stride.length, lateral=-stride.lateral, turn=-stride.turn)
-    again = schedule.until(number, stands=False).followed(back, None, inserted=True)
+    again = schedule.until(number, stands=False).followed(stride.scaled(-1.0), None, inserted=True)
     return again.followed(stride, None, inserted=True)
 
 
@@ -69,12 +62,9 @@ def aligned(schedule: Schedule, number: int) -> Schedule:
 
 
 def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule:
-    """The foot that a step has left too far behind for its leg rolls as it leaves the ground.
+    """The foot that a step, just landed, has left too far behind for its leg rolls as it leaves the ground.
 
-    Args:
-        schedule: the steps in sight.
-        number: of the step, which has just landed.
-        radius: how far from under its hip a sole reaches flat [m].
+    `radius` is how far from under its hip a sole reaches flat [m].
     """
     stance, leaving, at = schedule.step(number), schedule.step(number - 1).place, schedule.index(number) + 1
     if at == len(schedule.steps) or schedule.steps[at].stop is not None:

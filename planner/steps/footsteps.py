@@ -6,15 +6,15 @@ import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.steps.gait import GaitParameters, Stride
-from surefoot.planner.types import Array, FeetState, Foot, Footstep, FootstepPlan
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.types import Array, FeetState, Foot, Footstep, Twist
 
 
 @dataclass(frozen=True, slots=True)
 class Path:
     """Where the nominal path of a walk has come to.
 
-    Each stride advances it by (`length`, `lateral`) along the mean of its old and new heading and turns it; the foot
+    Each stride advances it by (x, y) along the mean of its old and new heading and turns it; the foot
     lands beside the path's new point, half the stride's width to its side. Where the width changes, the path first
     moves to lie half the new width beside the stance foot: so where a foot lands from its stance foot is a matter of
     the stride alone.
@@ -36,33 +36,27 @@ class Path:
         """Its heading now [rad]."""
         return self.start_yaw + self.turned
 
-    def advanced(self, stride: Stride, foot: Foot) -> tuple["Path", Array]:
+    def advanced(self, stride: Twist, foot: Foot) -> tuple["Path", Array]:
         """The path after a stride, and where the foot lands that makes it, shape (2,) [m]."""
-        turned, side = self.turned + stride.turn, 0.5 if foot is Foot.LEFT else -0.5
+        turned, side = self.turned + stride.yaw, 0.5 if foot is Foot.LEFT else -0.5
         yaw = self.start_yaw + turned
         middle = self.middle + frame_rotation(self.yaw) @ (0.0, side * (stride.width - self.width))
-        middle = middle + frame_rotation(0.5 * (self.yaw + yaw)) @ (stride.length, stride.lateral)
+        middle = middle + frame_rotation(0.5 * (self.yaw + yaw)) @ (stride.x, stride.y)
         place = middle + frame_rotation(yaw) @ (0.0, side * stride.width)
         return Path(middle, self.start_yaw, turned, stride.width), place
 
-    @classmethod
-    def begin(cls, feet: FeetState, terrain: Terrain, width: float) -> "Path":
-        """It starts midway between the feet with their mean heading, or where the terrain says.
-
-        Its heading is unwrapped from the right foot's.
-        """
-        right = float(feet.yaw[Foot.RIGHT])
-        if terrain.path_start is not None:
-            x, y, yaw = terrain.path_start
-            return cls(np.array([x, y]), right + wrap_angle(yaw - right), 0.0, width)
-        middle = 0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2])
-        yaw = right + 0.5 * wrap_angle(float(feet.yaw[Foot.LEFT]) - right)
-        return cls(np.asarray(middle), yaw, 0.0, width)
-
 
 def start_footholds(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> tuple[Path, tuple[Footstep, Footstep]]:
-    """Where the path begins, and the two start feet, the one that moves first in front."""
-    path = Path.begin(feet, terrain, gait.step_width)
+    """Where the path begins, and the two start feet, the one that moves first in front.
+
+    It starts midway between the feet with their mean heading, or where the terrain says; its heading is unwrapped from
+    the right foot's.
+    """
+    middle, right = 0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2]), float(feet.yaw[Foot.RIGHT])
+    yaw = right + 0.5 * wrap_angle(float(feet.yaw[Foot.LEFT]) - right)
+    if terrain.path_start is not None:
+        middle, yaw = np.array(terrain.path_start[:2]), right + wrap_angle(terrain.path_start[2] - right)
+    path = Path(middle, yaw, 0.0, gait.step_width)
     rows = (gait.step_foot(-1), gait.step_foot(0))
     position = feet.position[list(rows)]
     normals = terrain.normals(position[:, :2])
@@ -70,23 +64,24 @@ def start_footholds(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> 
     return path, (one, other)
 
 
-def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
-    """Footsteps of a whole gait from where the feet stand, whenever they are taken.
+def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> tuple[Footstep, ...]:
+    """Footsteps of a whole gait from where the feet stand, as they are nominally planned, whenever they are taken.
 
     Args:
         gait: the gait.
         feet: start feet in the world frame.
         terrain: gives heights and normals of the footsteps, and the start of the path where they belong on treads.
+
+    Returns:
+        The start foothold of the foot that moves first, that of the other foot, and one for each step; headings are
+        unwrapped.
     """
     path, start = start_footholds(gait, feet, terrain)
-    rows, yaw = [place.foot for place in start], [path.yaw, path.yaw]
-    places = [place.position[:2] for place in start]
+    laid = []
     for number, stride in enumerate(gait.strides, 1):
-        rows.append(gait.step_foot(number))
-        path, place = path.advanced(stride, rows[-1])
-        places.append(place)
-        yaw.append(path.yaw)
-    level = np.array(places)
-    position = np.column_stack((level, terrain.heights(level)))
-    position[:2] = [place.position for place in start]
-    return FootstepPlan(tuple(rows), position, np.array(yaw), terrain.normals(level))
+        foot = gait.step_foot(number)
+        path, place = path.advanced(stride, foot)
+        laid.append((foot, place, path.yaw))
+    level = np.array([place for _, place, _ in laid]).reshape(-1, 2)
+    grounds = zip(laid, terrain.heights(level), terrain.normals(level), strict=True)
+    return *start, *(Footstep(foot, np.append(xy, z), yaw, normal) for (foot, xy, yaw), z, normal in grounds)

@@ -5,6 +5,7 @@ them, then single and double supports in turn. The last double support brings th
 robot stands until the next bout.
 """
 
+from bisect import bisect_right
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -13,14 +14,13 @@ from numpy.typing import NDArray
 
 from surefoot.planner.geometry import wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
-from surefoot.planner.steps.commands import Pose
 from surefoot.planner.steps.footsteps import start_footholds
-from surefoot.planner.steps.gait import GaitParameters, Stride, in_samples
-from surefoot.planner.steps.phases import Phase, PhaseSamples, phases_of
-from surefoot.planner.steps.source import GaitSource, Request, StepSource
+from surefoot.planner.steps.gait import GaitParameters, in_samples
+from surefoot.planner.steps.phases import Phase, PhaseSamples, PhaseTable, phases_of
+from surefoot.planner.steps.source import GaitSource, StepSource
 from surefoot.planner.steps.step import Step, Stop, durations, lay, start_step
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.types import Array, FeetState, PhaseKind
+from surefoot.planner.types import Array, FeetState, PhaseKind, Twist
 
 _MORE_STEPS = 3
 """Steps in sight beyond a window: its last support points depend on the ones after them, and a plan tells three [-]."""
@@ -77,6 +77,15 @@ class Schedule:
     def phases(self) -> tuple[Phase, ...]:
         """The phases in sight in order, without gaps."""
         return tuple(p for p in phases_of(self.steps, self.stands) if p.end > self.begin + CLOCK_ROUNDING)
+
+    @cached_property
+    def phase_table(self) -> PhaseTable:
+        """The same as columns."""
+        return PhaseTable.of(self.phases)
+
+    @cached_property
+    def _starts(self) -> list[float]:
+        return [phase.start for phase in self.phases]
 
     @cached_property
     def first_support(self) -> int:
@@ -142,11 +151,11 @@ class Schedule:
 
     def phase(self, clock: float) -> Phase:
         """The phase at an instant, the first in sight if it lies before."""
-        return next((p for p in reversed(self.phases) if p.start <= clock + CLOCK_ROUNDING), self.phases[0])
+        return self.following(clock)[0]
 
     def following(self, clock: float) -> tuple[Phase, ...]:
         """The phase at an instant and those after it."""
-        return self.phases[self.phases.index(self.phase(clock)) :]
+        return self.phases[max(bisect_right(self._starts, clock + CLOCK_ROUNDING) - 1, 0) :]
 
     def stops(self, clock: float) -> bool:
         """Whether the robot stands at an instant, or will with the next step that lands."""
@@ -154,7 +163,7 @@ class Schedule:
 
     def samples(self, clock: Array, rate: tuple[Array, Array] | None = None) -> PhaseSamples:
         """The phases where the clock shows some instants; arguments as of `PhaseSamples`."""
-        return PhaseSamples.of(self.phases, clock, self.ground.parameters.sample_time, self.first_support, rate)
+        return PhaseSamples.of(self.phase_table, clock, self.ground.parameters.sample_time, self.first_support, rate)
 
     def usual_samples(self, phase: Phase) -> float:
         """How long a phase would last that had not begun [samples]."""
@@ -187,11 +196,11 @@ class Schedule:
         return durations(self.gait, self.ground.parameters.sample_time)
 
     @property
-    def _pose(self) -> Pose:
-        """Where the path is that the footsteps in sight go along."""
+    def _end(self) -> Twist:
+        """Where the path comes to that the footsteps in sight go along."""
         path = self.last.path
         x, y = path.middle + self.shift
-        return Pose(float(x), float(y), path.yaw)
+        return Twist(float(x), float(y), path.yaw)
 
     # From a schedule to the next.
 
@@ -219,7 +228,7 @@ class Schedule:
         """The schedule with what comes next; None where nothing does."""
         last, t = self.last, self.ground.parameters.sample_time
         before = None if self.stands else last.stride
-        order = self.source.order(Request(last.ordinal + 1, last.end * t, before, self._pose, self.gait.period))
+        order = self.source.order(last.ordinal + 1, before, self._end, self.gait.period)
         if order is None:
             return None if self.stands else replace(self, stands=True)
         (stride, stand), stop = order, None
@@ -227,7 +236,7 @@ class Schedule:
             stop = Stop.usual(max(in_samples(stand, t), now - last.end), self.durations[1])
         return self.followed(stride, stop)
 
-    def followed(self, stride: Stride, stop: Stop | None, inserted: bool = False) -> "Schedule":
+    def followed(self, stride: Twist, stop: Stop | None, inserted: bool = False) -> "Schedule":
         """The schedule with one more step."""
         one, other = self.steps[-2:]
         step = lay(stride, (one, other), self.gait, self.ground, stop, inserted)
@@ -269,12 +278,7 @@ class Schedule:
         return kept
 
     def retimed(self, gait: GaitParameters, now: float) -> "Schedule":
-        """All phases to come have the durations of a gait; those that have begun keep theirs on the clock.
-
-        Args:
-            gait: what all steps to come have in common.
-            now: [samples].
-        """
+        """All phases to come have the durations of a gait; those that have begun by now keep theirs on the clock."""
         begun, steps = self.phase(now).start, [self.steps[0]]
         single, double = durations(gait, self.ground.parameters.sample_time)
         for step in self.steps[1:]:

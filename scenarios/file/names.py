@@ -45,21 +45,13 @@ class OneOf:
 
 
 def unusable(keys: Any) -> list[Problem]:
-    """List names whose package cannot be used, or has taken a name of surefoot's own for something else.
-
-    Args:
-        keys: plain values of a scenario; what is of another type, or unknown, is for the schema to say.
-    """
+    """List a scenario's names whose package cannot be used, or has taken one of surefoot's own for something else."""
     refused = ((key, registry.refusal(name)) for key, name, registry in _named(keys))
     return [Problem(key, f"{dotted(key)} {why.what}", why.right) for key, why in refused if why is not None]
 
 
 def unknown(keys: Any) -> list[Problem]:
-    """List names that no installed package brings; no package is loaded.
-
-    Args:
-        keys: plain values of a scenario.
-    """
+    """List a scenario's names, among plain values, that no installed package brings; no package is loaded."""
     return [
         Problem(key, f"{dotted(key)} '{name}' is not known here", "install the package that brings it")
         for key, name, registry in _named(keys)

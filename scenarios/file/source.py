@@ -75,12 +75,7 @@ class Source:
 
 
 def decoded(file: IO[bytes], name: str, most_bytes: int = MAX_BYTES) -> str:
-    """Text of an open file, whoever it is from.
-
-    Args:
-        file: opened to read bytes.
-        name: what to call it in messages.
-        most_bytes: that it may have.
+    """Text of an open file, whoever it is from, of at most so many bytes; its name is for messages.
 
     Raises:
         ScenarioError: it is too large, or no UTF-8.
@@ -97,12 +92,7 @@ def decoded(file: IO[bytes], name: str, most_bytes: int = MAX_BYTES) -> str:
 
 
 def parse(text: str, name: str, most_values: int = MAX_VALUES) -> Source:
-    """Read YAML text.
-
-    Args:
-        text: one YAML document.
-        name: what to call the text in messages.
-        most_values: that it may hold once aliases are expanded.
+    """Read YAML text, named for messages, of at most so many values once aliases are expanded.
 
     Returns:
         its values with their places; keys given twice are listed as problems.
@@ -232,10 +222,6 @@ Overrides = Sequence[str] | Mapping[str, Any]
 
 def apply_overrides(source: Source, overrides: Overrides) -> None:
     """Set values in place, in order; list elements are reached by index.
-
-    Args:
-        source: the scenario's values.
-        overrides: what to set.
 
     Raises:
         ScenarioError: one is no setting, or its key leads into a scalar or past the end of a list.

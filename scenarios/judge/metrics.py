@@ -1,7 +1,7 @@
 """The metrics there are, ours and those of other packages, and their values for a log."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from types import ModuleType
@@ -82,12 +82,7 @@ def _meant(name: str) -> str:
 
 
 def _usable(name: str) -> Metric[Any]:
-    """The metric of a name.
-
-    Raises:
-        KeyError: there is none.
-        PluginError: its package cannot be loaded, or has it under another name.
-    """
+    """The metric of a name; KeyError for none, PluginError where its package is broken or names it otherwise."""
     found = METRICS[name]
     if found.name != name:
         raise PluginError(f"'{name}' in {METRICS.group} is named '{found.name}' where it is made", "give both one name")
@@ -113,10 +108,7 @@ def compute(log: "Log | Digest") -> dict[str, Any]:
 
 
 def measure(log: "Log | Digest") -> Measured:
-    """Compute every metric; one of another package that fails is None and a note.
-
-    Args:
-        log: a log of a run, whole or truncated, or its digest.
+    """Compute every metric of a log, whole or truncated; one of another package that fails is None and a note.
 
     Raises:
         LogError: the log does not describe a run.
@@ -163,19 +155,19 @@ def _foreign_value(run: RunView, name: str, notes: list[str]) -> Any:
 def _value(run: RunView, metric: Metric[Any]) -> Any:
     if not metric.applies(run.constants.fidelity) or not run.has(*metric.needs):
         return None
-    return _plain(metric(run))
+    return plain(metric(run))
 
 
-def _plain(value: Any) -> Any:
-    """The value for JSON: what is not a finite number becomes None, and a number of a class of its own a plain one."""
+def plain(value: Any, lost: Callable[[float], str | None] = lambda _: None) -> Any:
+    """The value for JSON: numbers of classes of their own as plain ones, and what is ``lost``: those not finite."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, list | tuple):
-        return [_plain(element) for element in value]
+        return [plain(element, lost) for element in value]
     if isinstance(value, dict):
-        return {key: _plain(element) for key, element in value.items()}
+        return {key: plain(element, lost) for key, element in value.items()}
     if isinstance(value, float):
-        return float.__pos__(value) if math.isfinite(value) else None
+        return float.__pos__(value) if math.isfinite(value) else lost(value)
     return int.__pos__(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
@@ -214,11 +206,7 @@ def digest(log: "Log") -> Digest:
 
 
 def _check_joints(log: "Log", joints: int) -> None:
-    """Refuse a log whose joints are not as many as its run has.
-
-    Raises:
-        LogError: it is such a log.
-    """
+    """Refuse, by a LogError, a log whose joints are not as many as its run has."""
     for topic, name in (("/torque", "command"), ("/measurement", "joint_position")):
         shapes = [field.shape for field in log.fields(topic) if field.name == name] if topic in log.numeric else []
         if shapes and shapes != [(joints,)]:

@@ -88,18 +88,8 @@ def _number(name: str, shown: float) -> str:
 
 def asked(criteria: Mapping[str, Bound], fidelity: str) -> dict[str, Bound]:
     """The criteria on metrics that a fidelity has; the others are in the notes."""
-    return {name: bound for name, bound in criteria.items() if not _bodiless(name, fidelity)}
-
-
-def _bodiless(criterion: str, fidelity: str) -> bool:
-    metric = known(criterion)
-    return metric is not None and not metric.applies(fidelity)
-
-
-def _skipped(criteria: Mapping[str, Bound], fidelity: str) -> Iterator[str]:
-    for name in criteria:
-        if _bodiless(name, fidelity):
-            yield f"criterion {name} is not asked: a pendulum has no such metric"
+    metrics = {name: known(name) for name in criteria}
+    return {name: criteria[name] for name, metric in metrics.items() if metric is None or metric.applies(fidelity)}
 
 
 def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
@@ -188,11 +178,7 @@ class Verdict:
 
 
 def judge(log: Log, gathered: Digest | None = None) -> Verdict:
-    """Judge a run by its log alone.
-
-    Args:
-        log: the log.
-        gathered: its digest, where it was gathered before.
+    """Judge a run by its log alone, or by the digest of it that was gathered before.
 
     Raises:
         LogError: the log does not describe a run.
@@ -211,9 +197,10 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     )
     undone = (*idle, *not_there(measured.values, criteria, size.length))
     reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
-    skipped = _skipped(scenario.criteria, scenario.fidelity)
+    skipped = [name for name in scenario.criteria if name not in criteria]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
-    said = (*skipped, *idle_keys, *_degraded(measured.values), *measured.notes)
+    unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)
+    said = (*unasked, *idle_keys, *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 
@@ -288,11 +275,7 @@ def _unfinished(log: Log) -> list[str]:
 
 
 def agenda_of(log: Log, scenario: Scenario) -> Agenda:
-    """What was to happen in a run; of a log that does not tell, as far as its scenario does.
-
-    Args:
-        log: of the run.
-        scenario: that it carries.
+    """What was to happen in the run of a log; of one that does not tell, as far as its scenario does.
 
     Raises:
         LogError: what the log tells of it cannot be read.

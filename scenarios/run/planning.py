@@ -12,8 +12,8 @@ from surefoot.errors import ParameterError
 from surefoot.guard import OWN_GUARD, Guard
 from surefoot.planner.geometry import sole_rates, sole_rotation
 from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
-from surefoot.planner.steps.commands import Command, Orders, TimedCommand
-from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, PlannedFootstep
+from surefoot.planner.steps.commands import Command
+from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
 from surefoot.scenarios.file.schema import Fault, Rates
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.sensing import PlannerSensing
@@ -33,7 +33,7 @@ class CommandedPlanner(Planner, Protocol):
     """A planner that hears while the walk goes on what to do, as `surefoot.planner.planner.WalkingPlanner`."""
 
     @property
-    def orders(self) -> Orders:
+    def orders(self) -> Command:
         """What the walk does of what it has been told."""
 
     def command(self, command: Command) -> None:
@@ -83,7 +83,7 @@ class Planning:
         recorder: WalkRecorder,
         faults: FaultSchedule,
         rates: Rates,
-        commands: Sequence[TimedCommand] = (),
+        commands: Sequence[Command] = (),
         guard: Guard = OWN_GUARD,
     ) -> None:
         self.planner, self._sensing, self._recorder, self._faults = planner, sensing, recorder, faults
@@ -92,10 +92,10 @@ class Planning:
         self.plan: WalkPlan
         self.sampler: PlanSampler
         self._started = False
-        self._commands = deque(sorted(commands, key=lambda timed: timed.time))
+        self._commands = deque(sorted(commands, key=lambda command: command.time))
         self._told = False
-        self._aim: PlannedFootstep | None = None
-        self._landing: PlannedFootstep | None = None
+        self._aim: Footstep | None = None
+        self._landing: Footstep | None = None
 
     def due(self, tick: int) -> bool:
         """Whether the planner measures at a control tick."""
@@ -138,7 +138,7 @@ class Planning:
         self._say(command)
 
     @property
-    def orders(self) -> Orders:
+    def orders(self) -> Command:
         """What the walk does of what it has been told.
 
         Raises:
@@ -162,7 +162,7 @@ class Planning:
     def _tell(self, tick: int) -> None:
         """Tell the planner what it is to hear at a control tick or was to hear since its last plan."""
         while self._commands and self._commands[0].time * self._rate <= tick + ROUNDING:
-            self._say(self._commands.popleft().command)
+            self._say(self._commands.popleft())
 
     def _book(self, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
         """Record a footstep once its swing is over and its foot has touched down, which it may never do.
@@ -174,9 +174,9 @@ class Planning:
         if before is not None and (foot := _swinging(before)) is not None and swinging is not foot:
             self._landing = self._aim
         landing = self._landing
-        if landing is not None and landing.footstep.foot is swinging:
+        if landing is not None and landing.foot is swinging:
             self._landing = None
-        elif landing is not None and feet.contact[landing.footstep.foot]:
+        elif landing is not None and feet.contact[landing.foot]:
             self._recorder.touchdown(now_ns, landing, feet)
             self._landing = None
         if swinging is not None and not self.plan.status.early_touchdown:
@@ -204,7 +204,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     normal = np.array([plan.footholds[0].normal, plan.footholds[1].normal])
     if foot >= 0:
         yaw[foot] = float(swing[3])
-        normal[foot] = plan.footsteps[0].footstep.normal
+        normal[foot] = plan.footsteps[0].normal
     turning, bending = sole_rates(swing[3:], rate[3:], bend[3:])
     return WbcReference(
         com=sample.com,
@@ -219,7 +219,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         planned_contact=sample.contacts,
         load_share=(sample.load_left, 1.0 - sample.load_left),
         time_to_switch=max(0.0, phase.left - (sample.time - plan.time)),
-        lifting_foot=int(plan.footsteps[0].footstep.foot) if lifts else -1,
+        lifting_foot=int(plan.footsteps[0].foot) if lifts else -1,
         swing_foot=foot,
         swing_progress=min(1.0, passed / phase.duration) if foot >= 0 and math.isfinite(phase.duration) else 0.0,
         swing_position=swing[:3],

@@ -75,14 +75,9 @@ def _value(key: str, value: Any) -> str:
 
 
 def proposed(walk: Walk, body: Body, key: Key) -> Proposal | None:
-    """What to set over a walk that a robot cannot do, of which it can do the result; None if nothing was found.
+    """What to set over a walk, refused at a key, of which its robot can do the result; None if nothing was found.
 
     Whatever the next refusal is about gives way next.
-
-    Args:
-        walk: that is refused.
-        body: its robot.
-        key: at which it is.
     """
     from surefoot.scenarios.setup.load import read_scenario
 
@@ -132,11 +127,7 @@ class _Likeness:
 
 
 def _fit(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia]":
-    """See `made_ready`; says what is wrong and not what would be right.
-
-    Raises:
-        ParameterError: the robot cannot do the walk.
-    """
+    """See `made_ready`; its ParameterError says what is wrong and not what would be right."""
     posture, leg = _fitting(_Likeness(walk, body))
     return posture.copy(), leg
 
@@ -154,15 +145,7 @@ def _fitting(alike: _Likeness) -> "tuple[NDArray[np.float64], LegInertia]":
 
 @dataclass(frozen=True, slots=True)
 class _Calm:
-    """How far a walk gives way.
-
-    Attributes:
-        steps: share of its steps [-].
-        ground: share of what makes its ground uneven [-].
-        time: of a single support, over that of the walk [-].
-        posture: 0 for its own, then in turn the robot's usual one, a lower and a higher one.
-        refused: how often something else than speed, ground or start was in the way.
-    """
+    """Shares of steps, ground and time to give way by, a posture to take, how often something else was in the way."""
 
     steps: float = 1.0
     ground: float = 1.0

@@ -34,12 +34,7 @@ SPEEDS = {"0.1x": 0.1, "0.25x": 0.25, "0.5x": 0.5, "1x": 1.0, "2x": 2.0, "4x": 4
 
 
 def serve(path: Path, window: ReplayWindow, say: Callable[[str], None]) -> None:
-    """Serve a log on this machine until a signal ends it.
-
-    Args:
-        path: of the log, which may still be growing.
-        window: what part of it.
-        say: is told the address.
+    """Serve a log, which may still grow, on this machine until a signal ends it; ``say`` is told the address.
 
     Raises:
         MissingExtraError: viser is not installed.
@@ -59,11 +54,7 @@ def serve(path: Path, window: ReplayWindow, say: Callable[[str], None]) -> None:
 
 
 def _size(path: Path) -> int:
-    """Of a log that is followed [B].
-
-    Raises:
-        LogError: it is there no more.
-    """
+    """Of a log that is followed [B]; LogError where it is there no more."""
     try:
         return path.stat().st_size
     except OSError as error:

@@ -27,7 +27,7 @@ from surefoot.scenarios.run import interrupts, run
 from surefoot.scenarios.setup import walk
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import Robots
 
 pytestmark = pytest.mark.unit
 
@@ -39,8 +39,8 @@ def surefoot(monkeypatch, capsys, robot, robots, motion):
     def command(*arguments, loop=None):
         monkeypatch.setattr(walk, "describe", lambda name, options: robot)
         monkeypatch.setattr(run, "_simulate", loop or motion())
-        monkeypatch.setattr(RegisteredRobots, "names", lambda self: robots.names())
-        monkeypatch.setattr(RegisteredRobots, "facts", lambda self, *robot: robots.facts(*robot))
+        monkeypatch.setattr(Robots, "names", lambda self: robots.names())
+        monkeypatch.setattr(Robots, "facts", lambda self, *robot: robots.facts(*robot))
         with pytest.raises(SystemExit) as ended:
             cli.main([*map(str, arguments)])
         captured = capsys.readouterr()

@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from surefoot.planner.geometry import convex_hull, nearest_point, signed_distance, sole_corners
+from surefoot.planner.geometry import nearest_point, signed_distance, sole_corners
 from surefoot.planner.types import Foot, Footstep
+from surefoot.polygon import convex_hull
 
 pytestmark = pytest.mark.unit
 

@@ -10,7 +10,7 @@ from surefoot.planner.check import check_durations, check_height
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.planner.model.jerk import block_moves, predict, trajectory
+from surefoot.planner.model.jerk import WorldMotion
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.recovery import Recovery
@@ -80,9 +80,8 @@ class WalkingPlanner:
         region: StepRegion | None = None,
         legs: LegReach | None = None,
     ) -> None:
-        # Here, so that the first tick does not wait for them: its time is recorded.
-        import scipy.linalg
-        import scipy.spatial  # noqa: F401
+        # Here, so that the first tick does not wait for it: its time is recorded.
+        import scipy.linalg  # noqa: F401
 
         self.gait = gait
         self.parameters = parameters or profile.parameters
@@ -100,7 +99,7 @@ class WalkingPlanner:
         self._recovery = Recovery(self._execution, half_size)
         heights_ahead = self._execution.schedule.support_points[:, 2]
         check_height(heights, gait, self._execution.samples(self._preview.reach), heights_ahead)
-        self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
+        self._world = WorldMotion(p.sample_time, p.horizon)
         self._law = profile.law(p, heights.standing(gait))
         self._plan: WalkPlan | None = None
         region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width), p.recovery.sole_gap)
@@ -169,7 +168,8 @@ class WalkingPlanner:
         Raises:
             ValueError: the measured CoM or feet are not finite.
         """
-        if not math.isfinite(float(state.com.sum() + state.com_velocity.sum() + feet.position.sum() + feet.yaw.sum())):
+        measured = (*state.com.tolist(), *state.com_velocity.tolist(), *feet.position.flat, *feet.yaw.tolist())
+        if not all(map(math.isfinite, measured)):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         execution, time = self._execution, state.time
         execution.advance(feet)
@@ -229,25 +229,22 @@ class WalkingPlanner:
         balance: Balance,
     ) -> WalkPlan:
         """What a tick has decided, in the world frame."""
-        execution, reference, to_world = self._execution, window.reference, support.rotation.T
-        count = self.parameters.horizon + 1
-        moved, zmp = trajectory(self._prediction, local, window.stiffness[:count], motion.jerk)
-        com = np.empty((3, count, 3))
-        com[:, :, :2] = moved @ to_world
-        com[0, :, :2] += support.origin
-        com[:, :, 2] = window.height.height[:, :count]
-        point = reference.point[:count] + reference.gain[:count] @ motion.shifts
+        execution, reference, count = self._execution, window.reference, self.parameters.horizon + 1
+        stiffness, offset = window.stiffness[:count], window.offset[:count]
+        ahead = stiffness, window.height.height[:, :count], offset, reference.point[:count], reference.gain[:count]
+        frame = support.rotation, support.origin
+        com, jerk, zmp, offset, point = self._world.of(local, motion.jerk, motion.shifts, ahead, frame)
         return WalkPlan(
             time=time,
             sample_time=self.parameters.sample_time,
             com=com[0],
             com_velocity=com[1],
             com_acceleration=com[2],
-            jerk=motion.jerk @ to_world,
-            zmp=(zmp + window.offset[:count]) @ to_world + support.origin,
-            zmp_offset=window.offset[:count] @ to_world,
-            zmp_reference=point @ to_world + support.origin,
-            stiffness=window.stiffness[:count],
+            jerk=jerk,
+            zmp=zmp,
+            zmp_offset=offset,
+            zmp_reference=point,
+            stiffness=stiffness,
             omega=window.omega[:count],
             phase=execution.info,
             contacts=window.contacts[:count],
@@ -282,7 +279,8 @@ class WalkingPlanner:
     def _step_context(self, support: Support, feet: FeetState, adjusted: StepBounds | None) -> StepContext:
         execution, schedule, phase = self._execution, self._execution.schedule, self._execution.phase
         landed, swing, increment = execution.landed, phase.swing_foot, np.zeros((2, 2))
-        ahead = np.diff(schedule.positions[schedule.index(landed) :][:3, :2], axis=0) @ support.rotation
+        places = schedule.positions[schedule.index(landed) :][:3, :2]
+        ahead = (places[1:] - places[:-1]) @ support.rotation
         increment[: len(ahead)] = ahead
         side, left, transfer = schedule.step(landed).place.foot.other.side, 0.0, 0.0
         here = None if swing is None else (feet.position[swing, :2] - support.origin) @ support.rotation

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from surefoot.native.library import Library, library
-from surefoot.planner.model.dcm import NominalMotion, nominal_motion
+from surefoot.planner.model.dcm import NominalMotion, bind_motion, nominal_motion
 from surefoot.planner.model.leg_chain import LegChain, bind_chain
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.parameters import LegInertia
@@ -227,8 +227,7 @@ class _CompiledOffset:
 
     def __init__(self, kernels: Library, chain: LegChain, toe: float, sample_time: float, most: int) -> None:
         (bound, points), stride = bind_chain(kernels, chain), most + 9
-        self._position, self._softened, self._stiffness = np.empty(2), np.empty(most), np.empty(most)
-        self._point, self._offset, zmp, com, velocity, acceleration, jerk = np.empty((7, most, 2))
+        (self._point, self._offset), self._stiffness = np.empty((2, most, 2)), np.empty(most)
         self._height, self._which = np.empty((3, most)), np.empty(most + 1, dtype=np.int64)
         self._elapsed, self._clock = np.empty((2, most + 1))
         self._soles, self._heading, self._pitch = (np.empty((2, most + 1, *size)) for size in ((3,), (), ()))
@@ -246,18 +245,8 @@ class _CompiledOffset:
             steps=self._clock,
             **feet,
         )
-        motion = kernels.fill(
-            "NominalMotion",
-            sample_time=sample_time,
-            position=self._position,
-            zmp=zmp,
-            stiffness=self._softened,
-            upper=np.empty(most),
-            com=com,
-            velocity=velocity,
-            acceleration=acceleration,
-            jerk=jerk,
-        )
+        motion, own = bind_motion(kernels, sample_time, most)
+        self._position, self._softened = own["position"], own["stiffness"]
         self._place_feet = kernels.bind("nominal_feet_make", self._feet)
         self._run = kernels.bind(
             "leg_offset_make",
@@ -271,7 +260,7 @@ class _CompiledOffset:
             stiffness=self._stiffness,
             height=self._height,
             **feet,
-            zmp=zmp,
+            zmp=own["zmp"],
             com=np.empty((most + 1, 3)),
             scratch=np.empty((23, stride)),
             points=np.empty((points, 3, stride)),
@@ -311,15 +300,16 @@ class _CompiledOffset:
         (rotation, origin), position, steps = frame, schedule.positions, schedule.steps
         numbers, last = range(which[0], which[-1] + 1), len(steps) - 1
         elapsed = samples.elapsed[which.searchsorted(numbers)].tolist()
-        phases = np.empty((len(numbers), 35))
+        phases, heads = np.empty((len(numbers), 35)), []
         for told, number, gone in zip(phases, numbers, elapsed, strict=True):
             phase, late = samples.phases[number], 0.0
             row, single = schedule.index(phase.leaves - 1), phase.kind is PhaseKind.SINGLE
             if single:
                 swing, late = _swing(phase, schedule, gone)
                 told[9:] = _told(swing) if late else _usually_told(schedule.step(phase.step))
-            stance = row - 1 if row else last, row, min(row + 1, last), steps[row].place.foot
-            told[:9] = *stance, single, late, *(phase.roll or _LEVEL)
+            rows = row - 1 if row else last, row, min(row + 1, last)
+            heads.append((*rows, steps[row].place.foot is Foot.RIGHT, single, late, *(phase.roll or _LEVEL)))
+        phases[:, :9] = heads
         places = np.empty((last + 1, 4))
         places[:, :2], places[:, 2], places[:, 3] = (position[:, :2] - origin) @ rotation, position[:, 2], schedule.yaws
         self._feet.struct.heading_of_frame = math.atan2(rotation[1, 0], rotation[0, 0])

@@ -188,13 +188,13 @@ class LegReach:
             return lacking
         time = self._swing_times(singles)[which[1], None, None]
         way, onward = (places[which] - here)[:, None], speed * time
-        passed = here + way * _AT_REST[0][:, None] + onward * _MOVING[0][:, None]
+        passed = here + way * AT_REST[0][:, None] + onward * MOVING[0][:, None]
         met = ((np.abs(passed[..., 0]) < self.clear) & (side * passed[..., 1] < self.near)).any(axis=1)
         corner = np.stack((np.copysign(self.clear, crossing[which]), np.full(len(met), side * self.near)), axis=1)
         astray = corner[:, None] - passed
-        rows, best = np.arange(len(met)), np.argmin((astray**2).sum(axis=-1) / _DEARER, axis=1)
-        bend = way * _AT_REST[1][:, None] + onward * _MOVING[1][:, None]
-        bend = bend + astray[rows, best][:, None] * _AROUND[best][..., None]
+        rows, best = np.arange(len(met)), np.argmin((astray**2).sum(axis=-1) / DEARER, axis=1)
+        bend = way * AT_REST[1][:, None] + onward * MOVING[1][:, None]
+        bend = bend + astray[rows, best][:, None] * AROUND[best][..., None]
         hardest = (np.abs(bend) / (time**2 * self.acceleration)).max(axis=(1, 2))
         lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
         return lacking
@@ -222,21 +222,23 @@ def around_stance_leg(
         return swing
     rotation, origin, side = frame_rotation(stance.yaw), stance.position[:2], swing.foot.side
     times = np.arange(max(time, swing.start_time), swing.glide_end + 0.5 * sample_time, sample_time)
-    if not (side * ((swing.positions(times[[0, -1]])[:, :2] - origin) @ rotation)[:, 1] < 0.0).any():
+    (u, v), (left_x, left_y) = origin.tolist(), rotation[:, 1].tolist()
+    ends = (swing.place(instant) for instant in times[[0, -1]].tolist())
+    if all(side * (left_x * (x - u) + left_y * (y - v)) >= 0.0 for x, y in ends):
         return swing  # as nearly all of them: beside its stance foot at both ends
     way = (swing.positions(times)[:, :2] - origin) @ rotation
     corner = legs.turned(wrap_angle(float(swing.target[3]) - stance.yaw)).corner(way, side)
     if corner is None:
         return swing
     bent = swing.around(origin + rotation @ corner, sample_time)
-    hardest = np.abs([bent.evaluate(instant)[2, :2] @ rotation for instant in times.tolist()]).max(axis=0)
+    hardest = np.abs(bent.bends(times) @ rotation).max(axis=0)
     return bent if (hardest <= legs.acceleration).all() else swing
 
 
 _SHARES = np.linspace(0.1, 0.9, 9)
 """Shares of a swing's time at which its way around the stance leg is looked at [-]."""
 
-_DEARER = (_SHARES * (1.0 - _SHARES)) ** 5
+DEARER = (_SHARES * (1.0 - _SHARES)) ** 5
 """What a way round at these is divided by to be compared."""
 
 
@@ -259,4 +261,4 @@ def _unit_ways() -> tuple[Array, Array, Array]:
     return rest, moving, np.array(around)
 
 
-_AT_REST, _MOVING, _AROUND = _unit_ways()
+AT_REST, MOVING, AROUND = _unit_ways()

@@ -131,6 +131,23 @@ class SwingTrajectory:
             result[k, 2] -= self.search.motion(float(times[k]) - self.touchdown_time)[0]
         return result
 
+    def bends(self, times: Array) -> Array:
+        """Horizontal acceleration at instants from the start of the glide on, shape (n, 2) [m/s^2]."""
+        after = times >= self.bend_time - TOUCHING
+        since = times - np.where(after, self.bend_time, self.start_time)
+        powers = _BENDING * since[:, None] ** _EXPONENTS[:-2]
+        bends = np.where(after[:, None], powers @ self.onward[2:, :2], powers @ self.level[2:, :2])
+        bends[times >= self.glide_end - TOUCHING] = 0.0
+        return bends
+
+    def place(self, time: float) -> tuple[float, float]:
+        """Where a swing that does not bend is at an instant, x and y in plain numbers, which are fast [m]."""
+        if time >= self.touchdown_time - TOUCHING:
+            return float(self.target[0]), float(self.target[1])
+        t = min(max(time - self.start_time, 0.0), self.glide_end - self.start_time)
+        (a, b, c, d, e, f), (u, v, w, x, y, z) = self.level[:, :2].T.tolist()
+        return a + t * (b + t * (c + t * (d + t * (e + t * f)))), u + t * (v + t * (w + t * (x + t * (y + t * z))))
+
     def retargeted(
         self, time: float, target: Array, gliding: bool = False, least: float = LEAST_GLIDE
     ) -> "SwingTrajectory":
@@ -222,6 +239,7 @@ class SwingTrajectory:
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 _EXPONENTS = np.arange(6)
+_BENDING = (_EXPONENTS * (_EXPONENTS - 1.0))[2:]
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,77 +259,55 @@ class SwingCourse:
     height: float
 
 
-@dataclass(frozen=True, slots=True)
-class SwingTimes:
-    """Instants of a swing, on the planner's clock except the touchdown [s].
-
-    Attributes:
-        lift: the foot leaves the ground.
-        glide_start: it begins to move horizontally.
-        apex: it is highest.
-        glide_end: it has stopped to move horizontally.
-        touchdown: it is planned to land.
-    """
-
-    lift: float
-    glide_start: float
-    apex: float
-    glide_end: float
-    touchdown: float
-
-
-def swing_times(start: float, samples: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTimes:
-    """Times [s] of a swing in a single support of so many samples that begins at `start`."""
-    t = parameters.sample_time
-    touchdown = start + samples * t - min(parameters.touchdown_lead, _MOST_LEAD * samples * t)
-    glide_start, apex, glide_end = (
-        start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
-    )
-    return SwingTimes(start, glide_start, apex, min(glide_end, touchdown), touchdown)
-
-
 def start_swing(
     foot: Foot,
     pose: Array,
     footstep: Array,
-    times: SwingTimes,
-    clearance: float,
+    start: float,
+    samples: float,
+    course: SwingCourse,
     parameters: PlannerParameters,
     deviation: float = 0.0,
 ) -> SwingTrajectory:
-    """Swing from rest.
+    """Swing from rest, which ends some time before the single support does.
 
     Args:
         foot: the foot that swings.
         pose: lift-off position and angles, shape (6,).
         footstep: touchdown position and angles, shape (6,).
-        times: of the swing.
-        clearance: height of the apex above the higher of both ends [m].
-        parameters: give the search for the ground.
+        start: when its single support begins [s].
+        samples: how long that lasts [samples].
+        course: of the swing; its instants are on a grid of samples.
+        parameters: of the planner.
         deviation: standard deviation of the sole's height over the ground [m].
     """
+    t, rest = parameters.sample_time, np.zeros((3, 6))
     search, aim = parameters.search.unsure(deviation)
     target = np.array(footstep)
     target[2] -= aim
-    rest = np.zeros((3, 6))
     rest[0] = pose
+    touchdown = start + samples * t - min(parameters.touchdown_lead, _MOST_LEAD * samples * t)
+    glide_start, apex, glide_end = (
+        start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
+    )
+    glide_end = min(glide_end, touchdown)
     trajectory = SwingTrajectory(
         foot=foot,
-        start_time=times.glide_start,
-        glide_end=times.glide_end,
-        apex_time=times.apex,
-        touchdown_time=times.touchdown,
+        start_time=glide_start,
+        glide_end=glide_end,
+        apex_time=apex,
+        touchdown_time=touchdown,
         target=target,
-        clearance=clearance,
+        clearance=course.height,
         search=search,
-        level=_to_rest(rest[:, _GLIDING], target[_GLIDING], times.glide_end - times.glide_start),
-        rise_start=times.lift,
+        level=_to_rest(rest[:, _GLIDING], target[_GLIDING], glide_end - glide_start),
+        rise_start=start,
         rise=np.zeros((6, 1)),
-        fall_start=times.apex,
+        fall_start=apex,
         fall=np.zeros((6, 1)),
         aim=aim,
     )
-    return trajectory._with_height(times.lift, rest[:, 2:3], max(float(pose[2]), float(footstep[2])) + clearance)
+    return trajectory._with_height(start, rest[:, 2:3], max(float(pose[2]), float(footstep[2])) + course.height)
 
 
 def detour(time: float, duration: float) -> tuple[Array, Array]:

@@ -12,19 +12,10 @@ from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 from surefoot.plugins import PluginError
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
-from surefoot.scenarios.file.names import DEFAULTS, TERRAIN_KINDS, OneOf
+from surefoot.scenarios.file.names import OneOf
+from surefoot.scenarios.file.registries import DEFAULTS, TERRAIN_KINDS
 from surefoot.scenarios.file.sensing import MotorSettings, Sensing
-from surefoot.scenarios.file.units import (
-    HERTZ,
-    KILOGRAM,
-    METRE,
-    METRE_PER_SECOND,
-    NEWTON,
-    RADIAN,
-    RADIAN_PER_SECOND,
-    SECOND,
-    Unit,
-)
+from surefoot.scenarios.file.units import METRE, RADIAN, SECOND, Unit
 
 LONGEST_RUN = 86_400.0
 """Bound on the simulated time [s]."""
@@ -43,13 +34,13 @@ Span = Annotated[float, Field(gt=0, le=LONGEST_RUN), SECOND]
 Instant = Annotated[float, Field(ge=0, le=LONGEST_RUN), SECOND]
 Apex = Annotated[float, Field(gt=0, le=0.5), METRE]
 Turns = Annotated[float, Field(ge=-1e3, le=1e3), RADIAN]
-Velocity = Annotated[float, Field(ge=-10, le=10), METRE_PER_SECOND]
-YawRate = Annotated[float, Field(ge=-10, le=10), RADIAN_PER_SECOND]
-Mass = Annotated[float, Field(ge=0, le=1000), KILOGRAM]
+Velocity = Annotated[float, Field(ge=-10, le=10), Unit("m/s")]
+YawRate = Annotated[float, Field(ge=-10, le=10), Unit("rad/s")]
+Mass = Annotated[float, Field(ge=0, le=1000), Unit("kg")]
 Noise = Annotated[float, Field(ge=0, le=0.1)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
-Rate = Annotated[int, Field(ge=1, le=100_000), WHOLE, HERTZ]
-Newtons = Annotated[float, Field(ge=-1e6, le=1e6), NEWTON]
+Rate = Annotated[int, Field(ge=1, le=100_000), WHOLE, Unit("Hz")]
+Newtons = Annotated[float, Field(ge=-1e6, le=1e6), Unit("N")]
 Force = Annotated[tuple[Newtons, Newtons, Newtons], BeforeValidator(as_tuple)]
 Offset = Annotated[float, Field(ge=-0.5, le=0.5), METRE]
 Impulse = Annotated[float, Field(ge=0, le=100), Unit("N·s/kg")]
@@ -87,12 +78,7 @@ class TerrainSettings(Group):
 
 
 def model_of(model: type[BaseModel], values: Any) -> type[BaseModel]:
-    """The model of a group with these values: of the ground, the one that its kind brings if it has keys of its own.
-
-    Args:
-        model: of the group, as the schema has it.
-        values: plain ones, of which any may be wrong.
-    """
+    """The model of a group with plain values, also wrong ones: of the ground that of its kind, if it has own keys."""
     kind = values.get("kind") if model is TerrainSettings and isinstance(values, dict) else None
     if not isinstance(kind, str) or kind == DEFAULTS["terrain"]:
         return model

@@ -9,16 +9,17 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from surefoot.scenarios.file.group import WHOLE, Group, key
-from surefoot.scenarios.file.names import DEFAULTS, OneOf
-from surefoot.scenarios.file.units import METRE, NEWTON, RADIAN, RADIAN_PER_SECOND, SECOND, Unit
+from surefoot.scenarios.file.names import OneOf
+from surefoot.scenarios.file.registries import DEFAULTS
+from surefoot.scenarios.file.units import METRE, RADIAN, SECOND, Unit
 
 _Size = Annotated[float, Field(ge=0, le=1e9)]
 _Positive = Annotated[float, Field(gt=0, le=1e9)]
 _Share = Annotated[float, Field(ge=0, lt=1)]
 _Angle = Annotated[float, Field(ge=0, le=1), RADIAN]
-_Rate = Annotated[_Size, RADIAN_PER_SECOND]
+_Rate = Annotated[_Size, Unit("rad/s")]
 _Acceleration = Annotated[_Size, Unit("m/s^2")]
-_Force = Annotated[_Size, NEWTON]
+_Force = Annotated[_Size, Unit("N")]
 _Moment = Annotated[_Size, Unit("N·m")]
 _Late = Annotated[float, Field(ge=0, le=1), SECOND]
 _Noise = Annotated[float, Field(ge=0, le=1e3), METRE]
@@ -44,13 +45,13 @@ class Sensing(Group):
     encoder_velocity: bool | None = key(None, "encoders say joint velocities, null: only perfect ones do")
     encoder_velocity_noise: _Rate | None = key(None, "of these velocities, null: the preset's")
     joint_torque_noise: _Moment | None = key(None, "of the measured torques of the motors, null: the preset's")
-    gyro_noise: Annotated[_Size, RADIAN_PER_SECOND] | None = key(None, "of the gyroscope, null: the preset's")
+    gyro_noise: Annotated[_Size, Unit("rad/s")] | None = key(None, "of the gyroscope, null: the preset's")
     gyro_density: Annotated[_Size, Unit("rad/s/√Hz")] | None = key(None, "noise density of it, null: the preset's")
     gyro_bias: _Rate | None = key(None, "of its bias at the start, null: the preset's")
     gyro_walk: _Rate | None = key(
         None, "that its bias gains in a second, with the root of the time, null: the preset's"
     )
-    gyro_range: Annotated[_Positive, RADIAN_PER_SECOND] | None = key(None, "its largest reading, null: the preset's")
+    gyro_range: Annotated[_Positive, Unit("rad/s")] | None = key(None, "its largest reading, null: the preset's")
     accelerometer_noise: _Acceleration | None = key(None, "of the accelerometer, null: the preset's")
     accelerometer_density: Annotated[_Size, Unit("m/s^2/√Hz")] | None = key(
         None, "noise density of it, null: the preset's"

@@ -12,7 +12,7 @@ from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import GRAVITY, CentroidalState
 from surefoot.plugins import Registry
 from surefoot.readings import Readings
-from surefoot.scenarios.file.names import SOURCES
+from surefoot.scenarios.file.registries import SOURCES
 from surefoot.scenarios.file.sensing import Sensing
 from surefoot.scenarios.record.walk import PlannerState
 from surefoot.scenarios.run.sensed import sensed_state

@@ -6,7 +6,7 @@ from typing import Any
 
 from surefoot.errors import ParameterError
 from surefoot.scenarios.errors import Problem
-from surefoot.scenarios.file.names import DEFAULTS
+from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.file.sensing import SENSOR_KEYS, MotorSettings, Sensing
 from surefoot.sim.drives import IDEAL, DriveErrors
 from surefoot.sim.sensor_errors import PRESETS, Delivery, SensorErrors

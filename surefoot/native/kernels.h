@@ -369,9 +369,9 @@ typedef struct {
 /*
  * Counterpart of `planner.references.leg_offset.nominal_feet` without a swing that is flown.
  *
- * Of each phase from that of the first sample on `phases` has 35 numbers: rows of `steps` before, stance and after; 1 for
- * a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of the
- * swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
+ * Of each phase from that of the first sample on `phases` has 35 numbers: rows of `steps` before, stance and after; 1
+ * for a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of
+ * the swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
  * the coefficients of progress, rise and fall. Soles and angles have rows of `most` samples.
  */
 typedef struct {
@@ -394,8 +394,8 @@ void nominal_feet_make(const NominalFeet *feet, int64_t samples);
 /*
  * Counterpart of `planner.references.leg_offset.LegOffset.made` with feet that are there.
  *
- * Feet have rows of `most` + 1 samples, heights of `most`. In `scratch`, `points` and `bends` a row takes `stride`, which
- * is 8 more than that; they have 23 rows, and 3 for each point.
+ * Feet have rows of `most` + 1 samples, heights of `most`. In `scratch`, `points` and `bends` a row takes `stride`,
+ * which is 8 more than that; they have 23 rows, and 3 for each point.
  */
 typedef struct {
     const LegChain *chain;
@@ -431,10 +431,27 @@ typedef struct {
     const int64_t *contacts;
     int64_t first;
     int64_t points;
-    const double *table;
+    const double *values;
+    const double *steps;
     const double *heights;
     const double *on_left;
 } Sight;
+
+/* Counterpart of `planner.references.zmp_reference.support_table`, of the steps of a schedule. */
+typedef struct {
+    int64_t points;
+    int64_t stance;
+    int64_t stay;
+    const double *free;
+    const double *positions;
+    const double *yaws;
+    const int64_t *supports;
+    const double *half_size;
+    double *values;
+    double *steps;
+} SupportTable;
+
+void support_table_fill(const SupportTable *table);
 
 /* Counterpart of `planner.references.window.ReferencePreview`: one sample before a window, those of it, one after. */
 typedef struct {
@@ -477,5 +494,197 @@ typedef struct {
 void preview_look(const Preview *preview, int64_t steady, double now, int64_t lifts);
 void preview_weigh(const Preview *preview);
 int64_t preview_transition(const Preview *preview, int64_t soonest, double bound, double z, double speed, double bend);
+
+/*
+ * Counterpart of `planner.laws.qp.solve` with its first solver; its fields are those of `planner.laws.qp.Qp`.
+ *
+ * `tolerance` is that of a bound over 1 and its variable's size, and of a row over the row's. From `factor` on all is
+ * scratch: matrices of n rows and columns, `share` of a number a row, `taken` of one a bound and row, `work` of 4 n.
+ */
+typedef struct {
+    int64_t variables;
+    int64_t rows;
+    double tolerance;
+    const double *P;
+    const double *q;
+    const double *G;
+    const double *h;
+    const double *lower;
+    const double *upper;
+    double *x;
+    double *factor;
+    double *inverse;
+    double *rotated;
+    double *triangle;
+    double *share;
+    double *multipliers;
+    double *work;
+    int64_t *active;
+    int64_t *taken;
+} BoundedQp;
+
+int64_t bounded_qp_solve(const BoundedQp *qp, int64_t same);
+
+/*
+ * Counterpart of `planner.laws.footstep_tvmpc.FootstepTvmpc.build` without a limit on the jerk's rate.
+ *
+ * `motion` has the ZMP of the reference, the stiffness and the place now. Responses to the moves are those of
+ * `planner.model.jerk.Prediction`; `weights` is scratch of the length of the preview.
+ */
+typedef struct {
+    const NominalMotion *motion;
+    int64_t horizon;
+    int64_t moves;
+    const int64_t *starts;
+    const double *response;
+    double jerk_limit;
+    double jerk_weight;
+    double step_weight;
+    double terminal_weight;
+    double terminal_margin;
+    double zmp_slack[2];
+    double terminal_slack[2];
+    const double *state;
+    const double *omega;
+    const double *gain;
+    const double *half_size;
+    const double *step_lower;
+    const double *step_upper;
+    double *weights;
+    double *P;
+    double *q;
+    double *G;
+    double *h;
+    double *lower;
+    double *upper;
+} FootstepQps;
+
+void footstep_qps_make(const FootstepQps *qps, int64_t samples);
+
+/* Counterpart of `planner.model.jerk.WorldMotion._plain`, whose names these are, over `samples` and the one now. */
+typedef struct {
+    double sample_time;
+    int64_t samples;
+    const double *state;
+    const double *jerk;
+    const double *stiffness;
+    const double *height;
+    const double *offset;
+    const double *point;
+    const double *gain;
+    const double *shifts;
+    const double *rotation;
+    const double *origin;
+    double *com;
+    double *world_jerk;
+    double *zmp;
+    double *world_offset;
+    double *reference;
+} MotionInWorld;
+
+void motion_in_world(const MotionInWorld *motion);
+
+/* Counterpart of a `planner.references.window.Window`, as far as recovery looks at it. */
+typedef struct {
+    int64_t count;
+    double sample_time;
+    const double *stiffness;
+    const double *omega;
+    const double *point;
+    const double *gain;
+    const double *half_size;
+    double *decay;
+} Outlook;
+
+void outlook_decay(const Outlook *ahead);
+double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin);
+
+/* Counterpart of `planner.swing.leg_reach.LegReach`; its unit ways are rows of values at so many shares of a swing. */
+typedef struct {
+    double radius;
+    double hip_width;
+    int64_t crosses;
+    double across;
+    const double *acceleration;
+    double touchdown_lead;
+    double sample_time;
+    int64_t shares;
+    const double *at_rest;
+    const double *moving;
+    const double *around;
+    const double *dearer;
+} Legs;
+
+/* Counterpart of `planner.recovery.step_adjustment.StepProblem`, with the state that is to be captured, and what of the
+ * legs depends on the step's turn. */
+typedef struct {
+    double com[2];
+    double dcm[2];
+    double omega;
+    double nominal[2];
+    double side;
+    double swing[4];
+    double double_left;
+    double single_left;
+    double cycle;
+    double shortest;
+    double face[4];
+    double crosses;
+    double last;
+    double adapted;
+    double near;
+    double clear;
+} Landing;
+
+/* Counterpart of `planner.recovery.capture_margin.CaptureMargin`; of the four edges see there. */
+typedef struct {
+    const Legs *legs;
+    const Landing *step;
+    double cycle;
+    int64_t timing;
+    const double *half;
+    const double *apart;
+    const double *middle;
+    int64_t time_count;
+    const double *times;
+    double least_double;
+    double least_single;
+    double longer;
+    double *captured;
+    double *margins;
+} Capture;
+
+void capture_margins(const Capture *capture, int64_t steps, int64_t fixed);
+
+/* Counterpart of `planner.recovery.step_adjustment.StepAdjustment`; its result are time, box, and whether there is
+ * more to catch. */
+typedef struct {
+    const Legs *legs;
+    const Landing *step;
+    const Outlook *ahead;
+    int64_t timing;
+    const double *authority;
+    int64_t change_count;
+    const double *changes;
+    double *times;
+    double shift_weight;
+    double second_weight;
+    double time_weight;
+    double stretch_weight;
+    double swing_weight;
+    double cross_factor;
+    double least_saving;
+    double cop_share;
+    double landing_share;
+    double landing_spare;
+    double tolerance;
+    double unheld_share;
+    double stand_share;
+    double least_double;
+    double least_single;
+    double *result;
+} Adjustment;
+
+int64_t adjustment_solve(const Adjustment *program);
 
 #endif

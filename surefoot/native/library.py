@@ -8,14 +8,17 @@ An object asks once, at its construction, whether there is a library, and binds 
 
 import ctypes
 import logging
+import math
 import os
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.native.build import FOLDER, LIBRARY, build, is_built
 
@@ -57,6 +60,30 @@ class Bound:
         for name, other in others.items():
             memory = other.struct if isinstance(other, Bound) else ctypes.c_char.from_buffer(other)
             setattr(self.struct, name, ctypes.addressof(memory))
+
+
+class Block:
+    """Arrays side by side in memory, which kernels fill, and of which one copy makes fresh ones.
+
+    Args:
+        shapes: of the arrays.
+
+    Attributes:
+        arrays: they themselves.
+    """
+
+    def __init__(self, *shapes: tuple[int, ...]) -> None:
+        ends = list(accumulate(math.prod(shape) for shape in shapes))
+        self._memory = np.zeros(ends[-1])
+        self._parts = [(slice(end - math.prod(shape), end), shape) for end, shape in zip(ends, shapes, strict=True)]
+        self.arrays = self._seen(self._memory)
+
+    def copied(self) -> list[NDArray[np.float64]]:
+        """They in fresh memory."""
+        return self._seen(self._memory.copy())
+
+    def _seen(self, memory: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        return [memory[part].reshape(shape) for part, shape in self._parts]
 
 
 class Library:
@@ -128,6 +155,11 @@ class _Kernel(partial[Any]):
 def library() -> Library | None:
     """The compiled kernels; None where plain Python is asked for, or where there is no library of these sources."""
     return None if os.environ.get(VARIABLE) == "0" else _loaded()
+
+
+def is_missed() -> bool:
+    """Whether there are no compiled kernels though nobody asked for plain Python."""
+    return library() is None and os.environ.get(VARIABLE) != "0"
 
 
 @cache

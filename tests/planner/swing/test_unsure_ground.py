@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
-from surefoot.planner.swing.trajectory import SwingTimes, start_swing
+from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot
 
 pytestmark = pytest.mark.unit
 
 POSE, PLACE = np.array([1.0, 0.1, 0.0, 0.0, 0.0, 0.0]), np.array([1.4, 0.15, 0.0, 0.2, 0.0, 0.0])
-TIMES = SwingTimes(2.0, 2.0, 2.4, 2.8, 2.8)
+COURSE = SwingCourse(0.5, 0.0, 1.0, 0.05)
 
 
 def swing(deviation, height=0.0):
     place = PLACE + np.array([0.0, 0.0, height, 0.0, 0.0, 0.0])
-    return start_swing(Foot.LEFT, POSE, place, TIMES, 0.05, PlannerParameters(), deviation), place
+    return start_swing(Foot.LEFT, POSE, place, 2.0, 40, COURSE, PlannerParameters(), deviation), place
 
 
 def test_where_the_height_is_known_nothing_changes():
@@ -43,7 +43,7 @@ def test_a_footstep_is_aimed_below_the_ground_and_stays_where_it_is_planned(heig
     np.testing.assert_allclose(trajectory.footstep, place[:3], atol=1e-12)
     assert trajectory.target[2] == pytest.approx(place[2] - trajectory.aim) and trajectory.aim > 0.0
     # It comes no less high.
-    top = max(trajectory.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.8, 401))
-    assert top == pytest.approx(max(sure.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.8, 401)), abs=1e-9)
+    top = max(trajectory.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.75, 401))
+    assert top == pytest.approx(max(sure.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.75, 401)), abs=1e-9)
     moved = trajectory.retargeted(2.2, trajectory.target + np.array([0.05, 0.0, 0.02, 0.0, 0.0, 0.0]))
     np.testing.assert_allclose(moved.footstep, place[:3] + np.array([0.05, 0.0, 0.02]), atol=1e-12)

@@ -168,7 +168,7 @@ class StepAdjustment:
         """
         t, numbers, count = self._sample_time, self._numbers, len(window.stiffness)
         if self._compiled is not None and count == self._compiled.count:
-            found = self._compiled.solve(com, dcm, window, step)
+            found = self._compiled.solve(com, dcm, window, step, unsure)
             return None if found is None else StepBounds(*found)
         lift = min(round(step.double / t), count - 3)
         land = min(max(round((step.double + step.single) / t), lift + 1), count - 2)

@@ -685,6 +685,6 @@ typedef struct {
     double *result;
 } Adjustment;
 
-int64_t adjustment_solve(const Adjustment *program);
+int64_t adjustment_solve(const Adjustment *program, double unsure);
 
 #endif

@@ -5,7 +5,7 @@ import pytest
 
 import surefoot
 from surefoot.scenarios.errors import SetupError
-from surefoot.scenarios.file.names import SOURCES
+from surefoot.scenarios.file.registries import SOURCES
 from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.log import read
 from surefoot.scenarios.run.sensing import TrueState

@@ -23,7 +23,7 @@ SOURCES: Declared[Any] = Declared(
     "surefoot.estimators",
     {
         "truth": "No estimation: the true state. The default",
-        "ekf": "An invariant Kalman filter of IMU, encoders and feet, as `sensing.preset` has them",
+        "ekf": "An invariant Kalman filter of IMU, encoders and feet",
     },
 )
 """Of ``sensing.source``; what estimates the state, `surefoot.scenarios.run.sensing` brings."""

@@ -34,7 +34,9 @@ SWAY, SWAY_TIME = (0.3, 1.0), 0.1
 
 
 def sensed_state(walk: Walk, **options: Any) -> SensedState:
-    """The invariant filter of a walk's sensors, which knows of them no more than their data sheets say.
+    """An invariant Kalman filter of IMU, encoders and feet.
+
+    It knows of a walk's sensors no more than their data sheets say.
 
     Args:
         walk: what is run.

@@ -10,7 +10,7 @@ from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
 from surefoot.planner.types import Array
 
 FAR = 50.0
-"""How far the ground reaches to each side, for the reference robot [m]."""
+"""How far the ground reaches to each side, farther than any walk goes, for the reference robot [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class Tilt:
 
 
 _THICK = 0.5
-"""Thickness of a slab [m]."""
+"""Thickness of a slab, so that no foot falls through it [m]."""
 
 
 def _slab(top: Array, rotation: Array, half_size: Array) -> Box:

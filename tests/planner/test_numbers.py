@@ -43,6 +43,8 @@ UNNOTICED = {
     "ground.tiles.AROUND",
     "ground.tiles.TILE",
     "ground.tiles._MIDDLE",
+    "ground.tilt.FAR",
+    "ground.tilt._THICK",
     "laws.dcm_feedback._GAIN",
     "laws.qp._UNBOUNDED",
     "laws.zmp_preview._JERK_WEIGHT",

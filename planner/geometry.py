@@ -161,39 +161,6 @@ def points_seen_from(poses: Array, points: Array) -> Array:
     return np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
 
 
-_STRAIGHT = 1e-12
-"""Share of the square of their extent by which three points turn that lie on a line but for rounding [-]."""
-
-
-def convex_hull(points: Array) -> Array:
-    """Vertices of the convex hull, anticlockwise from the one of least x, shape (v, 2).
-
-    The monotone chain of Andrew (Information Processing Letters 9, 1979); the general hull takes ten times as long.
-
-    Args:
-        points: shape (n, 2) [m], at least three that are not on a line.
-    """
-    places = points.tolist()
-    order = sorted(range(len(places)), key=places.__getitem__)
-    most = _STRAIGHT * float(np.ptp(points)) ** 2
-    lower, upper = _chain(places, order, most), _chain(places, order[::-1], most)
-    return np.asarray(points[lower[:-1] + upper[:-1]])
-
-
-def _chain(places: list[list[float]], order: list[int], most: float) -> list[int]:
-    """Those of points in order at which a way from the first to the last turns left, by more than the most."""
-    chain: list[int] = []
-    for number in order:
-        x, y = places[number]
-        while len(chain) > 1:
-            (u, v), (a, b) = places[chain[-2]], places[chain[-1]]
-            if (a - u) * (y - v) - (b - v) * (x - u) > most:
-                break
-            chain.pop()
-        chain.append(number)
-    return chain
-
-
 def signed_distance(polygon: Array, point: Array) -> float:
     """Distance to the nearest edge's line, positive inside [m]; outside it is a lower bound of the true distance."""
     edge = np.roll(polygon, -1, axis=0) - polygon

@@ -99,7 +99,7 @@ def _distance(point: Array, to: Array, summands: list[Array]) -> float:
 
 
 _ROUNDING = 1e-9
-"""What is less is none [m, -]."""
+"""What is less is none, since sums of shapes round by as much [m, -]."""
 
 
 def swing_box(here: Array, speed: Array, most: Array, time: float) -> tuple[Array, Array]:

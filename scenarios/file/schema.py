@@ -12,7 +12,8 @@ from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 from surefoot.plugins import PluginError
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
-from surefoot.scenarios.file.names import DEFAULTS, TERRAIN_KINDS, OneOf
+from surefoot.scenarios.file.names import OneOf
+from surefoot.scenarios.file.registries import DEFAULTS, TERRAIN_KINDS
 from surefoot.scenarios.file.units import METRE, RADIAN, SECOND, Unit
 
 LONGEST_RUN = 86_400.0

@@ -8,6 +8,7 @@ import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib import import_module
 from operator import attrgetter
 from pickle import PicklingError
@@ -77,6 +78,16 @@ class Reduction:
     def __reduce__(self) -> ByName:
         """Go to another process by name."""
         return _by_name(self, self.function)
+
+
+@lru_cache(maxsize=1024)
+def _given(function: Callable[..., Any]) -> tuple[Any, ...]:
+    """Types of what a function gives; the schema of criteria compares each metric with all others."""
+    try:
+        given = get_type_hints(function).get("return", NoneType)
+    except Exception:  # annotations in quotes are expressions of their author
+        return (NoneType,)
+    return get_args(given) if isinstance(given, UnionType) or get_origin(given) is Union else (given,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,11 +162,7 @@ class Metric(Generic[T]):
     @property
     def _kinds(self) -> tuple[Any, ...]:
         """What its function gives; what cannot be told counts as None."""
-        try:
-            given = get_type_hints(self.function).get("return", NoneType)
-        except Exception:  # annotations in quotes are expressions of their author
-            return (NoneType,)
-        return get_args(given) if isinstance(given, UnionType) or get_origin(given) is Union else (given,)
+        return _given(self.function)
 
     def applies(self, fidelity: str) -> bool:
         """Whether runs of a fidelity have it."""

@@ -5,21 +5,20 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from surefoot.errors import PartError
 from surefoot.guard import Guard, MisfitError, shown
-from surefoot.plugins import PluginError, Registry
+from surefoot.plugins import Declared, PluginError
 from surefoot.scenarios.errors import LogError, Problem, nearest
-from surefoot.scenarios.judge import balance, computing, effort, feet, health, walking
+from surefoot.scenarios.judge import balance, computing, effort, feet, health, names, walking
 from surefoot.scenarios.judge.digest import Digest, Reads, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
-from surefoot.scenarios.log import Log
 
-GROUP = "surefoot.metrics"
-"""Entry points by which other packages bring metrics: the metric's name, and where the `Metric` is."""
+if TYPE_CHECKING:
+    from surefoot.scenarios.log import Log
 
 
 def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
@@ -39,7 +38,7 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
 OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, computing)
 """Ours, in the order in which they are shown."""
 
-METRICS: Registry[Metric[Any]] = Registry(GROUP, Metric, OWN)
+METRICS: Declared[Metric[Any]] = names.METRICS.filled(Metric, OWN, lambda metric: metric.meaning)
 """All by name: ours, then those of other packages."""
 
 
@@ -86,7 +85,7 @@ def _usable(name: str) -> Metric[Any]:
     """The metric of a name; KeyError for none, PluginError where its package is broken or names it otherwise."""
     found = METRICS[name]
     if found.name != name:
-        raise PluginError(f"'{name}' in {GROUP} is named '{found.name}' where it is made", "give both one name")
+        raise PluginError(f"'{name}' in {METRICS.group} is named '{found.name}' where it is made", "give both one name")
     return found
 
 
@@ -103,12 +102,12 @@ class Measured:
     notes: tuple[str, ...]
 
 
-def compute(log: Log | Digest) -> dict[str, Any]:
+def compute(log: "Log | Digest") -> dict[str, Any]:
     """The values of `measure`, which has the arguments and errors."""
     return measure(log).values
 
 
-def measure(log: Log | Digest) -> Measured:
+def measure(log: "Log | Digest") -> Measured:
     """Compute every metric of a log, whole or truncated; one of another package that fails is None and a note.
 
     Raises:
@@ -175,7 +174,7 @@ def plain(value: Any, lost: Callable[[float], str | None] = lambda _: None) -> A
 _REDUCING = Guard("a reduction")
 
 
-def digest(log: Log) -> Digest:
+def digest(log: "Log") -> Digest:
     """Gather what the metrics and the health checks need, in one pass with bounded memory.
 
     Raises:
@@ -206,7 +205,7 @@ def digest(log: Log) -> Digest:
     return gathered
 
 
-def _check_joints(log: Log, joints: int) -> None:
+def _check_joints(log: "Log", joints: int) -> None:
     """Refuse, by a LogError, a log whose joints are not as many as its run has."""
     for topic, name in (("/torque", "command"), ("/measurement", "joint_position")):
         shapes = [field.shape for field in log.fields(topic) if field.name == name] if topic in log.numeric else []

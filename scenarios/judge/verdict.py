@@ -14,9 +14,10 @@ from pydantic import ValidationError
 from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.dumped import parse_dumped
 from surefoot.scenarios.file.names import unknown
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import decoded, parse
+from surefoot.scenarios.file.source import decoded
 from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.acted import contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import Digest, RunView
@@ -215,7 +216,8 @@ def scenario_of(log: Log) -> Scenario:
 def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
     """The scenario of a log, and which of its names nobody knows here."""
     try:
-        source = parse(decoded(BytesIO(log.attachments[SCENARIO_FILE]), SCENARIO_FILE), SCENARIO_FILE)
+        text = decoded(BytesIO(log.attachments[SCENARIO_FILE]), SCENARIO_FILE)
+        source = parse_dumped(text, SCENARIO_FILE)
         keys, absent = source.value, unknown(source.value)
         # Without its kind the other keys of the ground mean nothing.
         places = [replace(one, key=one.key[:1]) if one.key[0] == "terrain" else one for one in absent]

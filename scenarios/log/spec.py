@@ -13,7 +13,7 @@ import json
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from math import prod
 from operator import itemgetter
 from typing import Any, Literal, NamedTuple
@@ -184,6 +184,7 @@ def blank_records(fields: tuple[FieldSpec, ...], channel_id: int, count: int) ->
     return records
 
 
+@lru_cache(maxsize=128)
 def file_descriptor_set(spec: ChannelSpec) -> bytes:
     """Serialized protobuf ``FileDescriptorSet`` of a channel's message, with units and frames as comments."""
     file = descriptor_pb2.FileDescriptorProto(name=f"{PACKAGE}/{spec.message}.proto", package=PACKAGE, syntax="proto3")

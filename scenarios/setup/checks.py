@@ -19,8 +19,9 @@ from surefoot.planner.types import Footstep, Twist
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
-from surefoot.scenarios.file.schema import Gait, Sensing
+from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.file.units import meant
+from surefoot.scenarios.setup.criteria import AVAILABLE
 from surefoot.scenarios.setup.events import cut_off, idle_commands, never_act, slight, told_problems
 from surefoot.scenarios.setup.formulation import LONGEST_REACH
 from surefoot.scenarios.setup.gait import commanded, step_region, twist_of, uncommanded
@@ -34,14 +35,6 @@ MOST_SAMPLES = 1_000_000
 
 _PERIOD = 4
 """Footsteps after which a gait on flat ground only repeats itself: the first, one of each foot, the last."""
-
-_SENSED = ("source", "zmp_noise", "com_noise", "force_estimate")
-"""What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
-
-AVAILABLE: dict[Key, tuple[Any, ...]] = {
-    ("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED
-}
-"""Values of the format's keys that this version has; of other keys it has all."""
 
 _PENDULUM_FAULTS = ("planner_freeze", "state_nan")
 

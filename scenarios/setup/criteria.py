@@ -10,12 +10,19 @@ from typing import Any
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.names import usable
-from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
+from surefoot.scenarios.file.schema import Scenario, Sensing, TerrainSettings, model_of
 from surefoot.scenarios.judge.metric import TRUTH, Metric
 from surefoot.scenarios.judge.metrics import METRICS, known
-from surefoot.scenarios.setup.checks import AVAILABLE
 from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.terrain import KINDS
+
+_SENSED = ("source", "zmp_noise", "com_noise", "force_estimate")
+"""What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
+
+AVAILABLE: dict[Key, tuple[Any, ...]] = {
+    ("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED
+}
+"""Values of the format's keys that this version has; of other keys it has all."""
 
 
 def criteria_problems(criteria: Mapping[str, Bound], fidelity: str) -> list[Problem]:
@@ -135,7 +142,10 @@ def published() -> dict[str, Any]:
         _narrow(schema, key, list(values))
     ground = schema["$defs"]["TerrainSettings"]
     for kind in usable(KINDS):
-        own = model_of(TerrainSettings, {"kind": kind}).model_json_schema()
+        model = model_of(TerrainSettings, {"kind": kind})
+        if model is TerrainSettings:
+            continue
+        own = model.model_json_schema()
         ground["properties"] = own["properties"] | ground["properties"]
         schema["$defs"] = own.get("$defs", {}) | schema["$defs"]
     bounds = {name: _criterion(name, metric) for metric in filter(None, map(known, METRICS)) for name in metric.bounded}

@@ -5,13 +5,17 @@ What a refusal proposes has been tried: the scenario with it goes through every 
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import yaml
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.models.types import same_robot
+from surefoot.planner.laws.profiles import PROFILES
+from surefoot.plugins import OWN_PACKAGE
 from surefoot.scenarios.errors import Key, ScenarioError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.keys import scenario_key
@@ -95,8 +99,42 @@ def proposed(walk: Walk, body: Body, key: Key) -> Proposal | None:
     return None
 
 
+class _Likeness:
+    """A walk of a body, equal to those that differ in nothing on which stances and first steps depend.
+
+    Of what other packages bring nobody knows what it depends on.
+    """
+
+    _ASIDE: ClassVar = {"name", "seed", "pushes", "faults", "criteria"}
+
+    def __init__(self, walk: Walk, body: Body) -> None:
+        self.walk, self.body = walk, body
+        self._keys = walk.keys.model_dump_json(exclude=self._ASIDE)
+        self._rest = walk.size, walk.wider, walk.foot_length
+        self._own = KINDS.package(walk.keys.terrain.kind) == OWN_PACKAGE and PROFILES.owns(walk.formulation.profile)
+
+    def __hash__(self) -> int:
+        return hash(self._keys)
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, _Likeness)
+            and (self._own or self is other)
+            and (self._keys, self._rest) == (other._keys, other._rest)
+            and self.walk.formulation.profile is other.walk.formulation.profile
+            and same_robot(self.body.robot, other.body.robot)
+        )
+
+
 def _fit(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia]":
     """See `made_ready`; its ParameterError says what is wrong and not what would be right."""
+    posture, leg = _fitting(_Likeness(walk, body))
+    return posture.copy(), leg
+
+
+@lru_cache(maxsize=32)
+def _fitting(alike: _Likeness) -> "tuple[NDArray[np.float64], LegInertia]":
+    walk, body = alike.walk, alike.body
     posture = start_posture(walk, body)
     check_stances(walk, body, posture)
     leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)

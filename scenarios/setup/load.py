@@ -13,6 +13,7 @@ import yaml
 from pydantic import ValidationError
 
 from surefoot.errors import ParameterError, PartError
+from surefoot.models.names import is_file
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError
 from surefoot.scenarios.file.criteria import Bound
@@ -280,8 +281,6 @@ def _told(source: Source, problems: list[Problem]) -> list[str]:
 
 def _place_robot(source: Source, folder: Path) -> None:
     """Name a robot file by its full path, so that the scenario means the same wherever it is read again."""
-    from surefoot.models.registry import is_file
-
     robot = source.value.get("robot")
     if isinstance(robot, str) and is_file(robot):
         source.value["robot"] = os.path.normpath(folder.absolute() / robot)

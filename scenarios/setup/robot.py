@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from surefoot.models.facts import RobotFacts, facts_of, similar_com_height, similar_step_width, similar_tread
+from surefoot.models.names import ROBOTS, is_file
 from surefoot.scenarios.errors import Key
 from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings
 from surefoot.streams import Stream, generator
@@ -26,9 +27,7 @@ class Robots:
 
     def names(self) -> tuple[str, ...]:
         """Names of all robots."""
-        from surefoot.models.registry import robot_names
-
-        return robot_names()
+        return tuple(ROBOTS)
 
     def facts(self, name: str, options: RobotSettings) -> RobotFacts:
         """Facts of a robot, whichever body carries its payload; ValueError where it cannot have these options."""
@@ -47,8 +46,6 @@ def _registered(name: str, options: RobotSettings) -> RobotFacts:
 
 def is_known(name: object, robots: Robots) -> bool:
     """Whether a scenario may name that robot: one of the robots, or a robot file, whatever is in it."""
-    from surefoot.models.registry import is_file
-
     return isinstance(name, str) and (is_file(name) or name in robots.names())
 
 

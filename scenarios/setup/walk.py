@@ -1,9 +1,10 @@
 """What a scenario means, each part derived once, in the terms of the layers below; nobody there sees a scenario."""
 
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from operator import index
 from typing import TYPE_CHECKING, Any
 
@@ -328,4 +329,11 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
 
 def scenario_yaml(scenario: Scenario) -> str:
     """The scenario as run: every key with its value, but for those left null."""
-    return yaml.safe_dump(scenario.model_dump(mode="json", exclude_none=True), sort_keys=False)
+    groups = scenario.model_dump(mode="json", exclude_none=True)
+    return "".join(_group_yaml(name, json.dumps(group)) for name, group in groups.items())
+
+
+@lru_cache(maxsize=256)
+def _group_yaml(name: str, group: str) -> str:
+    """A key with its group, given as JSON: most are the same from run to run of a campaign."""
+    return yaml.safe_dump({name: json.loads(group)}, sort_keys=False)

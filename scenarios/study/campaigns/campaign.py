@@ -4,7 +4,6 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,9 +14,9 @@ from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar,
 from surefoot.scenarios.file.translate import problems_of
 from surefoot.scenarios.setup.load import Written, for_robot, key_problems, written
 from surefoot.scenarios.setup.robot import Robots, is_known
+from surefoot.scenarios.study.campaigns.shipped import ENDING, shipped
 from surefoot.scenarios.study.campaigns.spec import MOST_RUNS, Bisect, Spec
 
-ENDING = ".yaml"
 SCENARIO, SEARCH = "scenario", "bisect."
 """Keys that are no scenario's and may vary as any other: which scenario, and the range of the search."""
 
@@ -94,12 +93,6 @@ class Campaign:
         own = {key: value for key, value in keys.items() if key not in said and not key.startswith(SEARCH)}
         sized = for_robot(base.written, own, origin, keys.get("robot"), robots)
         return {key: sized.get(key, value) for key, value in keys.items() if key not in own or key in sized}
-
-
-def shipped() -> dict[str, Path]:
-    """The campaigns that come with Surefoot, by name."""
-    folder = Path(str(files(__package__))) / "campaigns"
-    return {path.name.removesuffix(ENDING): path for path in sorted(folder.glob(f"*{ENDING}"))}
 
 
 def read_campaign(reference: str, overrides: Sequence[str] = (), seeds: int | None = None) -> Campaign:

@@ -15,7 +15,8 @@ from typing import Any, Self
 
 from pydantic import TypeAdapter
 
-from surefoot.models.registry import describe, is_file
+from surefoot.models.names import is_file
+from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.schema import Scenario

@@ -9,8 +9,9 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import Robots
-from surefoot.scenarios.study.campaigns.campaign import read_campaign, shipped
+from surefoot.scenarios.study.campaigns.campaign import read_campaign
 from surefoot.scenarios.study.campaigns.points import Record, cells
+from surefoot.scenarios.study.campaigns.shipped import shipped
 
 pytestmark = pytest.mark.unit
 

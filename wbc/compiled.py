@@ -39,7 +39,7 @@ class CompiledTerms:
         torso: int,
         torso_motion: tuple[Array, Array, Array],
     ) -> None:
-        self.kernels = kernels
+        self.kernels, self._data = kernels, terms.data
         self._q, self._v = np.zeros(terms.model.nq), np.zeros(terms.model.nv)
         self._mass, self._force, self._moment = np.array([terms.mass]), np.zeros(3), np.zeros(3)
         self._to_sole, self._loaded = np.zeros((2, 6, 6)), False
@@ -90,6 +90,11 @@ class CompiledTerms:
         self._shift(k, forward, pitch)
         to_sole: Array = self._to_sole[k].copy()
         return to_sole
+
+    def pose(self, joint: int) -> tuple[Array, Array]:
+        """Orientation, by columns, and position of a joint's body in the world, where Pinocchio keeps them."""
+        placement = self._data.oMi[joint]
+        return placement.rotation, placement.translation
 
     def _sole(self, terms: "RobotTerms", k: int, frame: int) -> Bound:
         motion = terms.sole_jacobian[k], terms.sole_velocity[k], terms.sole_bias[k]

@@ -322,4 +322,18 @@ typedef struct {
 
 void sensors_read(const Sensors *sensors);
 
+/* Counterpart of the distances in `wbc.separation.Separation.write`; `poses` holds addresses, four for each pair. */
+typedef struct {
+    int64_t count;
+    const int64_t *poses;
+    const double *centres;
+    const double *radii;
+    double attention;
+    double *places;
+    const double *distances;
+    int64_t *due;
+} Pairs;
+
+int64_t pairs_due(const Pairs *pairs);
+
 #endif

@@ -163,6 +163,9 @@ class CompiledTick:
     def refer(self, reference: WbcReference) -> None:
         """Take the reference of this tick."""
         r = reference
+        if r.numbers is not None:
+            np.copyto(self._numbers, r.numbers)
+            return
         rest = (*_NUMBERS(r), *r.load_share, *r.roll, r.swing_foot, r.rolling_foot)
         parts = (*_VECTORS(r), r.swing_rotation.ravel(), r.ground_normal.ravel(), rest)
         np.concatenate(parts, out=self._numbers)

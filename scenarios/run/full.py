@@ -20,7 +20,8 @@ from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.run.planning import FaultSchedule, RunFault, whole_body_reference
+from surefoot.scenarios.run.planning import FaultSchedule, RunFault
+from surefoot.scenarios.run.reference import ReferenceMaker
 from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look
@@ -144,6 +145,7 @@ class SimulatedRobot:
     ) -> None:
         self.world, self.controller, self._estimate = world, controller, estimator.estimate
         self._recorder, self._view = recorder, view
+        self._references = ReferenceMaker()
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
         known = estimator.is_truth and walk.true_robot is walk.robot
         self._own_truth = None if known else RobotTerms(pinocchio_model(walk.true_robot), frames_of(walk.robot))
@@ -193,7 +195,7 @@ class SimulatedRobot:
     def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
         """See `Walker`."""
         wrench = self.measurement.wrench
-        self._reference = whole_body_reference(plan, sample)
+        self._reference = self._references.reference(plan, sample)
         forces = float(wrench[0, 2]), float(wrench[1, 2])
         sensing = FootSensing(forces, wrench if self._estimates else None)
         report = self.controller.update(self._reference, sensing, self._faults.active("qp_failure", tick))

@@ -288,10 +288,10 @@ class ClosedLoop:
         plan = planning.plan
         if self._pushes:
             self._push(now, plan)
-        sample = planning.sampler.sample(now)
         # What is decided now acts until the next tick, so that it is to do what is planned for the middle of that; the
         # state is held against that of now, from which on it does so.
-        build_time, solve_time = walker.act(tick, plan, sample.until(planning.sampler.sample(now + 0.5 / rate)))
+        sample, until = planning.sampler.tick(now, now + 0.5 / rate)
+        build_time, solve_time = walker.act(tick, plan, until)
         watch.lap()
         walker.record(now_ns, sample)
         self._recorder.reference(now_ns, plan, sample)

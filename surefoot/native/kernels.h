@@ -336,4 +336,27 @@ typedef struct {
 
 int64_t pairs_due(const Pairs *pairs);
 
+/* Counterpart of `planner.plan.PlanSampler`: an interval between two samples, and two points within it. */
+typedef struct {
+    const double *ends;
+    const double *swing;
+    double *table;
+    double *points;
+} PlanInterval;
+
+void plan_interval_enter(const PlanInterval *interval, double length);
+void plan_interval_sample(const PlanInterval *interval, double now, double middle);
+
+/* Counterpart of `scenarios.run.reference.whole_body_reference`: where the feet stand and one will land. */
+typedef struct {
+    const double *point;
+    const double *yaw;
+    const double *normal;
+    const double *landing_normal;
+    const double *roll;
+    Reference *reference;
+} PlanReference;
+
+void plan_reference_fill(const PlanReference *plan, int64_t swing_foot, int64_t rolling_foot);
+
 #endif

@@ -10,7 +10,7 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import walk_pendulum
 from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
 from surefoot.planner.types import FeetState, PhaseKind
-from surefoot.scenarios.run.planning import whole_body_reference
+from surefoot.scenarios.run.reference import whole_body_reference
 
 pytestmark = pytest.mark.unit
 

@@ -359,4 +359,50 @@ typedef struct {
 
 void plan_reference_fill(const PlanReference *plan, int64_t swing_foot, int64_t rolling_foot);
 
+/* Counterpart of `scenarios.log.rows.RowWriter`; places and records are addresses, strides and lengths bytes. */
+typedef struct {
+    const double *values;
+    int64_t fields;
+    const int64_t *first;
+    const int64_t *sizes;
+    const int64_t *whole;
+    const int64_t *places;
+    const int64_t *strides;
+    int64_t channels;
+    const int64_t *records;
+    const int64_t *lengths;
+    const int64_t *header;
+} LogRow;
+
+void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequence);
+
+/* Counterpart of `scenarios.record.body.Recorder._derived`, for one row. */
+typedef struct {
+    int64_t joints;
+    double unloaded;
+    double second;
+    double without;
+    const double *wrench;
+    const double *soles;
+    const double *sole_rotation;
+    const double *status;
+    const double *upright;
+    const double *com;
+    const double *com_velocity;
+    const double *omega;
+    const double *command;
+    const double *inverse_limit;
+    double *solver;
+    double *fallback;
+    double *tilt;
+    double *dcm;
+    double *limit_ratio;
+    double *zmp;
+    double *normal_force;
+    double *cop_left;
+    double *cop_right;
+} BodyRow;
+
+void body_row_derive(const BodyRow *row);
+
 #endif

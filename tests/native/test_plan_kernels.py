@@ -30,7 +30,7 @@ def assert_alike(one, other, kind):
         )
 
 
-@pytest.fixture(params=[("walk-fast", 4.0), ("walk-curve", 4.0)], ids=lambda case: case[0])
+@pytest.fixture(params=[("walk-fast", 2.4), ("walk-curve", 2.0)], ids=lambda case: case[0])
 def plans(request):
     """The plans of a walk; the feet of the fast one roll."""
     name, seconds = request.param

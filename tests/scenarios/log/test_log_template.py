@@ -75,9 +75,8 @@ def test_a_number_too_few_or_too_many_shifts_nothing_in_silence(tmp_path, number
     writer = LogWriter(tmp_path / "log.mcap", {})
     b = writer.channel(B)
     row = writer.rows(RowLayout(((b, ("y",)),), ((b, ("z",)),), more_numbers=("more",)))
-    row.append(0, numbers, np.zeros(4))
-    with pytest.raises(ValueError, match="where there are places for 2"):
-        writer.close()
+    with pytest.raises(ValueError, match="where there are places for 2"), writer:
+        row.append(0, numbers, np.zeros(4))
 
 
 def test_points_of_many_ticks_are_those_of_each():

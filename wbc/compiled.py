@@ -11,6 +11,7 @@ import pinocchio as pin
 
 from surefoot.native.library import Bound, Library
 from surefoot.wbc.types import NO_LOAD, Array, ExternalLoad, WbcReference
+from surefoot.wbc.zmp import UNLOADED
 
 if TYPE_CHECKING:
     from surefoot.wbc.model import RobotTerms
@@ -69,6 +70,16 @@ class CompiledTerms:
             to_sole=self._to_sole,
         )
         self._update = kernels.bind("terms_update", self.bound)
+        self._wrench, self._level, self._yaw, self._zmp = np.zeros((2, 6)), np.zeros((2, 3)), np.zeros(2), np.zeros(3)
+        self._see = kernels.bind(
+            "feet_see",
+            terms=self.bound,
+            unloaded=UNLOADED,
+            wrench=self._wrench,
+            level=self._level,
+            yaw=self._yaw,
+            zmp=self._zmp,
+        )
         self._shift, self.unshift = (kernels.bind(name, self.bound) for name in ("terms_shift", "terms_unshift"))
 
     def update(self, q: Array, v: Array, mass: float) -> None:
@@ -90,6 +101,17 @@ class CompiledTerms:
         self._shift(k, forward, pitch)
         to_sole: Array = self._to_sole[k].copy()
         return to_sole
+
+    def feet(self, wrench: Array, toe: float) -> tuple[Array, Array, Array]:
+        """Soles turned level, shape (2, 3) [m], their yaws, shape (2,) [rad], and the ZMP, shape (3,) [m].
+
+        Args:
+            wrench: sole wrenches in the sole frames, shape (2, 6) [N, N·m].
+            toe: as of `RobotTerms.level_soles`; the soles do not lean.
+        """
+        np.copyto(self._wrench, wrench)
+        self._see(toe)
+        return self._level.copy(), self._yaw.copy(), self._zmp.copy()
 
     def pose(self, joint: int) -> tuple[Array, Array]:
         """Orientation, by columns, and position of a joint's body in the world, where Pinocchio keeps them."""

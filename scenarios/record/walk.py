@@ -24,6 +24,25 @@ _SAMPLED = ("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_refere
 _sampled = attrgetter(*_SAMPLED)
 """What the reference of a tick has of a sample of the plan, under the same names."""
 
+_STATE = {
+    "measured_com": "measured.com",
+    "measured_com_velocity": "measured.com_velocity",
+    "measured_zmp": "measured_zmp",
+    "com": "given.com",
+    "com_velocity": "given.com_velocity",
+    "com_acceleration": "acceleration",
+    "innovation": "innovation",
+}
+_PLAN = {
+    **{name: name for name in ("com", "com_velocity", "zmp", "zmp_reference", "jerk", "omega")},
+    "status": "status.solver",
+    "infeasible": "status.infeasible",
+    "falling": "status.falling",
+    "step_shift": "balance.shift",
+    "step_delay": "balance.delay",
+}
+"""Where the fields of these channels are in a planner's state and in a plan."""
+
 _NO_FOOTSTEP = (math.nan,) * 4
 
 
@@ -68,8 +87,8 @@ class WalkRecorder:
         vectors = (*_SAMPLED, "swing_position", "swing_velocity", "support")
         numbers = ("omega", "roll", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
         self._reference = writer.rows(RowLayout(((reference, vectors),), ((reference, numbers),)))
-        self._state = writer.channel(channels.planner_state(sizes))
-        self._plan = writer.channel(channels.plan(sizes))
+        self._state = writer.channel(channels.planner_state(sizes)).filler(_STATE)
+        self._plan = writer.channel(channels.plan(sizes)).filler(_PLAN, ("slack", "held", "capture_margin"))
         self._footsteps = writer.channel(channels.footsteps(sizes))
         self._footstep = writer.channel(channels.footstep(sizes))
         self._command = writer.channel(channels.command(sizes))
@@ -84,20 +103,13 @@ class WalkRecorder:
 
     def planner_state(self, time_ns: int, state: PlannerState) -> None:
         """What the planner measured and was given."""
-        measured = state.measured
-        self._state.put(
-            time_ns, state, state.given, measured_com=measured.com, measured_com_velocity=measured.com_velocity,
-            com_acceleration=state.acceleration,
-        )  # fmt: skip
+        self._state(time_ns, state)
 
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
         """A new plan with its horizon and footsteps."""
         status, balance = plan.status, plan.balance
-        self._plan.put(
-            time_ns, status, plan, status=status.solver, slack=(status.zmp_slack.max(), status.terminal_slack.max()),
-            held=status.solver is SolverStatus.HELD, capture_margin=(balance.planned, balance.movable),
-            step_shift=balance.shift, step_delay=balance.delay,
-        )  # fmt: skip
+        slack, held = (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD
+        self._plan(time_ns, plan, slack, held, (balance.planned, balance.movable))
         ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
         self._footsteps.put(
             time_ns,

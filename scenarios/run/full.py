@@ -168,7 +168,7 @@ class SimulatedRobot:
         state = self._estimate(measurement)
         if self._faults.active("state_nan", tick):
             state = RobotState(np.full_like(state.q, np.nan), state.v)
-        if not np.isfinite(np.dot(state.q, state.q) + np.dot(state.v, state.v)):
+        if not math.isfinite(np.dot(state.q, state.q) + np.dot(state.v, state.v)):
             raise RunFault(f"the measured state is not finite at {tick / self._rate:.3f} s")
         self.state = state
         self._terms = self.controller.observe(state)
@@ -178,11 +178,15 @@ class SimulatedRobot:
 
     def measured(self, now: float) -> tuple[CentroidalState, Array, FeetState]:
         """See `Walker`."""
-        terms = self._terms
+        terms, wrench = self._terms, self.measurement.wrench
         R = terms.sole_rotation
-        feet = FeetState(terms.level_soles(self._toe), np.arctan2(R[:, 1, 0], R[:, 0, 0]), self._landed)
+        if terms.compiled is not None and terms.leaning is None:
+            soles, yaw, zmp = terms.compiled.feet(wrench, self._toe)
+        else:
+            soles, yaw = terms.level_soles(self._toe), np.arctan2(R[:, 1, 0], R[:, 0, 0])
+            zmp = np.array(measured_zmp(wrench, terms.sole_position, R))
         state = CentroidalState(now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
-        return state, np.array(measured_zmp(self.measurement.wrench, terms.sole_position, R)[:2]), feet
+        return state, zmp[:2], FeetState(soles, yaw, self._landed)
 
     def _lasting(self) -> LastingForce | None:
         """The lasting force that the controller counted with a tick ago."""
@@ -213,8 +217,9 @@ class SimulatedRobot:
     def fallen(self, sample: PlanSample) -> bool:
         """See `Walker`."""
         terms = self._truth
-        height = terms.com[2] - min(terms.sole_position[0, 2], terms.sole_position[1, 2])
-        tilt = math.acos(min(terms.torso_rotation[2, 2], 1.0))
+        soles = terms.sole_position
+        height = terms.com.item(2) - min(soles.item(2), soles.item(5))
+        tilt = math.acos(min(terms.torso_rotation.item(2, 2), 1.0))
         return bool(lies(height, self._nominal_height, tilt, self.measurement.nonfoot_contact))
 
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:

@@ -52,7 +52,7 @@ class FaultSchedule:
 
     def active(self, kind: str, tick: int) -> bool:
         """Whether a fault of that kind acts at that control tick."""
-        return any(window.kind == kind and window.holds(tick) for window in self._windows)
+        return bool(self._windows) and any(window.kind == kind and window.holds(tick) for window in self._windows)
 
 
 class Planning:

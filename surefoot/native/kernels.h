@@ -405,4 +405,43 @@ typedef struct {
 
 void body_row_derive(const BodyRow *row);
 
+/* Counterpart of the end of a span in `wbc.external.LoadObserver`. */
+typedef struct {
+    const Terms *terms;
+    double weight;
+    double span;
+    double ticks;
+    int64_t spans_count;
+    int64_t latest_count;
+    double most_share;
+    double least_press;
+    const double *share_limits;
+    const double *kept;
+    const double *sudden;
+    const double *bound;
+    const double *push;
+    const double *most_change;
+    double *felt;
+    double *com;
+    double *momentum;
+    double *spans;
+    int64_t *filled;
+    double *estimate;
+} LoadSpan;
+
+void load_moving(const LoadSpan *span);
+int64_t load_span_end(const LoadSpan *span);
+
+/* What the planner is told of the feet: counterpart of `RobotTerms.level_soles` and `wbc.zmp.measured_zmp`. */
+typedef struct {
+    const Terms *terms;
+    double unloaded;
+    const double *wrench;
+    double *level;
+    double *yaw;
+    double *zmp;
+} FeetSeen;
+
+void feet_see(const FeetSeen *feet, double toe);
+
 #endif

@@ -13,8 +13,8 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from surefoot.scenarios.errors import LogError
 import surefoot.scenarios.log.writer as log_writer
+from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.log.encoding import Packed
 from surefoot.scenarios.record import channels

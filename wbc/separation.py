@@ -81,6 +81,9 @@ class Separation:
         """
         p = self._parameters
         distances = self._all_distances(data) if self._due is None else self._due_distances(data, self._due)
+        if not distances:
+            rows[:], lower[:] = 0.0, -unbounded
+            return
         near = [k for k, distance in distances.items() if 0.0 < distance < p.attention]
         near.sort(key=distances.__getitem__)
         for slot in range(p.slots):

@@ -125,6 +125,8 @@ class ChannelWriter(Waiting):
     def filler(self, attributes: Mapping[str, str], given: Sequence[str] = ()) -> Callable[..., None]:
         """What adds messages of one source, without a look at names each time as `put` takes it.
 
+        Such a message completes no chunk by its time: those that come at each tick do, and they are added at its end.
+
         Args:
             attributes: of the source, dotted, by field.
             given: fields whose values go after the source, in this order.
@@ -137,16 +139,17 @@ class ChannelWriter(Waiting):
         """
         self._refuse(attributes.keys() ^ set(given) ^ set(self._names))
         views = [self.view(name) for name in (*attributes, *given)]
-        values = attrgetter(*attributes.values())
+        values = attrgetter(*attributes.values()) if attributes else None
 
         def fill(time_ns: int, source: object, *more: ArrayLike) -> None:
             n = self.count
             self.times.append(time_ns)
-            for view, value in zip(views, (*values(source), *more), strict=True):
+            found = more if values is None else (*values(source), *more)
+            for view, value in zip(views, found, strict=True):
                 view[n] = value
             self.count = n = n + 1
-            if time_ns >= self._clock.due or n == self._capacity:
-                self._clock.look(time_ns, n == self._capacity)
+            if n == self._capacity:
+                self._clock.full(time_ns)
 
         return fill
 

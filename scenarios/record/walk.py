@@ -9,9 +9,11 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.native.library import library
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.steps.commands import Orders
+from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, PlannedFootstep, SolverStatus
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import RowLayout
@@ -43,12 +45,14 @@ _PLAN = {
 }
 """Where the fields of these channels are in a planner's state and in a plan."""
 
+_FOOTSTEPS = ("current_left", "current_right", "next", "next_foot", "touchdown_time")
+
 _NO_FOOTSTEP = (math.nan,) * 4
 
 
 @dataclass(frozen=True, slots=True)
 class TickTiming:
-    """Wall-clock time of the parts of one control tick [s]."""
+    """Wall-clock time of the parts of one control tick, and the controller's processor time [s]."""
 
     state: float
     wbc_build: float
@@ -57,6 +61,7 @@ class TickTiming:
     physics: float
     log: float
     tick: float
+    controller: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +94,7 @@ class WalkRecorder:
         self._reference = writer.rows(RowLayout(((reference, vectors),), ((reference, numbers),)))
         self._state = writer.channel(channels.planner_state(sizes)).filler(_STATE)
         self._plan = writer.channel(channels.plan(sizes)).filler(_PLAN, ("slack", "held", "capture_margin"))
-        self._footsteps = writer.channel(channels.footsteps(sizes))
+        self._footsteps = writer.channel(channels.footsteps(sizes)).filler({}, _FOOTSTEPS)
         self._footstep = writer.channel(channels.footstep(sizes))
         self._command = writer.channel(channels.command(sizes))
         timing = writer.channel(channels.timing(sizes))
@@ -99,6 +104,10 @@ class WalkRecorder:
         self._process = writer.channel(channels.process(sizes))
         self._looked = -1
         self._support = np.zeros((SUPPORT_VERTICES, 2))
+        self._rolled = level, rates, position, velocity = np.zeros(6), np.zeros(6), np.zeros(3), np.zeros(3)
+        self._roll: Callable[[float, float, float], None] | None = None
+        if kernels := library():
+            self._roll = kernels.bind("roll_centre", level=level, rates=rates, position=position, velocity=velocity)
         self._rolls = sizes.nj > 0  # the ideal feet of a point mass stay level
 
     def planner_state(self, time_ns: int, state: PlannerState) -> None:
@@ -111,13 +120,14 @@ class WalkRecorder:
         slack, held = (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD
         self._plan(time_ns, plan, slack, held, (balance.planned, balance.movable))
         ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
-        self._footsteps.put(
+        self._footsteps(
             time_ns,
-            current_left=_pose(plan.footholds[Foot.LEFT]),
-            current_right=_pose(plan.footholds[Foot.RIGHT]),
-            next=[_NO_FOOTSTEP if step is None else _pose(step.footstep) for step in ahead],
-            next_foot=[-1 if step is None else int(step.footstep.foot) for step in ahead],
-            touchdown_time=[math.nan if step is None else step.touchdown_time for step in ahead],
+            None,
+            _pose(plan.footholds[Foot.LEFT]),
+            _pose(plan.footholds[Foot.RIGHT]),
+            [_NO_FOOTSTEP if step is None else _pose(step.footstep) for step in ahead],
+            [-1 if step is None else int(step.footstep.foot) for step in ahead],
+            [math.nan if step is None else step.touchdown_time for step in ahead],
         )
         vertices = plan.support_polygon
         self._support[: len(vertices)] = vertices
@@ -149,13 +159,23 @@ class WalkRecorder:
         position, velocity = sample.swing[:3], sample.swing_velocity[:3]
         pitch = 0.0 if roll is None else roll.evaluate(sample.time)[0]
         if roll is not None and pitch and roll.foot is sample.swing_foot:
-            position, velocity = roll.centre(sample.time, sample.swing, sample.swing_velocity)
+            position, velocity = self._centre(roll, sample)
         pitches = (pitch, 0.0) if roll is not None and roll.foot is Foot.LEFT else (0.0, pitch)
         numbers = (
             sample.omega, *pitches, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
             phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
         )  # fmt: skip
         self._reference.append(time_ns, numbers, *_sampled(sample), position, velocity, self._support.ravel())
+
+    def _centre(self, roll: FootRoll, sample: PlanSample) -> tuple[Array, Array]:
+        """See `FootRoll.centre`."""
+        if self._roll is None:
+            return roll.centre(sample.time, sample.swing, sample.swing_velocity)
+        pitch, rate, _ = roll.evaluate(sample.time)
+        level, rates, position, velocity = self._rolled
+        level[:], rates[:] = sample.swing, sample.swing_velocity
+        self._roll(roll.toe, pitch, rate)
+        return position, velocity
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick, and once a simulated second the state of the process."""

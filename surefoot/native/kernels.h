@@ -444,4 +444,23 @@ typedef struct {
 
 void feet_see(const FeetSeen *feet, double toe);
 
+/* Counterpart of `planner.swing.heel_off.FootRoll.centre`: pose and rates of a level sole, and its centre rolled. */
+typedef struct {
+    const double *level;
+    const double *rates;
+    double *position;
+    double *velocity;
+} RollCentre;
+
+void roll_centre(const RollCentre *roll, double toe, double pitch, double rate);
+
+/* Kernels without numbers of their own, one after another: addresses of functions and of their structs. */
+typedef struct {
+    int64_t count;
+    const int64_t *functions;
+    const int64_t *structs;
+} Calls;
+
+void calls_run(const Calls *calls);
+
 #endif

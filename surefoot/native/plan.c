@@ -136,3 +136,20 @@ void plan_reference_fill(const PlanReference *plan, int64_t swing_foot, int64_t 
     reference->swing_foot = (double)swing_foot;
     reference->rolling_foot = (double)rolling_foot;
 }
+
+/* Centre and velocity of a sole that is turned about its toe edge by a pitch, which changes at a rate. */
+void roll_centre(const RollCentre *roll, double toe, double pitch, double rate) {
+    const double sine = sin(pitch), cosine = cos(pitch), none[3] = {0.0};
+    const double back[3] = {toe * (1.0 - cosine), 0.0, toe * sine};
+    const double rolling[3] = {toe * rate * sine, 0.0, toe * rate * cosine};
+    double R[9], away[3], moving[3], spin[3], turn[3], unused[3];
+    sole_rotation(roll->level + 3, R);
+    sole_rates(roll->level + 3, roll->rates + 3, none, spin, unused);
+    rotate(R, back, away);
+    rotate(R, rolling, moving);
+    cross(spin, away, turn);
+    for (int i = 0; i < 3; i++) {
+        roll->position[i] = roll->level[i] + away[i];
+        roll->velocity[i] = roll->rates[i] + moving[i] + turn[i];
+    }
+}

@@ -15,10 +15,11 @@ import numpy as np
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.model.jerk import cached_response
 from surefoot.planner.parameters import LegInertia
+from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
+from surefoot.planner.plants import IdealFeet
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.types import FeetState
+from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.scenarios.log import NoLog
 from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.setup.load import load as load_scenario
@@ -48,6 +49,15 @@ def robot_legs() -> LegInertia:
     return closed_loop(resolve(load_scenario("diagonal-walk")), NoLog()).planning.planner.parameters.leg
 
 
+def walk(planner: WalkingPlanner, feet: FeetState, duration: float) -> None:
+    """Walk exactly as planned."""
+    ideal, state = IdealFeet(feet), CentroidalState(0.0, np.array([0.0, 0.0, 1.0]), np.zeros(3))
+    for tick in range(1, round(duration / T) + 1):
+        plan = planner.update(state, ideal.state)
+        state = CentroidalState(tick * T, plan.com[1], plan.com_velocity[1])
+        ideal.follow(PlanSampler(plan), tick * T)
+
+
 def print_margins(steps: int) -> None:
     """What of a tick is the margin, of a walk whose steps may be moved."""
     gait, legs = GaitParameters(steps=steps, step_length=0.2), resolve(load_scenario("walk")).legs
@@ -62,7 +72,7 @@ def print_margins(steps: int) -> None:
         return found
 
     planner._recovery.balance = timed
-    walk_pendulum(planner, feet, gait.duration, com=np.array([0.0, 0.0, 1.0]), substeps=2)
+    walk(planner, feet, gait.duration)
     median, p90, p99 = np.percentile(spent, (50, 90, 99)) * 1e6
     print(f"{'capturability margin, of a tick':<42} {median:>10.0f} {p90:>10.0f} {p99:>10.0f}")
 
@@ -86,7 +96,7 @@ def print_ticks(steps: int) -> None:
             return plan
 
         planner.update = timed
-        walk_pendulum(planner, feet, gait.duration + 1.0, com=np.array([0.0, 0.0, 1.0]), substeps=2)
+        walk(planner, feet, gait.duration + 1.0)
         median, p90, p99 = np.percentile(spent, (50, 90, 99)) * 1e6
         print(f"{name:<42} {median:>10.0f} {p90:>10.0f} {p99:>10.0f}")
 

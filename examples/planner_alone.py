@@ -13,7 +13,7 @@ com, velocity, time = np.array([0.0, 0.0, 1.0]), np.zeros(3), 0.0
 while time < 6.0:
     plan = planner.update(CentroidalState(time, com, velocity), feet)
     if round(time / 0.02) % 50 == 0:
-        steps = [f"{Foot(s.footstep.foot).name.lower()} {s.footstep.position[:2].round(3)}" for s in plan.footsteps]
+        steps = [f"{Foot(s.foot).name.lower()} {s.position[:2].round(3)}" for s in plan.footsteps]
         print(f"{time:.2f} s, {plan.phase.kind.name.lower()}: ZMP {plan.zmp[0].round(3)}, next footsteps {steps}")
     reference = PlanSampler(plan).sample(time + period)
     time, com, velocity = time + period, reference.com, reference.com_velocity

@@ -23,18 +23,10 @@ if TYPE_CHECKING:
     from surefoot.planner.parameters import LegInertia, PlannerParameters, StepAdaptation
     from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
     from surefoot.planner.planner import WalkingPlanner
-    from surefoot.planner.plants import IdealFeet, Pendulum, PointPush, walk_pendulum
-    from surefoot.planner.steps.commands import (
-        Command,
-        Pose,
-        Twist,
-        VelocityCommand,
-        VelocityTimeline,
-        velocity_bouts,
-        walk_of,
-    )
-    from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
-    from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, LastingForce, PhaseKind
+    from surefoot.planner.plants import IdealFeet, Pendulum
+    from surefoot.planner.steps.commands import Command, velocity_bouts, walk_of
+    from surefoot.planner.steps.gait import Bout, GaitParameters
+    from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind, Twist
 
 __all__ = [
     "PROFILES",
@@ -48,7 +40,6 @@ __all__ = [
     "Footstep",
     "GaitParameters",
     "IdealFeet",
-    "LastingForce",
     "LegInertia",
     "Motion",
     "MotionPlanner",
@@ -59,25 +50,19 @@ __all__ = [
     "PlanSampler",
     "Planner",
     "PlannerParameters",
-    "PointPush",
-    "Pose",
     "Profile",
     "Qp",
     "QpLaw",
     "QpSolution",
     "StepAdaptation",
-    "Stride",
     "Terrain",
     "Twist",
-    "VelocityCommand",
-    "VelocityTimeline",
     "WalkPlan",
     "WalkingPlanner",
     "flat",
     "solve",
     "velocity_bouts",
     "walk_of",
-    "walk_pendulum",
 ]
 
 if not TYPE_CHECKING:  # a type checker shall still refuse names that are not there
@@ -91,17 +76,9 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),
             "plan": ("PlanSample", "PlanSampler", "Planner", "WalkPlan"),
             "planner": ("WalkingPlanner",),
-            "plants": ("IdealFeet", "Pendulum", "PointPush", "walk_pendulum"),
-            "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "LastingForce", "PhaseKind"),
-            "steps.commands": (
-                "Command",
-                "Pose",
-                "Twist",
-                "VelocityCommand",
-                "VelocityTimeline",
-                "velocity_bouts",
-                "walk_of",
-            ),
-            "steps.gait": ("Bout", "GaitParameters", "Stride"),
+            "plants": ("IdealFeet", "Pendulum"),
+            "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "PhaseKind", "Twist"),
+            "steps.commands": ("Command", "velocity_bouts", "walk_of"),
+            "steps.gait": ("Bout", "GaitParameters"),
         },
     )

@@ -6,6 +6,8 @@ the tilt; uphill, pitch is negative.
 """
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +23,13 @@ def frame_rotation(yaw: float) -> Array:
 def wrap_angle(angle: float) -> float:
     """The same angle in [-pi, pi) [rad]."""
     return (angle + math.pi) % (2.0 * math.pi) - math.pi
+
+
+def seen_from(stance: Footstep, place: Footstep) -> Footstep:
+    """A foothold in the frame of another one, that of its stance foot; its turn is not wrapped."""
+    rotation, way = frame_rotation(stance.yaw), place.position - stance.position
+    position, normal = (np.append(vector[:2] @ rotation, vector[2]) for vector in (way, place.normal))
+    return replace(place, position=position, yaw=place.yaw - stance.yaw, normal=normal)
 
 
 def sole_angles(normal: Array, yaw: float) -> tuple[float, float]:
@@ -134,16 +143,17 @@ def quintic(start: Array, end: Array, duration: float) -> Array:
     Returns:
         Coefficients of 1, t, ..., t^5, shape (6, k).
     """
-    t = duration
-    gap = end[0] - start[0] - t * start[1] - 0.5 * t * t * start[2]
-    speed = t * (end[1] - start[1] - t * start[2])
-    bend = t * t * (end[2] - start[2])
-    coefficients = np.empty((6, start.shape[1]))
-    coefficients[0], coefficients[1], coefficients[2] = start[0], start[1], 0.5 * start[2]
-    coefficients[3] = (10.0 * gap - 4.0 * speed + 0.5 * bend) / t**3
-    coefficients[4] = (-15.0 * gap + 7.0 * speed - bend) / t**4
-    coefficients[5] = (6.0 * gap - 3.0 * speed + 0.5 * bend) / t**5
-    return coefficients
+    if start.shape[1] == 1:  # in plain numbers, which are fast
+        return np.array(_quintic(start[:, 0].tolist(), end[:, 0].tolist(), duration))[:, None]
+    return np.array(_quintic(start, end, duration))
+
+
+def _quintic(start: Any, end: Any, t: float) -> tuple[Any, ...]:
+    (x, v, a), (y, w, b) = start, end
+    gap = y - x - t * v - 0.5 * t * t * a
+    speed, bend = t * (w - v - t * a), t * t * (b - a)
+    third, fourth = (10.0 * gap - 4.0 * speed + 0.5 * bend) / t**3, (-15.0 * gap + 7.0 * speed - bend) / t**4
+    return x, v, 0.5 * a, third, fourth, (6.0 * gap - 3.0 * speed + 0.5 * bend) / t**5
 
 
 def shifted(coefficients: Array, time: float) -> Array:

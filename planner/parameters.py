@@ -133,7 +133,7 @@ class RecoveryParameters:
 
     Each is a key ``planner.recovery.*`` of a scenario, described as here. Those with a unit beside their default follow
     the robot's size. What each moves when it is halved or doubled is measured by the campaign ``recovery-numbers`` and
-    told in docs/recovery.md, with the tests that notice those which move no threshold.
+    told in docs/recovery-limits.md, with the tests that notice those which move no threshold.
 
     Attributes:
         second_weight: cost of a squared shift of the second step; the other weights count against it [1/m^2].
@@ -141,7 +141,7 @@ class RecoveryParameters:
         time_weight: cost of a squared change of the times left, as shares of a step; small changes are cheap [-].
         stretch_weight: cost of the squared way by which the stance hip is out of its leg's reach at landing [1/m^2].
         swing_weight: cost of a squared way that the hips cannot swing the foot in time; nearly a constraint [1/m^2].
-        cross_factor: factor of the second shift where that step has to cross: legs cross less than they spread [-].
+        cross_factor: factor, before squaring, of a second shift that is to cross: legs cross less than they spread [-].
         least_saving: cost that other times must save; between equal ones the plan would go to and fro [-].
         cop_share: share of the ZMP box on which an adjusted step counts; the rest corrects what comes later [-].
         landing_share: DCM error at landing, as a share of the CoP's box, that an adjusted step may leave [-].
@@ -149,7 +149,7 @@ class RecoveryParameters:
         tolerance: DCM error beyond what the CoP holds at which a step is adjusted, or in a stand its foot chosen [m].
         unheld_share: the same of feet whose CoP cannot be moved at will, as a share of the ZMP box [-].
         stand_share: share of the ZMP box of a stand that holds a DCM error without any step [-].
-        time_changes: changes of the present phase that are tried, close where a swing's reach grows fast [s].
+        time_changes: changes of the times left that are tried, close where a swing's reach grows fast [s].
         least_double: time that a double support is not cut below; the load has to go over [s].
         least_single: time that a single support is not cut below; a foot has to lift and land [s].
         apart: distance of a foot from its place beside the other at which it is brought back there [m].
@@ -202,6 +202,9 @@ class RecoveryParameters:
     same_height: float = quantity(0.005, "m")
     offset_ticks: int = 5
     same_swing: float = quantity(0.005, "m")
+
+
+_ZERO_TOO = ("late_touchdown", "freeze_time", "touchdown_lead", "terminal_weight", "jerk_weight", "compliance_margin")
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,16 +286,8 @@ class PlannerParameters:
             value = getattr(self, entry.name)
             if not isinstance(value, int | float):
                 continue
-            may_be_zero = entry.name in (
-                "late_touchdown",
-                "freeze_time",
-                "touchdown_lead",
-                "terminal_weight",
-                "jerk_weight",
-                "compliance_margin",
-            )
             key, what = ("parameters", entry.name), f"{entry.name} is {value:g}"
-            if not (value > 0 or (may_be_zero and value == 0)):
+            if not (value > 0 or (entry.name in _ZERO_TOO and value == 0)):
                 raise ParameterError(key, what, "it must be greater than 0")
             if not math.isfinite(value) and entry.name != "jerk_rate_limit":
                 raise ParameterError(key, what, "it must be finite")

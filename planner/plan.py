@@ -21,7 +21,6 @@ from surefoot.planner.types import (
     Footstep,
     PhaseInfo,
     PhaseKind,
-    PlannedFootstep,
     PlanStatus,
 )
 
@@ -48,7 +47,7 @@ class WalkPlan:
         support_polygon: hull of the planned soles now, anticlockwise, shape (v, 2) [m].
         inner_polygon: the same of the soles shrunk to the ZMP margin (90 %), shape (v, 2) [m].
         footholds: where the left and the right foot stand now, or stood last.
-        footsteps: the next footsteps, at most three.
+        footsteps: the next footsteps with number and time, at most three.
         swing: trajectory of the swing foot in single support, otherwise None. It is that of the sole as if it were
             level: a foot that rolls turns about its toe edge.
         roll: pitch of the foot that leaves the ground next or has just left it, None for one that stays level.
@@ -73,7 +72,7 @@ class WalkPlan:
     support_polygon: Array
     inner_polygon: Array
     footholds: tuple[Footstep, Footstep]
-    footsteps: tuple[PlannedFootstep, ...]
+    footsteps: tuple[Footstep, ...]
     swing: SwingTrajectory | None
     roll: FootRoll | None
     status: PlanStatus

@@ -10,15 +10,15 @@ from surefoot.planner.check import check_durations, check_height
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.planner.model.jerk import block_moves, predict, trajectory
+from surefoot.planner.model.jerk import WorldMotion
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.recovery import Recovery
-from surefoot.planner.recovery.step_adjustment import AdjustedStep, NextStep
+from surefoot.planner.recovery.step_adjustment import StepBounds, StepProblem
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import ReferencePreview, Window
 from surefoot.planner.references.zmp_reference import Support
-from surefoot.planner.steps.commands import Command, Orders, Twist
+from surefoot.planner.steps.commands import STANDING, Command
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
@@ -31,7 +31,7 @@ from surefoot.planner.types import (
     Balance,
     CentroidalState,
     FeetState,
-    PlannedFootstep,
+    Footstep,
     PlanStatus,
     SolverStatus,
 )
@@ -100,7 +100,7 @@ class WalkingPlanner:
         self._recovery = Recovery(self._execution, half_size)
         heights_ahead = self._execution.schedule.support_points[:, 2]
         check_height(heights, gait, self._execution.samples(self._preview.reach), heights_ahead)
-        self._prediction = predict(p.sample_time, block_moves((0,), p.horizon))
+        self._world = WorldMotion(p.sample_time, p.horizon)
         self._law = profile.law(p, heights.standing(gait))
         self._plan: WalkPlan | None = None
         region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width), p.recovery.sole_gap)
@@ -115,15 +115,15 @@ class WalkingPlanner:
         return self._execution.schedule
 
     @property
-    def orders(self) -> Orders:
-        """What the walk does of what it has been told."""
+    def orders(self) -> Command:
+        """What the walk does of what it has been told, with the velocity that it follows."""
         source, gait = self._source, self._execution.schedule.gait
-        durations = gait.single_support, gait.double_support
+        now = Command(None, None, gait.single_support, gait.double_support, gait.swing_height)
         if source is None:
-            return Orders(None, None, None, *durations, gait.swing_height)
+            return now
         if source.places:
-            return Orders(None, None, source.places[-1], *durations, gait.swing_height)
-        return Orders(source.twist, source.followed(gait.period), None, *durations, gait.swing_height)
+            return replace(now, places=source.places)
+        return replace(now, twist=source.twist, followed=source.followed(gait.period))
 
     def command(self, command: Command) -> None:
         """Do something else from the next plan on; of two commands before it the later one holds.
@@ -148,7 +148,7 @@ class WalkingPlanner:
         # Steps of a source that is kept are asked for anew, too: their strides follow from the durations.
         source = told or self._source
         if command.twist is not None or command.places is not None:
-            size, twist = self.parameters.size, command.twist or Twist()
+            size, twist = self.parameters.size, command.twist or STANDING
             source = CommandSource(self.gait, self._region, twist, command.places or (), size)
         self._told = gait, source
 
@@ -169,7 +169,8 @@ class WalkingPlanner:
         Raises:
             ValueError: the measured CoM or feet are not finite.
         """
-        if not math.isfinite(float(state.com.sum() + state.com_velocity.sum() + feet.position.sum() + feet.yaw.sum())):
+        measured = (*state.com.tolist(), *state.com_velocity.tolist(), *feet.position.flat, *feet.yaw.tolist())
+        if not all(map(math.isfinite, measured)):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         execution, time = self._execution, state.time
         execution.advance(feet)
@@ -179,12 +180,12 @@ class WalkingPlanner:
         if self._recovery.steps_out(local, window):
             support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
-        step = NextStep.of(time, execution, feet, support)
+        step = StepProblem.of(time, execution, feet, support)
         balance = self._recovery.balance(step, local, support, window, self._plan)
         adjusted = self._recovery.adjusted(step, local, window)
         if adjusted is not None and adjusted.more and self._recovery.adds_steps(balance.planned):
             support, local, window = self._sight(state)
-            adjusted = self._recovery.adjusted(NextStep.of(time, execution, feet, support), local, window)
+            adjusted = self._recovery.adjusted(StepProblem.of(time, execution, feet, support), local, window)
         left = execution.time_left
         if adjusted is not None and execution.end_in(adjusted.left, time):
             window = self._window(state, support, local)
@@ -197,7 +198,7 @@ class WalkingPlanner:
         if execution.free[0]:
             balance = replace(balance, shift=shifts[0])
         if execution.phase.swing_foot is not None:
-            execution.swing_to(footsteps[0].footstep, time, feet, motion.solver is SolverStatus.HELD)
+            execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
         return self._plan
 
@@ -218,29 +219,26 @@ class WalkingPlanner:
         window: Window,
         local: Array,
         motion: Motion,
-        footsteps: tuple[PlannedFootstep, ...],
+        footsteps: tuple[Footstep, ...],
         balance: Balance,
     ) -> WalkPlan:
         """What a tick has decided, in the world frame."""
-        execution, reference, to_world = self._execution, window.reference, support.rotation.T
-        count = self.parameters.horizon + 1
-        moved, zmp = trajectory(self._prediction, local, window.stiffness[:count], motion.jerk)
-        com = np.empty((3, count, 3))
-        com[:, :, :2] = moved @ to_world
-        com[0, :, :2] += support.origin
-        com[:, :, 2] = window.height.height[:, :count]
-        point = reference.point[:count] + reference.gain[:count] @ motion.shifts
+        execution, reference, count = self._execution, window.reference, self.parameters.horizon + 1
+        stiffness, offset = window.stiffness[:count], window.offset[:count]
+        ahead = stiffness, window.height.height[:, :count], offset, reference.point[:count], reference.gain[:count]
+        frame = support.rotation, support.origin
+        com, jerk, zmp, offset, point = self._world.of(local, motion.jerk, motion.shifts, ahead, frame)
         return WalkPlan(
             time=time,
             sample_time=self.parameters.sample_time,
             com=com[0],
             com_velocity=com[1],
             com_acceleration=com[2],
-            jerk=motion.jerk @ to_world,
-            zmp=(zmp + window.offset[:count]) @ to_world + support.origin,
-            zmp_offset=window.offset[:count] @ to_world,
-            zmp_reference=point @ to_world + support.origin,
-            stiffness=window.stiffness[:count],
+            jerk=jerk,
+            zmp=zmp,
+            zmp_offset=offset,
+            zmp_reference=point,
+            stiffness=stiffness,
             omega=window.omega[:count],
             phase=execution.info,
             contacts=window.contacts[:count],
@@ -256,7 +254,7 @@ class WalkingPlanner:
         )
 
     def _problem(
-        self, local: Array, feet: FeetState, support: Support, window: Window, adjusted: AdjustedStep | None
+        self, local: Array, feet: FeetState, support: Support, window: Window, adjusted: StepBounds | None
     ) -> MotionProblem:
         jerk = np.zeros((self.parameters.horizon + 1, 2))
         if self._plan is not None:
@@ -272,10 +270,11 @@ class WalkingPlanner:
             rotation=support.rotation,
         )
 
-    def _step_context(self, support: Support, feet: FeetState, adjusted: AdjustedStep | None) -> StepContext:
+    def _step_context(self, support: Support, feet: FeetState, adjusted: StepBounds | None) -> StepContext:
         execution, schedule, phase = self._execution, self._execution.schedule, self._execution.phase
         landed, swing, increment = execution.landed, phase.swing_foot, np.zeros((2, 2))
-        ahead = np.diff(schedule.positions[schedule.index(landed) :][:3, :2], axis=0) @ support.rotation
+        places = schedule.positions[schedule.index(landed) :][:3, :2]
+        ahead = (places[1:] - places[:-1]) @ support.rotation
         increment[: len(ahead)] = ahead
         side, left, transfer = schedule.step(landed).place.foot.other.side, 0.0, 0.0
         here = None if swing is None else (feet.position[swing, :2] - support.origin) @ support.rotation

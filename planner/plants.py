@@ -1,40 +1,14 @@
-"""Plants without a body: the true variable-height pendulum, the paper's cart-table, and a walk on the first."""
+"""Plants without a body: the true variable-height pendulum, the paper's cart-table, and the feet that go with them."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from surefoot.planner.geometry import nearest_point, signed_distance
 from surefoot.planner.model.dcm import dcm
 from surefoot.planner.model.jerk import jerk_model
-from surefoot.planner.plan import PlanSampler, WalkPlan
-from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.types import Array, CentroidalState, FeetState
-
-
-@dataclass(frozen=True, slots=True)
-class PointPush:
-    """A force on the point mass.
-
-    Attributes:
-        time: when it begins [s].
-        duration: how long it lasts [s].
-        force: horizontal force, shape (2,) [N].
-    """
-
-    time: float
-    duration: float
-    force: Array
-
-
-def pushing_force(pushes: tuple[PointPush, ...], time: float) -> Array:
-    """Sum of the pushes at an instant, shape (2,) [N]."""
-    force = np.zeros(2)
-    for push in pushes:
-        if push.time - 1e-9 <= time < push.time + push.duration - 1e-9:
-            force = force + push.force
-    return force
+from surefoot.planner.plan import PlanSampler
+from surefoot.planner.types import Array, FeetState
 
 
 class Pendulum:
@@ -134,29 +108,6 @@ class CartTable:
         self.zmp = self.position - self.acceleration / stiffness
 
 
-@dataclass(frozen=True, slots=True)
-class PendulumTrace:
-    """What happened, one row per planner tick.
-
-    Attributes:
-        time: shape (k,) [s].
-        com: true CoM, shape (k, 3) [m].
-        zmp: true ZMP at the end of the tick, shape (k, 2) [m].
-        zmp_reference: the ZMP reference there, shape (k, 2) [m].
-        margin: least distance of the true ZMP to the edge of the inner (90 %) polygon within the tick, shape (k,) [m].
-        fall_time: instant of the fall, or None [s].
-        plans: the plans, length k.
-    """
-
-    time: Array
-    com: Array
-    zmp: Array
-    zmp_reference: Array
-    margin: Array
-    fall_time: float | None
-    plans: tuple[WalkPlan, ...]
-
-
 class IdealFeet:
     """Feet that follow the planned swing and feel the ground exactly when planned.
 
@@ -175,79 +126,3 @@ class IdealFeet:
             sole = swing.evaluate(min(time, swing.touchdown_time))[0]
             position[swing.foot], yaw[swing.foot] = sole[:3], sole[3]
         self.state = FeetState(position, yaw, sampler.sample(time).contacts)
-
-
-def walk_pendulum(
-    planner: WalkingPlanner,
-    feet: FeetState,
-    duration: float,
-    *,
-    com: Array,
-    pushes: tuple[PointPush, ...] = (),
-    mass: float = 100.0,
-    feedback: float = 3.0,
-    substeps: int = 10,
-    frozen_after: float = float("inf"),
-) -> PendulumTrace:
-    """Walk the pendulum.
-
-    The low level commands p = p_ref + k (ξ - ξ_ref), with the references of the plan, and the real support polygon is
-    the whole sole (or the hull of both).
-
-    Args:
-        planner: a fresh planner.
-        feet: start feet.
-        duration: [s].
-        com: start CoM at rest, shape (3,) [m].
-        pushes: forces on the mass.
-        mass: [kg].
-        feedback: k of the DCM feedback, 0 for none [-].
-        substeps: control steps per planner tick.
-        frozen_after: instant after which the planner is not asked any more; it always makes the first plan [s].
-    """
-    t = planner.parameters.sample_time
-    pendulum, ideal = Pendulum(mass, com[:2], np.zeros(2)), IdealFeet(feet)
-    state = CentroidalState(0.0, np.array(com), np.zeros(3))
-    rows: list[tuple[float, Array, Array, Array, float]] = []
-    plans: list[WalkPlan] = []
-    fall_time = None
-    while fall_time is None and len(rows) < round(duration / t):
-        if not plans or state.time < frozen_after:
-            plans.append(planner.update(state, ideal.state))
-            sampler = PlanSampler(plans[-1])
-        margin = _run_tick(pendulum, sampler, pushes, state.time, t / substeps, substeps, feedback)
-        now = (len(rows) + 1) * t
-        end = sampler.sample(now)
-        position = np.append(pendulum.position, end.com[2])
-        state = CentroidalState(now, position, np.append(pendulum.velocity, end.com_velocity[2]))
-        ideal.follow(sampler, now)
-        rows.append((now, position, pendulum.zmp, end.zmp_reference, margin))
-        if pendulum.fallen(plans[-1].support_polygon, end.omega, planner.parameters.size.length):
-            fall_time = now
-    time, positions, zmp, reference, margins = (np.array(column) for column in zip(*rows, strict=True))
-    return PendulumTrace(time, positions, zmp, reference, margins, fall_time, tuple(plans))
-
-
-def _run_tick(
-    pendulum: Pendulum,
-    sampler: PlanSampler,
-    pushes: tuple[PointPush, ...],
-    start: float,
-    step: float,
-    count: int,
-    feedback: float,
-) -> float:
-    plan = sampler.plan
-    margin = np.inf
-    for i in range(count):
-        reference = sampler.sample(start + (i + 0.5) * step)
-        error = pendulum.position + pendulum.velocity / reference.omega - sampler.sample(start + i * step).dcm
-        pendulum.advance(
-            step,
-            reference.pendulum_zmp + feedback * error,
-            plan.support_polygon,
-            reference.stiffness,
-            pushing_force(pushes, start + i * step),
-        )
-        margin = min(margin, signed_distance(plan.inner_polygon, pendulum.zmp))
-    return margin

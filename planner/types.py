@@ -3,10 +3,12 @@
 import math
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.forces import ExternalLoad
 from surefoot.similarity import GRAVITY as GRAVITY
 
 Array = NDArray[np.float64]
@@ -37,67 +39,87 @@ class PhaseKind(IntEnum):
     SINGLE = 2
 
 
-def _upwards() -> Array:
-    return np.array([0.0, 0.0, 1.0])
-
-
 @dataclass(frozen=True, slots=True)
 class Footstep:
-    """A foothold.
+    """A foothold: where a foot stands, stood, or is to land.
+
+    It is told in the world frame. Seen from its stance foot (`planner.geometry.seen_from`) it is told in the frame of
+    that foothold: x is how far ahead it is, y how far to the left, yaw how far it is turned.
 
     Attributes:
         foot: the foot that stands here.
-        position: sole centre in the world frame, shape (3,) [m].
-        yaw: heading of the sole about the world's z axis [rad].
-        normal: unit normal of the ground that the sole lies flat on, in the world frame, shape (3,) [-].
+        position: sole centre, shape (3,) [m].
+        yaw: heading of the sole about the vertical [rad].
+        normal: unit normal of the ground that the sole lies flat on, shape (3,) [-].
+        step: its number in the walk, from 1, in a plan; else 0.
+        touchdown_time: when it lands by the phase clock, in a plan; else NaN [s].
     """
 
     foot: Foot
     position: Array
     yaw: float
-    normal: Array = field(default_factory=_upwards)
-
-
-@dataclass(frozen=True, slots=True)
-class FootstepPlan:
-    """Footholds of a whole walk as they are nominally planned, in the world frame.
-
-    Row 0 is the start foothold of the foot that moves first, row 1 that of the other foot (the stance foot of step 1),
-    row i + 1 is footstep i.
-
-    Attributes:
-        feet: which foot each row belongs to, length n.
-        position: sole centres, shape (n, 3) [m].
-        yaw: headings, unwrapped, shape (n,) [rad].
-        normal: unit normals of the ground, shape (n, 3) [-].
-    """
-
-    feet: tuple[Foot, ...]
-    position: Array
-    yaw: Array
-    normal: Array
+    normal: Array = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
+    step: int = 0
+    touchdown_time: float = math.nan
 
     @property
-    def steps(self) -> int:
-        """Number of steps of the walk."""
-        return len(self.feet) - 2
-
-    def footstep(self, row: int) -> Footstep:
-        """The foothold of a row."""
-        return Footstep(self.feet[row], self.position[row], float(self.yaw[row]), self.normal[row])
+    def beside(self) -> float:
+        """Of one seen from its stance foot: distance to the foot's own side, negative where the legs cross [m]."""
+        return self.foot.side * float(self.position[1])
 
 
-@dataclass(frozen=True, slots=True)
-class LastingForce:
-    """A horizontal force that goes on acting on the body, per mass of that; world frame.
+class Twist(NamedTuple):
+    """A planar velocity, or a planar way: of a path in a second, in one step, or from the world's origin to a place.
+
+    A velocity is told in the frame of the path's heading. The way of a step, its stride, is told in the frame midway
+    between the old and the new heading; the foot lands half a `width` beside the path's new point, so that a stride of
+    zeros brings it beside the other foot. A place is told in the world frame.
 
     Attributes:
-        force: x and y, shape (2,) [m/s^2].
-        moment: of it about the CoM, its x and y, shape (2,) [m^2/s^2].
+        x: forward [m/s], of a way [m].
+        y: to the left, likewise.
+        yaw: of the heading, positive to the left [rad/s], of a way [rad].
+        width: of a stride, lateral distance of the two feet from each other about the path [m].
     """
 
-    force: Array
-    moment: Array
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+    width: float = 0.0
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether it asks to stand."""
+        return self.x == 0.0 and self.y == 0.0 and self.yaw == 0.0
+
+    @property
+    def velocity(self) -> dict[str, float]:
+        """Its numbers by the names that a velocity has in commands and logs [m/s, rad/s]."""
+        return {"v_x": self.x, "v_y": self.y, "yaw_rate": self.yaw}
+
+    def scaled(self, factor: float) -> "Twist":
+        """The same direction, so many times as fast or far."""
+        return Twist(factor * self.x, factor * self.y, factor * self.yaw, self.width)
+
+    def stride(self, duration: float, width: float) -> "Twist":
+        """The stride that follows this velocity exactly for a time [s], along its arc."""
+        turn = self.yaw * duration
+        chord = duration * float(np.sinc(0.5 * turn / math.pi))
+        return Twist(chord * self.x, chord * self.y, turn, width)
+
+    @property
+    def advance(self) -> tuple[float, float]:
+        """Of a stride: advance of the path in the frame of its old heading, forward and to the left [m]."""
+        c, s = math.cos(0.5 * self.yaw), math.sin(0.5 * self.yaw)
+        return c * self.x - s * self.y, s * self.x + c * self.y
+
+    def landing(self, foot: Foot) -> Footstep:
+        """Where a foot lands that makes this stride, seen from its stance foot on level ground."""
+        side, half = foot.side, 0.5 * self.width
+        forward, left = self.advance
+        ahead = forward - side * half * math.sin(self.yaw)
+        beside = side * left + half * (1.0 + math.cos(self.yaw))
+        return Footstep(foot, np.array([ahead, side * beside, 0.0]), self.yaw)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,13 +130,13 @@ class CentroidalState:
         time: instant [s].
         com: CoM position, shape (3,) [m].
         com_velocity: CoM velocity, shape (3,) [m/s].
-        lasting: force that goes on acting on it; None for none.
+        lasting: force that goes on acting on it, per mass (`ExternalLoad.per_mass`); None for none.
     """
 
     time: float
     com: Array
     com_velocity: Array
-    lasting: LastingForce | None = None
+    lasting: ExternalLoad | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,18 +236,3 @@ class PhaseInfo:
     def landed(self) -> int:
         """Number of the step that landed last, 0 before the first."""
         return self.step - (self.kind is PhaseKind.SINGLE)
-
-
-@dataclass(frozen=True, slots=True)
-class PlannedFootstep:
-    """A footstep to come.
-
-    Attributes:
-        step: its number in the walk, from 1.
-        footstep: where it lands as planned now.
-        touchdown_time: when it lands by the phase clock [s].
-    """
-
-    step: int
-    footstep: Footstep
-    touchdown_time: float

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 from surefoot.lazy import face
 
 if TYPE_CHECKING:
+    from surefoot.forces import Push
     from surefoot.sim.errors import SimulationDiverged, WorldError
     from surefoot.sim.measurement import Measurement
-    from surefoot.sim.pushes import Push
     from surefoot.sim.world import World
 
 __all__ = ["Measurement", "Push", "SimulationDiverged", "World", "WorldError"]

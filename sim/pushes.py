@@ -7,26 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.forces import Push
+
 Array = NDArray[np.float64]
 NEVER = 2**62
 """A tick after every run."""
-
-
-@dataclass(frozen=True, slots=True)
-class Push:
-    """A constant force on a body's CoM.
-
-    Attributes:
-        time: start [s].
-        duration: length of the window [s].
-        force: world frame, shape (3,) [N].
-        body: body name.
-    """
-
-    time: float
-    duration: float
-    force: Array
-    body: str
 
 
 class PushSchedule:

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
+from surefoot.forces import Push
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription, nearest
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.errors import SimulationDiverged, WorldError
 from surefoot.sim.measurement import Array, Measurement
-from surefoot.sim.pushes import Push, PushSchedule, physics_window
+from surefoot.sim.pushes import PushSchedule, physics_window
 from surefoot.sim.scene import world_mjcf
 from surefoot.sim.sensors import SensorReader
 from surefoot.similarity import REFERENCE_SIZE, Similarity

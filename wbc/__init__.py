@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 from surefoot.lazy import face
 
 if TYPE_CHECKING:
+    from surefoot.forces import ExternalLoad
     from surefoot.wbc.controller import Sole, WbcAnswer, WholeBodyController
     from surefoot.wbc.ik import PostureIk, PostureResult, PostureTarget
     from surefoot.wbc.limits import JointLimits
     from surefoot.wbc.model import BodyFrames, RobotTerms
     from surefoot.wbc.parameters import WbcParameters
     from surefoot.wbc.qp import QpData, QpLayout
-    from surefoot.wbc.types import ExternalLoad, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
+    from surefoot.wbc.types import FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
 
 __all__ = [
     "BodyFrames",

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pinocchio as pin
 
+from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.native.library import Bound, Library
-from surefoot.wbc.types import NO_LOAD, Array, ExternalLoad, WbcReference
+from surefoot.wbc.types import Array, WbcReference
 from surefoot.wbc.zmp import UNLOADED
 
 if TYPE_CHECKING:

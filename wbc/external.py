@@ -19,10 +19,11 @@ from typing import Any
 
 import numpy as np
 
+from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.compiled import CompiledTerms
 from surefoot.wbc.model import RobotTerms, cross
-from surefoot.wbc.types import GRAVITY, NO_LOAD, Array, ExternalLoad
+from surefoot.wbc.types import GRAVITY, Array
 
 SPAN = 0.02
 """Time over which forces are held against the change of momentum [s]."""

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.native.library import library
 from surefoot.wbc.compiled import CompiledTerms
 from surefoot.wbc.leaning import line_centre, line_frame
 from surefoot.wbc.qp import WRENCH_UNIT
-from surefoot.wbc.types import GRAVITY, NO_LOAD, Array, ExternalLoad
+from surefoot.wbc.types import GRAVITY, Array
 
 _LOCAL = pin.ReferenceFrame.LOCAL
 

@@ -11,6 +11,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.similarity import GRAVITY as GRAVITY
 
 Array = NDArray[np.float64]
@@ -53,25 +54,6 @@ class FootSensing:
 
     normal_force: tuple[float, float]
     wrench: Array | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class ExternalLoad:
-    """What acts on the robot beside gravity and the ground, and how heavy it is; world frame.
-
-    Attributes:
-        force: lasting external force, of which the vertical part counts as weight, shape (3,) [N].
-        moment: its moment about the CoM, shape (3,) [N·m].
-        mass_scale: true mass over the model's [-].
-    """
-
-    force: Array
-    moment: Array
-    mass_scale: float
-
-
-NO_LOAD = ExternalLoad(np.zeros(3), np.zeros(3), 1.0)
-"""A robot as heavy as its model, on which nothing acts."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,19 +45,16 @@ class Blocks:
 
     def build(self, site: Site) -> Terrain:
         """The ground at a site; blocks have their tops' centres at footsteps, those of start and end are level."""
-        footsteps = site.footsteps()
-        scatter = site.rng.uniform(-1.0, 1.0, (footsteps.steps, 3)) * (self.height, self.angle, self.angle)
+        first, second, *footsteps = site.footsteps()
+        scatter = site.rng.uniform(-1.0, 1.0, (len(footsteps), 3)) * (self.height, self.angle, self.angle)
         scatter[-LEVEL_STEPS:] = 0.0
         half = 0.5 * np.array([self.length, self.width, self.depth])
-        first, second = footsteps.position[:2, :2]
-        across = np.array([0.0, 0.5 * float(np.linalg.norm(second - first)), 0.0])
-        level = sole_rotation(float(footsteps.yaw[0]), 0.0, 0.0)
-        boxes = [self._block(0.5 * (first + second), level, half + across)]
-        for position, yaw, (height, pitch, roll) in zip(
-            footsteps.position[2:], footsteps.yaw[2:], scatter, strict=True
-        ):
-            rotation = sole_rotation(float(yaw), float(pitch), float(roll))
-            boxes.append(self._block(position[:2], rotation, half, float(height)))
+        feet = np.array([first.position, second.position])[:, :2]
+        across = np.array([0.0, 0.5 * float(np.linalg.norm(feet[1] - feet[0])), 0.0])
+        boxes = [self._block(0.5 * (feet[0] + feet[1]), sole_rotation(first.yaw, 0.0, 0.0), half + across)]
+        for step, (height, pitch, roll) in zip(footsteps, scatter, strict=True):
+            rotation = sole_rotation(step.yaw, float(pitch), float(roll))
+            boxes.append(self._block(step.position[:2], rotation, half, float(height)))
         return Terrain(tuple(boxes), site.friction)
 
     def _block(self, top: Array, rotation: Array, half_size: Array, height: float = 0.0) -> Box:

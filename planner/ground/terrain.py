@@ -4,12 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import CORNERS, frame_rotation
 from surefoot.planner.ground.footholds import Faces, FreeGround
-from surefoot.planner.types import FootstepPlan
+from surefoot.planner.types import Array, Footstep
 
 HALF_WIDTH = 1.0
 """Half of the lateral extent of stairs and slopes [m]."""
@@ -30,11 +29,11 @@ class Box:
         rotation: box-to-world rotation matrix, shape (3, 3).
     """
 
-    center: NDArray[np.float64]
-    half_size: NDArray[np.float64]
-    rotation: NDArray[np.float64]
+    center: Array
+    half_size: Array
+    rotation: Array
 
-    def top(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def top(self, points: Array) -> tuple[Array, Array]:
         """The plane of the top face above or below world points.
 
         Args:
@@ -84,7 +83,7 @@ class Terrain:
         """Ground height [m] at the world point (x, y)."""
         return float(self.heights(np.array([[x, y]]))[0])
 
-    def heights(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def heights(self, points: Array) -> Array:
         """Ground heights at world points x, y, shape (k, 2) [m]; shape (k,) [m]."""
         highest = np.full(len(points), self.plane)
         for box in self.boxes:
@@ -92,11 +91,11 @@ class Terrain:
             highest = np.where(inside >= 0.0, np.maximum(highest, top), highest)
         return highest
 
-    def normal(self, x: float, y: float) -> NDArray[np.float64]:
+    def normal(self, x: float, y: float) -> Array:
         """Unit normal of the ground at the world point (x, y), shape (3,) [-]."""
         return np.asarray(self.normals(np.array([[x, y]]))[0])
 
-    def normals(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def normals(self, points: Array) -> Array:
         """Unit normals of the faces that carry world points x, y, shape (k, 2) [m]; shape (k, 3) [-]."""
         highest, normals = np.full(len(points), self.plane), np.tile([0.0, 0.0, 1.0], (len(points), 1))
         for box in self.boxes:
@@ -106,7 +105,7 @@ class Terrain:
             normals[carrying] = box.rotation[:, 2]
         return normals
 
-    def edge_margins(self, centers: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    def edge_margins(self, centers: Array, corners: Array) -> Array:
         """Least distance of each sole's corners from the edge of the face that carries the sole's centre.
 
         Negative when a corner is beyond the edge: it hangs over, or stands in a riser. On the ground plane the edges
@@ -131,9 +130,7 @@ class Terrain:
             margins[carrying] = corner_inside.min(axis=1)[carrying]
         return margins
 
-    def free_area(
-        self, position: NDArray[np.float64], yaw: float, half_size: NDArray[np.float64], length: float = 1.0
-    ) -> NDArray[np.float64]:
+    def free_area(self, position: Array, yaw: float, half_size: Array, length: float = 1.0) -> Array:
         """How far a sole may be moved on the face that carries it, ahead and to the left of where it was to land.
 
         Args:
@@ -149,7 +146,7 @@ class Terrain:
             return np.array([[-np.inf] * 2, [np.inf] * 2])
         axes, ways, kept = frame_rotation(yaw).T, length * _WAYS, length * _KEPT
         moved = position[:2] + (np.vstack((-axes, axes))[:, None] * ways[:, None]).reshape(-1, 2)
-        soles = moved[:, None] + (half_size * _CORNERS) @ axes
+        soles = moved[:, None] + (half_size * CORNERS) @ axes
         level = position[2] - (moved - position[:2]) @ (normal := self.normal(*position[:2]))[:2] / normal[2]
         off = (self.edge_margins(moved, soles) < kept) | (np.abs(self.heights(moved) - level) > kept)
         # A shank leans over its foot: beyond it nothing may rise so near.
@@ -163,8 +160,6 @@ class Terrain:
 _WAYS = 0.01 * np.arange(1.0, 81.0)
 """Ways by which a sole might be moved on its face, of the reference robot as all lengths here [m]."""
 
-_CORNERS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
-
 _SHANK = 0.04
 """Way beyond a sole in which the ground must not rise for it to be moved there [m]."""
 
@@ -177,7 +172,7 @@ def flat(friction: float = 0.8) -> Terrain:
     return Terrain(boxes=(), friction=friction)
 
 
-def _unknown() -> FootstepPlan:
+def _unknown() -> tuple[Footstep, ...]:
     raise ParameterError(("terrain", "footsteps"), "this ground is laid under footsteps", "give its site the footsteps")
 
 
@@ -189,12 +184,12 @@ class Site:
         origin: start of the walk in the world frame, x, y, shape (2,) [m].
         yaw: heading of the walk [rad].
         friction: Coulomb coefficient of every surface [-].
-        footsteps: gives the footsteps, heights do not matter; asked by ground that is laid under them.
+        footsteps: gives start feet and footsteps, heights do not matter; asked by ground that is laid under them.
         rng: draws what is random.
     """
 
-    origin: NDArray[np.float64]
+    origin: Array
     yaw: float
     friction: float
-    footsteps: Callable[[], FootstepPlan] = _unknown
+    footsteps: Callable[[], tuple[Footstep, ...]] = _unknown
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))

@@ -59,7 +59,8 @@ class Tiles:
     def cells(self, site: Site) -> NDArray[np.int64]:
         """Which tiles of the grid are laid, ordered, shape (n, 2)."""
         rotation, origin = self._grid(site)
-        under = np.floor((site.footsteps().position[:, :2] - origin) @ rotation[:2, :2] / self.side).astype(np.int64)
+        places = np.array([step.position[:2] for step in site.footsteps()])
+        under = np.floor((places - origin) @ rotation[:2, :2] / self.side).astype(np.int64)
         return np.unique((under[:, None] + _WINDOW).reshape(-1, 2), axis=0)
 
     def _grid(self, site: Site) -> tuple[Array, Array]:
@@ -69,7 +70,7 @@ class Tiles:
         return rotation, site.origin + rotation[:2, :2] @ (self.side * np.array([along, across]))
 
     def _start(self, site: Site) -> Box:
-        first, second = site.footsteps().position[:2, :2]
+        first, second = (step.position[:2] for step in site.footsteps()[:2])
         half = np.array([self.level, self.level + 0.5 * float(np.linalg.norm(second - first))])
         return self._box(0.5 * (first + second), half, 0.0, sole_rotation(site.yaw, 0.0, 0.0))
 

@@ -5,9 +5,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from surefoot.native.library import Block, Library, library
 from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem, StepContext
-from surefoot.planner.laws.qp import Qp, QpSolution, solve
-from surefoot.planner.model.dcm import NominalMotion, jerk_range, no_motion, nominal_motion, viability_weights
+from surefoot.planner.laws.qp import AxesSolver, Qp, QpSolution
+from surefoot.planner.model.dcm import (
+    NominalMotion,
+    bind_motion,
+    jerk_range,
+    no_motion,
+    nominal_motion,
+    viability_weights,
+)
 from surefoot.planner.model.jerk import Prediction, block_moves, predict, zmp_response
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.leg_offset import softening
@@ -161,6 +169,11 @@ class FootstepTvmpc:
     def __init__(self, parameters: PlannerParameters, com_height: float) -> None:
         self._parameters = parameters
         self._prediction = predict(parameters.sample_time, block_moves(parameters.moves, parameters.horizon))
+        self._blocks = self._prediction.basis.argmax(axis=1)
+        self._compiled: _CompiledQps | None = None
+        self._solver, kernels = AxesSolver(parameters.solvers), library()
+        if kernels is not None and not math.isfinite(parameters.jerk_rate_limit):
+            self._compiled = _CompiledQps(kernels, parameters, self._prediction)
 
     def plan(self, problem: MotionProblem) -> Motion:
         """See `MotionPlanner`."""
@@ -170,6 +183,8 @@ class FootstepTvmpc:
     def build(self, problem: MotionProblem) -> BuiltQps:
         """See `QpLaw`; the QPs count from the nominal motion."""
         p = self._parameters
+        if self._compiled is not None and self._compiled.holds(problem):
+            return self._compiled.build(problem)
         nominal = self._nominal(problem)
         rest = replace(problem.reference, point=problem.reference.point - nominal.zmp)
         beside = replace(problem, state=problem.state - nominal.com[:, 0].T, reference=rest)
@@ -179,20 +194,21 @@ class FootstepTvmpc:
 
     def solve(self, built: BuiltQps) -> tuple[QpSolution, QpSolution]:
         """See `QpLaw`."""
-        x, y = built.axes
-        return solve(x, self._parameters.solvers), solve(y, self._parameters.solvers)
+        return self._solver.solve(*built.axes)
 
     def interpret(self, problem: MotionProblem, built: BuiltQps, solutions: tuple[QpSolution, QpSolution]) -> Motion:
         """See `QpLaw`; an axis that no solver solved takes the fallback jerk and does not shift its footsteps."""
-        basis = self._prediction.basis
-        m = basis.shape[1]
-        jerk, shifts, slack = problem.fallback - built.jerk, built.shifts.copy(), np.full((2, 2), np.nan)
-        worst = SolverStatus.SOLVED
-        for axis, solution in enumerate(solutions):
-            worst = max(worst, SolverStatus(solution.attempt))
-            if solution.z is not None:
-                jerk[:, axis] = basis @ solution.z[:m]
-                shifts[:, axis], slack[:, axis] = solution.z[m : m + 2], solution.z[m + 2 :]
+        m, (x, y) = len(self._parameters.moves), solutions
+        if x.z is not None and y.z is not None:
+            z = np.array((x.z, y.z)).T
+            jerk, shifts, slack = z.take(self._blocks, axis=0), z[m : m + 2].copy(), z[m + 2 :]
+        else:
+            jerk, shifts, slack = problem.fallback - built.jerk, built.shifts.copy(), np.full((2, 2), np.nan)
+            for axis, solution in enumerate(solutions):
+                if solution.z is not None:
+                    jerk[:, axis] = solution.z[self._blocks]
+                    shifts[:, axis], slack[:, axis] = solution.z[m : m + 2], solution.z[m + 2 :]
+        worst = SolverStatus(max(x.attempt, y.attempt))
         return Motion(jerk + built.jerk, shifts, slack[0], slack[1], worst, qps=built.axes)
 
     def _nominal(self, problem: MotionProblem) -> NominalMotion:
@@ -200,6 +216,60 @@ class FootstepTvmpc:
         if math.isfinite(self._parameters.jerk_rate_limit):
             return no_motion(len(zmp), t)
         return nominal_motion(problem.state[:, 0], zmp, problem.stiffness, t)
+
+
+class _CompiledQps:
+    """Arrays of the kernel that builds what `FootstepTvmpc.build` does."""
+
+    def __init__(self, kernels: Library, parameters: PlannerParameters, prediction: Prediction) -> None:
+        p, most = parameters, parameters.horizon + parameters.preview + 1
+        m, rows = len(p.moves), 2 * p.horizon + 2
+        size = m + _EXTRA
+        self._state, (self._lower, self._upper) = np.empty((2, 3)), np.empty((2, 2, 2))
+        self._omega, (self._gain, self._half_size) = np.empty(most), np.empty((2, most, 2))
+        shapes = (size, size), (2, size), (rows, size), (2, rows), (2, size), (2, size), (most, 2)
+        self._block, self._horizon = Block(*shapes), p.horizon
+        P, q, G, h, lower, upper, jerk = self._block.arrays
+        motion, own = bind_motion(kernels, p.sample_time, most, jerk=jerk)
+        self._position, self._stiffness, self._zmp = own["position"], own["stiffness"], own["zmp"]
+        numbers = ("jerk_limit", "jerk_weight", "step_weight", "terminal_weight", "terminal_margin")
+        self._run = kernels.bind(
+            "footstep_qps_make",
+            motion=motion,
+            horizon=p.horizon,
+            moves=m,
+            starts=np.array(p.moves, dtype=np.int64),
+            response=prediction.moves,
+            **{name: getattr(p, name) for name in (*numbers, "zmp_slack", "terminal_slack")},
+            state=self._state,
+            omega=self._omega,
+            gain=self._gain,
+            half_size=self._half_size,
+            step_lower=self._lower,
+            step_upper=self._upper,
+            weights=np.empty(most),
+            P=P,
+            q=q,
+            G=G,
+            h=h,
+            lower=lower,
+            upper=upper,
+        )
+
+    def holds(self, problem: MotionProblem) -> bool:
+        """Whether the window of a problem is no longer than that of its planner."""
+        return len(problem.stiffness) <= len(self._stiffness)
+
+    def build(self, problem: MotionProblem) -> BuiltQps:
+        n, reference, steps = len(problem.stiffness), problem.reference, problem.steps
+        self._state[:], self._position[:] = problem.state, problem.state[:, 0]
+        self._stiffness[:n], self._omega[:n] = problem.stiffness, problem.omega
+        self._zmp[:n], self._gain[:n], self._half_size[:n] = reference.point, reference.gain, reference.half_size
+        self._lower[:], self._upper[:] = steps.lower, steps.upper
+        self._run(n)
+        P, q, G, h, lower, upper, jerk = self._block.copied()
+        axes = Qp(P, q[0], G, h[0], lower[0], upper[0]), Qp(P, q[1], G, h[1], lower[1], upper[1])
+        return BuiltQps(axes, jerk[: self._horizon], _UNSHIFTED)
 
 
 class ConstantHeightTvmpc(FootstepTvmpc):

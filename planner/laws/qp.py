@@ -1,11 +1,13 @@
 """The QP of one axis, and its solution by the first solver that succeeds."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import daqp
 import numpy as np
 
+from surefoot.native.library import library
 from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.types import Array
 
@@ -17,6 +19,9 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "piqp": dict.fromkeys(("eps_abs", "eps_rel", "eps_duality_gap_abs", "eps_duality_gap_rel"), 1e-12),
 }
 """Tolerances that make the solvers exact to the last digits that matter, by name."""
+
+_TOLERANCE = 1e-12
+"""Violation that the kernel allows, over the size of a variable or row, since rounding is as large [-]."""
 
 _UNBOUNDED = 1e30
 """A bound that DAQP takes for none, as its manual says [-]."""
@@ -80,6 +85,60 @@ def solve(qp: Qp, solvers: tuple[str, ...] = SOLVERS) -> QpSolution:
         if z is not None and np.isfinite(z).all():
             return QpSolution(qp, z, attempt)
     return QpSolution(qp, None, len(solvers))
+
+
+class AxesSolver:
+    """Solves QPs that share P and G, which a kernel does in place of DAQP, as far as it can.
+
+    Args:
+        solvers: as of `solve`.
+    """
+
+    def __init__(self, solvers: tuple[str, ...]) -> None:
+        self._solvers = solvers
+        self._kernels = library() if solvers[:1] == ("daqp",) else None
+        self._given: tuple[Array, ...] = ()
+        self._run: Callable[[int], int]
+
+    def solve(self, x: Qp, y: Qp) -> tuple[QpSolution, QpSolution]:
+        """Their solutions, as those of `solve`."""
+        if self._kernels is None:
+            return solve(x, self._solvers), solve(y, self._solvers)
+        one = self._solved(x, False)
+        return one, self._solved(y, one.attempt == 0 and y.P is x.P and y.G is x.G)
+
+    def _solved(self, qp: Qp, same: bool) -> QpSolution:
+        if not self._given or self._given[2].shape != qp.G.shape:
+            self._bind(*qp.G.shape)
+        P, q, G, h, lower, upper = self._given
+        if not same:
+            P[:], G[:] = qp.P, qp.G
+        q[:], h[:], lower[:], upper[:] = qp.q, qp.h, qp.lower, qp.upper
+        return solve(qp, self._solvers) if self._run(same) else QpSolution(qp, self._x.copy(), 0)
+
+    def _bind(self, rows: int, n: int) -> None:
+        square, self._x = np.zeros((5, n, n)), np.zeros(n)
+        q, lower, upper, multipliers = np.zeros((4, n))
+        self._given = square[0], q, np.zeros((rows, n)), np.zeros(rows), lower, upper
+        given: dict[str, Any] = dict(zip(("P", "q", "G", "h", "lower", "upper"), self._given, strict=True))
+        assert self._kernels is not None
+        self._run = self._kernels.bind(
+            "bounded_qp_solve",
+            variables=n,
+            rows=rows,
+            tolerance=_TOLERANCE,
+            **given,
+            x=self._x,
+            factor=square[1],
+            inverse=square[2],
+            rotated=square[3],
+            triangle=square[4],
+            share=np.zeros(rows),
+            multipliers=multipliers,
+            work=np.zeros(4 * n),
+            active=np.zeros(n, dtype=np.int64),
+            taken=np.zeros(2 * n + rows, dtype=np.int64),
+        )
 
 
 def _wrapped(qp: Qp, name: str) -> Array | None:

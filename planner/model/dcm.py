@@ -9,9 +9,11 @@ So the optimiser plans only what differs from this motion.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from surefoot.native.library import Bound, Library
 from surefoot.planner.types import Array
 
 
@@ -161,6 +163,14 @@ def nominal_motion(position: Array, zmp: Array, stiffness: Array, sample_time: f
     v[:-1] = (c[1:] - c[:-1]) / t - t / 6.0 * (2.0 * a[:-1] + a[1:])
     v[-1] = v[-2] + 0.5 * t * (a[-2] + a[-1])
     return NominalMotion(motion, zmp, (a[1:] - a[:-1]) / t, t)
+
+
+def bind_motion(kernels: Library, sample_time: float, count: int, **given: Array) -> tuple[Bound, dict[str, Array]]:
+    """The struct of `nominal_motion` for up to so many samples, and its arrays, as far as they are not given."""
+    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(("zmp", "com", "velocity", "acceleration", "jerk"), (count, 2))
+    shapes |= {"position": (2,), "stiffness": (count,), "upper": (count,)}
+    arrays: dict[str, Any] = {name: np.empty(shape) for name, shape in shapes.items()} | given
+    return kernels.fill("NominalMotion", sample_time=sample_time, **arrays), arrays
 
 
 def no_motion(count: int, sample_time: float) -> NominalMotion:

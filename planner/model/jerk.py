@@ -11,10 +11,12 @@ The Δu form Y = S_x x(0) + S_u1 u(-1) + S_u ΔU is eq. (10) and eq. (11) of the
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from surefoot.errors import ParameterError
+from surefoot.native.library import Block, library
 from surefoot.planner.types import Array
 
 BLOCK_STARTS = (0, 1, 2, 4, 7, 11, 16, 22, 29, 37)
@@ -132,6 +134,69 @@ def trajectory(prediction: Prediction, state: Array, stiffness: Array, jerk: Arr
     """
     com = prediction.state @ state.T + prediction.samples @ jerk
     return com, zmp_response(com, stiffness)
+
+
+Ahead = tuple[Array, Array, Array, Array, Array]
+"""What is known of samples 0..N, in the plan frame.
+
+λ, shape (N + 1,) [1/s^2]; CoM height and its derivatives, shape (3, N + 1) [m, m/s, m/s^2]; what legs and lasting
+forces add to the ZMP, and the ZMP reference with nominal footsteps, shape (N + 1, 2) each [m]; its sensitivity to the
+shifts of the next two, shape (N + 1, 2) [-].
+"""
+
+
+class WorldMotion:
+    """Says in the world frame what a jerk sequence does.
+
+    Args:
+        sample_time: T [s].
+        horizon: N.
+    """
+
+    def __init__(self, sample_time: float, horizon: int) -> None:
+        n, kernels, self._run = horizon + 1, library(), None
+        self._prediction = predict(sample_time, np.eye(horizon))
+        if kernels is not None:
+            names = ("state", "jerk", "shifts", "stiffness", "height", "offset", "point", "gain", "rotation", "origin")
+            shapes = (2, 3), (horizon, 2), (2, 2), (n,), (3, n), (n, 2), (n, 2), (n, 2), (2, 2), (2,)
+            self._given = [np.empty(shape) for shape in shapes]
+            self._block = Block((3, n, 3), (horizon, 2), (n, 2), (n, 2), (n, 2))
+            made = dict(zip(("com", "world_jerk", "zmp", "world_offset", "reference"), self._block.arrays, strict=True))
+            given: dict[str, Any] = dict(zip(names, self._given, strict=True)) | made
+            self._run = kernels.bind("motion_in_world", sample_time=sample_time, samples=horizon, **given)
+
+    def of(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: tuple[Array, Array]) -> list[Array]:
+        """CoM position, velocity and acceleration, jerk, ZMP, its offset and its reference, as of a `WalkPlan`.
+
+        Args:
+            state: CoM position, velocity, acceleration per axis, shape (2, 3).
+            jerk: shape (N, 2) [m/s^3].
+            shifts: of the next two footsteps, shape (step, axis) = (2, 2) [m].
+            ahead: what is known of the samples.
+            frame: the plan frame's rotation to the world, shape (2, 2), and origin, shape (2,) [m].
+        """
+        if self._run is None:
+            return self._plain(state, jerk, shifts, ahead, frame)
+        for own, value in zip(self._given, (state, jerk, shifts, *ahead, *frame), strict=True):
+            own[:] = value
+        self._run()
+        return self._block.copied()
+
+    def _plain(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: tuple[Array, Array]) -> list[Array]:
+        (stiffness, height, offset, point, gain), (rotation, origin) = ahead, frame
+        moved, zmp = trajectory(self._prediction, state, stiffness, jerk)
+        com, to_world = np.empty((3, len(stiffness), 3)), rotation.T
+        com[:, :, :2] = moved @ to_world
+        com[0, :, :2] += origin
+        com[:, :, 2] = height
+        point = point + gain @ shifts
+        return [
+            com,
+            jerk @ to_world,
+            (zmp + offset) @ to_world + origin,
+            offset @ to_world,
+            point @ to_world + origin,
+        ]
 
 
 def zmp_response(response: Array, stiffness: Array) -> Array:

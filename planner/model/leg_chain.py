@@ -10,6 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from surefoot.native.library import Bound, Library
 from surefoot.planner.types import Array
 
 _REST = 4e-3
@@ -163,10 +164,7 @@ class LegChain:
             ahead: where the knees point, shape (2, n, 3).
         """
         thigh, shank = self.thigh, self.shank
-        at_hip = thigh.mass * (1.0 - thigh.centre)
-        at_knee = self._at_knee
-        at_ankle = shank.mass * shank.centre + self.foot_mass
-        trunk_mass = 1.0 - 2.0 * (thigh.mass + shank.mass + self.foot_mass)
+        (at_hip, at_ankle, trunk_mass), at_knee = self._shares, self._at_knee
         fixed = at_ankle * (ankles[0] + ankles[1]) + _turned(
             frame, trunk_mass * np.array(self.trunk) + 2.0 * self.foot_mass * np.array(self.foot_centre)
         )
@@ -215,6 +213,13 @@ class LegChain:
         return self.thigh.mass * self.thigh.centre + self.shank.mass * (1.0 - self.shank.centre)
 
     @property
+    def _shares(self) -> tuple[float, float, float]:
+        """Masses that count as in a hip, in an ankle and in the trunk, over the body's [-]."""
+        thigh, shank = self.thigh, self.shank
+        trunk = 1.0 - 2.0 * (thigh.mass + shank.mass + self.foot_mass)
+        return thigh.mass * (1.0 - thigh.centre), shank.mass * shank.centre + self.foot_mass, trunk
+
+    @property
     def _corrections(self) -> int:
         """Corrections of the hips by the CoM's error: the lighter the legs, the less is left by one."""
         return math.ceil(math.log(_REST) / math.log(max(1.0 - self.carried, _REST)))
@@ -246,6 +251,45 @@ class LegChain:
         ahead = forward - np.einsum("kni,kni->kn", down, forward)[..., None] * down
         bent = np.sqrt((a * a - along * along) / np.einsum("kni,kni->kn", ahead, ahead))
         return np.asarray(hips + along[..., None] * down + bent[..., None] * ahead)
+
+
+def bind_chain(kernels: Library, chain: LegChain) -> tuple[Bound, int]:
+    """The chain as kernels take it, and how many points of it they move.
+
+    Theirs are those of `_masses`, and where a CoM lies beside its rod those ways of `LegChain._beside`, thighs first.
+    """
+    links = chain.thigh, chain.shank
+    points = 13 if any(link.ahead or link.outward for link in links) else 9
+    M = np.zeros((13, 13))
+    M[:9, :9] = _masses(chain)
+    for number, link in enumerate(links):
+        for upper in range(2 * number, 2 * number + 2):
+            way = upper + 9
+            M[[upper, upper + 2], way] = M[way, [upper, upper + 2]] = (1.0 - link.centre, link.centre) * np.array(
+                link.mass
+            )
+    pairs = np.ascontiguousarray(np.argwhere(M[:points, :points]))
+    at_hip, at_ankle, trunk_mass = chain._shares
+    return kernels.fill(
+        "LegChain",
+        **{name: getattr(chain, name) for name in ("hip_half_width", "foot_outward", "carried", "foot_mass")},
+        **{name: getattr(chain, name) for name in ("hip_lever", "trunk", "ankle", "foot_centre")},
+        rolls_first=chain.rolls_first,
+        **{name: tuple(getattr(link, name) for link in links) for name in ("length", "ahead", "outward")},
+        mass_ahead=tuple(link.mass * link.ahead for link in links),
+        trunk_mass=trunk_mass,
+        at_hip=at_hip,
+        at_knee=chain._at_knee,
+        at_ankle=at_ankle,
+        guess=_GUESS,
+        bend=_BEND,
+        least_reach=abs(chain.thigh.length - chain.shank.length) + 1e-6,
+        corrections=chain._corrections,
+        points=points,
+        pair_count=len(pairs),
+        pairs=pairs,
+        pair_mass=M[tuple(pairs.T)],
+    ), points
 
 
 @lru_cache(maxsize=4)

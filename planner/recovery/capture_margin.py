@@ -18,7 +18,7 @@ import numpy as np
 
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.recovery.step_adjustment import NextStep
+from surefoot.planner.recovery.step_adjustment import StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.swing.leg_reach import ANYWHERE, PEAK, LegReach
 from surefoot.planner.types import Array
@@ -82,7 +82,9 @@ class CaptureMargin:
         wide, off = k / (1.0 - k) * (1.0 - k**steps), side * k / (1.0 + k) * (1.0 - (-k) ** steps)
         return np.asarray(self._half + wide * self._apart + off * self._middle)
 
-    def margins(self, com: Array, dcm: Array, omega: float, step: NextStep, steps: int, fixed: bool = False) -> Array:
+    def margins(
+        self, com: Array, dcm: Array, omega: float, step: StepProblem, steps: int, fixed: bool = False
+    ) -> Array:
         """How far the DCM is inside what is captured within 1, ... steps landings, shape (steps,) [m].
 
         The body rests over the last foot, after a single landing perhaps over its stance foot as well.
@@ -109,13 +111,13 @@ class CaptureMargin:
             away = away + single * (1.0 - double) * first
         com, shrunk = com / growth, 1.0 / growth
         cycle = min(self.cycle, step.cycle) if self._timing else step.cycle
-        captured = self.landed(math.exp(omega * cycle), -step.side, steps)[:, None]
+        captured = self.landed(math.exp(omega * cycle), -step.place.foot.side, steps)[:, None]
         places, alone = self._places(step, singles, fixed), ((half - away) * shrunk - here)[:, :, None]
         ahead = (((places - away[:, :, None]) * shrunk[:, None]) - here[:, :, None])[..., None]
         ahead = ahead + (captured * shrunk[:, None])[:, :, None]
         if not fixed:
             spread = 2.0 / (growth + shrunk)
-            under = com + step.side * self._hip
+            under = com + step.place.foot.side * self._hip
             spanned = ((self._legs.radius + under - away) * spread - here)[..., None] + captured * spread[:, None]
             by = 2.0 / np.maximum(growth - shrunk, 1e-9)
             near = (places + (self._legs.radius - under)[:, :, None]) * by[:, None] - here[:, :, None]
@@ -123,7 +125,7 @@ class CaptureMargin:
         ahead[..., 0] = np.maximum(ahead[..., 0], alone)
         return np.asarray(np.maximum.accumulate(ahead.min(axis=0).reshape(-1, steps).max(axis=0)))
 
-    def _times(self, step: NextStep, fixed: bool) -> tuple[Array, Array]:
+    def _times(self, step: StepProblem, fixed: bool) -> tuple[Array, Array]:
         """Pairs of times of double and single support, the present one last, shape (n,) each [s]."""
         if fixed or not self._timing:
             return np.array([step.double]), np.array([step.single])
@@ -135,11 +137,11 @@ class CaptureMargin:
         doubles = (min(step.double, numbers.least_double), step.double)
         return np.repeat(doubles, len(singles)), np.array(2 * singles)
 
-    def _places(self, step: NextStep, singles: Array, fixed: bool) -> Array:
+    def _places(self, step: StepProblem, singles: Array, fixed: bool) -> Array:
         """Edges of where the step may land in times, shape (4, n, boxes) [m]."""
         if fixed:
             return _edges(step.nominal, step.nominal)[:, None, None]
-        legs = self._legs.turned(step.turn)
-        boxes = legs.allowed(step.side, step.face, step.crosses)
+        legs = self._legs.turned(step.place.yaw)
+        boxes = legs.allowed(step.place.foot.side, step.face, step.crosses)
         swung = legs.edges(step.swing, step.nominal, singles)
         return np.minimum(_edges(boxes[:, 0], boxes[:, 1]).T[:, None], swung[..., None])

@@ -6,7 +6,7 @@ from surefoot.planner.geometry import signed_distance
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
-from surefoot.planner.recovery.step_adjustment import AdjustedStep, NextStep, StepAdjustment
+from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepBounds, StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.adaptation import with_step_in_place, with_steps_repeated
@@ -77,7 +77,7 @@ class Recovery:
         return False
 
     def balance(
-        self, step: NextStep | None, local: Array, support: Support, window: Window, last: WalkPlan | None
+        self, step: StepProblem | None, local: Array, support: Support, window: Window, last: WalkPlan | None
     ) -> Balance:
         """How far the DCM is inside what is captured, and what the last plan has made of the landing to come.
 
@@ -105,7 +105,7 @@ class Recovery:
             outside = outside + 1 if movable < -p.recovery.fall_margin else 0
         return Balance(planned, movable, shift, delay, outside)
 
-    def adjusted(self, step: NextStep | None, local: Array, window: Window) -> AdjustedStep | None:
+    def adjusted(self, step: StepProblem | None, local: Array, window: Window) -> StepBounds | None:
         """What is made of the next step where the CoP alone does not hold the body."""
         execution = self._execution
         if self.adjustment is None or step is None or not execution.free[0]:
@@ -116,7 +116,7 @@ class Recovery:
         execution.adapted |= adjusted is not None
         return adjusted
 
-    def bounds(self, increment: Array, here: Array | None, left: float, adjusted: AdjustedStep | None) -> Shifts:
+    def bounds(self, increment: Array, here: Array | None, left: float, adjusted: StepBounds | None) -> Shifts:
         """Where the next two footsteps may land.
 
         Args:

@@ -1,25 +1,25 @@
 """Step adjustment: when and where the next step lands so that a pushed body is captured, as one optimisation.
 
 Variables: T_d, T_s, times left of double and single support [s]; c, distance of the CoP from its nominal way [m];
-p, place of the next footstep from its stance foot [m]; s, shift of the footstep after it [m].
+p, place of the next footstep from its stance foot [m]; s, shift of the footstep after it, forward and sideways [m].
 
 Minimise
 
-    shift_weight |p - p̄|²  +  second_weight |s|²  +  time_weight ((T_d - T̄_d)² + (T_s - T̄_s)²) / T²
-        +  stretch_weight r²  +  swing_weight (u² + v²)
+    shift_weight |p - p̄|²  +  second_weight |σ|²  +  time_weight ((T_d - T̄_d)² + (T_s - T̄_s)²) / T²
+        +  stretch_weight r²  +  swing_weight (|u|² + v²)
 
 with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, u, v of three constraints, subject to
 
-- dcm: ξ' = ω (ξ - CoP) from the measured ξ until the landing; with g p of what the DCM there keeps bounded;
+- dcm: ξ' = ω (ξ - CoP) from the measured ξ until the landing; p moves the DCM that stays bounded there by g (p - p̄);
 - cop: |c| ≤ cop_share of the ZMP box, and of what both feet have beyond it in double support;
 - reach: p in one of the boxes of `LegReach.allowed`, and within `radius` of its hip then; the other hip is out of
   reach of the stance foot by r;
 - swing: p where the foot can be swung to until then (`LegReach.edges`), but for u, on a way around the stance leg that
   is too long by v;
-- second: s = e^{ωT} g |p* - p| less what the CoP holds until then, where p* leaves nothing; cross_factor s to a side
-  where that step would have to cross;
-- times: T_d = T̄_d + a member of time_changes, not below least_double, and T_s likewise, nor below what body and foot
-  need to come to the height of the footstep.
+- second: on each axis s = e^{ωT} g |p* - p| less what the CoP holds until then, where p* leaves nothing;
+- cross: σ is s, with its sideways part times cross_factor where that step would have to cross;
+- times: T_d = T̄_d or that and a member of time_changes, not below least_double, and T_s likewise, not below
+  least_single, nor below what body and foot need to come to the height of the footstep.
 
 Solver: for given times p* follows in closed form, since the CoP does what it can; p is p* brought into the limits, the
 boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken. Other
@@ -30,10 +30,11 @@ It is the law of Khadiv et al. (IEEE Transactions on Robotics 2020) with the CoP
 and with the limits of the legs as they are, over a list of times in place of a QP.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from surefoot.planner.geometry import seen_from
 from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.window import Window
@@ -41,20 +42,18 @@ from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import room_left, shortest_swing
 from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.types import Array, FeetState, PhaseKind
+from surefoot.planner.types import Array, FeetState, Footstep, PhaseKind
 
 _NO_GAIN = 1e-9
 """Gain of a step below which it counts as this: one that lands where the window ends does nothing to its DCM [-]."""
 
 
 @dataclass(frozen=True, slots=True)
-class NextStep:
-    """The step that lands next as the schedule has it, in the plan frame: its origin is the stance foot of that step.
+class StepProblem:
+    """What is known of the step that lands next, in the plan frame: its origin is the stance foot of that step.
 
     Attributes:
-        nominal: where it lands, shape (2,) [m].
-        side: +1 where it is a left one, -1 where it is a right one.
-        turn: heading in which it lands against that of its stance foot [rad].
+        place: where it lands as the schedule has it, seen from its stance foot.
         swing: position and velocity of its foot, shape (2, 2) [m, m/s].
         double: time until that leaves the ground, zero when it has [s].
         single: time that it swings, or swings on [s].
@@ -66,9 +65,7 @@ class NextStep:
         adapted: whether it is being adapted already.
     """
 
-    nominal: Array
-    side: float
-    turn: float
+    place: Footstep
     swing: Array
     double: float
     single: float
@@ -79,8 +76,13 @@ class NextStep:
     last: bool
     adapted: bool
 
+    @property
+    def nominal(self) -> Array:
+        """Where it lands as the schedule has it, shape (2,) [m]."""
+        return self.place.position[:2]
+
     @classmethod
-    def of(cls, time: float, execution: Execution, feet: FeetState, support: Support) -> "NextStep | None":
+    def of(cls, time: float, execution: Execution, feet: FeetState, support: Support) -> "StepProblem | None":
         """That of a tick; None where no step is to come.
 
         Args:
@@ -100,17 +102,15 @@ class NextStep:
         shortest = 0.0 if legs is None else shortest_swing(step, legs, numbers.lifting)
         if execution.swing is not None:
             moving = execution.swing.evaluate(time)[1, :2] @ rotation
-        nominal = (step.place.position[:2] - support.origin) @ rotation
+        place = replace(seen_from(stance, step.place), yaw=schedule.turn(step.number))
         return cls(
-            nominal=nominal,
-            side=foot.side,
-            turn=schedule.turn(step.number),
+            place=place,
             swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
             double=0.0 if swings else phase.left,
             single=phase.left if swings else step.single * clock.sample_time,
             cycle=schedule.gait.period,
             shortest=yet * shortest,
-            face=nominal + room_left(step, stance, numbers.parallel),
+            face=place.position[:2] + room_left(step, stance, numbers.parallel),
             crosses=schedule.may_cross(step.number),
             last=schedule.stops(clock.now),
             adapted=execution.adapted,
@@ -118,12 +118,12 @@ class NextStep:
 
 
 @dataclass(frozen=True, slots=True)
-class AdjustedStep:
-    """The solution for the next step.
+class StepBounds:
+    """The solution for the next step: a time, and a set of places, of which the law of motion takes one.
 
     Attributes:
         left: time until the present phase is to end [s].
-        box: lower and upper corner of where it may land, shape (2, 2) [m].
+        box: lower and upper corner of where it may land from its stance foot, shape (2, 2) [m].
         more: whether the step after it has something to catch, too.
     """
 
@@ -146,7 +146,7 @@ class StepAdjustment:
         self._authority = np.array(parameters.cop_authority)
         self._changes = np.array(parameters.recovery.time_changes)
 
-    def solve(self, com: Array, dcm: Array, window: Window, step: NextStep) -> AdjustedStep | None:
+    def solve(self, com: Array, dcm: Array, window: Window, step: StepProblem) -> StepBounds | None:
         """The solution; None where nothing has to be adjusted, or the step has no place to land.
 
         Args:
@@ -179,7 +179,7 @@ class StepAdjustment:
         left, landed = _landing(com, dcm, window, step, times, bounded[[0, lift, land], :2], means)
         return self._cheapest(landed, window, step, times, step.nominal + left / gain, (gain, held))
 
-    def _times(self, step: NextStep, fine: bool) -> tuple[Array, Array]:
+    def _times(self, step: StepProblem, fine: bool) -> tuple[Array, Array]:
         """Pairs of times of double and single support to choose from, the present one last, shape (n,) each [s]."""
         if fine or not self._timing:
             return np.array([step.double]), np.array([step.single])
@@ -198,23 +198,23 @@ class StepAdjustment:
         self,
         com: Array,
         window: Window,
-        step: NextStep,
+        step: StepProblem,
         times: tuple[Array, Array],
         wanted: Array,
         means: tuple[float, Array],
-    ) -> AdjustedStep | None:
+    ) -> StepBounds | None:
         """The cheapest of all times and boxes, with the part of its box in which the step then may land.
 
         Here `com` is that at the landing, `wanted` is p*, shape (n, 2) each [m], and `means` are g [-] and half size of
         what the CoP has of its box, shape (2,) [m].
         """
-        legs, numbers, (double, single), (gain, held) = self._legs.turned(step.turn), self._numbers, times, means
+        legs, numbers, (double, single), (gain, held) = self._legs.turned(step.place.yaw), self._numbers, times, means
         swung = legs.edges(step.swing, step.nominal, single)
         low, high = -swung[2:].T, swung[:2].T
         # Of each box that the foot may land in, shape (boxes, n).
-        boxes = legs.allowed(step.side, step.face, step.crosses)
+        boxes = legs.allowed(step.place.foot.side, step.face, step.crosses)
         lower, upper = boxes[:, :1], boxes[:, 1:]
-        aside = 0.5 * step.side * legs.hip_width * np.array([0.0, 1.0])
+        aside = 0.5 * step.place.foot.side * legs.hip_width * np.array([0.0, 1.0])
         hips = com + aside
         places = legs.within(_between(_between(wanted, low, high), lower, upper), hips)
         places = _between(places, lower, upper)
@@ -224,10 +224,10 @@ class StepAdjustment:
         held_next = growth * stand if step.last else (growth - 1.0) * held
         short = wanted - places
         second = np.maximum(gain * growth * np.abs(short) - held_next, 0.0)
-        second[..., 1] *= np.where(step.side * short[..., 1] > 0.0, numbers.cross_factor, 1.0)
+        second[..., 1] *= np.where(step.place.foot.side * short[..., 1] > 0.0, numbers.cross_factor, 1.0)
         changed = (double - step.double) ** 2 + (single - step.single) ** 2
         stretch = np.maximum(np.hypot(*(com - aside).T) - legs.radius, 0.0)
-        shortfall = legs.shortfall(step.swing, step.side, single, places)
+        shortfall = legs.shortfall(step.swing, step.place.foot.side, single, places)
         cost = numbers.time_weight * changed / step.cycle**2
         cost = cost + numbers.stretch_weight * stretch**2
         cost = cost + numbers.shift_weight * ((places - step.nominal) ** 2).sum(axis=-1)
@@ -247,14 +247,14 @@ class StepAdjustment:
             least, most = np.maximum(least, wanted[best] - left), np.minimum(most, wanted[best] + left)
         box = legs.around(place, hips[best], boxes[way], legs.radius)
         box[0], box[1] = np.maximum(box[0], np.minimum(least, place)), np.minimum(box[1], np.maximum(most, place))
-        return AdjustedStep(float(double[best] if step.double else single[best]), box, bool(second[way, best].any()))
+        return StepBounds(float(double[best] if step.double else single[best]), box, bool(second[way, best].any()))
 
 
 def _landing(
     com: Array,
     dcm: Array,
     window: Window,
-    step: NextStep,
+    step: StepProblem,
     times: tuple[Array, Array],
     bounded: Array,
     means: tuple[Array, Array],

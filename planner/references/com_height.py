@@ -30,7 +30,7 @@ _IMPULSE_LIMIT = 0.95
 _LEAST_HEIGHT = 0.1
 """Height over the ZMP that the reference robot's pendulum never goes below [m]."""
 
-_CLIMB_SHARE, _DESCENT_SHARE = 0.8, 1.0
+CLIMB_SHARE, DESCENT_SHARE = 0.8, 1.0
 """Shares of single support in which the level rises and sinks: the knee is bent most, and can lift least, at the begin
 of a climb and at the end of a descent [-]."""
 
@@ -187,7 +187,7 @@ def _on_levels(place: Rise, samples: PhaseSamples, bump: Array, support_height: 
     swinging = samples.kind == PhaseKind.SINGLE
     index = np.maximum(samples.index - (swinging | samples.last_stand), 0)
     length = np.where(swinging, samples.length, np.inf)
-    rise, fall = (_early_rise(samples, share * length) for share in (_CLIMB_SHARE, _DESCENT_SHARE))
+    rise, fall = (_early_rise(samples, share * length) for share in (CLIMB_SHARE, DESCENT_SHARE))
     # The lower foot of each double support, and the last one again.
     lower = np.append(np.minimum(support_height[:-1], support_height[1:]), support_height[-1])
     return samples.in_time(_lifted(bump, index, rise, fall, lower))
@@ -283,6 +283,11 @@ def preview_height(
     height = profile.height(gait, samples, support_height)[:, 1:-1]
     if transition is not None:
         height = transition(height)
+    pressing, over = preview_limits(profile, length)
+    return HeightPreview(height, np.maximum(GRAVITY + height[2], pressing) / np.maximum(height[0] - zmp_height, over))
+
+
+def preview_limits(profile: HeightProfile, length: float) -> tuple[float, float]:
+    """Least g + z'' [m/s^2] and height above the ZMP [m] with which a stiffness counts; see `preview_height`."""
     limit = _IMPULSE_LIMIT if profile.impulsive else _FALL_LIMIT
-    pressing = np.maximum(GRAVITY + height[2], (1.0 - limit) * GRAVITY)
-    return HeightPreview(height, pressing / np.maximum(height[0] - zmp_height, _LEAST_HEIGHT * length))
+    return (1.0 - limit) * GRAVITY, _LEAST_HEIGHT * length

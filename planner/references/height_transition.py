@@ -1,6 +1,7 @@
 """Height transition: the CoM height from where it is to its law, where a step that is adapted leaves that."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from surefoot.planner.types import Array
 _ROUNDING = 1e-9
 """Accelerations are compared with this tolerance, since they are sums of rounded products [m/s^2]."""
 
-_LOOKED_AT = np.linspace(0.0, 1.0, 21)
+LOOKED_AT = np.linspace(0.0, 1.0, 21)
 """Shares of a height transition at which its acceleration is looked at [-]."""
 
 
@@ -39,7 +40,14 @@ class HeightTransition:
 
     @classmethod
     def onto(
-        cls, height: Array, state: Array, start: int, left: float, sample_time: float, lifting: float
+        cls,
+        height: Array,
+        state: Array,
+        start: int,
+        left: float,
+        sample_time: float,
+        lifting: float,
+        soonest_calm: Callable[..., int] | None = None,
     ) -> "HeightTransition":
         """That from a state onto a law.
 
@@ -50,13 +58,18 @@ class HeightTransition:
             left: until the phase ends [samples].
             sample_time: length of a sample [s].
             lifting: bound of its vertical acceleration, up or down [m/s^2].
+            soonest_calm: kernel of this search in the height; None for plain Python.
         """
         bound, least = max(lifting, abs(float(state[2]))), math.inf
         soonest, last = max(math.ceil(left - CLOCK_ROUNDING), 1), height.shape[1] - 1
+        if soonest_calm is not None:
+            samples = soonest_calm(soonest, bound + _ROUNDING, *state.tolist())
+            end = height[:, samples : samples + 1]
+            return cls(start, samples, quintic(state[:, None], end, samples * sample_time), sample_time)
         for samples in range(min(soonest, last), last + 1):
             end = height[:, samples : samples + 1]
             way = cls(start, samples, quintic(state[:, None], end, samples * sample_time), sample_time)
-            hardest = float(np.abs(way._at(samples * _LOOKED_AT)[2]).max())
+            hardest = float(np.abs(way._at(samples * LOOKED_AT)[2]).max())
             if hardest < least:
                 least, best = hardest, way
             if hardest <= bound + _ROUNDING:

@@ -17,17 +17,22 @@ c'' = λ' (c - (p - o)) with λ' = λ / (1 + 2 μ), driven by the ZMP less the k
 Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 """
 
+import math
+from functools import lru_cache
+from typing import Any
+
 import numpy as np
 
-from surefoot.planner.model.dcm import NominalMotion
-from surefoot.planner.model.leg_chain import LegChain
+from surefoot.native.library import Library, library
+from surefoot.planner.model.dcm import NominalMotion, bind_motion, nominal_motion
+from surefoot.planner.model.leg_chain import LegChain, bind_chain
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.steps.step import unit_swing
-from surefoot.planner.swing.heel_off import bump
+from surefoot.planner.steps.step import Step, unit_swing
+from surefoot.planner.swing.heel_off import RollSpan, bump
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
 
@@ -43,6 +48,10 @@ Feet = tuple[Array, Array, Array]
 Soles' centres as if they were level, shape (2, n, 3) [m], their headings, shape (2, n) [rad], and their pitch about
 their toe edges, shape (2, n) [rad].
 """
+
+
+Moving = tuple[PhaseSamples, Schedule, tuple[Array, Array], tuple[SwingTrajectory, float] | None]
+"""What feet are to move by: see `nominal_feet`."""
 
 
 def nominal_feet(
@@ -67,22 +76,35 @@ def nominal_feet(
     stance, swing = points[row], before + progress[:, None] * (after - before)
     swing[:, 2] = before[:, 2] + height
     if flown is not None:
-        trajectory, time = flown
-        now = np.flatnonzero(samples.which == samples.which[1])
-        now = now[now > 0]
-        times = np.asarray(time + samples.sample_time * (now - 1.0), dtype=np.float64)
-        way = trajectory.positions(times)
-        swing[now, :2] = (way[:, :2] - origin) @ rotation
-        swing[now, 2] = np.maximum(way[:, 2], trajectory.target[2])
-        # Before now it was where it accelerates as it does now: its own past may be on another trajectory.
-        swing[0] = 2.0 * swing[1] - swing[2] if len(now) > 1 else swing[1]
-        if time < trajectory.touchdown_time:
-            bend = trajectory.evaluate(time)[2, :3] * samples.sample_time**2
-            swing[0, :3] += np.append(bend[:2] @ rotation, bend[2])
+        _fly(swing[:, :3], swing[:, 3], samples, frame, *flown)
     left = np.array([step.place.foot is Foot.LEFT for step in schedule.steps])[row]
     soles = np.where(np.stack((left, ~left))[..., None], stance, swing)
     pitch = rolled * np.stack((~left, left))
     return soles[..., :3], soles[..., 3] - np.arctan2(rotation[1, 0], rotation[0, 0]), pitch
+
+
+def _fly(
+    soles: Array,
+    heading: Array,
+    samples: PhaseSamples,
+    frame: tuple[Array, Array],
+    trajectory: SwingTrajectory,
+    time: float,
+) -> None:
+    """Put a foot where a trajectory has it; soles of shape (n, 3) [m] and heading of shape (n,) [rad] are changed."""
+    (rotation, origin), which = frame, samples.which[: len(soles)]
+    now = np.flatnonzero(which == which[1])
+    now = now[now > 0]
+    times = np.asarray(time + samples.sample_time * (now - 1.0), dtype=np.float64)
+    way = trajectory.positions(times)
+    soles[now, :2] = (way[:, :2] - origin) @ rotation
+    soles[now, 2] = np.maximum(way[:, 2], trajectory.target[2])
+    # Before now it was where it accelerates as it does now: its own past may be on another trajectory.
+    for values in (soles, heading):
+        values[0] = 2.0 * values[1] - values[2] if len(now) > 1 else values[1]
+    if time < trajectory.touchdown_time:
+        bend = trajectory.evaluate(time)[2, :3] * samples.sample_time**2
+        soles[0] += np.append(bend[:2] @ rotation, bend[2])
 
 
 def _swings(samples: PhaseSamples, schedule: Schedule) -> tuple[Array, Array, Array]:
@@ -148,6 +170,166 @@ def zmp_offset(
     offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / pressing[:-1, None])
     offset[-1] = offset[-2]
     return np.asarray(offset)
+
+
+_LEVEL = RollSpan(0.0, 1.0, 0.0)
+"""That of a foot that does not roll."""
+
+
+class LegOffset:
+    """The offset that a plan counts with: that of a CoM on the nominal motion, which itself depends on it.
+
+    Args:
+        leg: inertia of the legs.
+        toe: toe edge from the sole's centre [m].
+        sample_time: T [s].
+        most: samples that it may be wanted of.
+    """
+
+    def __init__(self, leg: LegInertia, toe: float, sample_time: float, most: int) -> None:
+        self._softening, self._toe, self._sample_time = softening(leg), toe, sample_time
+        kernels, self._chain = library(), leg.chain
+        compiled = None if leg.chain is None or kernels is None else (kernels, leg.chain)
+        self._compiled = compiled and _CompiledOffset(*compiled, toe, sample_time, most)
+
+    def made(
+        self,
+        moving: Moving,
+        point: Array,
+        height: HeightPreview,
+        position: Array,
+        guess: Array | None,
+    ) -> Array:
+        """What the legs add to the ZMP, shape (n, 2) [m]; two passes, or one from a guess, leave a millimetre.
+
+        Args:
+            moving: what `nominal_feet` makes the feet of.
+            point: ZMP that drives the pendulum but for it, shape (n, 2) [m].
+            height: CoM height over the n samples.
+            position: CoM now, shape (2,) [m].
+            guess: about what it will be, shape (n, 2) [m].
+        """
+        stiffness = self._softening * height.stiffness
+        passes, offset = (2, np.zeros_like(point)) if guess is None else (1, guess)
+        if self._chain is None:
+            return offset
+        if self._compiled is not None:
+            return self._compiled.made(moving, point, height, stiffness, position, offset, passes)
+        feet = nominal_feet(*moving)
+        for _ in range(passes):
+            motion = nominal_motion(position, point - offset, stiffness, self._sample_time)
+            offset = zmp_offset(self._chain, feet, self._toe, motion, height, stiffness)
+        return offset
+
+
+class _CompiledOffset:
+    """Arrays of the kernels that do what `nominal_feet` and `LegOffset.made` do."""
+
+    def __init__(self, kernels: Library, chain: LegChain, toe: float, sample_time: float, most: int) -> None:
+        (bound, points), stride = bind_chain(kernels, chain), most + 9
+        (self._point, self._offset), self._stiffness = np.empty((2, most, 2)), np.empty(most)
+        self._height, self._which = np.empty((3, most)), np.empty(most + 1, dtype=np.int64)
+        self._elapsed, self._clock = np.empty((2, most + 1))
+        self._soles, self._heading, self._pitch = (np.empty((2, most + 1, *size)) for size in ((3,), (), ()))
+        feet: dict[str, Any] = {"soles": self._soles, "heading": self._heading, "pitch": self._pitch}
+        self._feet = kernels.fill(
+            "NominalFeet",
+            sample_time=sample_time,
+            touching=TOUCHING,
+            heading_of_frame=0.0,
+            most=most + 1,
+            which=self._which,
+            elapsed=self._elapsed,
+            clock=self._clock,
+            phases=self._clock,
+            steps=self._clock,
+            **feet,
+        )
+        motion, own = bind_motion(kernels, sample_time, most)
+        self._position, self._softened = own["position"], own["stiffness"]
+        self._place_feet = kernels.bind("nominal_feet_make", self._feet)
+        self._run = kernels.bind(
+            "leg_offset_make",
+            chain=bound,
+            motion=motion,
+            most=most,
+            stride=stride,
+            toe=toe,
+            gravity=GRAVITY,
+            point=self._point,
+            stiffness=self._stiffness,
+            height=self._height,
+            **feet,
+            zmp=own["zmp"],
+            com=np.empty((most + 1, 3)),
+            scratch=np.empty((23, stride)),
+            points=np.empty((points, 3, stride)),
+            bends=np.empty((points, 3, stride)),
+            offset=self._offset,
+        )
+
+    def made(
+        self,
+        moving: Moving,
+        point: Array,
+        height: HeightPreview,
+        softened: Array,
+        position: Array,
+        offset: Array,
+        passes: int,
+    ) -> Array:
+        n = len(point)
+        self._walk(n + 1, *moving)
+        self._position[:], self._point[:n], self._offset[:n] = position, point, offset
+        self._softened[:n], self._stiffness[:n], self._height[:, :n] = softened, height.stiffness, height.height
+        self._run(n, passes)
+        return self._offset[:n].copy()
+
+    def _walk(
+        self,
+        count: int,
+        samples: PhaseSamples,
+        schedule: Schedule,
+        frame: tuple[Array, Array],
+        flown: tuple[SwingTrajectory, float] | None,
+    ) -> None:
+        """Move the feet over so many samples."""
+        which = samples.which[:count]
+        self._which[:count], self._elapsed[:count] = which, samples.elapsed[:count]
+        self._clock[:count] = samples.clock[:count]
+        (rotation, origin), position, steps = frame, schedule.positions, schedule.steps
+        numbers, last = range(which[0], which[-1] + 1), len(steps) - 1
+        elapsed = samples.elapsed[which.searchsorted(numbers)].tolist()
+        phases = np.empty((len(numbers), 35))
+        for told, number, gone in zip(phases, numbers, elapsed, strict=True):
+            phase, late = samples.phases[number], 0.0
+            row, single = schedule.index(phase.leaves - 1), phase.kind is PhaseKind.SINGLE
+            if single:
+                swing, late = _swing(phase, schedule, gone)
+                told[9:] = _told(swing) if late else _usually_told(schedule.step(phase.step))
+            stance = row - 1 if row else last, row, min(row + 1, last), steps[row].place.foot
+            told[:9] = *stance, single, late, *(phase.roll or _LEVEL)
+        places = np.empty((last + 1, 4))
+        places[:, :2], places[:, 2], places[:, 3] = (position[:, :2] - origin) @ rotation, position[:, 2], schedule.yaws
+        self._feet.struct.heading_of_frame = math.atan2(rotation[1, 0], rotation[0, 0])
+        self._feet.point(phases=phases, steps=places)
+        self._place_feet(count)
+        if flown is not None:
+            foot = flown[0].foot
+            _fly(self._soles[foot, :count], self._heading[foot, :count], samples, frame, *flown)
+
+
+@lru_cache(maxsize=16)
+def _usually_told(step: Step) -> Array:
+    return _told(step.swing)
+
+
+def _told(swing: SwingTrajectory) -> Array:
+    """The swing of a step as the kernel takes it, shape (26,)."""
+    end, past = swing.target, swing.search.motion(-TOUCHING)[0]
+    times = swing.start_time, swing.glide_end, swing.apex_time, swing.touchdown_time, swing.rise_start, swing.fall_start
+    ways = swing.level[:, 0], swing.rise[:, 0], swing.fall[:, 0]
+    return np.concatenate(((*times, end[0], end[2] - past), *ways))
 
 
 def _before(state: Array, time: float) -> Array:

@@ -1,18 +1,22 @@
 """What is known of horizon and preview before the motion is planned."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.model.dcm import natural_frequency, nominal_motion
-from surefoot.planner.model.leg_chain import LegChain
+from surefoot.forces import ExternalLoad
+from surefoot.native.library import library
+from surefoot.planner.model.dcm import natural_frequency
 from surefoot.planner.model.time_scaling import Course, TimeScaling
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import HeightPreview, HeightProfile, preview_height
+from surefoot.planner.references.compiled import CompiledPreview
 from surefoot.planner.references.height_transition import HeightTransition
-from surefoot.planner.references.leg_offset import Feet, nominal_feet, softening, zmp_offset
+from surefoot.planner.references.leg_offset import LegOffset, softening
 from surefoot.planner.references.zmp_reference import (
     Support,
     SupportKey,
@@ -24,7 +28,7 @@ from surefoot.planner.references.zmp_reference import (
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
-from surefoot.planner.types import GRAVITY, Array, LastingForce
+from surefoot.planner.types import GRAVITY, Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +102,15 @@ class Window:
     contacts: NDArray[np.bool_]
 
 
-def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array:
+Sight = tuple[PhaseSamples, ZmpReference, HeightPreview, Array, Array, Array]
+"""What the walk ahead looks like.
+
+The phases at the samples that are looked at, with one before and one after; ZMP reference, CoM height and softened λ
+[1/s^2] at these; ω [1/s] and planned share of the weight on the left foot [-] over the window.
+"""
+
+
+def lean(lasting: ExternalLoad, rotation: Array, height: HeightPreview) -> Array:
     """What a lasting force adds to the ZMP, by which the body has to lean into it, in the plan frame.
 
     The moment balance about the ZMP (see `planner.references.leg_offset`) with a force m f on the body and its moment
@@ -107,17 +119,17 @@ def lean(lasting: LastingForce, rotation: Array, height: HeightPreview) -> Array
         p_x = c_x - c_x'' / λ + f_x / λ + n_y / (g + z''),      p_y = c_y - c_y'' / λ + f_y / λ - n_x / (g + z'').
 
     Args:
-        lasting: the force.
+        lasting: the force, per mass.
         rotation: plan frame to world, shape (2, 2).
         height: CoM height over n samples.
 
     Returns:
         Shape (n, 2) [m].
     """
-    x, y = lasting.moment.tolist()
+    x, y = lasting.moment[:2].tolist()
     turning = np.array([y, -x]) @ rotation
     pressing = GRAVITY + height.height[2]
-    return np.asarray(lasting.force @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
+    return np.asarray(lasting.force[:2] @ rotation / height.stiffness[:, None] + turning / pressing[:, None])
 
 
 class ReferencePreview:
@@ -140,9 +152,14 @@ class ReferencePreview:
         self._numbers = parameters.recovery
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
+        self._legs = LegOffset(self._leg, float(half_size[0]), parameters.sample_time, self.reach)
         # Of the last plan its tick, the course of the clock, the height, and how much lower than by its law that is.
         self._transition: HeightTransition | None = None
         self._before: tuple[int, Course, Array, float] | None = None
+        self._softening, self._compiled, kernels = softening(self._leg), None, library()
+        if kernels is not None:
+            counts = self._count, self.reach
+            self._compiled = CompiledPreview(kernels, gait, profile, parameters, counts, self._softening)
 
     @property
     def reach(self) -> int:
@@ -160,7 +177,7 @@ class ReferencePreview:
         support: Support,
         position: Array,
         time: float,
-        lasting: LastingForce | None = None,
+        lasting: ExternalLoad | None = None,
     ) -> Window:
         """The window that begins now, as the clock goes.
 
@@ -171,55 +188,63 @@ class ReferencePreview:
             time: now [s].
             lasting: force that goes on acting on the body.
         """
-        count, samples = self._count, execution.samples(self.reach)
-        # The paper's ZMP planner, and its vertical motion planner with the varying dynamics.
-        reference = zmp_reference(samples, support.table).part(slice(1, -1))
-        height = self._com_height(execution, samples, support, reference)
-        stiffness = softening(self._leg) * height.stiffness
-        seen = reference.part(slice(count))
-        leant = np.zeros((self.reach, 2)) if lasting is None else lean(lasting, support.rotation, height)
-        offset = self._offset(execution, samples, support, reference.point - leant, height, position, time)
-        offset = offset + leant[:count]
+        count, look = self._count, self._sight if self._compiled is None else self._compiled.sight
+        samples, reference, height, stiffness, omega, load = look(execution, support, self._transferred)
+        seen, point, leant = reference.part(slice(count)), reference.point, None
+        if lasting is not None:
+            leant = lean(lasting, support.rotation, height)
+            point = point - leant
+        offset = self._offset(execution, samples, support, point, height, position, time)
+        if leant is not None:
+            offset = offset + leant[:count]
         return Window(
             reference=seen,
             driving=replace(seen, point=seen.point - offset),
             offset=offset,
             height=height.part(count),
             stiffness=stiffness[:count],
-            omega=natural_frequency(stiffness[:count], samples.sample_time),
-            load_left=load_left(samples, support)[1 : count + 1],
+            omega=omega,
+            load_left=load,
             contacts=samples.contacts[1 : count + 1],
         )
 
-    def _com_height(
-        self, execution: Execution, samples: PhaseSamples, support: Support, reference: ZmpReference
-    ) -> HeightPreview:
-        """CoM height and stiffness over the samples of a reference; arguments as of `window`."""
-        clock = execution.clock
+    def _sight(self, execution: Execution, support: Support, moved: Callable[[Execution, Array], Array]) -> Sight:
+        """What the walk ahead looks like, where `moved` says what becomes of the height that its law gives."""
+        samples, count = execution.samples(self.reach), self._count
+        # The paper's ZMP planner, and its vertical motion planner with the varying dynamics.
+        reference, on = zmp_reference(samples, support.table).part(slice(1, -1)), partial(moved, execution)
+        height = preview_height(self._profile, self._gait, samples, support.heights, reference.height, self._length, on)
+        stiffness = self._softening * height.stiffness
+        omega = natural_frequency(stiffness[:count], self._sample_time)
+        return samples, reference, height, stiffness, omega, load_left(samples, support)[1 : count + 1]
 
-        def in_transition(height: Array) -> Array:
-            """The height where a step that is adapted has changed how the clock goes, or is too long for it."""
-            lower, leaves = execution.lowering, False
-            if self._before is not None:
-                tick, course, before, low = self._before
-                leaves = course != clock.course and (execution.adapted or self._transition is not None)
-                leaves |= abs(lower - low) > self._numbers.same_height or (low > 0.0) is not (lower > 0.0)
-                lower = lower if leaves else low
-            height[0] -= lower
-            if leaves:
-                state = before[:, min(clock.ticks - tick, 1)]
-                left, lifting = execution.left, self._numbers.lifting
-                self._transition = HeightTransition.onto(height, state, clock.ticks, left, self._sample_time, lifting)
-            if self._transition is not None:
-                if clock.ticks >= self._transition.start + self._transition.samples:
-                    self._transition = None
-                else:
-                    height = self._transition.over(height, clock.ticks)
-            self._before = clock.ticks, clock.course, height[:, :2].copy(), lower
-            return height
+    def _transferred(self, execution: Execution, height: Array) -> Array:
+        """The height where a step that is adapted has changed how the clock goes, or is too long for it.
 
-        profile, gait = self._profile, self._gait
-        return preview_height(profile, gait, samples, support.heights, reference.height, self._length, in_transition)
+        Args:
+            execution: the clock and the steps in sight.
+            height: z, z', z'' by its law, shape (3, n), which is overwritten.
+        """
+        clock, lower, leaves, numbers = execution.clock, execution.lowering, False, self._numbers
+        if self._before is not None:
+            tick, course, before, low = self._before
+            leaves = course != clock.course and (execution.adapted or self._transition is not None)
+            leaves |= abs(lower - low) > numbers.same_height or (low > 0.0) is not (lower > 0.0)
+            lower = lower if leaves else low
+        height[0] -= lower
+        if leaves:
+            state = before[:, min(clock.ticks - tick, 1)]
+            kernel = None if self._compiled is None else self._compiled.soonest_calm
+            left, t = execution.left, self._sample_time
+            transition = HeightTransition.onto(height, state, clock.ticks, left, t, numbers.lifting, kernel)
+            self._transition = transition
+        if self._transition is not None:
+            if clock.ticks >= self._transition.start + self._transition.samples:
+                self._transition = None
+            else:
+                height = self._transition.over(height, clock.ticks)
+        self._before = clock.ticks, clock.course, height[:, :2].copy(), lower
+        return height
 
     def _offset(
         self,
@@ -232,8 +257,8 @@ class ReferencePreview:
         time: float,
     ) -> Array:
         """What the legs add to the ZMP, shape (n, 2) [m]; arguments as of `window`."""
-        chain, count, clock = self._leg.chain, self._count, execution.clock
-        if chain is None:
+        count, clock = self._count, execution.clock
+        if self._leg.chain is None:
             return np.zeros((count, 2))
         last, table, key, aim = samples.phases[-1], self._offsets, support.key, execution.aim
         # In the final standing, where the walk's clock does not matter, none serves: its values go on with time.
@@ -245,27 +270,11 @@ class ReferencePreview:
             count += int(min(self._numbers.offset_ticks - 1, max(left, 0.0) + 1))
             frame = support.rotation, support.origin
             flown = None if execution.swing is None or aim is None else (execution.swing, time)
-            feet = nominal_feet(samples, execution.aimed, frame, flown)
+            moving = samples, execution.aimed, frame, flown
             # While a step is adapted it is made from the last one.
             guess = None
             if table is not None and (aim is not None or not clock.steady):
                 guess = table.guess(clock.ticks, key, count)
-            values = self._made_offset(chain, feet, point[:count], height.part(count), position, guess)
+            values = self._legs.made(moving, point[:count], height.part(count), position, guess)
             table = self._offsets = OffsetTable(clock.ticks, key, clock.course, aim, values, self._numbers.offset_ticks)
         return table.since(clock.ticks, self._count)
-
-    def _made_offset(
-        self,
-        chain: LegChain,
-        feet: Feet,
-        point: Array,
-        height: HeightPreview,
-        position: Array,
-        guess: Array | None,
-    ) -> Array:
-        """That for a CoM on the nominal motion, which itself depends on it: two passes, or one, leave a millimetre."""
-        stiffness, offset = softening(self._leg) * height.stiffness, np.zeros_like(point) if guess is None else guess
-        for _ in range(2 if guess is None else 1):
-            motion = nominal_motion(position, point - offset, stiffness, self._sample_time)
-            offset = zmp_offset(chain, feet, float(self._half_size[0]), motion, height, stiffness)
-        return offset

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.steps.gait import Stride
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import Stop
 from surefoot.planner.swing.heel_off import roll_span, stretched
-from surefoot.planner.types import Foot, PhaseKind
+from surefoot.planner.types import Foot, PhaseKind, Twist
 
 
 def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None, at_once: bool = True) -> Schedule:
@@ -35,7 +34,7 @@ def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None,
         here, usual = (float(np.hypot(*way)) for way in kept.apart(stand.step))
         farther = 1.0 if at_once else max(1.0, here / usual)
         stop = Stop(stood, double, 0.0) if at_once else Stop.usual(stood, double, farther)
-    return kept.followed(Stride(0.0, 0.0, 0.0, schedule.gait.step_width), stop, inserted=True)
+    return kept.followed(Twist(width=schedule.gait.step_width), stop, inserted=True)
 
 
 def with_steps_repeated(schedule: Schedule, number: int) -> Schedule:
@@ -46,8 +45,7 @@ def with_steps_repeated(schedule: Schedule, number: int) -> Schedule:
         number: of the step, which is being swung.
     """
     stride = schedule.step(number).stride
-    back = replace(stride, length=-stride.length, lateral=-stride.lateral, turn=-stride.turn)
-    again = schedule.until(number, stands=False).followed(back, None, inserted=True)
+    again = schedule.until(number, stands=False).followed(stride.scaled(-1.0), None, inserted=True)
     return again.followed(stride, None, inserted=True)
 
 

@@ -3,16 +3,16 @@
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.steps.gait import WEIGHT_SHIFT, Bout, GaitParameters, Stride
+from surefoot.planner.steps.gait import WEIGHT_SHIFT, Bout, GaitParameters
 from surefoot.planner.swing.step_region import StepRegion
-from surefoot.planner.types import Array, Foot, Footstep
+from surefoot.planner.types import Array, Foot, Footstep, Twist
 
 MOST_STEPS = 100_000
 """Steps of a walk, which are laid out in memory before it starts [-]."""
@@ -23,211 +23,101 @@ _SAME_TIME = 1e-6
 _HALVINGS = 40
 """Of a range in which the fastest velocity is sought, after which rounding is greater [-]."""
 
-
-@dataclass(frozen=True, slots=True)
-class Twist:
-    """A commanded velocity in the frame of the path's heading.
-
-    Attributes:
-        v_x: forward [m/s].
-        v_y: to the left [m/s].
-        yaw_rate: of the heading, positive to the left [rad/s].
-    """
-
-    v_x: float = 0.0
-    v_y: float = 0.0
-    yaw_rate: float = 0.0
-
-    @property
-    def is_zero(self) -> bool:
-        """Whether it asks to stand."""
-        return self.v_x == 0.0 and self.v_y == 0.0 and self.yaw_rate == 0.0
-
-    def scaled(self, factor: float) -> "Twist":
-        """The same direction at another speed."""
-        return Twist(factor * self.v_x, factor * self.v_y, factor * self.yaw_rate)
-
-    def stride(self, duration: float, width: float) -> Stride:
-        """The stride that follows this velocity exactly for a time, along its arc."""
-        turn = self.yaw_rate * duration
-        chord = duration * float(np.sinc(0.5 * turn / math.pi))
-        return Stride(chord * self.v_x, chord * self.v_y, turn, width)
-
-
-@dataclass(frozen=True, slots=True)
-class VelocityCommand:
-    """A velocity that holds from an instant until the next command.
-
-    Attributes:
-        time: instant [s].
-        twist: the velocity.
-
-    Raises:
-        ParameterError: a value is not finite, or the time is negative.
-    """
-
-    time: float
-    twist: Twist
-
-    def __post_init__(self) -> None:
-        values = {"time": self.time} | {field.name: getattr(self.twist, field.name) for field in fields(self.twist)}
-        for name, value in values.items():
-            key, what = ("velocity", name), f"{name} of a velocity command is {value:g}"
-            if not math.isfinite(value):
-                raise ParameterError(key, what, "it must be finite")
-            if name == "time" and value < 0.0:
-                raise ParameterError(key, what, "it must not be negative")
-
-
-class Pose(NamedTuple):
-    """A place on the ground with a heading, in the world frame.
-
-    Attributes:
-        x: [m].
-        y: [m].
-        yaw: [rad].
-    """
-
-    x: float
-    y: float
-    yaw: float
+STANDING = Twist()
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """What a walk is told while it goes on; what is None stays as it is.
+    """What a walk is told, or does of what it has been told; what is None stays as it is, or is not.
 
     Attributes:
-        twist: the velocity to follow from now on.
-        places: where to go now, one after another, to stand at the last one.
+        twist: the velocity to follow from now on; zero stands.
+        places: where to go now, one after another in the world frame, to stand at the last one.
         single_support: duration from now on [s].
         double_support: likewise [s].
         swing_height: clearance of the steps to come [m].
+        time: when the walk hears of it [s].
+        followed: of what a walk does, the velocity that is followed in place of `twist`, whose steps are in reach.
 
     Raises:
-        ParameterError: a value is not finite, or a duration or the height is not positive.
+        ParameterError: a value is not finite, a duration or the height is not positive, or the time is negative.
     """
 
     twist: Twist | None = None
-    places: tuple[Pose, ...] | None = None
+    places: tuple[Twist, ...] | None = None
     single_support: float | None = None
     double_support: float | None = None
     swing_height: float | None = None
+    time: float = 0.0
+    followed: Twist | None = None
 
     def __post_init__(self) -> None:
-        twist, places = self.twist or Twist(), self.places or ()
-        numbers = [(name, getattr(twist, name)) for name in ("v_x", "v_y", "yaw_rate")]
-        numbers += [(name, getattr(place, name)) for place in places for name in Pose._fields]
+        numbers = [("time", self.time), *(self.twist or STANDING).velocity.items()]
+        numbers += [(name, getattr(place, name)) for place in self.places or () for name in ("x", "y", "yaw")]
         positive = [(name, getattr(self, name)) for name in ("single_support", "double_support", "swing_height")]
         for name, value in numbers:
             if not math.isfinite(value):
                 raise ParameterError(("command", name), f"a command's {name} is {value:g}", "it must be finite")
+        if self.time < 0.0:
+            raise ParameterError(("command", "time"), f"a command's time is {self.time:g}", "it must not be negative")
         for name, value in positive:
             if value is not None and not 0.0 < value < math.inf:
                 what = f"a command's {name} is {value:g}"
                 raise ParameterError(("command", name), what, "it must be finite and greater than 0")
 
 
-class TimedCommand(NamedTuple):
-    """A command of which a walk hears at a time.
+def velocity_bouts(commands: Sequence[Command], gait: GaitParameters) -> tuple[Bout, ...]:
+    """The bouts of a walk that follows velocities over time, each from its command to the next one.
 
-    Attributes:
-        time: [s].
-        command: what it is told.
-    """
-
-    time: float
-    command: Command
-
-
-@dataclass(frozen=True, slots=True)
-class Orders:
-    """What a walk does of what it has been told.
-
-    Attributes:
-        twist: the velocity asked for; None while none is.
-        followed: the one that is followed in its place, whose steps are in reach; likewise.
-        place: where it goes to stand; None while it goes to none.
-        single_support: duration of the steps to come [s].
-        double_support: likewise [s].
-        swing_height: their clearance [m].
-    """
-
-    twist: Twist | None
-    followed: Twist | None
-    place: Pose | None
-    single_support: float
-    double_support: float
-    swing_height: float
-
-
-class VelocityTimeline:
-    """Velocity commands over time; before the first one the robot stands.
-
-    Raises:
-        ParameterError: there is no command, the times do not increase, or the last command does not stop.
-    """
-
-    def __init__(self, commands: Sequence[VelocityCommand]) -> None:
-        self._times = [command.time for command in commands]
-        self._twists = [command.twist for command in commands]
-        for index, (before, after) in enumerate(zip(self._times, self._times[1:], strict=False), start=1):
-            if after <= before:
-                what = f"the velocity command at {after:g} s comes after the one at {before:g} s"
-                raise ParameterError(("velocity", index, "time"), what, "their times must increase")
-        if not commands or not self._twists[-1].is_zero:
-            what = "the velocity commands end in motion" if commands else "there are no velocity commands"
-            key = ("velocity", len(commands) - 1) if commands else ("velocity",)
-            raise ParameterError(key, what, "the last one must be zero, which stops the walk")
-
-    @property
-    def end(self) -> float:
-        """Instant from which on the command is to stand [s]."""
-        return self._times[-1]
-
-    def at(self, time: float) -> Twist:
-        """The command in force."""
-        index = bisect_right(self._times, time + _SAME_TIME) - 1
-        return self._twists[index] if index >= 0 else Twist()
-
-    def next_motion(self, time: float) -> float | None:
-        """The first instant from `time` on at which the command is to move, None if there is none [s]."""
-        if not self.at(time).is_zero:
-            return time
-        following = zip(self._times, self._twists, strict=True)
-        return next((begin for begin, twist in following if begin > time and not twist.is_zero), None)
-
-
-def velocity_bouts(timeline: VelocityTimeline, gait: GaitParameters) -> tuple[Bout, ...]:
-    """The bouts of a walk that follows a velocity command.
-
-    The command in force when a foot lifts off gives the stride of that step. If it is zero then, the step closes the
-    stance and the robot stands until the command is to move; its weight shift begins then (not before
-    `gait.initial_stand`), and the first foot lifts off `WEIGHT_SHIFT` double supports later. A command that has gone
-    by then moves nothing.
+    The velocity in force when a foot lifts off gives the stride of that step. If it is zero then, the step closes the
+    stance and the robot stands until it is to move; its weight shift begins then (not before `gait.initial_stand`),
+    and the first foot lifts off `WEIGHT_SHIFT` double supports later. A velocity that has gone by then moves nothing.
+    Before the first command the robot stands.
 
     Args:
-        timeline: the command.
+        commands: the velocities with their times.
         gait: gives durations and step width.
 
     Raises:
-        ParameterError: the walk has too many steps.
+        ParameterError: there is no command, the times do not increase, the last command does not stop, or the walk has
+            too many steps.
     """
+    times, twists = [command.time for command in commands], [command.twist or STANDING for command in commands]
+    for index, (before, after) in enumerate(pairwise(times), start=1):
+        if after <= before:
+            what = f"the velocity command at {after:g} s comes after the one at {before:g} s"
+            raise ParameterError(("velocity", index, "time"), what, "their times must increase")
+    if not commands or not twists[-1].is_zero:
+        what = "the velocity commands end in motion" if commands else "there are no velocity commands"
+        key = ("velocity", len(commands) - 1) if commands else ("velocity",)
+        raise ParameterError(key, what, "the last one must be zero, which stops the walk")
     period = gait.period
-    if timeline.end / period > MOST_STEPS:
-        what = f"the velocity command lasts {timeline.end:g} s"
+    if times[-1] / period > MOST_STEPS:
+        what = f"the velocity command lasts {times[-1]:g} s"
         raise ParameterError(("velocity",), what, f"{MOST_STEPS * period:g} s is the most")
+
+    def in_force(time: float) -> Twist:
+        index = bisect_right(times, time + _SAME_TIME) - 1
+        return twists[index] if index >= 0 else STANDING
+
+    def next_motion(time: float) -> float | None:
+        """The first instant from `time` on at which the walk is to move, None if there is none [s]."""
+        if not in_force(time).is_zero:
+            return time
+        following = zip(times, twists, strict=True)
+        return next((begin for begin, twist in following if begin > time and not twist.is_zero), None)
+
     bouts: list[Bout] = []
     standing_since, ready = 0.0, gait.initial_stand
-    while (start := timeline.next_motion(ready)) is not None:
+    while (start := next_motion(ready)) is not None:
         lift_off = start + WEIGHT_SHIFT * gait.double_support
-        strides: list[Stride] = []
-        while not (twist := timeline.at(lift_off)).is_zero:
+        strides: list[Twist] = []
+        while not (twist := in_force(lift_off)).is_zero:
             strides.append(twist.stride(period, gait.step_width))
             lift_off += period
         ready = lift_off
         if strides:
-            strides.append(Twist().stride(period, gait.step_width))
+            strides.append(Twist(width=gait.step_width))
             bouts.append(Bout(start - standing_since, tuple(strides)))
             standing_since = ready = lift_off + period
     return tuple(bouts)
@@ -245,7 +135,7 @@ def footstep_bouts(footsteps: Sequence[Footstep], gait: GaitParameters) -> tuple
     """
     if not footsteps:
         raise ParameterError(("footsteps",), "there are no footsteps", "a walk has at least one")
-    strides: list[Stride] = []
+    strides: list[Twist] = []
     other = footsteps[0].foot.other
     place, yaw = -_half_width(gait, footsteps[0].foot), 0.0
     for number, footstep in enumerate(footsteps, 1):
@@ -266,13 +156,13 @@ def walk_of(gait: GaitParameters, bouts: tuple[Bout, ...], first_foot: Foot) -> 
 
 def leading_foot(bouts: tuple[Bout, ...]) -> Foot:
     """The foot on the side to which a walk first goes or turns, so that its first step does not close the stance."""
-    stride = bouts[0].strides[0] if bouts else Stride(0.0, 0.0, 0.0, 1.0)
-    return Foot.RIGHT if (stride.lateral, stride.turn) < (0.0, 0.0) else Foot.LEFT
+    stride = bouts[0].strides[0] if bouts else STANDING
+    return Foot.RIGHT if (stride.y, stride.yaw) < (0.0, 0.0) else Foot.LEFT
 
 
 def fitted(gait: GaitParameters, region: StepRegion) -> GaitParameters:
     """The gait with the widths of its bouts' strides fitted to a region."""
-    bouts = tuple(replace(bout, strides=tuple(stride.fitted(region) for stride in bout.strides)) for bout in gait.bouts)
+    bouts = tuple(replace(bout, strides=tuple(map(region.fitted, bout.strides))) for bout in gait.bouts)
     return replace(gait, bouts=bouts)
 
 
@@ -287,7 +177,7 @@ def fastest(twist: Twist, duration: float, width: float, region: StepRegion) -> 
     """
 
     def inside(factor: float) -> bool:
-        return twist.scaled(factor).stride(duration, width).fitted(region).within(region)
+        return region.admits(region.fitted(twist.scaled(factor).stride(duration, width)))
 
     if inside(1.0):
         return twist
@@ -302,10 +192,10 @@ def _half_width(gait: GaitParameters, foot: Foot) -> Array:
     return np.array([0.0, 0.5 * gait.step_width if foot is Foot.LEFT else -0.5 * gait.step_width])
 
 
-def _stride_to(footstep: Footstep, stance: Array, yaw: float, gait: GaitParameters) -> Stride:
+def _stride_to(footstep: Footstep, stance: Array, yaw: float, gait: GaitParameters) -> Twist:
     """The stride of the gait's width that lands at a footstep from a stance foot, shape (2,) [m], of a heading."""
     side = _half_width(gait, footstep.foot)
     before = stance + frame_rotation(yaw) @ side
     after = footstep.position[:2] - frame_rotation(footstep.yaw) @ side
     length, lateral = (after - before) @ frame_rotation(0.5 * (yaw + footstep.yaw))
-    return Stride(float(length), float(lateral), footstep.yaw - yaw, gait.step_width)
+    return Twist(float(length), float(lateral), footstep.yaw - yaw, gait.step_width)

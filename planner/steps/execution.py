@@ -15,7 +15,7 @@ from surefoot.planner.steps.source import StepSource
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing, swing_times
-from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind, PlannedFootstep
+from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind
 
 _LEAST_LEFT = 3.0
 """A phase of which less is left, or would be, until its foot is to touch down keeps its time [samples]."""
@@ -221,7 +221,7 @@ class Execution:
             self.schedule = schedule if self._wide else aligned(schedule, self.landed)
         self.waited, self.early, self.fixed, self.adapted = 0, False, False, False
 
-    def upcoming(self, time: float, shifts: Array) -> tuple[PlannedFootstep, ...]:
+    def upcoming(self, time: float, shifts: Array) -> tuple[Footstep, ...]:
         """The next footsteps.
 
         Args:
@@ -241,9 +241,8 @@ class Execution:
                 x, y = float(position[0]), float(position[1])
                 position[2] = self._terrain.height(x, y)
                 normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
-            landing = Footstep(place.foot, position, place.yaw, normal)
             touchdown = time + self.clock.until(step.touchdown) * self._parameters.sample_time
-            planned.append(PlannedFootstep(step.number, landing, touchdown))
+            planned.append(Footstep(place.foot, position, place.yaw, normal, step.number, touchdown))
         return tuple(planned)
 
     def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool) -> None:

@@ -6,15 +6,15 @@ import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.steps.gait import GaitParameters, Stride
-from surefoot.planner.types import Array, FeetState, Foot, Footstep, FootstepPlan
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.types import Array, FeetState, Foot, Footstep, Twist
 
 
 @dataclass(frozen=True, slots=True)
 class Path:
     """Where the nominal path of a walk has come to.
 
-    Each stride advances it by (`length`, `lateral`) along the mean of its old and new heading and turns it; the foot
+    Each stride advances it by (x, y) along the mean of its old and new heading and turns it; the foot
     lands beside the path's new point, half the stride's width to its side. Where the width changes, the path first
     moves to lie half the new width beside the stance foot: so where a foot lands from its stance foot is a matter of
     the stride alone.
@@ -36,12 +36,12 @@ class Path:
         """Its heading now [rad]."""
         return self.start_yaw + self.turned
 
-    def advanced(self, stride: Stride, foot: Foot) -> tuple["Path", Array]:
+    def advanced(self, stride: Twist, foot: Foot) -> tuple["Path", Array]:
         """The path after a stride, and where the foot lands that makes it, shape (2,) [m]."""
-        turned, side = self.turned + stride.turn, 0.5 if foot is Foot.LEFT else -0.5
+        turned, side = self.turned + stride.yaw, 0.5 if foot is Foot.LEFT else -0.5
         yaw = self.start_yaw + turned
         middle = self.middle + frame_rotation(self.yaw) @ (0.0, side * (stride.width - self.width))
-        middle = middle + frame_rotation(0.5 * (self.yaw + yaw)) @ (stride.length, stride.lateral)
+        middle = middle + frame_rotation(0.5 * (self.yaw + yaw)) @ (stride.x, stride.y)
         place = middle + frame_rotation(yaw) @ (0.0, side * stride.width)
         return Path(middle, self.start_yaw, turned, stride.width), place
 
@@ -70,23 +70,24 @@ def start_footholds(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> 
     return path, (one, other)
 
 
-def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> FootstepPlan:
-    """Footsteps of a whole gait from where the feet stand, whenever they are taken.
+def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> tuple[Footstep, ...]:
+    """Footsteps of a whole gait from where the feet stand, as they are nominally planned, whenever they are taken.
 
     Args:
         gait: the gait.
         feet: start feet in the world frame.
         terrain: gives heights and normals of the footsteps, and the start of the path where they belong on treads.
+
+    Returns:
+        The start foothold of the foot that moves first, that of the other foot, and one for each step; headings are
+        unwrapped.
     """
     path, start = start_footholds(gait, feet, terrain)
-    rows, yaw = [place.foot for place in start], [path.yaw, path.yaw]
-    places = [place.position[:2] for place in start]
+    laid = []
     for number, stride in enumerate(gait.strides, 1):
-        rows.append(gait.step_foot(number))
-        path, place = path.advanced(stride, rows[-1])
-        places.append(place)
-        yaw.append(path.yaw)
-    level = np.array(places)
-    position = np.column_stack((level, terrain.heights(level)))
-    position[:2] = [place.position for place in start]
-    return FootstepPlan(tuple(rows), position, np.array(yaw), terrain.normals(level))
+        foot = gait.step_foot(number)
+        path, place = path.advanced(stride, foot)
+        laid.append((foot, place, path.yaw))
+    level = np.array([place for _, place, _ in laid]).reshape(-1, 2)
+    grounds = zip(laid, terrain.heights(level), terrain.normals(level), strict=True)
+    return *start, *(Footstep(foot, np.append(xy, z), yaw, normal) for (foot, xy, yaw), z, normal in grounds)

@@ -1,73 +1,11 @@
 """The gait as the user asks for it: how many steps, how long, how fast, how high."""
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from itertools import accumulate, chain
 
 from surefoot.errors import ParameterError
-from surefoot.planner.swing.step_region import LANDING_ROUNDING, Landing, StepRegion
-from surefoot.planner.types import Foot
-
-
-@dataclass(frozen=True, slots=True)
-class Stride:
-    """What one step does to the path, in the frame midway between the old and the new heading.
-
-    The foot lands half a `width` beside the path's new point. A stride of zeros brings it beside the other foot.
-
-    Attributes:
-        length: advance of the path along its heading, negative backward [m].
-        lateral: advance to the left [m].
-        turn: change of heading, positive to the left [rad].
-        width: lateral distance of the two feet from each other about the path [m].
-
-    Raises:
-        ParameterError: a value is not finite, or the width is not positive.
-    """
-
-    length: float
-    lateral: float
-    turn: float
-    width: float
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not math.isfinite(value) or (field.name == "width" and value <= 0.0):
-                least = " greater than 0" if field.name == "width" else ""
-                what, right = f"the {field.name} of a stride is {value}", f"it must be a finite number{least}"
-                raise ParameterError(("stride", field.name), what, right)
-
-    @property
-    def _advance(self) -> tuple[float, float]:
-        """Advance of the path in the frame of its old heading, forward and to the left [m]."""
-        c, s = math.cos(0.5 * self.turn), math.sin(0.5 * self.turn)
-        return c * self.length - s * self.lateral, s * self.length + c * self.lateral
-
-    def landing(self, foot: Foot) -> Landing:
-        """Where a foot lands that makes it (see `planner.steps.footsteps.plan_footsteps`)."""
-        side, half = foot.side, 0.5 * self.width
-        forward, left = self._advance
-        ahead = forward - side * half * math.sin(self.turn)
-        return Landing(ahead, side * left + half * (1.0 + math.cos(self.turn)), self.turn)
-
-    def within(self, region: StepRegion) -> bool:
-        """Whether both feet may make it."""
-        return all(region.contains(self.landing(foot)) for foot in Foot)
-
-    def fitted(self, region: StepRegion) -> "Stride":
-        """With the width nearest to its own at which both feet land within bounds, if there is one.
-
-        Sideways the feet alternate between a wide and a closing step, whose distances differ by twice the lateral
-        advance; in a turn the outer foot goes the farther the wider the feet stand.
-        """
-        forward, left = self._advance
-        middle, ahead = 0.5 * (1.0 + math.cos(self.turn)), 0.5 * abs(math.sin(self.turn))
-        least = (region.nearest(self.turn) + abs(left)) / middle
-        most = (region.width[1] - abs(left)) / middle
-        if ahead > 0.0:
-            most = min(most, (region.length + 0.5 * LANDING_ROUNDING - abs(forward)) / ahead)
-        return replace(self, width=max(min(self.width, most), least))
+from surefoot.planner.types import Foot, Twist
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,11 +17,12 @@ class Bout:
         strides: in order, at least one.
 
     Raises:
-        ParameterError: the rest is negative or not finite, or there is no stride.
+        ParameterError: the rest is negative or not finite, there is no stride, or one of them is not finite or has a
+            width that is not positive.
     """
 
     stand: float
-    strides: tuple[Stride, ...]
+    strides: tuple[Twist, ...]
 
     def __post_init__(self) -> None:
         if not (self.stand >= 0.0 and math.isfinite(self.stand)):
@@ -91,6 +30,12 @@ class Bout:
             raise ParameterError(("bout", "stand"), what, "it must be at least 0 and finite")
         if not self.strides:
             raise ParameterError(("bout", "strides"), "a bout has no strides", "it must have at least one")
+        for stride in set(self.strides):
+            for name, value in stride._asdict().items():
+                if not math.isfinite(value) or (name == "width" and value <= 0.0):
+                    least = " greater than 0" if name == "width" else ""
+                    what, right = f"the {name} of a stride is {value}", f"it must be a finite number{least}"
+                    raise ParameterError(("stride", name), what, right)
 
 
 WEIGHT_SHIFT = 2
@@ -173,12 +118,12 @@ class GaitParameters:
         """The walk stride by stride; () when it only stands."""
         if self.bouts or self.steps == 0:
             return self.bouts
-        stride = Stride(self.step_length, self.lateral_step, self.turn, self.step_width)
-        closing = Stride(0.0, 0.0, 0.0, self.step_width)
+        stride = Twist(self.step_length, self.lateral_step, self.turn, self.step_width)
+        closing = Twist(width=self.step_width)
         return (Bout(self.initial_stand, (stride,) * (self.steps - 1) + (closing,)),)
 
     @property
-    def strides(self) -> tuple[Stride, ...]:
+    def strides(self) -> tuple[Twist, ...]:
         """The strides of all bouts."""
         return tuple(chain.from_iterable(bout.strides for bout in self.walk))
 

@@ -86,6 +86,38 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
 
 
 @dataclass(frozen=True, slots=True)
+class PhaseTable:
+    """Phases in order, without gaps, as columns of n rows.
+
+    Attributes:
+        phases: themselves.
+        kind: shape (n,).
+        start: shape (n,) [samples].
+        length: shape (n,) [samples].
+        rest: part of each before its ZMP reference moves, shape (n,) [samples].
+        support: support point on which that rests, or which it leaves, shape (n,).
+        contacts: planned contacts (left, right), shape (n, 2).
+    """
+
+    phases: tuple[Phase, ...]
+    kind: NDArray[np.intp]
+    start: Array
+    length: Array
+    rest: Array
+    support: NDArray[np.intp]
+    contacts: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, phases: tuple[Phase, ...]) -> "PhaseTable":
+        """That of some phases."""
+        kind, support = (np.array([getattr(p, name) for p in phases]) for name in ("kind", "support"))
+        spans = np.array([(p.start, p.samples, p.rest) for p in phases], dtype=np.float64)
+        contacts = np.array([(p.stance is not Foot.RIGHT, p.stance is not Foot.LEFT) for p in phases])
+        start, length, rest = np.ascontiguousarray(spans.T)
+        return cls(phases, kind, start, length, rest, support, contacts)
+
+
+@dataclass(frozen=True, slots=True)
 class PhaseSamples:
     """The phases at the n samples of a window.
 
@@ -127,23 +159,22 @@ class PhaseSamples:
     @classmethod
     def of(
         cls,
-        phases: tuple[Phase, ...],
+        table: PhaseTable,
         clock: Array,
         sample_time: float,
         first: int = 0,
         rate: tuple[Array, Array] | None = None,
     ) -> "PhaseSamples":
-        """The phases where the clock shows some instants, shape (n,) [samples]; arguments as of the attributes."""
-        which = np.searchsorted([p.start for p in phases], clock + CLOCK_ROUNDING, side="right") - 1
+        """Phases where the clock shows some instants, shape (n,) [samples]; other arguments as of the attributes."""
+        which = np.searchsorted(table.start, clock + CLOCK_ROUNDING, side="right") - 1
         which = np.maximum(which, 0)
-        contacts = np.array([(p.stance is not Foot.RIGHT, p.stance is not Foot.LEFT) for p in phases])
-        columns = ([getattr(p, name) for p in phases] for name in ("kind", "start", "samples", "rest", "support"))
-        kind, start, length, rest, support = (np.array(column)[which] for column in columns)
+        kind, support = table.kind[which], table.support[which]
+        start, length, rest = (column[which] for column in (table.start, table.length, table.rest))
         elapsed = np.maximum(clock - start, 0.0)
         ramp = np.where(kind == PhaseKind.DOUBLE, length - rest, np.inf)
         gone = elapsed - rest
         return cls(
-            phases=phases,
+            phases=table.phases,
             which=which,
             kind=kind,
             clock=clock,
@@ -153,7 +184,7 @@ class PhaseSamples:
             index=support - first,
             fraction=np.maximum(gone / ramp, 0.0),
             fraction_rate=np.where(gone >= 0.0, 1.0 / (ramp * sample_time), 0.0),
-            contacts=contacts[which],
+            contacts=table.contacts[which],
             sample_time=sample_time,
             first=first,
         )

@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 
 from surefoot.planner.geometry import wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
-from surefoot.planner.steps.commands import Pose
 from surefoot.planner.steps.footsteps import start_footholds
-from surefoot.planner.steps.gait import GaitParameters, Stride, in_samples
-from surefoot.planner.steps.phases import Phase, PhaseSamples, phases_of
-from surefoot.planner.steps.source import GaitSource, Request, StepSource
+from surefoot.planner.steps.gait import GaitParameters, in_samples
+from surefoot.planner.steps.phases import Phase, PhaseSamples, PhaseTable, phases_of
+from surefoot.planner.steps.source import GaitSource, StepSource
 from surefoot.planner.steps.step import Step, Stop, durations, lay, start_step
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.types import Array, FeetState, PhaseKind
+from surefoot.planner.types import Array, FeetState, PhaseKind, Twist
 
 _MORE_STEPS = 3
 """Steps in sight beyond a window: its last support points depend on the ones after them, and a plan tells three [-]."""
@@ -77,6 +76,11 @@ class Schedule:
     def phases(self) -> tuple[Phase, ...]:
         """The phases in sight in order, without gaps."""
         return tuple(p for p in phases_of(self.steps, self.stands) if p.end > self.begin + CLOCK_ROUNDING)
+
+    @cached_property
+    def phase_table(self) -> PhaseTable:
+        """The same as columns."""
+        return PhaseTable.of(self.phases)
 
     @cached_property
     def first_support(self) -> int:
@@ -154,7 +158,7 @@ class Schedule:
 
     def samples(self, clock: Array, rate: tuple[Array, Array] | None = None) -> PhaseSamples:
         """The phases where the clock shows some instants; arguments as of `PhaseSamples`."""
-        return PhaseSamples.of(self.phases, clock, self.ground.parameters.sample_time, self.first_support, rate)
+        return PhaseSamples.of(self.phase_table, clock, self.ground.parameters.sample_time, self.first_support, rate)
 
     def usual_samples(self, phase: Phase) -> float:
         """How long a phase would last that had not begun [samples]."""
@@ -187,11 +191,11 @@ class Schedule:
         return durations(self.gait, self.ground.parameters.sample_time)
 
     @property
-    def _pose(self) -> Pose:
-        """Where the path is that the footsteps in sight go along."""
+    def _end(self) -> Twist:
+        """Where the path comes to that the footsteps in sight go along."""
         path = self.last.path
         x, y = path.middle + self.shift
-        return Pose(float(x), float(y), path.yaw)
+        return Twist(float(x), float(y), path.yaw)
 
     # From a schedule to the next.
 
@@ -219,7 +223,7 @@ class Schedule:
         """The schedule with what comes next; None where nothing does."""
         last, t = self.last, self.ground.parameters.sample_time
         before = None if self.stands else last.stride
-        order = self.source.order(Request(last.ordinal + 1, last.end * t, before, self._pose, self.gait.period))
+        order = self.source.order(last.ordinal + 1, before, self._end, self.gait.period)
         if order is None:
             return None if self.stands else replace(self, stands=True)
         (stride, stand), stop = order, None
@@ -227,7 +231,7 @@ class Schedule:
             stop = Stop.usual(max(in_samples(stand, t), now - last.end), self.durations[1])
         return self.followed(stride, stop)
 
-    def followed(self, stride: Stride, stop: Stop | None, inserted: bool = False) -> "Schedule":
+    def followed(self, stride: Twist, stop: Stop | None, inserted: bool = False) -> "Schedule":
         """The schedule with one more step."""
         one, other = self.steps[-2:]
         step = lay(stride, (one, other), self.gait, self.ground, stop, inserted)

@@ -1,50 +1,33 @@
 """Where the steps of a walk come from: one after another, when the schedule asks for the next."""
 
 import math
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, wrap_angle
-from surefoot.planner.steps.commands import MOST_STEPS, Pose, Twist, fastest
+from surefoot.planner.steps.commands import MOST_STEPS, STANDING, fastest
 from surefoot.planner.steps.footsteps import Path
-from surefoot.planner.steps.gait import GaitParameters, Stride
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.step_region import StepRegion
-from surefoot.planner.types import Array
+from surefoot.planner.types import Array, Twist
 from surefoot.similarity import REFERENCE_SIZE, Similarity
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """Where the walk is when it asks for its next step.
-
-    Attributes:
-        step: number of the step, from 1; steps that were inserted between those of the source do not count.
-        time: on the clock of the gait; when its foot would lift off, or from when on the robot stands [s].
-        before: stride of the step before it; None when the robot stands.
-        pose: where the path is that the footsteps in sight go along, landed ones as measured.
-        period: time from one lift-off to the next [s].
-    """
-
-    step: int
-    time: float
-    before: Stride | None
-    pose: Pose
-    period: float
 
 
 class StepSource(Protocol):
     """Gives the steps of a walk one by one."""
 
-    def order(self, at: Request) -> tuple[Stride, float] | None:
+    def order(self, step: int, before: Twist | None, here: Twist, period: float) -> tuple[Twist, float] | None:
         """The next step.
 
         Args:
-            at: where the walk is.
+            step: its number, from 1; steps that were inserted between those of the source do not count.
+            before: stride of the step before it; None when the robot stands.
+            here: where the path is that the footsteps in sight go along, landed ones as measured.
+            period: time from one lift-off to the next [s].
 
         Returns:
-            What it does to the path, and the standing before the weight shift to it, which of a step that follows
+            Its stride, and the standing before the weight shift to it, which of a step that follows
             another without a stop says nothing [s]; None to stand, in a walk until the next bout, in standing as far as
             is known for ever.
         """
@@ -60,11 +43,11 @@ class GaitSource:
     def __init__(self, gait: GaitParameters) -> None:
         self._strides, self._begins = gait.strides, gait.begins
 
-    def order(self, at: Request) -> tuple[Stride, float] | None:
+    def order(self, step: int, before: Twist | None, here: Twist, period: float) -> tuple[Twist, float] | None:
         """See `StepSource`."""
-        if at.step > len(self._strides) or (at.before is not None and at.step in self._begins):
+        if step > len(self._strides) or (before is not None and step in self._begins):
             return None
-        return self._strides[at.step - 1], self._begins.get(at.step, 0.0)
+        return self._strides[step - 1], self._begins.get(step, 0.0)
 
 
 _SOFTLY = 0.4
@@ -84,9 +67,6 @@ _ASTRAY = 1.0
 
 _FAR = 3.0
 """Strides to a place from which on the robot walks ahead towards it, and not as it will stand there [-]."""
-
-
-_STANDING = Twist()
 
 
 class CommandSource:
@@ -111,8 +91,8 @@ class CommandSource:
         self,
         gait: GaitParameters,
         region: StepRegion,
-        twist: Twist = _STANDING,
-        places: tuple[Pose, ...] = (),
+        twist: Twist = STANDING,
+        places: tuple[Twist, ...] = (),
         size: Similarity = REFERENCE_SIZE,
     ) -> None:
         self._width, self._rest, self._region = gait.step_width, gait.initial_stand, region
@@ -130,47 +110,50 @@ class CommandSource:
         """
         return fastest(self.twist, period, self._width, self._region)
 
-    def order(self, at: Request) -> tuple[Stride, float] | None:
+    def order(self, step: int, before: Twist | None, here: Twist, period: float) -> tuple[Twist, float] | None:
         """See `StepSource`."""
-        before = np.zeros(3) if at.before is None else _way(at.before)
-        wanted = self._onward(at) if self.places else _way(self.followed(at.period).stride(at.period, self._width))
+        near = AWAY if before is None else _THERE
+        last = np.array((before or STANDING)[:3])
+        if self.places:
+            wanted = self._onward(step, here, near)
+        else:
+            wanted = np.array(self.followed(period).stride(period, self._width)[:3])
         # It may stop at once, but neither turn round nor speed up by much in a step.
-        backward = np.where(before > 0.0, 0.0, before - self._change)
-        forward = np.where(before < 0.0, 0.0, before + self._change)
+        backward = np.where(last > 0.0, 0.0, last - self._change)
+        forward = np.where(last < 0.0, 0.0, last + self._change)
         way = np.clip(wanted, backward, forward)
-        if not way.any() and not before.any():
+        if not way.any() and not last.any():
             return None
-        return self._admitted(way), self._rest if at.step == 1 else 0.0
+        return self._admitted(way), self._rest if step == 1 else 0.0
 
-    def _onward(self, at: Request) -> Array:
-        """Length, lateral and turn of the stride to the next place, zero at the last one, shape (3,) [m, rad]."""
-        near = AWAY if at.before is None else _THERE
+    def _onward(self, step: int, here: Twist, near: float) -> Array:
+        """Way of the stride to the next place, zero at the last one, shape (3,) [m, m, rad]."""
         # How many places were reached before which step: a step may be asked for anew.
-        self._reached = {step: count for step, count in self._reached.items() if step < at.step}
+        self._reached = {earlier: count for earlier, count in self._reached.items() if earlier < step}
         reached = max(self._reached.values(), default=0)
-        while (way := self._towards(self.places[reached], at.pose, near)) is None:
+        while (way := self._towards(self.places[reached], here, near)) is None:
             if reached == len(self.places) - 1:
                 return np.zeros(3)
             reached += 1
-            self._reached[at.step] = reached
+            self._reached[step] = reached
         return way
 
-    def _towards(self, place: Pose, pose: Pose, near: float) -> Array | None:
+    def _towards(self, place: Twist, here: Twist, near: float) -> Array | None:
         """The stride to a place; None for one that is reached.
 
         Far from it the robot walks ahead, turning to it. Near to it it takes the fewest equal strides on the arc on
         which it arrives with the heading asked for.
         """
-        way = np.array([place.x - pose.x, place.y - pose.y])
-        turn, distance = wrap_angle(place.yaw - pose.yaw), float(np.hypot(*way))
+        way = np.array([place.x - here.x, place.y - here.y])
+        turn, distance = wrap_angle(place.yaw - here.yaw), float(np.hypot(*way))
         if max(distance / self._length, abs(turn)) <= near:
             return None
         ahead, _, most_turn = self._most
         if distance > _FAR * ahead:
-            bearing = wrap_angle(math.atan2(way[1], way[0]) - pose.yaw)
+            bearing = wrap_angle(math.atan2(way[1], way[0]) - here.yaw)
             turn = float(np.clip(bearing, -most_turn, most_turn))
             return np.array([ahead * math.cos(bearing - 0.5 * turn) if abs(bearing) < _ASTRAY else 0.0, 0.0, turn])
-        way = way @ frame_rotation(pose.yaw + 0.5 * turn)
+        way = way @ frame_rotation(here.yaw + 0.5 * turn)
         for count in range(1, _MOST_EQUAL + 1):
             # Equal strides on an arc: their chords add up to the way.
             share = math.sin(0.5 * turn / count) / math.sin(0.5 * turn) if abs(turn) > _STRAIGHT else 1.0 / count
@@ -179,31 +162,31 @@ class CommandSource:
                 break
         return stride
 
-    def _admitted(self, way: Array) -> Stride:
+    def _admitted(self, way: Array) -> Twist:
         """The longest stride this way that both feet may make."""
         factor, stride = 1.0, self._stride(way)
-        while not stride.within(self._region) and factor > 0.0:
+        while not self._region.admits(stride) and factor > 0.0:
             factor = max(factor - _LESS, 0.0)
             stride = self._stride(factor * way)
         return stride
 
-    def _stride(self, way: Array) -> Stride:
-        return Stride(float(way[0]), float(way[1]), float(way[2]), self._width).fitted(self._region)
+    def _stride(self, way: Array) -> Twist:
+        return self._region.fitted(Twist(float(way[0]), float(way[1]), float(way[2]), self._width))
 
 
-def steps_ordered(source: StepSource, gait: GaitParameters, pose: Pose, most: int = MOST_STEPS) -> int:
+def steps_ordered(source: StepSource, gait: GaitParameters, start: Twist, most: int = MOST_STEPS) -> int:
     """Steps that a source orders until the robot stands where every one of them lands where it is nominally.
 
     Args:
         source: of the steps, which may have been used up then.
         gait: gives the durations and the first foot.
-        pose: where the walk begins.
+        start: where the walk begins.
         most: count no further.
     """
-    path, before = Path(np.array(pose[:2]), pose.yaw, 0.0, gait.step_width), None
+    path, before = Path(np.array(start[:2]), start.yaw, 0.0, gait.step_width), None
     for step in range(1, most + 1):
-        here = Pose(float(path.middle[0]), float(path.middle[1]), path.yaw)
-        order = source.order(Request(step, step * gait.period, before, here, gait.period))
+        here = Twist(float(path.middle[0]), float(path.middle[1]), path.yaw)
+        order = source.order(step, before, here, gait.period)
         if order is None:
             return step - 1
         before, _ = order
@@ -219,7 +202,3 @@ _STRAIGHT = 1e-6
 
 _LESS = 0.05
 """Steps in which a stride is shortened until feet may make it [-]."""
-
-
-def _way(stride: Stride) -> Array:
-    return np.array([stride.length, stride.lateral, stride.turn])

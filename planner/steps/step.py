@@ -1,21 +1,21 @@
 """A step: where and when it lands, and what its swing over the ground takes."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, seen_from
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import Path
-from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, Stride, in_samples
+from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, in_samples
 from surefoot.planner.swing.course import Ground, swing_course
 from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
 from surefoot.planner.swing.leg_reach import PEAK, LegReach
-from surefoot.planner.swing.step_region import Landing, check_reach
+from surefoot.planner.swing.step_region import check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
-from surefoot.planner.types import Array, Foot, Footstep
+from surefoot.planner.types import Array, Foot, Footstep, Twist
 
 _MEASURED = 6
 """Decimals to which heights of footholds are compared: start feet may be some nanometres off the ground [-]."""
@@ -68,11 +68,11 @@ class Step:
         nominal: its footstep as it was laid.
         place: its footstep now: moved, or measured once it has landed. Landing errors do not enter its heading, which
             therefore does not drift.
+        course: of its swing over the ground.
+        swing: that swing to a footstep one metre ahead, in its own time.
         climb: height of its nominal footstep above where its foot nominally stood before [m].
         lift: by which the lower of both feet, which the body follows, is higher with it than before [m].
         room: by which it may land elsewhere on its face, least and greatest way in its own heading, shape (2, 2) [m].
-        course: of its swing over the ground.
-        swing: that swing to a footstep one metre ahead, in its own time.
         hardest: greatest acceleration of its foot over edges, times the square of its duration; zero without edges [m].
         support: number in the walk of the support point of the ZMP on its stance foot.
         stop: standing before it; None where it follows a step.
@@ -85,22 +85,22 @@ class Step:
     number: int
     ordinal: int
     inserted: bool
-    stride: Stride
+    stride: Twist
     path: Path
     nominal: Footstep
     place: Footstep
-    climb: float
-    lift: float
-    room: Array
     course: SwingCourse
     swing: SwingTrajectory
-    hardest: float
-    support: int
-    stop: Stop | None
-    lift_off: float
-    single: float
-    double: float
-    roll: RollSpan | None
+    climb: float = 0.0
+    lift: float = 0.0
+    room: Array = field(default_factory=lambda: np.zeros((2, 2)))
+    hardest: float = 0.0
+    support: int = -1
+    stop: Stop | None = None
+    lift_off: float = 0.0
+    single: float = 0.0
+    double: float = 0.0
+    roll: RollSpan | None = None
 
     @property
     def touchdown(self) -> float:
@@ -170,33 +170,23 @@ def ramp_before(before: Step, stop: Stop | None) -> float:
 
 def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, ground: Ground) -> Step:
     """A start foot, as a step from which others are laid."""
-    course, zero = SwingCourse(0.5, 0.0, 1.0, 0.0), Stride(0.0, 0.0, 0.0, gait.step_width)
+    course = SwingCourse(0.5, 0.0, 1.0, 0.0)
     single, _ = durations(gait, ground.parameters.sample_time)
     return Step(
         number=number,
         ordinal=number,
         inserted=False,
-        stride=zero,
+        stride=Twist(width=gait.step_width),
         path=path,
         nominal=place,
         place=place,
-        climb=0.0,
-        lift=0.0,
-        room=np.zeros((2, 2)),
         course=course,
         swing=unit_swing(single, 0.0, course, ground.parameters),
-        hardest=0.0,
-        support=-1,
-        stop=None,
-        lift_off=0.0,
-        single=0.0,
-        double=0.0,
-        roll=None,
     )
 
 
 def lay(
-    stride: Stride, before: tuple[Step, Step], gait: GaitParameters, ground: Ground, stop: Stop | None, inserted: bool
+    stride: Twist, before: tuple[Step, Step], gait: GaitParameters, ground: Ground, stop: Stop | None, inserted: bool
 ) -> Step:
     """The step after two others, where it nominally lands.
 
@@ -246,7 +236,7 @@ def lay(
         double=double,
         roll=roll_span(ramp_before(last, stop), lift_off, single, gait.heel_off) if heel_off else None,
     )
-    check_reach(number, Landing.between(stance, place), parameters)
+    check_reach(number, seen_from(stance, place), parameters)
     return step
 
 

@@ -222,7 +222,9 @@ def around_stance_leg(
         return swing
     rotation, origin, side = frame_rotation(stance.yaw), stance.position[:2], swing.foot.side
     times = np.arange(max(time, swing.start_time), swing.glide_end + 0.5 * sample_time, sample_time)
-    if not (side * ((swing.positions(times[[0, -1]])[:, :2] - origin) @ rotation)[:, 1] < 0.0).any():
+    (u, v), (left_x, left_y) = origin.tolist(), rotation[:, 1].tolist()
+    ends = (swing.place(instant) for instant in times[[0, -1]].tolist())
+    if all(side * (left_x * (x - u) + left_y * (y - v)) >= 0.0 for x, y in ends):
         return swing  # as nearly all of them: beside its stance foot at both ends
     way = (swing.positions(times)[:, :2] - origin) @ rotation
     corner = legs.turned(wrap_angle(float(swing.target[3]) - stance.yaw)).corner(way, side)

@@ -6,33 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.errors import ParameterError, at_least, at_most
-from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.parameters import PlannerParameters, RecoveryParameters
-from surefoot.planner.types import Array, Foot, Footstep
+from surefoot.planner.types import Array, Foot, Footstep, Twist
 
 LANDING_ROUNDING = 1e-9
 """Places in the region are compared with this tolerance, since they are sums of rounded ways [m, rad]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Landing:
-    """Where a foot lands, seen from its stance foot.
-
-    Attributes:
-        ahead: forward distance in the stance foot's frame [m].
-        beside: distance to the foot's own side, negative when the legs cross [m].
-        turn: heading against the stance foot, positive to the left [rad].
-    """
-
-    ahead: float
-    beside: float
-    turn: float
-
-    @classmethod
-    def between(cls, stance: Footstep, place: Footstep) -> "Landing":
-        """That of a footstep."""
-        ahead, left = (place.position - stance.position)[:2] @ frame_rotation(stance.yaw)
-        return cls(float(ahead), float(left if place.foot is Foot.LEFT else -left), place.yaw - stance.yaw)
 
 
 def soles_apart(sole: tuple[float, float], turn: float) -> float:
@@ -48,7 +26,7 @@ def soles_apart(sole: tuple[float, float], turn: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class StepRegion:
-    """Bounds of a landing.
+    """Bounds of a landing, seen from its stance foot.
 
     Two soles that are `nearest` apart sideways keep the gap whatever the distance ahead, so that a foot neither lands
     on the other one, nor passes through it, nor crosses over.
@@ -75,23 +53,37 @@ class StepRegion:
         """Least distance beside for a foot that lands turned [m]."""
         return max(self.width[0], soles_apart(self.sole, turn) + self.gap)
 
-    def contains(self, place: Landing) -> bool:
-        """Whether a foot may land there."""
-        return self.why_not(place) is None
+    def admits(self, stride: Twist) -> bool:
+        """Whether both feet may make a stride."""
+        return all(self.why_not(stride.landing(foot)) is None for foot in Foot)
 
-    def why_not(self, place: Landing) -> tuple[str, str] | None:
+    def fitted(self, stride: Twist) -> Twist:
+        """A stride with the width nearest to its own at which both feet land within bounds, if there is one.
+
+        Sideways the feet alternate between a wide and a closing step, whose distances differ by twice the lateral
+        advance; in a turn the outer foot goes the farther the wider the feet stand.
+        """
+        forward, left = stride.advance
+        middle, ahead = 0.5 * (1.0 + math.cos(stride.yaw)), 0.5 * abs(math.sin(stride.yaw))
+        least = (self.nearest(stride.yaw) + abs(left)) / middle
+        most = (self.width[1] - abs(left)) / middle
+        if ahead > 0.0:
+            most = min(most, (self.length + 0.5 * LANDING_ROUNDING - abs(forward)) / ahead)
+        return stride._replace(width=max(min(stride.width, most), least))
+
+    def why_not(self, place: Footstep) -> tuple[str, str] | None:
         """What is wrong with a landing, in a clause that follows "the foot", and what would be right; None for none."""
-        near, far = self.nearest(place.turn), self.width[1]
-        if abs(place.turn) > self.turn + LANDING_ROUNDING:
-            return (f"turns by {place.turn:.3g} rad against its stance foot", f"{self.turn:g} rad is the most")
+        near, far, ahead = self.nearest(place.yaw), self.width[1], float(place.position[0])
+        if abs(place.yaw) > self.turn + LANDING_ROUNDING:
+            return (f"turns by {place.yaw:.3g} rad against its stance foot", f"{self.turn:g} rad is the most")
         if place.beside < near - LANDING_ROUNDING:
             what = "crosses" if place.beside < 0.0 else "would touch"
             return (f"{what} its stance foot, {place.beside:.3f} m beside it", f"{at_least(near)} m is the least")
         if place.beside > far + LANDING_ROUNDING:
             return (f"lands {place.beside:.3f} m beside its stance foot", f"{far:g} m is the most")
-        if abs(place.ahead) > self.length + LANDING_ROUNDING:
-            return (f"lands {place.ahead:.3f} m ahead of its stance foot", f"{self.length:g} m is the most")
-        stretch = math.hypot(place.ahead, place.beside - self.hip_width)
+        if abs(ahead) > self.length + LANDING_ROUNDING:
+            return (f"lands {ahead:.3f} m ahead of its stance foot", f"{self.length:g} m is the most")
+        stretch = math.hypot(ahead, place.beside - self.hip_width)
         if stretch > self.leg_span + LANDING_ROUNDING:
             what = f"lands {stretch:.3f} m from where the legs stand upright"
             return (what, f"{at_most(self.leg_span)} m is the most")
@@ -112,20 +104,19 @@ def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]
     return np.array([-x, near]), np.array([x, far])
 
 
-def check_reach(number: int, place: Landing, parameters: PlannerParameters) -> None:
+def check_reach(number: int, place: Footstep, parameters: PlannerParameters) -> None:
     """Refuse a nominal footstep outside the reach box.
 
     Args:
         number: of the footstep, from 1.
-        place: where it lands.
+        place: where it lands, seen from its stance foot.
         parameters: give the box.
 
     Raises:
         ParameterError: it is out of reach; its key is ("footsteps", number - 1, "ahead" or "beside").
     """
     low, high = reach_box(parameters, 1.0)
-    for axis, name in enumerate(("ahead", "beside")):
-        way = getattr(place, name)
+    for axis, (name, way) in enumerate((("ahead", float(place.position[0])), ("beside", place.beside))):
         if not low[axis] - LANDING_ROUNDING <= way <= high[axis] + LANDING_ROUNDING:
             ahead = "ahead of" if name == "ahead" else name
             what = f"footstep {number} would land {way:.3f} m {ahead} its stance foot"

@@ -122,6 +122,14 @@ class SwingTrajectory:
             result[k, 2] -= self.search.motion(float(times[k]) - self.touchdown_time)[0]
         return result
 
+    def place(self, time: float) -> tuple[float, float]:
+        """Where a swing that does not bend is at an instant, x and y in plain numbers, which are fast [m]."""
+        if time >= self.touchdown_time - TOUCHING:
+            return float(self.target[0]), float(self.target[1])
+        t = min(max(time - self.start_time, 0.0), self.glide_end - self.start_time)
+        (a, b, c, d, e, f), (u, v, w, x, y, z) = self.level[:, :2].T.tolist()
+        return a + t * (b + t * (c + t * (d + t * (e + t * f)))), u + t * (v + t * (w + t * (x + t * (y + t * z))))
+
     def retargeted(
         self, time: float, target: Array, gliding: bool = False, least: float = LEAST_GLIDE
     ) -> "SwingTrajectory":

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from surefoot.native.library import library
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.plan import PlanSample, WalkPlan
-from surefoot.planner.steps.commands import Orders
+from surefoot.planner.steps.commands import Command
 from surefoot.planner.swing.heel_off import FootRoll
-from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, PlannedFootstep, SolverStatus
+from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, SolverStatus
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import RowLayout
 from surefoot.scenarios.record import channels
@@ -125,32 +125,28 @@ class WalkRecorder:
             None,
             _pose(plan.footholds[Foot.LEFT]),
             _pose(plan.footholds[Foot.RIGHT]),
-            [_NO_FOOTSTEP if step is None else _pose(step.footstep) for step in ahead],
-            [-1 if step is None else int(step.footstep.foot) for step in ahead],
+            [_NO_FOOTSTEP if step is None else _pose(step) for step in ahead],
+            [-1 if step is None else int(step.foot) for step in ahead],
             [math.nan if step is None else step.touchdown_time for step in ahead],
         )
         vertices = plan.support_polygon
         self._support[: len(vertices)] = vertices
         self._support[len(vertices) :] = vertices[-1]
 
-    def touchdown(self, time_ns: int, planned: PlannedFootstep, feet: FeetState) -> None:
+    def touchdown(self, time_ns: int, planned: Footstep, feet: FeetState) -> None:
         """A footstep taken: as last planned, and where the sole is."""
-        foot = planned.footstep.foot
+        foot = planned.foot
         actual = np.append(feet.position[foot], feet.yaw[foot])
-        self._footstep.put(time_ns, index=planned.step, foot=int(foot), planned=_pose(planned.footstep), actual=actual)
+        self._footstep.put(time_ns, index=planned.step, foot=int(foot), planned=_pose(planned), actual=actual)
 
-    def command(self, time_ns: int, orders: Orders) -> None:
+    def command(self, time_ns: int, orders: Command) -> None:
         """What the walk is told from now on."""
-        none = (math.nan,) * 3
-        *place, heading = orders.place or none
-        twists = (
-            none if twist is None else (twist.v_x, twist.v_y, twist.yaw_rate)
-            for twist in (orders.twist, orders.followed)
-        )
-        (*velocity, yaw_rate), (*followed, followed_rate) = twists
+        place = orders.places[-1] if orders.places else None
+        numbers = ((math.nan,) * 3 if twist is None else twist[:3] for twist in (place, orders.twist, orders.followed))
+        (*place_xy, heading), (*velocity, yaw_rate), (*followed, followed_rate) = numbers
         self._command.put(
             time_ns, orders, velocity=velocity, yaw_rate=yaw_rate, followed_velocity=followed,
-            followed_yaw_rate=followed_rate, place=place, heading=heading,
+            followed_yaw_rate=followed_rate, place=place_xy, heading=heading,
         )  # fmt: skip
 
     def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.forces import NO_LOAD, ExternalLoad, Push
 from surefoot.guard import Guard, MisfitError, shown
 from surefoot.models.pinocchio import limb_shapes, pinocchio_model
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
-from surefoot.planner.types import CentroidalState, FeetState, LastingForce
+from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.record.body import Recorder
@@ -38,7 +39,6 @@ from surefoot.scenarios.setup.stance import (
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
-from surefoot.sim.pushes import Push
 from surefoot.sim.world import World
 from surefoot.wbc.controller import Sole, WholeBodyController
 from surefoot.wbc.falling import GivingWay
@@ -46,7 +46,7 @@ from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.statics import LEVER, standing_torque
 from surefoot.wbc.tasks import TASKS, Task, TaskFactory
-from surefoot.wbc.types import NO_LOAD, FootSensing, RobotState, WbcReport
+from surefoot.wbc.types import FootSensing, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
 Array = NDArray[np.float64]
@@ -188,13 +188,10 @@ class SimulatedRobot:
         state = CentroidalState(now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
         return state, zmp[:2], FeetState(soles, yaw, self._landed)
 
-    def _lasting(self) -> LastingForce | None:
-        """The lasting force that the controller counted with a tick ago."""
+    def _lasting(self) -> ExternalLoad | None:
+        """The load that the controller counted with a tick ago, per mass."""
         load = self._load
-        if load is NO_LOAD:
-            return None
-        mass = load.mass_scale * self.controller.terms.model_mass
-        return LastingForce(load.force[:2] / mass, load.moment[:2] / mass)
+        return None if load is NO_LOAD else load.per_mass(load.mass_scale * self.controller.terms.model_mass)
 
     def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
         """See `Walker`."""

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.forces import Push
 from surefoot.planner.geometry import convex_hull, sole_corners
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
-from surefoot.planner.plants import CartTable, IdealFeet, Pendulum, PointPush
+from surefoot.planner.plants import CartTable, IdealFeet, Pendulum
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep
 from surefoot.scenarios.file.schema import PendulumSettings
 from surefoot.scenarios.judge.body import lost
@@ -23,7 +24,6 @@ from surefoot.scenarios.run.planning import FaultSchedule, RunFault
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.sim.pushes import Push
 
 Array = NDArray[np.float64]
 
@@ -156,7 +156,7 @@ class PointMass:
         self._period, self._height_error = 1.0 / walk.rates.control, walk.height_error
         self._half_size = 0.5 * np.array(walk.sole)
         self._faults = FaultSchedule(walk.faults, walk.rates.control)
-        self._pushes = [PointPush(push.time, push.duration, push.force[:2]) for push in walk.pushes]
+        self._pushes = list(walk.pushes)
         self._feet = IdealFeet(walk.ground.stance)
         self._plant = plant(walk.pendulum, walk.true_mass, start_position(walk), self._height_error)
         self._height, self._climb, self._length = walk.start_com_height, 0.0, walk.size.length
@@ -230,7 +230,7 @@ class PointMass:
             raise ParameterError(
                 ("force",), "a vertical push on a pendulum, whose height is prescribed", "use [x, y, 0]"
             )
-        self._pushes.append(PointPush(push.time, push.duration, push.force[:2]))
+        self._pushes.append(push)
 
     def _support_of(self, contacts: tuple[bool, bool]) -> Array:
         """Hull of the soles in contact, shape (v, 2); they rest, so it changes with the contacts only."""
@@ -249,11 +249,11 @@ def start_position(walk: Walk) -> Array:
     return np.array([start.x, start.y]) + noise
 
 
-def mean_force(pushes: Sequence[PointPush], time: float, period: float) -> Array:
-    """Mean of the pushes from an instant on for a period, so that their impulses are exact, shape (2,) [N]."""
+def mean_force(pushes: Sequence[Push], time: float, period: float) -> Array:
+    """Horizontal mean of the pushes from an instant on for a period, impulses exact, shape (2,) [N]."""
     total = np.zeros(2)
     for push in pushes:
         overlap = min(time + period, push.time + push.duration) - max(time, push.time)
         if overlap > 0.0:
-            total += overlap / period * push.force
+            total += overlap / period * push.force[:2]
     return total

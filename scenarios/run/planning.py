@@ -12,8 +12,8 @@ from surefoot.guard import OWN_GUARD, Guard
 from surefoot.native.library import library
 from surefoot.planner.plan import Planner, PlanSampler, WalkPlan
 from surefoot.planner.plan_kernel import PlanKernel
-from surefoot.planner.steps.commands import Command, Orders, TimedCommand
-from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, PlannedFootstep
+from surefoot.planner.steps.commands import Command
+from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
 from surefoot.scenarios.file.schema import Fault, Rates
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.sensing import PlannerSensing
@@ -32,7 +32,7 @@ class CommandedPlanner(Planner, Protocol):
     """A planner that hears while the walk goes on what to do, as `surefoot.planner.planner.WalkingPlanner`."""
 
     @property
-    def orders(self) -> Orders:
+    def orders(self) -> Command:
         """What the walk does of what it has been told."""
 
     def command(self, command: Command) -> None:
@@ -82,7 +82,7 @@ class Planning:
         recorder: WalkRecorder,
         faults: FaultSchedule,
         rates: Rates,
-        commands: Sequence[TimedCommand] = (),
+        commands: Sequence[Command] = (),
         guard: Guard = OWN_GUARD,
     ) -> None:
         self.planner, self._sensing, self._recorder, self._faults = planner, sensing, recorder, faults
@@ -93,10 +93,10 @@ class Planning:
         kernels = library()
         self._kernel = PlanKernel(kernels) if kernels else None
         self._started = False
-        self._commands = deque(sorted(commands, key=lambda timed: timed.time))
+        self._commands = deque(sorted(commands, key=lambda command: command.time))
         self._told = False
-        self._aim: PlannedFootstep | None = None
-        self._landing: PlannedFootstep | None = None
+        self._aim: Footstep | None = None
+        self._landing: Footstep | None = None
 
     def due(self, tick: int) -> bool:
         """Whether the planner measures at a control tick."""
@@ -139,7 +139,7 @@ class Planning:
         self._say(command)
 
     @property
-    def orders(self) -> Orders:
+    def orders(self) -> Command:
         """What the walk does of what it has been told.
 
         Raises:
@@ -163,7 +163,7 @@ class Planning:
     def _tell(self, tick: int) -> None:
         """Tell the planner what it is to hear at a control tick or was to hear since its last plan."""
         while self._commands and self._commands[0].time * self._rate <= tick + ROUNDING:
-            self._say(self._commands.popleft().command)
+            self._say(self._commands.popleft())
 
     def _book(self, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
         """Record a footstep once its swing is over and its foot has touched down, which it may never do.
@@ -175,9 +175,9 @@ class Planning:
         if before is not None and (foot := _swinging(before)) is not None and swinging is not foot:
             self._landing = self._aim
         landing = self._landing
-        if landing is not None and landing.footstep.foot is swinging:
+        if landing is not None and landing.foot is swinging:
             self._landing = None
-        elif landing is not None and feet.contact[landing.footstep.foot]:
+        elif landing is not None and feet.contact[landing.foot]:
             self._recorder.touchdown(now_ns, landing, feet)
             self._landing = None
         if swinging is not None and not self.plan.status.early_touchdown:

@@ -30,7 +30,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     normal = np.array([plan.footholds[0].normal, plan.footholds[1].normal])
     if foot >= 0:
         yaw[foot] = float(swing[3])
-        normal[foot] = plan.footsteps[0].footstep.normal
+        normal[foot] = plan.footsteps[0].normal
     turning, bending = sole_rates(swing[3:], rate[3:], bend[3:])
     return WbcReference(
         com=sample.com,
@@ -45,7 +45,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         planned_contact=sample.contacts,
         load_share=(sample.load_left, 1.0 - sample.load_left),
         time_to_switch=max(0.0, phase.left - (sample.time - plan.time)),
-        lifting_foot=int(plan.footsteps[0].footstep.foot) if lifts else -1,
+        lifting_foot=int(plan.footsteps[0].foot) if lifts else -1,
         swing_foot=foot,
         swing_progress=min(1.0, passed / phase.duration) if foot >= 0 and math.isfinite(phase.duration) else 0.0,
         swing_position=swing[:3],
@@ -107,11 +107,11 @@ class ReferenceMaker:
         """What stays the same until the next plan."""
         self._plan, phase = plan, plan.phase
         lifts = phase.kind is PhaseKind.DOUBLE and phase.leads_to > 0
-        self._lifting = int(plan.footsteps[0].footstep.foot) if lifts else -1
+        self._lifting = int(plan.footsteps[0].foot) if lifts else -1
         self._lasts = math.isfinite(phase.duration)
         for k, foothold in enumerate(plan.footholds):
             self._yaw[k], self._normal[k] = foothold.yaw, foothold.normal
         if plan.footsteps:
-            self._landing[:] = plan.footsteps[0].footstep.normal
+            self._landing[:] = plan.footsteps[0].normal
         if plan.roll is None:
             self._roll[:] = NO_ROLL

@@ -266,7 +266,7 @@ def run_constants(walk: Walk) -> RunConstants:
         size=(walk.size.length, walk.size.mass),
         knee_straight=knees_straight(robot),
         unforeseen=walk.unforeseen,
-        waypoints=walk.waypoints,
+        waypoints=tuple(place[:3] for place in walk.waypoints),
     )
 
 

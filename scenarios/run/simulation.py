@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
 from surefoot.errors import ParameterError
+from surefoot.forces import Push
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.plan import Planner, PlanSample
-from surefoot.planner.steps.commands import Orders
+from surefoot.planner.steps.commands import Command
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
@@ -25,10 +26,9 @@ from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing
 from surefoot.scenarios.run.tick import Tick
-from surefoot.scenarios.setup.gait import timed_command
+from surefoot.scenarios.setup.gait import command_of
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
-from surefoot.sim.pushes import Push
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
@@ -254,13 +254,13 @@ class Simulation:
             fault = error.errors(include_url=False)[0]
             what = f"a command with {fault['loc'][-1]} {fault['input']!r}"
             raise ParameterError(("command", *map(str, fault["loc"])), what, fault["msg"]) from None
-        self._loop.planning.command(timed_command(settings).command, self._loop.tick)
+        self._loop.planning.command(command_of(settings), self._loop.tick)
         self._told += 1
         record = json.dumps(settings.model_dump(mode="json", exclude_none=True))
         self._writer.add_metadata(f"{COMMAND_RECORD}{self._told}", {"command": record})
 
     @property
-    def orders(self) -> Orders:
+    def orders(self) -> Command:
         """What the walk does of what it has been told, in its last plan.
 
         Raises:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import PartError
+from surefoot.forces import Push
 from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
@@ -22,7 +23,6 @@ from surefoot.scenarios.run.tick import Look
 from surefoot.scenarios.setup.gait import PushPoint
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.sim.pushes import Push
 from surefoot.wbc.controller import WholeBodyController
 
 _PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}

@@ -8,13 +8,14 @@ from typing import Any
 
 from surefoot.errors import ParameterError, at_least, at_most
 from surefoot.models.facts import RobotFacts
+from surefoot.planner.geometry import seen_from
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.references.com_height import highest_apex
-from surefoot.planner.steps.commands import Twist, fastest
+from surefoot.planner.steps.commands import fastest
 from surefoot.planner.steps.footsteps import plan_footsteps
-from surefoot.planner.steps.gait import Stride
-from surefoot.planner.swing.step_region import Landing, StepRegion, check_reach, soles_apart
+from surefoot.planner.swing.step_region import StepRegion, check_reach, soles_apart
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
+from surefoot.planner.types import Footstep, Twist
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
@@ -227,15 +228,15 @@ def _footstep_problems(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:
     yield from [problem for problem in found if problem is not None][:1]
 
 
-def _landings(walk: Walk) -> Iterator[tuple[int, Landing]]:
-    """Number of each footstep, and where it lands."""
+def _landings(walk: Walk) -> Iterator[tuple[int, Footstep]]:
+    """Number of each footstep, and where it lands, seen from its stance foot."""
     gait = replace(walk.asked_gait, steps=min(walk.keys.gait.steps, _PERIOD))
     footsteps = plan_footsteps(gait, walk.ground.stance, flat())
-    for row in range(2, footsteps.steps + 2):
-        yield row - 1, Landing.between(footsteps.footstep(row - 1), footsteps.footstep(row))
+    for number, (stance, place) in enumerate(pairwise(footsteps[1:]), 1):
+        yield number, seen_from(stance, place)
 
 
-def _footstep_problem(walk: Walk, facts: RobotFacts, number: int, place: Landing) -> Problem | None:
+def _footstep_problem(walk: Walk, facts: RobotFacts, number: int, place: Footstep) -> Problem | None:
     gait = walk.keys.gait
     sideways = "lateral_step" if gait.lateral_step else "turn" if gait.turn else "step_width"
     try:
@@ -243,7 +244,7 @@ def _footstep_problem(walk: Walk, facts: RobotFacts, number: int, place: Landing
     except ParameterError as fault:
         name = "step_length" if fault.key[-1] == "ahead" else sideways
         return Problem(("gait", name), fault.what, f"{fault.right}; change gait.{name}")
-    apart = soles_apart((facts.foot_length, facts.foot_width), place.turn)
+    apart = soles_apart((facts.foot_length, facts.foot_width), place.yaw)
     if place.beside < apart:
         what = f"footstep {number} would land {place.beside:.3f} m beside its stance foot and touch it"
         return Problem(("gait", sideways), what, f"keep the feet {at_least(apart)} m apart")
@@ -323,7 +324,7 @@ def _too_fast(gait: Gait, twist: Twist, region: StepRegion) -> str | None:
     limit = fastest(twist, _period(gait), gait.step_width, region)
     if limit == twist:
         return None
-    speeds = ", ".join(f"{name} {_toward_zero(getattr(limit, name)):g}" for name in ("v_x", "v_y", "yaw_rate"))
+    speeds = ", ".join(f"{name} {_toward_zero(value):g}" for name, value in limit.velocity.items())
     return f"the fastest in this direction is {speeds}; or take faster steps"
 
 
@@ -332,8 +333,8 @@ def _period(gait: Gait) -> float:
     return gait.single_support + gait.double_support
 
 
-def _step_text(stride: Stride) -> str:
-    named = ((stride.length, "m ahead"), (stride.lateral, "m to the left"), (stride.turn, "rad of turn"))
+def _step_text(stride: Twist) -> str:
+    named = zip(stride, ("m ahead", "m to the left", "rad of turn"), strict=False)
     return " and ".join(f"{value:.3g} {unit}" for value, unit in named if value)
 
 

@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations
 from surefoot.planner.geometry import wrap_angle
-from surefoot.planner.steps.commands import Pose, velocity_bouts
+from surefoot.planner.steps.commands import velocity_bouts
 from surefoot.planner.steps.source import AWAY
+from surefoot.planner.types import Twist
 from surefoot.scenarios.errors import Key, Problem
 from surefoot.scenarios.file.schema import CommandSettings, Fault, PushSettings, Rates, VelocitySettings
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.record.provenance import Event
-from surefoot.scenarios.setup.gait import gait_of, push_time, timed_command, timeline_of, twist_of, uncommanded
+from surefoot.scenarios.setup.gait import command_of, gait_of, push_time, twist_of, uncommanded, velocities_of
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.pushes import physics_window
 
@@ -204,7 +205,7 @@ def idle_commands(walk: Walk) -> Iterator[Problem]:
     plain = gait_of(uncommanded(walk.keys.gait))
 
     def bouts(chosen: Sequence[VelocitySettings]) -> object:
-        return velocity_bouts(timeline_of(chosen), plain)
+        return velocity_bouts(velocities_of(chosen), plain)
 
     try:
         walked, gait, found = bouts(commands), walk.asked_gait, 0
@@ -255,9 +256,9 @@ def told_problems(walk: Walk) -> Iterator[Problem]:
 
 def _no_way(walk: Walk) -> Iterator[Problem]:
     """List waypoints at which the robot is already, where it stands at first or at the waypoint before."""
-    before, where = Pose(0.0, 0.0, 0.0), "the robot starts"
+    before, where = Twist(), "the robot starts"
     for index, to in enumerate(walk.keys.gait.waypoints):
-        place, turn = Pose(to.x, to.y, to.yaw), abs(wrap_angle(to.yaw - before.yaw))
+        place, turn = Twist(to.x, to.y, to.yaw), abs(wrap_angle(to.yaw - before.yaw))
         if max(math.dist(place[:2], before[:2]) / walk.size.length, turn) <= AWAY:
             what = f"gait.waypoints.{index} is where {where}, so that no step goes there"
             yield Problem(("gait", "waypoints", index), what, "give another place or heading, or leave it out")
@@ -316,5 +317,5 @@ def _leads(command: CommandSettings) -> bool:
 
 def _stops(command: CommandSettings) -> bool:
     """Whether it asks to stand."""
-    twist = timed_command(command).command.twist
+    twist = command_of(command).twist
     return twist is not None and twist.is_zero

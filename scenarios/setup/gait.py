@@ -10,22 +10,11 @@ from surefoot.errors import ParameterError
 from surefoot.models.facts import RobotFacts
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.steps.commands import (
-    Command,
-    Pose,
-    TimedCommand,
-    Twist,
-    VelocityCommand,
-    VelocityTimeline,
-    footstep_bouts,
-    leading_foot,
-    velocity_bouts,
-    walk_of,
-)
+from surefoot.planner.steps.commands import Command, footstep_bouts, leading_foot, velocity_bouts, walk_of
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.source import CommandSource, steps_ordered
 from surefoot.planner.swing.step_region import StepRegion
-from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PhaseKind
+from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PhaseKind, Twist
 from surefoot.scenarios.file.schema import (
     CommandSettings,
     FootstepSettings,
@@ -80,7 +69,7 @@ def gait_of(keys: Gait) -> GaitParameters:
         heel_off=keys.heel_off,
     )
     if keys.velocity:
-        bouts = velocity_bouts(timeline_of(keys.velocity), plain)
+        bouts = velocity_bouts(velocities_of(keys.velocity), plain)
         return walk_of(plain, bouts, leading_foot(bouts))
     if keys.footsteps:
         footsteps = footsteps_of(keys.footsteps)
@@ -91,7 +80,7 @@ def gait_of(keys: Gait) -> GaitParameters:
 def longest_landing(gait: GaitParameters) -> float:
     """How far ahead of or behind its stance foot a step lands at most, either foot leading [m]."""
     places = [stride.landing(foot) for stride in gait.strides for foot in Foot]
-    return max((abs(place.ahead) for place in places), default=0.0)
+    return max((abs(float(place.position[0])) for place in places), default=0.0)
 
 
 def twist_of(command: VelocitySettings) -> Twist:
@@ -99,13 +88,9 @@ def twist_of(command: VelocitySettings) -> Twist:
     return Twist(command.v_x, command.v_y, command.yaw_rate)
 
 
-def timeline_of(commands: Sequence[VelocitySettings]) -> VelocityTimeline:
-    """Velocity commands in the planner's terms.
-
-    Raises:
-        ParameterError: they are out of order or end in motion.
-    """
-    return VelocityTimeline([VelocityCommand(command.time, twist_of(command)) for command in commands])
+def velocities_of(commands: Sequence[VelocitySettings]) -> list[Command]:
+    """Velocity commands in the planner's terms."""
+    return [Command(twist_of(command), time=command.time) for command in commands]
 
 
 def footsteps_of(footsteps: Sequence[FootstepSettings]) -> list[Footstep]:
@@ -113,21 +98,21 @@ def footsteps_of(footsteps: Sequence[FootstepSettings]) -> list[Footstep]:
     return [Footstep(Foot[step.foot.upper()], np.array([step.x, step.y, 0.0]), step.yaw) for step in footsteps]
 
 
-def timed_command(settings: CommandSettings) -> TimedCommand:
+def command_of(settings: CommandSettings) -> Command:
     """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
     velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
     twist = None if velocity == (None, None, None) else Twist(*(value or 0.0 for value in velocity))
     place = settings.place
-    places = None if place is None else (Pose(place.x, place.y, place.yaw),)
+    places = None if place is None else (Twist(place.x, place.y, place.yaw),)
     gait = (settings.single_support, settings.double_support, settings.swing_height)
-    return TimedCommand(settings.time, Command(twist, places, *gait))
+    return Command(twist, places, *gait, time=settings.time)
 
 
-def waypoints_of(keys: Gait, start: Start) -> tuple[Pose, ...]:
+def waypoints_of(keys: Gait, start: Start) -> tuple[Twist, ...]:
     """The places of `gait.waypoints` in the world frame."""
     origin, rotation = np.array([start.x, start.y]), frame_rotation(start.yaw)
     places = ((origin + rotation @ (to.x, to.y), to.yaw + start.yaw) for to in keys.waypoints)
-    return tuple(Pose(float(place[0]), float(place[1]), heading) for place, heading in places)
+    return tuple(Twist(float(place[0]), float(place[1]), heading) for place, heading in places)
 
 
 def told_until(gait: GaitParameters, command: CommandSettings) -> float:
@@ -135,7 +120,7 @@ def told_until(gait: GaitParameters, command: CommandSettings) -> float:
     return command.time + _STOPPING * gait.period
 
 
-def there_at(gait: GaitParameters, start: Pose, places: tuple[Pose, ...], parameters: PlannerParameters) -> float:
+def there_at(gait: GaitParameters, start: Twist, places: tuple[Twist, ...], parameters: PlannerParameters) -> float:
     """Time at which the robot stands at the last of some places, where nothing comes between, or a little later [s]."""
     sole = parameters.size.times(_LARGEST_SOLE, "m")
     source = CommandSource(gait, step_region(parameters, sole, sole[1]), places=places, size=parameters.size)

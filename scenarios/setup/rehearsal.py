@@ -110,11 +110,11 @@ def check_turns(walk: Walk) -> None:
 
 def _largest_turn(walk: Walk) -> tuple[float, tuple[str, ...]]:
     """Of the trunk in a step [rad], and the key that asks for it; a foot turns by twice that, a hip by as much."""
-    turn = max((abs(stride.turn) for stride in walk.gait.strides), default=0.0)
-    most, told = walk.region.turn, [command.command for command in walk.commands]
+    turn = max((abs(stride.yaw) for stride in walk.gait.strides), default=0.0)
+    most, told = walk.region.turn, walk.commands
     if any(command.places for command in told):
         return most, ("gait", "waypoints")
-    rates = [abs(command.twist.yaw_rate) for command in told if command.twist is not None]
+    rates = [abs(command.twist.yaw) for command in told if command.twist is not None]
     asked = min(most, max(rates, default=0.0) * walk.gait.period)
     return (asked, ("commands",)) if asked > turn else (turn, ("gait", "velocity" if walk.gait.bouts else "turn"))
 
@@ -122,7 +122,7 @@ def _largest_turn(walk: Walk) -> tuple[float, tuple[str, ...]]:
 def _fast(walk: Walk) -> bool:
     """Whether the legs of a walk are anywhere near as fast as their joints can."""
     gait, robot = walk.gait, walk.robot
-    longest = max((abs(stride.length) for bout in gait.bouts for stride in bout.strides), default=abs(gait.step_length))
+    longest = max((abs(stride.x) for bout in gait.bouts for stride in bout.strides), default=abs(gait.step_length))
     least = min(robot.velocity_limit[k] for k in robot.joint_indices(robot.roles.legs))
     return bool(2.0 * longest / gait.single_support > FAST * least * robot.leg_length)
 

@@ -161,8 +161,8 @@ def _stances(walk: Walk) -> Iterator[Stance]:
     gait = replace(walk.gait, steps=min(walk.gait.steps, _LOOKED_AT)) if not walk.gait.bouts else walk.gait
     footsteps = plan_footsteps(gait, walk.ground.stance, walk.ground.terrain)
     seen: set[tuple[float, ...]] = set()
-    for row in range(2, min(footsteps.steps, _LOOKED_AT) + 2):
-        stands, lands, lifted = (footsteps.footstep(one) for one in (row - 1, row, row - 2))
+    for row in range(2, min(len(footsteps), _LOOKED_AT + 2)):
+        stands, lands, lifted = (footsteps[one] for one in (row - 1, row, row - 2))
         way, lead = lands.position - stands.position, 0.5 * (lands.position - lifted.position)
         R = frame_rotation(stands.yaw)
         tilts = (tilt for step in (stands, lands) for tilt in sole_angles(step.normal, step.yaw))
@@ -171,7 +171,7 @@ def _stances(walk: Walk) -> Iterator[Stance]:
         if key in seen:
             continue
         seen.add(key)
-        last = row == footsteps.steps + 1
+        last = row == len(footsteps) - 1
         for landing in (True,) if last else (True, False):
             yield _stance(walk, stands, lands, (way, lead), row - 1, landing)
 

@@ -9,28 +9,29 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
+from surefoot.forces import Push
 from surefoot.models.facts import RobotFacts, facts_of, size_of, stance_widening
 from surefoot.planner.check import check_walk
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.parameters import LegInertia, PlannerParameters
 from surefoot.planner.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.steps.commands import Command, Pose, TimedCommand, fitted
+from surefoot.planner.steps.commands import Command, fitted
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
-from surefoot.planner.types import FeetState
+from surefoot.planner.types import FeetState, Twist
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
 from surefoot.scenarios.setup.formulation import Formulation, cop_room, leg_reach, lowered, region_of
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
     PushPoint,
+    command_of,
     gait_of,
     push_force,
     step_region,
     there_at,
-    timed_command,
     told_until,
     waypoints_of,
 )
@@ -39,7 +40,6 @@ from surefoot.scenarios.setup.parts import guarded_law
 from surefoot.scenarios.setup.robot import describe, true_robot
 from surefoot.scenarios.setup.terrain import kind_of
 from surefoot.scenarios.setup.terrain.ground import Ground, tiles_of
-from surefoot.sim.pushes import Push
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
@@ -129,15 +129,15 @@ class Walk:
         return fitted(self.asked_gait, step_region(self.formulation.parameters, self.sole, self.robot.shank_spacing))
 
     @cached_property
-    def waypoints(self) -> tuple[Pose, ...]:
+    def waypoints(self) -> tuple[Twist, ...]:
         """Places in the world to go to one after another, as the first of the commands says."""
         return waypoints_of(self.keys.gait, self.start)
 
     @cached_property
-    def commands(self) -> tuple[TimedCommand, ...]:
+    def commands(self) -> tuple[Command, ...]:
         """All that the walk hears while it goes on, the waypoints at its start."""
-        start = (TimedCommand(0.0, Command(places=self.waypoints)),) if self.waypoints else ()
-        return (*start, *map(timed_command, self.keys.commands))
+        start = (Command(places=self.waypoints),) if self.waypoints else ()
+        return (*start, *map(command_of, self.keys.commands))
 
     @cached_property
     def gait_duration(self) -> float:
@@ -145,7 +145,7 @@ class Walk:
         end = max([self.asked_gait.duration, *(told_until(self.asked_gait, told) for told in self.keys.commands)])
         if not self.waypoints:
             return end
-        start = Pose(self.start.x, self.start.y, self.start.yaw)
+        start = Twist(self.start.x, self.start.y, self.start.yaw)
         return max(end, there_at(self.asked_gait, start, self.waypoints, self.formulation.parameters))
 
     @cached_property

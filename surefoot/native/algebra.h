@@ -72,4 +72,7 @@ static inline double clamp(double value, double least, double most) {
     return value < least ? least : value > most ? most : value;
 }
 
+/* U with A = U'U in the upper triangle of A; its diagonal holds the reciprocals. Returns whether A is not positive. */
+int cholesky(double *A, int64_t size, int64_t stride);
+
 #endif

@@ -19,7 +19,7 @@ FOLDER = Path(__file__).parent
 LIBRARY = FOLDER / ("kernels.c" + {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so"))
 """The library; the dot in its stem tells `pkgutil` that it is no module."""
 
-FLAGS = ("-std=c11", "-O3", "-ffp-contract=off", "-fPIC", "-shared")
+FLAGS = ("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-shared")
 BASELINE = {"x86_64": ("-march=x86-64-v2",), "AMD64": ("-march=x86-64-v2",)}
 """Further flags by machine."""
 

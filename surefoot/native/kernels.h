@@ -463,4 +463,249 @@ typedef struct {
 
 void calls_run(const Calls *calls);
 
+/* Counterpart of `planner.model.dcm.nominal_motion`; `upper` is scratch. */
+typedef struct {
+    double sample_time;
+    const double *position;
+    const double *zmp;
+    const double *stiffness;
+    double *upper;
+    double *com;
+    double *velocity;
+    double *acceleration;
+    double *jerk;
+} NominalMotion;
+
+void nominal_motion_make(const NominalMotion *motion, int64_t samples);
+
+/* Counterpart of `planner.model.leg_chain.LegChain`, as `planner.references.leg_offset` fills it. */
+typedef struct {
+    double hip_half_width;
+    double hip_lever[2];
+    double trunk[3];
+    double ankle[3];
+    double foot_centre[3];
+    double foot_outward;
+    int64_t rolls_first;
+    double length[2];
+    double ahead[2];
+    double outward[2];
+    double mass_ahead[2];
+    double trunk_mass;
+    double foot_mass;
+    double at_hip;
+    double at_knee;
+    double at_ankle;
+    double carried;
+    double guess;
+    double bend;
+    double least_reach;
+    int64_t corrections;
+    int64_t points;
+    int64_t pair_count;
+    const int64_t *pairs;
+    const double *pair_mass;
+} LegChain;
+
+/*
+ * Counterpart of `planner.references.leg_offset.nominal_feet` without a swing that is flown.
+ *
+ * Of each phase from that of the first sample on `phases` has 35 numbers: rows of `steps` before, stance and after; 1 for
+ * a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of the
+ * swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
+ * the coefficients of progress, rise and fall. Soles and angles have rows of `most` samples.
+ */
+typedef struct {
+    double sample_time;
+    double touching;
+    double heading_of_frame;
+    int64_t most;
+    const int64_t *which;
+    const double *elapsed;
+    const double *clock;
+    const double *phases;
+    const double *steps;
+    double *soles;
+    double *heading;
+    double *pitch;
+} NominalFeet;
+
+void nominal_feet_make(const NominalFeet *feet, int64_t samples);
+
+/*
+ * Counterpart of `planner.references.leg_offset.LegOffset.made` with feet that are there.
+ *
+ * Feet have rows of `most` + 1 samples, heights of `most`. In `scratch`, `points` and `bends` a row takes `stride`, which
+ * is 8 more than that; they have 23 rows, and 3 for each point.
+ */
+typedef struct {
+    const LegChain *chain;
+    const NominalMotion *motion;
+    int64_t most;
+    int64_t stride;
+    double toe;
+    double gravity;
+    const double *point;
+    const double *stiffness;
+    const double *height;
+    const double *soles;
+    const double *heading;
+    const double *pitch;
+    double *zmp;
+    double *com;
+    double *scratch;
+    double *points;
+    double *bends;
+    double *offset;
+} LegOffset;
+
+void leg_offset_make(const LegOffset *legs, int64_t samples, int64_t passes);
+
+/* Counterpart of `planner.steps.phases.PhaseTable` and of a `planner.references.zmp_reference.Support`. */
+typedef struct {
+    int64_t phases;
+    const double *start;
+    const double *length;
+    const double *rest;
+    const int64_t *kind;
+    const int64_t *support;
+    const int64_t *contacts;
+    int64_t first;
+    int64_t points;
+    const double *table;
+    const double *heights;
+    const double *on_left;
+} Sight;
+
+/* Counterpart of `planner.references.window.ReferencePreview`: one sample before a window, those of it, one after. */
+typedef struct {
+    const Sight *sight;
+    int64_t samples;
+    int64_t counted;
+    double sample_time;
+    double gravity;
+    double standing;
+    const double *apexes;
+    int64_t early;
+    const double *early_shares;
+    double least_pressing;
+    double least_height;
+    double softening;
+    int64_t looked_at;
+    const double *course;
+    int64_t *which;
+    int64_t *kind;
+    int64_t *index;
+    int64_t *contacts;
+    double *clock;
+    double *rate;
+    double *bend;
+    double *elapsed;
+    double *length;
+    double *fraction;
+    double *fraction_rate;
+    double *point;
+    double *gain;
+    double *half_size;
+    double *ground;
+    double *load_left;
+    double *height;
+    double *stiffness;
+    double *softened;
+    double *omega;
+} Preview;
+
+void preview_look(const Preview *preview, int64_t steady, double now, int64_t lifts);
+void preview_weigh(const Preview *preview);
+int64_t preview_transition(const Preview *preview, int64_t soonest, double bound, double z, double speed, double bend);
+
+/*
+ * Counterpart of `planner.laws.qp.solve` with its first solver; its fields are those of `planner.laws.qp.Qp`.
+ *
+ * `tolerance` is that of a bound over 1 and its variable's size, and of a row over the row's. From `factor` on all is
+ * scratch: matrices of n rows and columns, `share` of a number a row, `taken` of one a bound and row, `work` of 4 n.
+ */
+typedef struct {
+    int64_t variables;
+    int64_t rows;
+    double tolerance;
+    const double *P;
+    const double *q;
+    const double *G;
+    const double *h;
+    const double *lower;
+    const double *upper;
+    double *x;
+    double *factor;
+    double *inverse;
+    double *rotated;
+    double *triangle;
+    double *share;
+    double *multipliers;
+    double *work;
+    int64_t *active;
+    int64_t *taken;
+} BoundedQp;
+
+int64_t bounded_qp_solve(const BoundedQp *qp, int64_t same);
+
+/*
+ * Counterpart of `planner.laws.footstep_tvmpc.FootstepTvmpc.build` without a limit on the jerk's rate.
+ *
+ * `motion` has the ZMP of the reference, the stiffness and the place now. Responses to the moves are those of
+ * `planner.model.jerk.Prediction`; `weights` is scratch of the length of the preview.
+ */
+typedef struct {
+    const NominalMotion *motion;
+    int64_t horizon;
+    int64_t moves;
+    const int64_t *starts;
+    const double *response;
+    double jerk_limit;
+    double jerk_weight;
+    double step_weight;
+    double terminal_weight;
+    double terminal_margin;
+    double zmp_slack[2];
+    double terminal_slack[2];
+    const double *state;
+    const double *omega;
+    const double *gain;
+    const double *half_size;
+    const double *step_lower;
+    const double *step_upper;
+    double *weights;
+    double *P;
+    double *q;
+    double *G;
+    double *h;
+    double *lower;
+    double *upper;
+} FootstepQps;
+
+void footstep_qps_make(const FootstepQps *qps, int64_t samples);
+
+/* Counterpart of `planner.model.jerk.WorldMotion._plain`, whose names these are, over `samples` and the one now. */
+typedef struct {
+    double sample_time;
+    int64_t samples;
+    const double *state;
+    const double *jerk;
+    const double *stiffness;
+    const double *height;
+    const double *offset;
+    const double *point;
+    const double *gain;
+    const double *shifts;
+    const double *rotation;
+    const double *origin;
+    double *com;
+    double *world_jerk;
+    double *zmp;
+    double *world_offset;
+    double *reference;
+} MotionInWorld;
+
+void motion_in_world(const MotionInWorld *motion);
+
 #endif

@@ -8,14 +8,17 @@ An object asks once, at its construction, whether there is a library, and binds 
 
 import ctypes
 import logging
+import math
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.native.build import FOLDER, LIBRARY, build, is_built
 
@@ -51,6 +54,36 @@ class Bound:
 
     struct: Any
     kept: tuple[Any, ...]
+
+    def point(self, **others: Any) -> None:
+        """Let fields point to other structs or arrays, as C sees them, which the caller keeps; this checks nothing."""
+        for name, other in others.items():
+            memory = other.struct if isinstance(other, Bound) else ctypes.c_char.from_buffer(other)
+            setattr(self.struct, name, ctypes.addressof(memory))
+
+
+class Block:
+    """Arrays side by side in memory, which kernels fill, and of which one copy makes fresh ones.
+
+    Args:
+        shapes: of the arrays.
+
+    Attributes:
+        arrays: they themselves.
+    """
+
+    def __init__(self, *shapes: tuple[int, ...]) -> None:
+        ends = list(accumulate(math.prod(shape) for shape in shapes))
+        self._memory = np.zeros(ends[-1])
+        self._parts = [(slice(end - math.prod(shape), end), shape) for end, shape in zip(ends, shapes, strict=True)]
+        self.arrays = self._seen(self._memory)
+
+    def copied(self) -> list[NDArray[np.float64]]:
+        """They in fresh memory."""
+        return self._seen(self._memory.copy())
+
+    def _seen(self, memory: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        return [memory[part].reshape(shape) for part, shape in self._parts]
 
 
 class Library:

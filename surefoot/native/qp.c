@@ -25,8 +25,7 @@ static inline void subtract_rows(double *restrict out, int64_t count, const doub
     }
 }
 
-/* U with A = U'U in the upper triangle of A; its diagonal holds the reciprocals. Returns whether A is not positive. */
-static int cholesky(double *A, int64_t size, int64_t stride) {
+int cholesky(double *A, int64_t size, int64_t stride) {
     for (int64_t i = 0; i < size; i++) {
         double *row = A + stride * i + i;
         subtract_rows(row, size - i, A + i, stride, A + i, stride, i);

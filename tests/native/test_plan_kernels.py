@@ -8,6 +8,8 @@ import pytest
 import surefoot
 from surefoot.planner.plan import PlanSample, PlanSampler
 from surefoot.planner.plan_kernel import PlanKernel
+from surefoot.planner.swing.heel_off import FootRoll
+from surefoot.planner.types import Foot
 from surefoot.scenarios.run.reference import ReferenceMaker, whole_body_reference
 from surefoot.wbc.types import WbcReference
 
@@ -70,3 +72,25 @@ def test_a_reference_that_is_changed_does_not_keep_the_numbers_of_the_old_one(ke
     assert reference.numbers is not None
     assert replace(reference, heading=1.0).numbers is None
     assert replace(sample, omega=1.0).point is None
+
+
+def test_what_is_no_kernel_without_numbers_is_called_by_python(kernels):
+    arrays = [(np.arange(6.0), np.arange(6.0) + k, np.zeros(3), np.zeros(3)) for k in range(2)]
+    done = []
+    names = "level", "rates", "position", "velocity"
+    takes_numbers = kernels.bind("roll_centre", **dict(zip(names, arrays[0], strict=True)))
+    kernels.sequence([lambda: done.append(1), lambda: takes_numbers(0.1, 0.2, 0.3)])()
+    assert done == [1]
+    assert arrays[0][2].any()
+
+
+def test_a_rolled_sole_is_where_plain_python_has_it(kernels):
+    rng, level, rates, position, velocity = np.random.default_rng(3), np.zeros(6), np.zeros(6), np.zeros(3), np.zeros(3)
+    run = kernels.bind("roll_centre", level=level, rates=rates, position=position, velocity=velocity)
+    for _ in range(50):
+        roll = FootRoll(Foot.LEFT, 0.0, 1.0, rng.uniform(0.1, 0.6), 0.1)
+        level[:], rates[:], time = rng.normal(size=6), rng.normal(size=6), rng.uniform(0.05, 0.95)
+        pitch, rate, _ = roll.evaluate(time)
+        run(roll.toe, pitch, rate)
+        for found, right in zip((position, velocity), roll.centre(time, level, rates), strict=True):
+            np.testing.assert_allclose(found, right, rtol=1e-11, atol=1e-11)

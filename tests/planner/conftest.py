@@ -3,11 +3,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pendulum_walk import PendulumTrace, walk_pendulum
 
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import PendulumTrace, walk_pendulum
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground

@@ -9,14 +9,15 @@ import pytest
 import surefoot.planner.planner
 from surefoot.errors import ParameterError
 from surefoot.planner.parameters import GroundSearch, LegInertia, PlannerParameters
-from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
+from surefoot.planner.steps.gait import Bout, GaitParameters
+from surefoot.planner.types import Twist
 
 pytestmark = pytest.mark.unit
 
 FOLDER = Path(surefoot.planner.planner.__file__).parent
 CLASSES = {
     ("gait",): GaitParameters,
-    ("stride",): Stride,
+    ("stride",): Twist,
     ("bout",): Bout,
     ("parameters",): PlannerParameters,
     ("parameters", "search"): GroundSearch,
@@ -39,7 +40,7 @@ def test_only_a_measurement_is_refused_without_a_key():
     ("key", "make"),
     [
         (("gait", "apex_ss"), lambda: GaitParameters(apex_ss=-1.0)),
-        (("stride", "width"), lambda: Stride(0.1, 0.0, 0.0, -0.2)),
+        (("stride", "width"), lambda: Bout(1.0, (Twist(0.1, width=-0.2),))),
         (("bout", "strides"), lambda: Bout(1.0, ())),
         (("parameters", "horizon"), lambda: PlannerParameters(horizon=0)),
         (("parameters", "search", "hurry_speed"), lambda: GroundSearch(hurry_speed=-1.0)),
@@ -50,5 +51,6 @@ def test_a_refusal_names_a_field_that_there_is(key, make):
     with pytest.raises(ParameterError) as refused:
         make()
     assert refused.value.key == key
-    assert key[-1] in {field.name for field in fields(CLASSES[key[:-1]])}
+    named = CLASSES[key[:-1]]
+    assert key[-1] in (named._fields if named is Twist else {field.name for field in fields(named)})
     assert not re.search(r"\b(gait|planner|terrain|parameters)\.[a-z]", str(refused.value))

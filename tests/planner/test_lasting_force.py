@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.planner.geometry import signed_distance
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet, Pendulum
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.types import GRAVITY, CentroidalState, LastingForce
+from surefoot.planner.types import GRAVITY, CentroidalState
 
 pytestmark = pytest.mark.unit
 
@@ -34,7 +35,7 @@ def walked(stand, told, turned=0.0):
     for tick in range(round((GAIT.duration + 1.0) / 0.02)):
         time = 0.02 * tick
         com, velocity = np.append(pendulum.position, GAIT.com_height), np.append(pendulum.velocity, 0.0)
-        known = LastingForce(force, moment) if told and time >= KNOWN else None
+        known = ExternalLoad(np.append(force, 0.0), np.append(moment, 0.0)) if told and time >= KNOWN else None
         plan = planner.update(CentroidalState(time, com, velocity, known), ideal.state)
         sampler = PlanSampler(plan)
         for k in range(4):
@@ -75,7 +76,7 @@ def test_a_walk_knows_it_in_whatever_direction_it_goes(stand):
 
 def test_no_force_is_as_none(stand):
     plans = []
-    for lasting in (None, LastingForce(np.zeros(2), np.zeros(2))):
+    for lasting in (None, NO_LOAD):
         planner = WalkingPlanner(GAIT, stand(), *FEET)
         state = CentroidalState(0.0, np.array([0.01, 0.0, 1.0]), np.zeros(3))
         plans.append(planner.update(replace(state, lasting=lasting), stand()))

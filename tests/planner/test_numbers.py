@@ -21,6 +21,7 @@ NOTICED = {
     "ground.terrain._KEPT": "tests/planner/ground/test_room.py",
     "ground.terrain._SHANK": "tests/planner/ground/test_room.py",
     "laws.footstep_tvmpc._EXTRA": "tests/planner/laws/test_tvmpc.py",
+    "laws.qp._TOLERANCE": "tests/native/test_bounded_qp.py",
     "model.jerk.BLOCK_STARTS": "tests/planner/laws/test_tvmpc.py",
     "plan._COLUMNS": "tests/planner/test_sampling.py",
     "recovery.step_adjustment._NO_GAIN": "tests/planner/recovery/test_step_adjustment.py",
@@ -111,15 +112,14 @@ IN_BODIES = {
     "laws.dcm_feedback": {6.0},
     "model.dcm": {4.0, 6.0},
     "model.jerk": {6.0},
-    "model.leg_chain": {9, 12.0, 1e-6},
+    "model.leg_chain": {9, 13, 12.0, 1e-6},
     "model.time_scaling": {6.0},
     "plan": {1e-6, 6.0},
-    "plants": {1e-9, 3.0, 10, 100.0},
     "recovery.capture_margin": {1e-9},
     "recovery.step_adjustment": {1e-9},
     "references.com_height": {3.0, 6.0, 10.0, 15.0, 30.0, 60.0},
     "references.height_transition": {6.0},
-    "references.leg_offset": {6.0},
+    "references.leg_offset": {6.0, 9, 16, 23, 35},
     "references.zmp_reference": {1e-12},
     "steps.gait": {1e-9},
     "steps.step": {1e-9},
@@ -218,8 +218,14 @@ def test_every_constant_has_a_witness():
 
 def test_every_number_of_recovery_is_measured():
     """In the table of what each moves, halved and doubled."""
-    table = (ROOT / "docs" / "recovery.md").read_text().split("## What each number moves")[1].split("\n#")[0]
+    table = (ROOT / "docs" / "recovery-limits.md").read_text().split("## What each number moves")[1].split("\n#")[0]
     rows = re.findall(r"^\| `(\w+)` \| ([\d.]+) \| (.+?) \|", table, flags=re.M)
     measured = {(name, float(factor)) for name, factor, _ in rows}
     assert measured == {(entry.name, factor) for entry in fields(RecoveryParameters) for factor in (0.5, 2.0)}
     assert all(case for *_, case in rows)
+
+
+def test_the_page_tells_the_changes_of_time_that_are_tried():
+    page = (ROOT / "docs" / "recovery.md").read_text()
+    told = re.search(r"^-0\.6, .*\.$", page, flags=re.M)[0].rstrip(".")
+    assert [float(value) for value in told.split(", ")] == pytest.approx(RecoveryParameters().time_changes)

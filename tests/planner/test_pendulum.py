@@ -1,7 +1,9 @@
 import numpy as np
 import pytest
+from pendulum_walk import pushing_force
 
-from surefoot.planner.plants import Pendulum, PointPush, pushing_force
+from surefoot.forces import Push
+from surefoot.planner.plants import Pendulum
 
 pytestmark = pytest.mark.unit
 
@@ -32,6 +34,6 @@ def test_without_control_it_falls():
 
 
 def test_push_gives_its_impulse():
-    push = PointPush(0.1, 0.05, np.array([200.0, 0.0]))
+    push = Push(0.1, 0.05, np.array([200.0, 0.0, 0.0]))
     forces = [pushing_force((push,), 0.01 * k)[0] for k in range(30)]
     assert sum(forces) * 0.01 == pytest.approx(10.0)

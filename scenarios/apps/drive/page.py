@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from surefoot.errors import ParameterError
-from surefoot.planner.steps.commands import Twist
+from surefoot.planner.types import Twist
 from surefoot.scenarios import palette
 from surefoot.scenarios.apps.drive.channel import DRAWN, PageChannel
 from surefoot.scenarios.apps.drive.picture import Picture, Pictures
@@ -211,7 +211,7 @@ class DrivePage:
 
 def _limits(size: Similarity) -> Twist:
     """Fastest velocity that a robot of a size is asked for."""
-    return Twist(*size.times(tuple(asdict(LIMITS).values()), "m/s, m/s, 1/s"))
+    return Twist(*size.times(LIMITS[:3], "m/s, m/s, 1/s"))
 
 
 def _gait_ranges(size: Similarity) -> dict[str, tuple[float, float]]:
@@ -226,7 +226,7 @@ def read_input(kind: Any, given: Mapping[str, Any], size: Similarity = REFERENCE
         ValueError: there is no such input, or a value is not of its kind.
     """
     if kind == "velocity":
-        return Twist(**{key: _number(given, key, -most, most) for key, most in asdict(_limits(size)).items()})
+        return Twist(*(_number(given, key, -most, most) for key, most in _limits(size).velocity.items()))
     if kind == "gait":
         ranges = _gait_ranges(size)
         return GaitInput(**{key: _number(given, key, *ranges[key]) for key in ranges if key in given})
@@ -276,8 +276,8 @@ def _vector(value: Any) -> Array | None:
     return vector if vector.shape == (3,) and (np.abs(vector) <= FARTHEST).all() else None
 
 
-def _numbers(velocity: Any) -> list[float]:
-    return [float(velocity.v_x), float(velocity.v_y), float(velocity.yaw_rate)]
+def _numbers(velocity: Twist) -> list[float]:
+    return [float(value) for value in velocity[:3]]
 
 
 def _viewer_page(gate: Gate) -> str:

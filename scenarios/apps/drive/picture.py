@@ -133,7 +133,7 @@ class Pictures:
         measurement, plan, now, terms = tick.measurement, tick.plan, tick.reference, self._terms
         assert measurement is not None
         zmp, cop = contact_points(measurement.wrench[None], terms.sole_position[None], terms.sole_rotation[None])
-        steps = [planned.footstep for planned in plan.footsteps]
+        steps = plan.footsteps
         free = 3 - len(steps)
         push, pushed = self._push_at(tick.time)
         yield from tracks(

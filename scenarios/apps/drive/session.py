@@ -10,7 +10,7 @@ from queue import SimpleQueue
 from typing import Any, Protocol
 
 from surefoot.errors import ParameterError
-from surefoot.planner.steps.commands import Twist
+from surefoot.planner.types import Twist
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.simulation import Simulation, Tick
 from surefoot.scenarios.run.skeleton import End
@@ -258,7 +258,7 @@ class Session:
         before = asdict(self._sent_gait)
         changed = {key: value for key, value in asdict(self._gait).items() if value != before[key]}
         # One after the other: a gait that is refused shall not take a stop with it.
-        orders = (asdict(wanted) if wanted != self._sent else {}, changed)
+        orders = (wanted.velocity if wanted != self._sent else {}, changed)
         self._sent, self._sent_gait, self._sent_at = wanted, self._gait, self._robot.time
         self._note = ""
         for keys in filter(None, orders):

@@ -243,7 +243,7 @@ class Outlines:
         vertices = [(x, y, height) for x, y in polygon]
         vertices += vertices[-1:] * (LOOPS[0][1] - len(polygon))
         for step in plan.footsteps:
-            vertices += self._outline(step.footstep)
+            vertices += self._outline(step)
         vertices += vertices[-1:] * (_VERTICES - len(vertices))
         self.values = [part for vertex in vertices for part in vertex]
 

@@ -1,7 +1,7 @@
 """The ground of a scenario and the walk that comes to it, what a kind of ground is, and checks that several share."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,7 +14,7 @@ from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.ground.tiles import TILE, Tiles
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.types import Array, FeetState, FootstepPlan
+from surefoot.planner.types import Array, FeetState, Footstep
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.schema import Gait, GroundError, Scenario, Start, TerrainSettings
 from surefoot.scenarios.file.units import meant
@@ -84,7 +84,7 @@ class Ground:
         """Way that the steps go at most [m]."""
         if not self.commanded:
             return self.steps.steps * abs(self.steps.step_length)
-        return sum(abs(stride.length) for stride in self.gait.strides)
+        return sum(abs(stride.x) for stride in self.gait.strides)
 
     @cached_property
     def origin(self) -> Array:
@@ -94,11 +94,16 @@ class Ground:
     @property
     def site(self) -> Site:
         """Where ground is built, and for which walk."""
-        footsteps: Callable[[], FootstepPlan] = lambda: self.level_footsteps  # noqa: E731  asked for by some kinds only
-        return Site(self.origin, self.start.yaw, self.keys.friction, footsteps, generator(self.seed, Stream.GROUND))
+        return Site(
+            self.origin,
+            self.start.yaw,
+            self.keys.friction,
+            lambda: self.level_footsteps,
+            generator(self.seed, Stream.GROUND),
+        )
 
     @cached_property
-    def level_footsteps(self) -> FootstepPlan:
+    def level_footsteps(self) -> tuple[Footstep, ...]:
         """The footsteps on level ground."""
         return plan_footsteps(self.gait, self._stance(0.0), flat())
 
@@ -124,20 +129,24 @@ class Ground:
         return FeetState(np.array([origin + left, origin - left]), np.full(2, yaw), (True, True))
 
     @cached_property
-    def footsteps(self) -> FootstepPlan:
+    def footsteps(self) -> tuple[Footstep, ...]:
         """The first footsteps on the ground as believed, start feet first."""
         gait = self.gait if self.commanded else replace(self.gait, steps=min(self.gait.steps, MOST_STEPS))
         return plan_footsteps(gait, self.stance, self.terrain)
 
+    @property
+    def places(self) -> Array:
+        """Sole centres of these footsteps, shape (n + 2, 3) [m]."""
+        return np.array([step.position for step in self.footsteps])
+
     def soles(self, facts: RobotFacts) -> Array:
         """Corners of the soles of a robot on these footsteps, shape (n + 2, 4, 2) [m]."""
         half_size = 0.5 * np.array([facts.foot_length, facts.foot_width])
-        rows = range(self.footsteps.steps + 2)
-        return np.array([sole_corners(self.footsteps.footstep(row), half_size) for row in rows])
+        return np.array([sole_corners(step, half_size) for step in self.footsteps])
 
     def edge_margins(self, facts: RobotFacts) -> Array:
         """Least distance of each of these soles from the edge of its face, negative beyond, shape (n + 2,) [m]."""
-        return self.terrain.edge_margins(self.footsteps.position[:, :2], self.soles(facts))
+        return self.terrain.edge_margins(self.places[:, :2], self.soles(facts))
 
     @cached_property
     def true_terrain(self) -> Terrain:
@@ -245,10 +254,11 @@ def climb_problems(ground: Ground, facts: RobotFacts, risers: int = 1) -> Iterat
         yield Problem(("terrain", "riser"), what, f"use at most {at_most(most)} m{meant(riser, 'm', most)}")
 
 
-def unreached(plan: FootstepPlan, what: str) -> Iterator[Problem]:
+def unreached(ground: Ground, what: str) -> Iterator[Problem]:
     """Tell a walk that takes steps and leaves off before the ground is anything but level."""
-    if plan.steps and np.ptp(plan.position[:, 2]) == 0.0 and (plan.normal[:, 2] == 1.0).all():
-        said = f"none of {plan.steps} footsteps comes to the {what}, so that the walk is one on level ground"
+    count = len(ground.footsteps) - 2
+    if count and np.ptp(ground.places[:, 2]) == 0.0 and all(step.normal[2] == 1.0 for step in ground.footsteps):
+        said = f"none of {count} footsteps comes to the {what}, so that the walk is one on level ground"
         yield Problem(("terrain", "start"), said, "let it begin nearer, take more steps, or use kind flat")
 
 

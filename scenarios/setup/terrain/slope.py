@@ -9,7 +9,7 @@ from surefoot.errors import at_least, at_most
 from surefoot.models.facts import RobotFacts
 from surefoot.planner.ground.slope import Slope
 from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.types import Array, FootstepPlan
+from surefoot.planner.types import Array
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.terrain.ground import PLATFORM, Ground, TerrainKind, unreached
@@ -45,7 +45,7 @@ class SlopeKind(TerrainKind):
             what = "terrain.height_noise on a slope, which has one face only"
             return [Problem(("terrain", "height_noise"), what, "use 0, or kind stairs or blocks")]
         crossed = "would stand across the edge of the slope", "put the edge between two footsteps"
-        return list(off_face(ground, facts, "start", *crossed)) or list(unreached(ground.footsteps, "slope"))
+        return list(off_face(ground, facts, "start", *crossed)) or list(unreached(ground, "slope"))
 
 
 def steepness(ground: Ground) -> Iterator[Problem]:
@@ -70,21 +70,21 @@ def off_face(ground: Ground, facts: RobotFacts, name: str, what: str, right: str
         what: becomes of the foot.
         right: what would be right.
     """
-    plan = ground.footsteps
-    if np.any(plan.normal[:2, 2] < 1.0):
+    if any(foot.normal[2] < 1.0 for foot in ground.footsteps[:2]):
         least = f"use at least {at_least(0.5 * facts.foot_length)} m, so that both feet stand level"
         yield Problem(("terrain", "start"), "the walk would start on the slope", least)
         return
-    buried = _buried(ground.terrain, plan, ground.soles(facts))
+    buried = _buried(ground, ground.soles(facts))
     beyond = np.flatnonzero((ground.edge_margins(facts) < -1e-9) | (buried > _FLUSH))
     if len(beyond):
         who = f"footstep {beyond[0] - 1}" if beyond[0] > 1 else "a start foot"
         yield Problem(("terrain", name), f"{who} {what}", right)
 
 
-def _buried(terrain: Terrain, plan: FootstepPlan, corners: Array) -> Array:
+def _buried(ground: Ground, corners: Array) -> Array:
     """How far the ground is above each sole's plane at the worst of its corners, shape (n + 2,) [m]."""
-    heights = terrain.heights(corners.reshape(-1, 2)).reshape(corners.shape[:2])
-    tilt = plan.normal[:, :2] / plan.normal[:, 2:]
-    offsets = np.einsum("nkj,nj->nk", corners - plan.position[:, None, :2], tilt)
-    return np.asarray(np.max(heights - plan.position[:, 2:] + offsets, axis=1))
+    heights = ground.terrain.heights(corners.reshape(-1, 2)).reshape(corners.shape[:2])
+    places, normals = ground.places, np.array([step.normal for step in ground.footsteps])
+    tilt = normals[:, :2] / normals[:, 2:]
+    offsets = np.einsum("nkj,nj->nk", corners - places[:, None, :2], tilt)
+    return np.asarray(np.max(heights - places[:, 2:] + offsets, axis=1))

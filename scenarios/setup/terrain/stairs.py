@@ -57,7 +57,7 @@ class StairsKind(TerrainKind):
 
 def _risers(ground: Ground) -> list[int]:
     """How many risers each footstep takes, up or down, in order."""
-    heights = ground.footsteps.position[:, 2]
+    heights = ground.places[:, 2]
     return [int(number) for number in np.round(np.abs(np.diff(heights)) / ground.keys.riser)]
 
 
@@ -105,7 +105,7 @@ def _edges(ground: Ground, facts: RobotFacts) -> Iterator[Problem]:
         yield _over_edge(ground, facts, int(beyond[0]), -float(margins[beyond[0]]))
     else:
         yield from _leaps(ground)
-        yield from unreached(ground.footsteps, "stairs")
+        yield from unreached(ground, "stairs")
 
 
 def _over_edge(ground: Ground, facts: RobotFacts, row: int, over: float) -> Problem:
@@ -131,7 +131,7 @@ def _beyond_climb(ground: Ground, row: int) -> bool:
     if ground.keys.direction != "up_down":
         return False
     stairs, yaw = stairs_of(ground), ground.start.yaw
-    way = (ground.footsteps.position[row, :2] - ground.origin) @ (math.cos(yaw), math.sin(yaw))
+    way = (ground.footsteps[row].position[:2] - ground.origin) @ (math.cos(yaw), math.sin(yaw))
     return bool(way > stairs.start + (stairs.count - 1) * stairs.tread)
 
 

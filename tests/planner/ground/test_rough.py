@@ -32,6 +32,10 @@ def field(stand, seed=0):
     return plan_footsteps(GAIT, feet, terrain), terrain
 
 
+def places(plan):
+    return np.array([step.position for step in plan])
+
+
 def ahead(distance, left=0.0):
     return ORIGIN + frame_rotation(YAW) @ (distance, left)
 
@@ -52,8 +56,8 @@ def test_normals_are_those_of_the_heights(stand):
     plan, terrain = field(stand)
     rng = np.random.default_rng(1)
     step, checked = 1e-5, 0
-    for position in plan.position[2:]:
-        for point in position[:2] + rng.uniform(-0.06, 0.06, (5, 2)):
+    for laid in plan[2:]:
+        for point in laid.position[:2] + rng.uniform(-0.06, 0.06, (5, 2)):
             around = point + step * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
             h = terrain.heights(around)
             gradient = np.array([h[0] - h[1], h[2] - h[3]]) / (2.0 * step)
@@ -65,10 +69,9 @@ def test_normals_are_those_of_the_heights(stand):
 
 def test_blocks_carry_the_whole_sole_of_every_footstep(stand):
     plan, terrain = field(stand)
-    soles = [plan.footstep(row) for row in range(plan.steps + 2)]
-    corners = np.array([sole_corners(sole, HALF_SOLE) for sole in soles])
-    assert terrain.edge_margins(plan.position[:, :2], corners).min() > 0.03
-    for sole, place in zip(soles, corners, strict=True):
+    corners = np.array([sole_corners(sole, HALF_SOLE) for sole in plan])
+    assert terrain.edge_margins(places(plan)[:, :2], corners).min() > 0.03
+    for sole, place in zip(plan, corners, strict=True):
         np.testing.assert_array_equal(terrain.normal(*sole.position[:2]), sole.normal)
         plane = sole.position[2] - (place - sole.position[:2]) @ sole.normal[:2] / sole.normal[2]
         np.testing.assert_allclose(terrain.heights(place), plane, atol=1e-12)
@@ -76,16 +79,16 @@ def test_blocks_carry_the_whole_sole_of_every_footstep(stand):
 
 def test_blocks_scatter_within_their_bounds_by_the_seed_and_are_level_at_both_ends(stand):
     plan, terrain = field(stand)
-    heights = plan.position[:, 2] - BLOCKS.middle
+    heights = places(plan)[:, 2] - BLOCKS.middle
     assert np.abs(heights).max() <= BLOCKS.height
     assert np.ptp(heights) > BLOCKS.height
-    tilt = np.arccos(plan.normal[:, 2])
+    tilt = np.arccos([step.normal[2] for step in plan])
     assert 0.8 * BLOCKS.angle < tilt.max() <= np.sqrt(2.0) * BLOCKS.angle
     level = [0, 1, *range(-LEVEL_STEPS, 0)]
     np.testing.assert_allclose(heights[level], 0.0, atol=1e-12)
     np.testing.assert_allclose(tilt[level], 0.0, atol=1e-7)
-    np.testing.assert_array_equal(field(stand)[0].position, plan.position)
-    assert not np.array_equal(field(stand, seed=1)[0].position, plan.position)
+    np.testing.assert_array_equal(places(field(stand)[0]), places(plan))
+    assert not np.array_equal(places(field(stand, seed=1)[0]), places(plan))
     signs = np.array([[x, y, 1.0] for x in (-1, 1) for y in (-1, 1)])
     for box in terrain.boxes:
         corners = box.center + (signs * box.half_size) @ box.rotation.T
@@ -98,10 +101,9 @@ def test_the_turning_sole_clears_all_blocks_and_lands_flat(stand, seed):
     plan, terrain = field(stand, seed)
     samples, parameters = 35, PlannerParameters()
     outline = np.array([(x, y, 0.0) for x in np.linspace(-0.11, 0.11, 9) for y in (-0.055, 0.055)])
-    for row in range(2, plan.steps + 2):
-        ends = plan.footstep(row - 2), plan.footstep(row)
-        course = swing_course(row - 1, *ends, samples, 0.05, Ground(terrain, HALF_SOLE, parameters))
-        start, end = (sole_pose(plan.position[r], plan.yaw[r], plan.normal[r]) for r in (row - 2, row))
+    for number, ends in enumerate(zip(plan, plan[2:], strict=False), 1):
+        course = swing_course(number, *ends, samples, 0.05, Ground(terrain, HALF_SOLE, parameters))
+        start, end = (sole_pose(place.position, place.yaw, place.normal) for place in ends)
         times = swing_times(0.0, samples, course, parameters)
         swing = start_swing(Foot.LEFT, start, end, times, course.height, parameters)
         for time in np.arange(0.0, times.touchdown, 0.01):
@@ -110,7 +112,7 @@ def test_the_turning_sole_clears_all_blocks_and_lands_flat(stand, seed):
             gap = np.min(points[:, 2] - terrain.heights(points[:, :2]))
             far = min(np.linalg.norm(pose[:2] - place[:2]) for place in (start, end)) > 0.06
             assert gap > (0.018 if far else -2e-3)
-        np.testing.assert_allclose(sole_rotation(*swing.evaluate(times.touchdown)[0, 3:])[:, 2], plan.normal[row])
+        np.testing.assert_allclose(sole_rotation(*swing.evaluate(times.touchdown)[0, 3:])[:, 2], ends[1].normal)
 
 
 def test_ground_that_lies_under_footsteps_asks_for_them():

@@ -30,7 +30,8 @@ def around(where, radius, count=200):
     rng = np.random.default_rng(0)
     way, turn = radius * np.sqrt(rng.uniform(size=count)), rng.uniform(0.0, 2.0 * np.pi, count)
     disc = np.column_stack((way * np.cos(turn), way * np.sin(turn)))
-    return (where.footsteps().position[:, None, :2] + disc).reshape(-1, 2)
+    places = np.array([step.position[:2] for step in where.footsteps()])
+    return (places[:, None] + disc).reshape(-1, 2)
 
 
 @pytest.mark.parametrize("gait", [{}, {"step_length": 0.0, "lateral_step": 0.1}, {"step_length": 0.1, "turn": 0.3}])
@@ -45,7 +46,7 @@ def test_ground_is_within_the_noise_everywhere_and_tiled_wherever_feet_may_go(ga
 
 
 def test_feet_start_at_the_height_that_is_believed_and_on_no_edge():
-    ground, feet = Tiles(NOISE, 1).build(site()), site().footsteps().position[:2, :2]
+    ground, feet = Tiles(NOISE, 1).build(site()), np.array([step.position[:2] for step in site().footsteps()[:2]])
     corners = feet[:, None] + np.array([[x, y] for x in (-0.11, 0.11) for y in (-0.055, 0.055)]) @ frame_rotation(YAW).T
     assert ground.edge_margins(feet, corners).min() > 0.03
     np.testing.assert_array_equal(ground.heights(corners.reshape(-1, 2)), 0.0)

@@ -5,12 +5,13 @@ from functools import cache
 import numpy as np
 import pytest
 import qpsolvers
+from pendulum_walk import walk_pendulum
 
+from surefoot.forces import Push
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.laws.qp import OPTIONS
 from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import SolverStatus
 
@@ -37,7 +38,7 @@ def walks(stand):
         return walk_pendulum(planner, stand(), duration, com=com, pushes=pushes, substeps=2), qps
 
     cases = {name: (name,) for name in PROFILES} | {
-        "repaired, pushed": ("repaired", GAIT, (PointPush(2.5, 0.1, np.array([60.0, 40.0])),)),
+        "repaired, pushed": ("repaired", GAIT, (Push(2.5, 0.1, np.array([60.0, 40.0, 0.0])),)),
         "repaired, wide": ("repaired", GaitParameters(steps=2, lateral_step=0.1)),
     }
     return cache(lambda case: walk(*cases[case]))

@@ -5,18 +5,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 from scipy.optimize import linprog
 
+from surefoot.forces import Push
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import PointPush, walk_pendulum
 from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
-from surefoot.planner.recovery.step_adjustment import NextStep
+from surefoot.planner.recovery.step_adjustment import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import ANYWHERE, LegReach
+from surefoot.planner.types import Foot, Footstep
 
 pytestmark = pytest.mark.unit
 
@@ -37,17 +39,21 @@ def window(half=0.9 * HALF):
 
 
 @dataclass(frozen=True, slots=True)
-class Pushed(NextStep):
+class Pushed(StepProblem):
     """A step as scheduled, with the body's state."""
 
     com: np.ndarray
     dcm: np.ndarray
 
 
+def landing(foot, ahead, left):
+    return Footstep(foot, np.array([ahead, left, 0.0]), 0.0)
+
+
 def situation(dcm=(0.1, 0.03), **keys):
     """A left step on the right foot, or before it."""
     given = {
-        "com": np.array([0.02, 0.06]), "dcm": np.array(dcm), "nominal": np.array([0.36, 0.2]), "side": 1.0, "turn": 0.0,
+        "com": np.array([0.02, 0.06]), "dcm": np.array(dcm), "place": landing(Foot.LEFT, 0.36, 0.2),
         "swing": np.array([[0.05, 0.2], [1.0, 0.0]]), "double": 0.0, "single": 0.3, "cycle": 0.62, "shortest": 0.0,
         "face": ANYWHERE, "adapted": False, "last": False, "crosses": True,
     }  # fmt: skip
@@ -56,7 +62,7 @@ def situation(dcm=(0.1, 0.03), **keys):
 
 SWINGING = situation()
 SHIFTING = situation((0.0, 0.06), double=0.1, single=0.5, swing=np.array([[-0.3, 0.21], [0.0, 0.0]]))
-RIGHT = situation((0.1, -0.03), side=-1.0, com=np.array([0.02, -0.06]), nominal=np.array([0.36, -0.2]),
+RIGHT = situation((0.1, -0.03), com=np.array([0.02, -0.06]), place=landing(Foot.RIGHT, 0.36, -0.2),
                   swing=np.array([[0.05, -0.2], [1.0, 0.0]]))  # fmt: skip
 
 
@@ -109,7 +115,7 @@ class Program:
 
 def rests(now, axis, box, steps, together, legs=LEGS):
     """Whether an axis can be brought to rest after exactly so many landings, of one perhaps on the stance foot."""
-    half, side, cycle = HALF[axis], now.side, now.cycle
+    half, side, cycle = HALF[axis], now.place.foot.side, now.cycle
     program = Program(now.com[axis], now.dcm[axis], (steps + 1) * (SEGMENTS + 1))
     one = np.eye(1, len(program.com), len(program.com) - 1)[0]
     if now.double:
@@ -141,7 +147,7 @@ def captured(now, most, legs=LEGS):
             rests(now, axis, box, steps, False, legs) or (steps == 1 and rests(now, axis, box, 1, True, legs))
             for axis in (0, 1)
         )
-        for steps, box in itertools.product(range(1, most + 1), legs.allowed(now.side, ANYWHERE, True))
+        for steps, box in itertools.product(range(1, most + 1), legs.allowed(now.place.foot.side, ANYWHERE, True))
     )
 
 
@@ -209,7 +215,7 @@ def test_more_steps_longer_legs_crossing_and_other_times_take_nothing_away():
 def test_its_few_times_find_what_many_do():
     law, fixed = margin_of(timing=True), margin_of()
     for now in states():
-        now = replace(now, nominal=now.swing[0], double=0.0)
+        now = replace(now, place=landing(now.place.foot, *now.swing[0]), double=0.0)
         times = np.append(np.linspace(min(now.single, 0.16), now.single + 0.2, 40), now.single)
         cycle = min(law.cycle, now.cycle)
         every = max(fixed.margins(replace(now, single=t, cycle=cycle), 3)[-1] for t in times)
@@ -238,7 +244,7 @@ GAIT = GaitParameters(steps=5, step_length=0.3, single_support=0.5, double_suppo
 def plans(stand, impulse=0.0, **keys):
     parameters, begin = replace(P, **keys), GAIT.lift_off(3) + 0.25
     planner = WalkingPlanner(GAIT, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
-    push = PointPush(begin, 0.1, 1000.0 * impulse * np.array([1.0, 0.0]))
+    push = Push(begin, 0.1, 1000.0 * impulse * np.array([1.0, 0.0, 0.0]))
     com = np.array([0.0, 0.0, GAIT.com_height])
     trace = walk_pendulum(planner, stand(), GAIT.duration + 0.5, com=com, pushes=(push,) if impulse else ())
     return begin, trace.plans, trace.fall_time
@@ -272,7 +278,7 @@ def test_a_push_is_told_by_the_margins_and_what_is_made_of_the_step(stand):
     assert landing > 0.05
     swung = [plan for plan in after if plan.swing is not None][-1]
     nominal = GAIT.lift_off(3) + GAIT.single_support
-    assert swung.footsteps[0].footstep.position[0] - 0.9 == pytest.approx(swung.balance.shift[0], abs=5e-3)
+    assert swung.footsteps[0].position[0] - 0.9 == pytest.approx(swung.balance.shift[0], abs=5e-3)
     assert swung.footsteps[0].touchdown_time - nominal == pytest.approx(swung.balance.delay, abs=1.5 * T)
 
 

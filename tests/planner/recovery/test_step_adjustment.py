@@ -5,22 +5,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
+from surefoot.forces import Push
 from surefoot.planner.geometry import quintic
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site
 from surefoot.planner.model.dcm import pendulum_com, viability_weights
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import PointPush, walk_pendulum
-from surefoot.planner.recovery.step_adjustment import NextStep, StepAdjustment
+from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepProblem
 from surefoot.planner.references.com_height import HeightPreview, Rise, SmoothHeight
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import ANYWHERE, PEAK, LegReach
-from surefoot.planner.types import PhaseKind
+from surefoot.planner.types import Foot, Footstep, PhaseKind
 
 pytestmark = pytest.mark.unit
 
@@ -28,12 +29,13 @@ P = PlannerParameters()
 T, OMEGA = P.sample_time, 3.2
 LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
 NOMINAL = np.array([0.36, 0.2])
+PLACE = Footstep(Foot.LEFT, np.append(NOMINAL, 0.0), 0.0)
 HALF = np.array([0.1, 0.05])
 LIFTING = P.recovery.lifting
 
 
 @dataclass(frozen=True, slots=True)
-class Pushed(NextStep):
+class Pushed(StepProblem):
     """A step as scheduled, with the body's state and what is known of the window."""
 
     com: np.ndarray
@@ -55,7 +57,7 @@ def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 
         "com": bounded - (0.1, 0.0), "dcm": bounded + error,
         "window": Window(reference, reference, point, HeightPreview(np.ones((3, count)), stiffness), stiffness, omega,
                          omega, point > 0.0),
-        "nominal": NOMINAL, "side": 1.0, "swing": np.array(swing), "double": 0.0, "turn": 0.0,
+        "place": PLACE, "swing": np.array(swing), "double": 0.0,
         "single": landed, "cycle": 0.62, "shortest": 0.0, "face": ANYWHERE,
         "adapted": False, "last": False, "crosses": True,
     }  # fmt: skip
@@ -181,7 +183,8 @@ def test_who_is_pushed_over_the_stance_foot_crosses_where_it_may():
 def test_a_foot_that_turns_lands_the_farther_beside_its_stance_foot(turn):
     """Pushed over the stance foot: one that lands on it would be held off it in the air."""
     legs = replace(LEGS, across=None, sole=(0.22, 0.11))
-    caught = adjusted(situation((0.0, -0.1), 0.4, swing=((0.0, 0.2), (0.0, 0.0)), turn=turn), legs=legs)
+    now = situation((0.0, -0.1), 0.4, swing=((0.0, 0.2), (0.0, 0.0)), place=replace(PLACE, yaw=turn))
+    caught = adjusted(now, legs=legs)
     assert caught.box[0, 1] == pytest.approx(legs.turned(turn).near)
     assert legs.turned(0.3).near > legs.near + 0.025
 
@@ -225,7 +228,7 @@ def greatest(stand, adaptation, direction):
     survived = 0.0
     for impulse in 0.1 * 1.5 ** np.arange(9):
         planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
-        push = PointPush(begin, 0.1, 1000.0 * impulse * np.array(direction))
+        push = Push(begin, 0.1, 1000.0 * impulse * np.array([*direction, 0.0]))
         com = np.array([0.0, 0.0, gait.com_height])
         if walk_pendulum(planner, stand(), gait.duration + 1.0, com=com, pushes=(push,)).fall_time is not None:
             break
@@ -245,7 +248,7 @@ def test_a_body_whose_step_is_hurried_is_not_let_fall(stand):
     gait = GaitParameters(
         steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95, apex_ss=0.03
     )
-    push = PointPush(gait.lift_off(3) + 0.1, 0.1, np.array([900.0, 0.0]))
+    push = Push(gait.lift_off(3) + 0.1, 0.1, np.array([900.0, 0.0, 0.0]))
     planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
     plans = walk_pendulum(planner, stand(), gait.lift_off(5), com=com, pushes=(push,)).plans
     assert min(plan.balance.delay for plan in plans) < -0.05
@@ -260,7 +263,7 @@ def test_the_body_goes_down_for_a_step_that_legs_do_not_span_at_its_height(stand
     gait = GaitParameters(
         steps=8, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95, apex_ss=0.0, apex_ds=0.0
     )
-    push = PointPush(gait.lift_off(3) + 0.2, 0.1, np.array([impulse, 0.0]))
+    push = Push(gait.lift_off(3) + 0.2, 0.1, np.array([impulse, 0.0, 0.0]))
     legs, com = replace(LEGS, height=0.85, length=0.94), np.array([0.0, 0.0, gait.com_height])
     heights = []
     for known in (LEGS, legs):
@@ -300,7 +303,7 @@ def test_a_body_that_has_gone_down_comes_up_again_all_the_way(stand, monkeypatch
 def test_a_foot_that_is_to_catch_the_body_searches_for_the_ground_in_haste(stand):
     """And no other: a gentle search, for 4 mm, takes 0.06 s, in which the DCM goes a fifth farther away."""
     gait = GaitParameters(steps=4, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
-    push = PointPush(gait.lift_off(2) + 0.1, 0.1, np.array([400.0, 0.0]))
+    push = Push(gait.lift_off(2) + 0.1, 0.1, np.array([400.0, 0.0, 0.0]))
     planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
     plans = walk_pendulum(planner, stand(), gait.lift_off(4), com=com, pushes=(push,)).plans
     first, pushed = ([plan.swing for plan in plans if plan.swing is not None and plan.phase.step == n] for n in (1, 2))
@@ -314,7 +317,7 @@ def test_a_foot_that_is_to_catch_the_body_searches_for_the_ground_in_haste(stand
 def test_what_a_push_leaves_to_the_cop_moves_no_step(stand):
     """Not by what the TVMPC would save in jerk either."""
     gait = GaitParameters(steps=4, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
-    push = PointPush(gait.lift_off(2) + 0.1, 0.1, 30.0 * np.array([1.0, 0.5]))
+    push = Push(gait.lift_off(2) + 0.1, 0.1, 30.0 * np.array([1.0, 0.5, 0.0]))
     planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
     trace = walk_pendulum(planner, stand(), gait.duration, com=com, pushes=(push,))
     moved = [plan.swing.target[:2] - (0.3 * min(plan.phase.step, 3), 0.1 * (-1) ** (plan.phase.step + 1))
@@ -329,7 +332,7 @@ def stood(stand, impulse, direction, gait=STANDING, duration=6.0, adaptation=Ste
     """A pendulum on two human-size feet, pushed at 0.5 s for 0.1 s [N·s/kg, rad]."""
     parameters = replace(P, step_adaptation=adaptation)
     planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
-    push = PointPush(0.5, 0.1, 1000.0 * impulse * np.array([np.cos(direction), np.sin(direction)]))
+    push = Push(0.5, 0.1, 1000.0 * impulse * np.array([np.cos(direction), np.sin(direction), 0.0]))
     return walk_pendulum(planner, stand(), duration, com=np.array([0.0, 0.0, gait.com_height]), pushes=(push,))
 
 
@@ -380,7 +383,7 @@ def test_who_ends_its_walk_goes_on_when_it_is_pushed(stand):
     com = np.array([0.0, 0.0, gait.com_height])
     for begin in (gait.lift_off(3) + 0.2, gait.lift_off(3) + 0.52, gait.duration):
         planner = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS)
-        push = PointPush(begin, 0.1, np.array([450.0, 0.0]))
+        push = Push(begin, 0.1, np.array([450.0, 0.0, 0.0]))
         trace = walk_pendulum(planner, stand(), gait.duration + 4.5, com=com, pushes=(push,))
         assert trace.fall_time is None
         last = trace.plans[-1]
@@ -425,7 +428,7 @@ def down_stairs(stand, impulse, **keys):
     planner = WalkingPlanner(
         DESCENT, feet, 0.22, 0.11, terrain=terrain, height_profile=SmoothHeight(Rise.SINGLE), legs=LEGS, **keys
     )
-    push = PointPush(DESCENT.lift_off(3) + 0.18, 0.1, np.array([0.0, -1000.0 * impulse]))
+    push = Push(DESCENT.lift_off(3) + 0.18, 0.1, np.array([0.0, -1000.0 * impulse, 0.0]))
     com = np.array([0.0, 0.0, feet.position[0, 2] + DESCENT.com_height])
     return terrain, walk_pendulum(planner, feet, DESCENT.duration + 5.0, com=com, pushes=(push,))
 

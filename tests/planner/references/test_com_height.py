@@ -11,8 +11,8 @@ from surefoot.planner.references.com_height import (
     preview_height,
 )
 from surefoot.planner.references.height_transition import HeightTransition
-from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
-from surefoot.planner.types import GRAVITY, PhaseKind
+from surefoot.planner.steps.gait import Bout, GaitParameters
+from surefoot.planner.types import GRAVITY, PhaseKind, Twist
 
 pytestmark = pytest.mark.unit
 
@@ -138,7 +138,7 @@ def test_a_step_too_high_for_its_support_is_refused(schedule, rise, name):
 @pytest.mark.parametrize("place", list(Rise))
 def test_a_stop_on_a_tread_leaves_the_level_alone(schedule, place):
     """Up two treads, closing the stance on the second, and on after a stop: the height is smooth and ends on top."""
-    stride, closing = Stride(0.2, 0.0, 0.0, 0.2), Stride(0.0, 0.0, 0.0, 0.2)
+    stride, closing = Twist(0.2, width=0.2), Twist(width=0.2)
     gait = GaitParameters(steps=5, bouts=(Bout(1.0, (stride, stride, closing)), Bout(1.0, (stride, closing))))
     plan = schedule(gait)
     feet = np.array([0.0, 0.0, 0.1, 0.2, 0.2, 0.3, 0.3])

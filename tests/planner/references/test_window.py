@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
+from surefoot.forces import Push
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.parameters import LegInertia, PlannerParameters, RecoveryParameters
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import PointPush, walk_pendulum
-from surefoot.planner.references import window
-from surefoot.planner.references.leg_offset import nominal_feet
+from surefoot.planner.references.leg_offset import LegOffset
 from surefoot.planner.references.window import OffsetTable
 from surefoot.planner.references.zmp_reference import SupportKey
 from surefoot.planner.steps.gait import GaitParameters
@@ -83,12 +83,13 @@ def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch
         parameters = PlannerParameters(leg=LEG, recovery=RecoveryParameters(**numbers))
         return Recorded(WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=legs))
 
-    def counted(samples, schedule, frame, flown):
-        made.append(flown is not None)
-        return nominal_feet(samples, schedule, frame, flown)
+    def counted(offset, moving, *given):
+        made.append(moving[-1] is not None)
+        return anew_made(offset, moving, *given)
 
-    monkeypatch.setattr(window, "nominal_feet", counted)
-    usual, push = planner(), PointPush(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0]))
+    anew_made = LegOffset.made
+    monkeypatch.setattr(LegOffset, "made", counted)
+    usual, push = planner(), Push(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0, 0.0]))
     end, com = gait.lift_off(2) + 0.48, np.array([0.0, 0.0, 0.95])
     plans = walk_pendulum(usual, stand(), end, com=com, pushes=(push,)).plans
     assert 10 < sum(adapts for *_, adapts in usual.given) > 2 * sum(made)

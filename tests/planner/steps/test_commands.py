@@ -1,4 +1,5 @@
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -6,12 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from surefoot.errors import ParameterError
+from surefoot.planner.geometry import seen_from
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.commands import (
-    Twist,
-    VelocityCommand,
-    VelocityTimeline,
+    Command,
     fastest,
     fitted,
     footstep_bouts,
@@ -21,8 +21,8 @@ from surefoot.planner.steps.commands import (
 )
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.swing.step_region import Landing, StepRegion, check_reach
-from surefoot.planner.types import FeetState, Foot, Footstep, PhaseKind
+from surefoot.planner.swing.step_region import StepRegion, check_reach
+from surefoot.planner.types import FeetState, Foot, Footstep, PhaseKind, Twist
 
 pytestmark = pytest.mark.unit
 
@@ -33,7 +33,7 @@ FEET = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (Tr
 
 
 def timeline(*rows):
-    return VelocityTimeline([VelocityCommand(row[0], Twist(*row[1:])) for row in rows])
+    return [Command(Twist(*row[1:]), time=row[0]) for row in rows]
 
 
 def walk(*rows, gait=GAIT):
@@ -44,7 +44,7 @@ def walk(*rows, gait=GAIT):
 def test_the_command_at_lift_off_gives_the_stride_and_zero_closes_the_stance():
     gait = walk((0.0, 0.3), (3.0, 0.6), (5.0,))
     (bout,) = gait.walk
-    lengths = [stride.length for stride in bout.strides]
+    lengths = [stride.x for stride in bout.strides]
     lift_offs = 1.32 + PERIOD * np.arange(len(lengths))
     assert lengths == pytest.approx([PERIOD * (0.3 if t < 3.0 else 0.6 if t < 5.0 else 0.0) for t in lift_offs])
     assert lengths[-1] == 0.0
@@ -62,7 +62,7 @@ def test_a_zero_longer_than_a_step_stands_and_goes_on_when_commanded(schedule):
     assert stands[1].end * 0.02 == pytest.approx(6.0)
     feet = plan_footsteps(gait, FEET, flat())
     row = len(first.strides) + 1
-    np.testing.assert_allclose(np.abs(feet.position[row] - feet.position[row - 1]), [0.0, 0.2, 0.0], atol=1e-12)
+    np.testing.assert_allclose(np.abs(feet[row].position - feet[row - 1].position), [0.0, 0.2, 0.0], atol=1e-12)
 
 
 def test_a_command_that_has_gone_before_the_foot_lifts_moves_nothing():
@@ -83,16 +83,16 @@ def test_the_path_follows_the_arc_of_a_constant_twist_exactly(twist):
     vx, vy, w = twist
     angle, row = w * PERIOD * strides, strides + 1
     turned = np.array([[math.sin(angle), math.cos(angle) - 1.0], [1.0 - math.cos(angle), math.sin(angle)]]) / w
-    middle = 0.5 * (feet.position[row] + feet.position[row + 1])
+    middle = 0.5 * (feet[row].position + feet[row + 1].position)
     np.testing.assert_allclose(middle[:2], turned @ [vx, vy], atol=1e-9)
-    assert feet.yaw[row] == pytest.approx(angle)
+    assert feet[row].yaw == pytest.approx(angle)
 
 
 def test_sideways_alternates_wide_and_closing_steps_of_both_legs_reach():
     gait = walk((0.0, 0.0, 0.2), (8.0,))
     feet = plan_footsteps(gait, FEET, flat())
-    beside = np.abs(np.diff(feet.position[1:, 1]))
-    assert feet.feet[2] is Foot.LEFT
+    beside = np.abs(np.diff([step.position[1] for step in feet[1:]]))
+    assert feet[2].foot is Foot.LEFT
     assert beside[1:-1:2] == pytest.approx(0.12 if beside[1] < 0.2 else 0.384)
     assert np.all((beside >= 0.12 - 1e-9) & (beside <= 0.4))
     assert np.ptp(beside[:-1]) == pytest.approx(2 * 0.2 * PERIOD)
@@ -114,15 +114,15 @@ def test_the_leading_foot_is_on_the_side_of_the_motion():
 )
 def test_a_bad_timeline_is_refused(rows, message, key):
     with pytest.raises(ParameterError, match=message) as refused:
-        timeline(*rows)
+        velocity_bouts(timeline(*rows), GAIT)
     assert refused.value.key == key
 
 
 def test_bad_commands_are_refused():
     with pytest.raises(ParameterError, match="must be finite"):
-        VelocityCommand(0.0, Twist(math.nan))
+        Command(Twist(math.nan))
     with pytest.raises(ParameterError, match="must not be negative"):
-        VelocityCommand(-1.0, Twist())
+        Command(Twist(), time=-1.0)
     with pytest.raises(ParameterError, match="lasts 80000 s; 66000 s is the most"):
         velocity_bouts(timeline((0.0, 0.1), (80_000.0,)), GAIT)
 
@@ -133,15 +133,15 @@ def test_bad_commands_are_refused():
 def test_the_fastest_is_just_within_reach(direction):
     twist = Twist(*direction).scaled(20.0)
     limit = fastest(twist, PERIOD, 0.2, REGION)
-    inside, outside = (limit.scaled(f).stride(PERIOD, 0.2).fitted(REGION) for f in (1.0, 1.001))
-    assert inside.within(REGION)
-    assert not outside.within(REGION)
-    assert np.linalg.matrix_rank([[limit.v_x, limit.v_y, limit.yaw_rate], direction], tol=1e-9) == 1
+    inside, outside = (REGION.fitted(limit.scaled(f).stride(PERIOD, 0.2)) for f in (1.0, 1.001))
+    assert REGION.admits(inside)
+    assert not REGION.admits(outside)
+    assert np.linalg.matrix_rank([limit[:3], direction], tol=1e-9) == 1
 
 
 def test_the_fastest_straight_ahead_uses_the_whole_step_length():
-    assert fastest(Twist(3.0), PERIOD, 0.2, REGION).v_x == pytest.approx(0.4 / PERIOD)
-    assert fastest(Twist(0.0, -3.0), PERIOD, 0.2, REGION).v_y == pytest.approx(-(0.4 - 0.12) / 2 / PERIOD)
+    assert fastest(Twist(3.0), PERIOD, 0.2, REGION).x == pytest.approx(0.4 / PERIOD)
+    assert fastest(Twist(0.0, -3.0), PERIOD, 0.2, REGION).y == pytest.approx(-(0.4 - 0.12) / 2 / PERIOD)
     assert fastest(Twist(0.1), PERIOD, 0.2, REGION) == Twist(0.1)
 
 
@@ -153,10 +153,10 @@ def test_footsteps_are_taken_where_they_are_given():
     ]
     gait = walk_of(GAIT, footstep_bouts(given_steps, GAIT), Foot.RIGHT)
     feet = plan_footsteps(gait, FEET, flat())
-    for row, footstep in enumerate(given_steps, 2):
-        assert feet.feet[row] is footstep.foot
-        np.testing.assert_allclose(feet.position[row], footstep.position, atol=1e-12)
-        assert feet.yaw[row] == pytest.approx(footstep.yaw)
+    for laid, footstep in zip(feet[2:], given_steps, strict=True):
+        assert laid.foot is footstep.foot
+        np.testing.assert_allclose(laid.position, footstep.position, atol=1e-12)
+        assert laid.yaw == pytest.approx(footstep.yaw)
 
 
 def test_footsteps_must_alternate():
@@ -178,18 +178,18 @@ def test_any_velocity_command_within_limits_gives_a_sound_walk(schedule, data):
     ticks = sorted(data.draw(st.sets(st.integers(0, 400), min_size=1, max_size=6)))
     twists = [data.draw(st.just(Twist()) | TWISTS) for _ in ticks[1:]]
     twists = [fastest(twist, PERIOD, GAIT.step_width, REGION) for twist in twists]
-    commands = [VelocityCommand(0.02 * k, twist) for k, twist in zip(ticks, [*twists, Twist()], strict=True)]
-    bouts = velocity_bouts(VelocityTimeline(commands), GAIT)
+    commands = [Command(twist, time=0.02 * k) for k, twist in zip(ticks, [*twists, Twist()], strict=True)]
+    bouts = velocity_bouts(commands, GAIT)
     gait = fitted(walk_of(GAIT, bouts, leading_foot(bouts)), REGION)
     steps = plan_footsteps(gait, FEET, flat())
-    for row in range(2, gait.steps + 2):
-        place = Landing.between(steps.footstep(row - 1), steps.footstep(row))
-        check_reach(row - 1, place, PlannerParameters())
-        c, s = np.cos(steps.yaw[row - 1]), np.sin(steps.yaw[row - 1])
-        x, y = np.diff(steps.position[row - 1 : row + 1, :2], axis=0)[0] @ np.array([[c, -s], [s, c]])
-        beside = float(y if steps.feet[row] is Foot.LEFT else -y)
-        assert (place.ahead, place.beside) == pytest.approx((x, beside), abs=1e-12)
-        assert place.turn == pytest.approx(steps.yaw[row] - steps.yaw[row - 1])
+    for number, (stance, step) in enumerate(pairwise(steps[1:]), 1):
+        place = seen_from(stance, step)
+        check_reach(number, place, PlannerParameters())
+        c, s = np.cos(stance.yaw), np.sin(stance.yaw)
+        x, y = (step.position - stance.position)[:2] @ np.array([[c, -s], [s, c]])
+        beside = float(y if step.foot is Foot.LEFT else -y)
+        assert (place.position[0], place.beside) == pytest.approx((x, beside), abs=1e-12)
+        assert place.yaw == pytest.approx(step.yaw - stance.yaw)
         assert REGION.why_not(place) is None
     plan = schedule(gait)
     assert [phase.kind for phase in plan.phases].count(PhaseKind.SINGLE) == gait.steps

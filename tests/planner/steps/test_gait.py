@@ -5,8 +5,8 @@ import pytest
 
 from surefoot.errors import ParameterError
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.steps.gait import Bout, GaitParameters, Stride, in_samples
-from surefoot.planner.types import Foot, PhaseKind
+from surefoot.planner.steps.gait import Bout, GaitParameters, in_samples
+from surefoot.planner.types import Foot, PhaseKind, Twist
 
 pytestmark = pytest.mark.unit
 
@@ -41,10 +41,10 @@ def test_bad_planner_parameter_is_refused_by_name(name, value):
 
 
 def test_bad_stride_and_bout_are_refused():
-    stride = Stride(0.2, 0.0, 0.0, 0.2)
+    stride = Twist(0.2, width=0.2)
     for values in ((math.nan, 0.0, 0.0, 0.2), (0.2, 0.0, 0.0, 0.0), (0.2, 0.0, math.inf, 0.2)):
         with pytest.raises(ParameterError, match=r"of a stride is"):
-            Stride(*values)
+            Bout(1.0, (stride, Twist(*values)))
     with pytest.raises(ParameterError, match=r"standing before a bout is -1 s"):
         Bout(-1.0, (stride,))
     with pytest.raises(ParameterError, match=r"at least one"):
@@ -60,7 +60,7 @@ def test_standing_has_no_strides():
 
 def test_times_of_a_gait_are_those_of_its_phases(schedule):
     """Two bouts: lift-offs and durations in seconds against the phases that the clock lays out in samples."""
-    stride = Stride(0.2, 0.0, 0.0, 0.2)
+    stride = Twist(0.2, width=0.2)
     bouts = (Bout(1.0, (stride, stride, stride)), Bout(0.7, (stride, stride)))
     gait = GaitParameters(steps=5, bouts=bouts, single_support=0.6, double_support=0.2)
     phases = schedule(gait).phases

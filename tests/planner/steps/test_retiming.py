@@ -13,9 +13,9 @@ from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.com_height import Rise, SmoothHeight
-from surefoot.planner.steps.commands import Command, Twist
+from surefoot.planner.steps.commands import Command
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.types import CentroidalState, Foot, PhaseKind
+from surefoot.planner.types import CentroidalState, Foot, PhaseKind, Twist
 
 pytestmark = pytest.mark.unit
 

@@ -9,13 +9,12 @@ from hypothesis import strategies as st
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.adaptation import with_heel_lifted, with_step_in_place, with_steps_repeated
-from surefoot.planner.steps.commands import Twist
-from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
+from surefoot.planner.steps.gait import Bout, GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import CommandSource, GaitSource
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.step_region import StepRegion
-from surefoot.planner.types import Foot, PhaseKind
+from surefoot.planner.types import Foot, PhaseKind, Twist
 
 pytestmark = pytest.mark.unit
 
@@ -23,7 +22,7 @@ pytestmark = pytest.mark.unit
 @pytest.fixture
 def stop_and_go():
     """Three strides, standing for a second, two more without a stop before them, and two after half a second."""
-    stride = Stride(0.2, 0.0, 0.0, 0.2)
+    stride = Twist(0.2, width=0.2)
     bouts = (Bout(1.0, (stride,) * 3), Bout(1.0, (stride,) * 2), Bout(0.0, (stride,)), Bout(0.5, (stride,) * 2))
     return GaitParameters(steps=8, bouts=bouts)
 
@@ -116,9 +115,9 @@ class Counted(GaitSource):
 
     asked = 0
 
-    def order(self, at):
-        self.asked = max(self.asked, at.step)
-        return super().order(at)
+    def order(self, step, *where):
+        self.asked = max(self.asked, step)
+        return super().order(step, *where)
 
 
 @pytest.mark.parametrize("single", [0.3, 0.637])
@@ -369,7 +368,7 @@ def test_steps_inserted_once_more_take_the_place_of_those_not_yet_made(stand, ag
     gait = replace(PLAIN, steps=4, step_length=0.3)
     schedule = with_steps_repeated(Schedule.start(gait, stand(), GROUND).extended(1000.0), 1)
     schedule = with_steps_repeated(schedule, again).extended(1000.0)
-    strides = [step.stride.length for step in schedule.after(0) if not step.inserted]
+    strides = [step.stride.x for step in schedule.after(0) if not step.inserted]
     assert strides == [0.3, 0.3, 0.3, 0.0]
     assert sum(step.inserted for step in schedule.steps) == again - 1 + 2
     assert [step.ordinal for step in schedule.steps if not step.inserted] == [-1, 0, 1, 2, 3, 4]

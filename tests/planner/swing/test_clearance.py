@@ -26,14 +26,14 @@ def walk_plan(direction, riser, tread, steps=6):
 
 
 def courses_of(plan, terrain, half_size, samples=75):
-    ends = [(plan.footstep(row - 2), plan.footstep(row)) for row in range(2, plan.steps + 2)]
+    ends = zip(plan, plan[2:], strict=False)
     ground = Ground(terrain, np.array(half_size), PARAMETERS)
     return [swing_course(step, *of, samples, 0.05, ground) for step, of in enumerate(ends, 1)]
 
 
 def swings(plan, courses, samples):
     for row, course in enumerate(courses, start=2):
-        ends = [sole_pose(plan.position[r], plan.yaw[r], plan.normal[r]) for r in (row - 2, row)]
+        ends = [sole_pose(place.position, place.yaw, place.normal) for place in (plan[row - 2], plan[row])]
         times = swing_times(0.0, samples, course, PARAMETERS)
         yield ends, times, start_swing(Foot.LEFT, *ends, times, course.height, PARAMETERS)
 

@@ -84,7 +84,7 @@ def test_plans_of_a_walk_carry_the_roll_of_the_foot_that_leaves(stand):
         if plan.roll is not None and plan.roll.evaluate(plan.time)[0] > 0.0:
             foot = plan.roll.foot
             assert plan.swing is None or plan.swing.foot is foot
-            assert plan.phase.kind is PhaseKind.SINGLE or plan.footsteps[0].footstep.foot is foot
+            assert plan.phase.kind is PhaseKind.SINGLE or plan.footsteps[0].foot is foot
             rolled.append(plan.phase.step)
         com, velocity = plan.com[1], plan.com_velocity[1]
         ideal.follow(PlanSampler(plan), 0.02 * (tick + 1))

@@ -5,17 +5,17 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from surefoot.planner.geometry import sole_corners
+from surefoot.planner.geometry import seen_from, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.steps.footsteps import plan_footsteps
-from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
-from surefoot.planner.swing.step_region import Landing, StepRegion
-from surefoot.planner.types import Foot, Footstep
+from surefoot.planner.steps.gait import Bout, GaitParameters
+from surefoot.planner.swing.step_region import StepRegion
+from surefoot.planner.types import Foot, Footstep, Twist
 
 pytestmark = pytest.mark.unit
 
 REGION = StepRegion(length=0.4, width=(0.08, 0.4), sole=(0.22, 0.11))
-STRIDES = st.builds(Stride, st.floats(-0.5, 0.5), st.floats(-0.3, 0.3), st.floats(-0.6, 0.6), st.floats(0.05, 0.6))
+STRIDES = st.builds(Twist, st.floats(-0.5, 0.5), st.floats(-0.3, 0.3), st.floats(-0.6, 0.6), st.floats(0.05, 0.6))
 
 
 def separation(a: Footstep, b: Footstep, half_size: np.ndarray) -> float:
@@ -28,44 +28,47 @@ def separation(a: Footstep, b: Footstep, half_size: np.ndarray) -> float:
     return max(gaps)
 
 
-def at(place: Landing, foot: Foot) -> Footstep:
-    side = 1.0 if foot is Foot.LEFT else -1.0
-    return Footstep(foot, np.array([place.ahead, side * place.beside, 0.0]), place.turn)
+def at(ahead: float, beside: float, turn: float) -> Footstep:
+    """A left footstep, seen from its stance foot."""
+    return Footstep(Foot.LEFT, np.array([ahead, beside, 0.0]), turn)
 
 
 @given(stride=STRIDES, foot=st.sampled_from(list(Foot)))
 def test_landing_is_where_the_footstep_planner_puts_the_foot(stand, stride, foot):
     gait = GaitParameters(steps=1, bouts=(Bout(1.0, (stride,)),), step_width=stride.width, first_foot=foot)
     steps = plan_footsteps(gait, stand(stride.width), flat())
-    place = stride.landing(foot)
-    side = 1.0 if foot is Foot.LEFT else -1.0
-    np.testing.assert_allclose(
-        np.diff(steps.position[1:, :2], axis=0)[0], [place.ahead, side * place.beside], atol=1e-12
+    place, seen = stride.landing(foot), seen_from(steps[1], steps[2])
+    np.testing.assert_allclose(seen.position, place.position, atol=1e-12)
+    assert (seen.foot, seen.yaw) == (foot, pytest.approx(place.yaw))
+    assert place.beside == pytest.approx(
+        steps[2].position[1] - steps[1].position[1]
+        if foot is Foot.LEFT
+        else steps[1].position[1] - steps[2].position[1]
     )
 
 
 @given(stride=STRIDES)
 def test_admitted_strides_keep_the_soles_apart_and_in_reach(stride):
-    fitted = stride.fitted(REGION)
-    if not fitted.within(REGION):
+    fitted = REGION.fitted(stride)
+    if not REGION.admits(fitted):
         return
     for foot in Foot:
         place = fitted.landing(foot)
         here = Footstep(foot.other, np.zeros(3), 0.0)
-        assert separation(here, at(place, foot), np.array([0.11, 0.055])) >= REGION.gap - 1e-9
-        assert abs(place.ahead) <= 0.4 + 1e-9
+        assert separation(here, place, np.array([0.11, 0.055])) >= REGION.gap - 1e-9
+        assert abs(place.position[0]) <= 0.4 + 1e-9
         assert 0.08 <= place.beside <= 0.4 + 1e-9
 
 
 @given(stride=STRIDES)
-@example(stride=Stride(0.4, 0.0, 1.2e-308, 0.25))  # as long as may be, in a turn that is hardly one
+@example(stride=Twist(0.4, 0.0, 1.2e-308, 0.25))  # as long as may be, in a turn that is hardly one
 def test_fitting_changes_no_stride_that_fits_and_finds_a_width_if_there_is_one(stride):
-    fitted = stride.fitted(REGION)
-    if stride.within(REGION):
+    fitted = REGION.fitted(stride)
+    if REGION.admits(stride):
         assert fitted.width == pytest.approx(stride.width, abs=1e-8)
-    elif not fitted.within(REGION):
+    elif not REGION.admits(fitted):
         for width in np.linspace(0.05, 0.6, 56):
-            assert not Stride(stride.length, stride.lateral, stride.turn, width).within(REGION)
+            assert not REGION.admits(stride._replace(width=width))
 
 
 def test_nearest_is_tight_for_a_turned_foot_ahead():
@@ -74,29 +77,29 @@ def test_nearest_is_tight_for_a_turned_foot_ahead():
     here = Footstep(Foot.RIGHT, np.zeros(3), 0.0)
     for turn in (-0.5, 0.0, 0.3, 0.5):
         near = REGION.nearest(turn)
-        gaps = [separation(here, at(Landing(x, near, turn), Foot.LEFT), half) for x in np.linspace(-0.1, 0.1, 41)]
+        gaps = [separation(here, at(x, near, turn), half) for x in np.linspace(-0.1, 0.1, 41)]
         assert min(gaps) == pytest.approx(REGION.gap, abs=1e-9)
-        assert separation(here, at(Landing(0.0, near - 0.02, turn), Foot.LEFT), half) < 0.0
+        assert separation(here, at(0.0, near - 0.02, turn), half) < 0.0
 
 
 @pytest.mark.parametrize(
     ("place", "what", "right"),
     [
-        (Landing(0.0, -0.1, 0.0), "crosses its stance foot, -0.100 m beside it", "0.120 m is the least"),
-        (Landing(0.0, 0.1, 0.0), "would touch its stance foot, 0.100 m beside it", "0.120 m is the least"),
-        (Landing(0.0, 0.5, 0.0), "lands 0.500 m beside its stance foot", "0.4 m is the most"),
-        (Landing(-0.5, 0.2, 0.0), "lands -0.500 m ahead of its stance foot", "0.4 m is the most"),
-        (Landing(0.0, 0.2, 0.6), "turns by 0.6 rad against its stance foot", "0.5 rad is the most"),
+        (at(0.0, -0.1, 0.0), "crosses its stance foot, -0.100 m beside it", "0.120 m is the least"),
+        (at(0.0, 0.1, 0.0), "would touch its stance foot, 0.100 m beside it", "0.120 m is the least"),
+        (at(0.0, 0.5, 0.0), "lands 0.500 m beside its stance foot", "0.4 m is the most"),
+        (at(-0.5, 0.2, 0.0), "lands -0.500 m ahead of its stance foot", "0.4 m is the most"),
+        (at(0.0, 0.2, 0.6), "turns by 0.6 rad against its stance foot", "0.5 rad is the most"),
     ],
 )
 def test_what_is_wrong_with_a_landing(place, what, right):
     assert REGION.why_not(place) == (what, right)
-    assert REGION.why_not(Landing(0.0, 0.2, 0.0)) is None
+    assert REGION.why_not(at(0.0, 0.2, 0.0)) is None
 
 
 def test_legs_reach_a_disc_about_their_own_hip():
     region = StepRegion(0.4, (0.08, 0.4), (0.075, 0.075), leg_span=0.3, hip_width=0.2)
-    assert region.contains(Landing(0.3, 0.2, 0.0))
-    what, right = region.why_not(Landing(0.25, 0.39, 0.0))
+    assert region.why_not(at(0.3, 0.2, 0.0)) is None
+    what, right = region.why_not(at(0.25, 0.39, 0.0))
     assert what.endswith("m from where the legs stand upright")
     assert right == "0.300 m is the most"

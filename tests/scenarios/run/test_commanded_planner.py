@@ -60,7 +60,7 @@ def test_one_that_hears_is_told_and_its_orders_are_known():
         (heard,) = sim.planner.heard
         while sim.orders.twist is None:
             sim.step()
-        assert heard == Command(sim.orders.twist)
+        assert heard == Command(sim.orders.twist, time=heard.time)
 
 
 def test_what_it_raises_is_told_with_its_name():

@@ -75,8 +75,8 @@ def test_the_mean_velocity_is_the_one_that_is_followed(v_x, v_y, yaw_rate):
     (x, y, yaw), (last_x, last_y, last_yaw) = places[-round(6 * period * 500)], places[-1]
     turned, time = last_yaw - yaw, 6.0 * period
     arc = np.sinc(0.5 * turned / np.pi) * time
-    np.testing.assert_allclose(np.hypot(last_x - x, last_y - y) / arc, np.hypot(followed.v_x, followed.v_y), rtol=0.05)
-    np.testing.assert_allclose(turned / time, followed.yaw_rate, rtol=0.05, atol=0.005)
+    np.testing.assert_allclose(np.hypot(last_x - x, last_y - y) / arc, np.hypot(followed.x, followed.y), rtol=0.05)
+    np.testing.assert_allclose(turned / time, followed.yaw, rtol=0.05, atol=0.005)
 
 
 def retimed(seed, duration):

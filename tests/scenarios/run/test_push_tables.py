@@ -1,4 +1,4 @@
-"""The tables of docs/recovery.md, run by run: `pytest -m long tests/scenarios/run/test_push_tables.py`.
+"""The tables of docs/recovery-results.md, run by run: `pytest -m long tests/scenarios/run/test_push_tables.py`.
 
 Each is one replica. Near a threshold the last bits decide, so that a cell may fall on one machine and not on another;
 what falls as far as it is known is marked so, and none of it is asked for.
@@ -149,9 +149,8 @@ def displaced(name: str, seed: int) -> list[dict[str, object]]:
     walk = resolve(surefoot.load(name, ground(name)))
     steps, rng = plan_footsteps(walk.gait, walk.ground.stance, walk.ground.terrain), np.random.default_rng(seed)
     places = []
-    for row in range(2, steps.steps + 2):
-        step = steps.footstep(row)
-        off = rng.uniform(-1.0, 1.0, 3) * (0.025, 0.025, math.radians(10.0)) * (row < steps.steps)
+    for row, step in enumerate(steps[2:], 2):
+        off = rng.uniform(-1.0, 1.0, 3) * (0.025, 0.025, math.radians(10.0)) * (row < len(steps) - 2)
         x, y, yaw = (float(value) for value in (*(step.position[:2] + off[:2]), step.yaw + off[2]))
         places.append({"foot": step.foot.name.lower(), "x": x, "y": y, "yaw": yaw})
     return places

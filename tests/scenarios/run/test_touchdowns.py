@@ -36,7 +36,7 @@ class Booked:
         pass
 
     def touchdown(self, now_ns, planned, feet):
-        self.rows.append((now_ns / 1e9, planned.footstep, feet.position[planned.footstep.foot].copy()))
+        self.rows.append((now_ns / 1e9, planned, feet.position[planned.foot].copy()))
 
 
 def planned_touchdown(walk):

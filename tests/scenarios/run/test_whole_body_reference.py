@@ -4,12 +4,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.plants import walk_pendulum
-from surefoot.planner.steps.gait import Bout, GaitParameters, Stride
-from surefoot.planner.types import FeetState, PhaseKind
+from surefoot.planner.steps.gait import Bout, GaitParameters
+from surefoot.planner.types import FeetState, PhaseKind, Twist
 from surefoot.scenarios.run.reference import whole_body_reference
 
 pytestmark = pytest.mark.unit
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.unit
 
 def test_a_foot_is_unloaded_only_before_it_lifts():
     """At the end of a bout both feet stay loaded; before a step it is the foot that steps."""
-    stride, closing = Stride(0.2, 0.0, 0.0, 0.2), Stride(0.0, 0.0, 0.0, 0.2)
+    stride, closing = Twist(0.2, width=0.2), Twist(width=0.2)
     bouts = (Bout(0.2, (stride, closing)), Bout(0.0, (stride, closing)), Bout(0.4, (stride, closing)))
     gait = GaitParameters(steps=6, bouts=bouts, single_support=0.5, double_support=0.2)
     feet = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))

@@ -88,9 +88,9 @@ def test_footsteps_are_relative_to_the_start_stance(robots):
     text = FOOTSTEPS % "{foot: right, x: 0.2, y: -0.1, yaw: -0.2}, {foot: left, x: 0.3, y: 0.1}"
     scenario = read(robots, text + "\nstart: {x: 5, y: 2, yaw: 1.5707963267948966}")
     steps = plan_footsteps(Walk(scenario).asked_gait, Walk(scenario).ground.stance, flat())
-    assert steps.feet[2:] == (Foot.RIGHT, Foot.LEFT)
-    np.testing.assert_allclose(steps.position[2:, :2], [[5.1, 2.2], [4.9, 2.3]], atol=1e-12)
-    np.testing.assert_allclose(steps.yaw[2:], [np.pi / 2 - 0.2, np.pi / 2])
+    assert [step.foot for step in steps[2:]] == [Foot.RIGHT, Foot.LEFT]
+    np.testing.assert_allclose([step.position[:2] for step in steps[2:]], [[5.1, 2.2], [4.9, 2.3]], atol=1e-12)
+    np.testing.assert_allclose([step.yaw for step in steps[2:]], [np.pi / 2 - 0.2, np.pi / 2])
 
 
 def test_keys_of_equal_steps_beside_a_command_are_noted(robots):

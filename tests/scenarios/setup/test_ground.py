@@ -63,7 +63,7 @@ ALIVE = "criteria={fell: false}"
 def test_level_ground_is_uneven_in_truth_alone_and_under_every_footstep(name):
     walk = Walk(load_scenario(name, [UNEVEN]))
     assert walk.ground.terrain == flat()
-    footsteps = walk.ground.level_footsteps.position[:, :2]
+    footsteps = np.array([step.position[:2] for step in walk.ground.level_footsteps])
     heights = walk.ground.true_terrain.heights(footsteps)
     np.testing.assert_array_equal(heights[:2], 0.0)
     assert heights.min() < 0.0

@@ -2,9 +2,9 @@
 
 import pytest
 
-from surefoot.planner.steps.commands import Pose, Twist
+from surefoot.planner.types import Twist
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.setup.gait import timed_command
+from surefoot.scenarios.setup.gait import command_of
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.walk import Walk
 
@@ -49,8 +49,8 @@ def test_velocities_are_told_from_their_time_on_and_the_rest_is_zero(robots):
     commands = "commands: [{time: 1, v_y: 0.1}, {time: 2, swing_height: 0.06}]"
     text = f"duration: 9\n{commands}\nstart: {{x: 1, yaw: 1.5707963267948966}}"
     scenario = read_scenario(text, "f.yaml", "f", (), robots)
-    first, second = (timed_command(settings) for settings in scenario.commands)
-    assert (first.time, first.command.twist) == (1.0, Twist(0.0, 0.1, 0.0))
-    assert (second.command.twist, second.command.swing_height) == (None, 0.06)
+    first, second = (command_of(settings) for settings in scenario.commands)
+    assert (first.time, first.twist) == (1.0, Twist(0.0, 0.1, 0.0))
+    assert (second.twist, second.swing_height) == (None, 0.06)
     placed = Walk(read_scenario(text + "\ngait: {waypoints: [{x: 1, y: 2, yaw: 0.5}]}", "f.yaml", "f", (), robots))
-    assert placed.waypoints == (pytest.approx(Pose(-1.0, 1.0, 2.0707963)),)
+    assert placed.waypoints == (pytest.approx(Twist(-1.0, 1.0, 2.0707963)),)

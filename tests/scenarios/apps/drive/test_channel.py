@@ -13,7 +13,7 @@ import pytest
 from strangers import ask, let_in, listening
 
 import surefoot
-from surefoot.planner.steps.commands import Twist
+from surefoot.planner.types import Twist
 from surefoot.scenarios.apps.drive.channel import DRAWN, LONGEST_INPUT, PageChannel, read_object
 from surefoot.scenarios.apps.drive.command import drive_scenario
 from surefoot.scenarios.apps.drive.page import CHANNEL, GREATEST_IMPULSE, DrivePage, opened
@@ -202,7 +202,7 @@ def attack(made: DrivePage, inputs: "SimpleQueue[Input]", sockets: int, requests
             assert given.paused in (None, True, False)
             assert given.speed is None or 0.1 <= given.speed <= 1.0
         if isinstance(given, Twist):
-            assert abs(given.v_x) <= 0.6
+            assert abs(given.x) <= 0.6
     assert made._impulse is None or 0.0 < made._impulse <= GREATEST_IMPULSE
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import surefoot
-from surefoot.planner.steps.commands import Twist
+from surefoot.planner.types import Twist
 from surefoot.scenarios.apps.drive.page import LIMITS, read_input
 from surefoot.scenarios.apps.drive.picture import Pictures
 from surefoot.scenarios.apps.drive.session import GaitInput, PaceInput, PushInput, Reset
@@ -22,7 +22,7 @@ BRIEF = {"duration": 0.6, "gait.initial_stand": 0.1, "gait.single_support": 0.4,
 
 
 def test_inputs_are_read_and_bent_into_what_may_be_asked_for():
-    assert read_input("velocity", {"v_x": 0.3, "v_y": -9, "yaw_rate": 0}) == Twist(0.3, -LIMITS.v_y, 0.0)
+    assert read_input("velocity", {"v_x": 0.3, "v_y": -9, "yaw_rate": 0}) == Twist(0.3, -LIMITS.y, 0.0)
     assert read_input("gait", {"swing_height": 0.07}) == GaitInput(swing_height=0.07)
     assert read_input("pace", {"paused": True}) == PaceInput(paused=True)
     assert read_input("pace", {"speed": 0.25}) == PaceInput(speed=0.25)

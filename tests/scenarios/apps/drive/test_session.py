@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from surefoot.errors import ParameterError
-from surefoot.planner.steps.commands import Twist
+from surefoot.planner.types import Twist
 from surefoot.scenarios.apps.drive.session import (
     COMMAND_PERIOD,
     PUSH_TIME,

@@ -454,6 +454,21 @@ typedef struct {
 
 void roll_centre(const RollCentre *roll, double toe, double pitch, double rate);
 
+/* Counterpart of `wbc.solvers.Daqp`, after `equality_qp_solve`; of inequalities no more than `most` are active. */
+typedef struct {
+    const EqualityQp *qp;
+    int64_t most;
+    double tolerance;
+    double *normals;
+    double *columns;
+    double *multipliers;
+    int64_t *active;
+    double *work;
+} ActiveQp;
+
+int64_t active_qp_solve(const ActiveQp *solver);
+double qp_violation(const EqualityQp *qp);
+
 /* Kernels without numbers of their own, one after another: addresses of functions and of their structs. */
 typedef struct {
     int64_t count;

@@ -469,6 +469,17 @@ typedef struct {
 int64_t active_qp_solve(const ActiveQp *solver);
 double qp_violation(const EqualityQp *qp);
 
+/* Counterpart of `wbc.balance.SupportRegion`. */
+typedef struct {
+    const double *corners;
+    const double *positions;
+    const double *rotations;
+    double *edges;
+    int64_t *edge_count;
+} Support;
+
+void support_rebuild(const Support *support, int64_t left, int64_t right, int64_t rolling);
+
 /* Kernels without numbers of their own, one after another: addresses of functions and of their structs. */
 typedef struct {
     int64_t count;

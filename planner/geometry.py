@@ -99,15 +99,37 @@ def sole_corners(footstep: Footstep, half_size: Array) -> Array:
     return np.asarray(footstep.position[:2] + (CORNERS * half_size) @ rotation[:2, :2].T)
 
 
+_STRAIGHT = 1e-12
+"""Share of the square of their extent by which three points turn that lie on a line but for rounding [-]."""
+
+
 def convex_hull(points: Array) -> Array:
-    """Vertices of the convex hull, anticlockwise, shape (v, 2).
+    """Vertices of the convex hull, anticlockwise from the one of least x, shape (v, 2).
+
+    The monotone chain of Andrew (Information Processing Letters 9, 1979); the general hull takes ten times as long.
 
     Args:
         points: shape (n, 2) [m], at least three that are not on a line.
     """
-    from scipy.spatial import ConvexHull
+    places = points.tolist()
+    order = sorted(range(len(places)), key=places.__getitem__)
+    most = _STRAIGHT * float(np.ptp(points)) ** 2
+    lower, upper = _chain(places, order, most), _chain(places, order[::-1], most)
+    return np.asarray(points[lower[:-1] + upper[:-1]])
 
-    return np.asarray(points[ConvexHull(points).vertices])
+
+def _chain(places: list[list[float]], order: list[int], most: float) -> list[int]:
+    """Those of points in order at which a way from the first to the last turns left, by more than the most."""
+    chain: list[int] = []
+    for number in order:
+        x, y = places[number]
+        while len(chain) > 1:
+            (u, v), (a, b) = places[chain[-2]], places[chain[-1]]
+            if (a - u) * (y - v) - (b - v) * (x - u) > most:
+                break
+            chain.pop()
+        chain.append(number)
+    return chain
 
 
 def signed_distance(polygon: Array, point: Array) -> float:

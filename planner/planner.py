@@ -81,8 +81,7 @@ class WalkingPlanner:
         legs: LegReach | None = None,
     ) -> None:
         # Here, so that the first tick does not wait for them: its time is recorded.
-        import scipy.linalg
-        import scipy.spatial  # noqa: F401
+        import scipy.linalg  # noqa: F401
 
         self.gait = gait
         self.parameters = parameters or profile.parameters

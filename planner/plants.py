@@ -21,8 +21,8 @@ class Pendulum:
 
     Args:
         mass: [kg].
-        position: start position, shape (2,) [m].
-        velocity: start velocity, shape (2,) [m/s].
+        position: at the start.
+        velocity: at the start.
     """
 
     def __init__(self, mass: float, position: Array, velocity: Array) -> None:

@@ -1,23 +1,26 @@
 """What may be done with footsteps on a ground: where they land freely, and where each was chosen for its face."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.types import Array
 
 
-class FreeGround:
-    """Footsteps may land elsewhere than planned.
+@dataclass(frozen=True, slots=True)
+class Footholds:
+    """Footsteps that may land elsewhere than planned, or each on its face alone.
 
     Attributes:
-        follow: whether the steps after one that is moved go as far.
+        follow: whether the steps after one that is moved go as far; on faces they stay where they are.
     """
 
-    follow = True
+    follow: bool
 
     def counted(self, ahead: int, most: int) -> int:
         """Steps with which a body can be caught, of those that are ahead; more are added where any ground will do."""
-        return most
+        return most if self.follow else min(ahead, most)
 
     def shifted(self, shift: Array, yaw: float, room: Array) -> Array:
         """How far a footstep goes that is to be shifted, world frame, shape (2,) [m].
@@ -27,35 +30,16 @@ class FreeGround:
             yaw: its heading [rad].
             room: least and greatest way on its face in that heading, shape (2, 2) [m].
         """
-        return shift
+        axes = frame_rotation(yaw)
+        return shift if self.follow else np.asarray(axes @ np.clip(shift @ axes, *room))
 
     def crossed(self, lift: float) -> bool:
-        """Whether a foot may land beyond its stance foot, with a step that takes the body so much higher [m]."""
-        return True
+        """Whether a foot may land beyond its stance foot, with a step that takes the body so much higher [m].
+
+        On faces a leg that lets the body down has its knee in the way.
+        """
+        return self.follow or lift >= 0.0
 
     def edged(self, climb: float) -> bool:
         """Whether edges are before a foot that lands so much higher than it stood [m]."""
-        return False
-
-
-class Faces(FreeGround):
-    """Each footstep stays on its face, and those after one that is moved stay where they are."""
-
-    follow = False
-
-    def counted(self, ahead: int, most: int) -> int:
-        """See `FreeGround`."""
-        return min(ahead, most)
-
-    def shifted(self, shift: Array, yaw: float, room: Array) -> Array:
-        """See `FreeGround`."""
-        axes = frame_rotation(yaw)
-        return np.asarray(axes @ np.clip(shift @ axes, *room))
-
-    def crossed(self, lift: float) -> bool:
-        """See `FreeGround`; a leg that lets the body down has its knee in the way."""
-        return lift >= 0.0
-
-    def edged(self, climb: float) -> bool:
-        """See `FreeGround`."""
-        return climb != 0.0
+        return not self.follow and climb != 0.0

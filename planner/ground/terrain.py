@@ -7,7 +7,7 @@ import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import CORNERS, frame_rotation
-from surefoot.planner.ground.footholds import Faces, FreeGround
+from surefoot.planner.ground.footholds import Footholds
 from surefoot.planner.types import Array, Footstep
 
 HALF_WIDTH = 1.0
@@ -16,7 +16,7 @@ HALF_WIDTH = 1.0
 DEEPER = 0.05
 """How far tilted solids reach below the ground plane at least, and the lowest blocks rise above it [m]."""
 
-_FREE, _FACES = FreeGround(), Faces()
+_FREE, _FACES = Footholds(follow=True), Footholds(follow=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ class Terrain:
         return bool(self.boxes)
 
     @property
-    def footholds(self) -> FreeGround:
+    def footholds(self) -> Footholds:
         """What may be done with footsteps: they were chosen for its faces unless these are wide, or there are none."""
         return _FREE if self.wide or not self.boxes else _FACES
 

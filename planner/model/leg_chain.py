@@ -258,29 +258,22 @@ def bind_chain(kernels: Library, chain: LegChain) -> tuple[Bound, int]:
 
     Theirs are those of `_masses`, and where a CoM lies beside its rod those ways of `LegChain._beside`, thighs first.
     """
-    links = chain.thigh, chain.shank
+    links, M = (chain.thigh, chain.shank), np.zeros((13, 13))
     points = 13 if any(link.ahead or link.outward for link in links) else 9
-    M = np.zeros((13, 13))
     M[:9, :9] = _masses(chain)
     for number, link in enumerate(links):
         for upper in range(2 * number, 2 * number + 2):
-            way = upper + 9
-            M[[upper, upper + 2], way] = M[way, [upper, upper + 2]] = (1.0 - link.centre, link.centre) * np.array(
-                link.mass
-            )
+            ends, way = [upper, upper + 2], upper + 9
+            M[ends, way] = M[way, ends] = link.mass * np.array([1.0 - link.centre, link.centre])
     pairs = np.ascontiguousarray(np.argwhere(M[:points, :points]))
-    at_hip, at_ankle, trunk_mass = chain._shares
+    own = ("hip_half_width", "hip_lever", "trunk", "ankle", "foot_centre", "foot_outward", "rolls_first", "foot_mass")
     return kernels.fill(
         "LegChain",
-        **{name: getattr(chain, name) for name in ("hip_half_width", "foot_outward", "carried", "foot_mass")},
-        **{name: getattr(chain, name) for name in ("hip_lever", "trunk", "ankle", "foot_centre")},
-        rolls_first=chain.rolls_first,
+        **{name: getattr(chain, name) for name in (*own, "carried")},
         **{name: tuple(getattr(link, name) for link in links) for name in ("length", "ahead", "outward")},
+        **dict(zip(("at_hip", "at_ankle", "trunk_mass"), chain._shares, strict=True)),
         mass_ahead=tuple(link.mass * link.ahead for link in links),
-        trunk_mass=trunk_mass,
-        at_hip=at_hip,
         at_knee=chain._at_knee,
-        at_ankle=at_ankle,
         guess=_GUESS,
         bend=_BEND,
         least_reach=abs(chain.thigh.length - chain.shank.length) + 1e-6,

@@ -112,7 +112,8 @@ class TimeScaling:
 
     def advanced(self) -> "TimeScaling":
         """The clock one tick later."""
-        return replace(self, now=self.after(1.0), ticks=self.ticks + 1, elapsed=self.elapsed + 1.0)
+        quintic = self.way, self.length, self.coefficients
+        return TimeScaling(self.sample_time, self.after(1.0), self.ticks + 1, self.begun, self.elapsed + 1.0, *quintic)
 
     def _followed(self, time: Array) -> tuple[Array, Array, Array]:
         """Way, rate and its derivative at times since the quintic began; after it the clock goes at its own rate."""

@@ -16,8 +16,10 @@ import math
 
 import numpy as np
 
+from surefoot.native.library import library
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.recovery.compiled import CompiledMargins, CompiledOutlook
 from surefoot.planner.recovery.step_adjustment import StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.swing.leg_reach import ANYWHERE, PEAK, LegReach
@@ -43,6 +45,27 @@ def planned_margin(dcm: Array, window: Window, sample_time: float, foot_margin: 
     return float((half - np.abs(dcm - weights @ reference.point)).min())
 
 
+class PlannedMargin:
+    """`planned_margin` of the windows of a planner.
+
+    Args:
+        parameters: of the planner.
+
+    Attributes:
+        outlook: where kernels are told of windows; None without kernels.
+    """
+
+    def __init__(self, parameters: PlannerParameters) -> None:
+        self._sample_time, self._foot_margin, kernels = parameters.sample_time, parameters.foot_margin, library()
+        self.outlook = None if kernels is None else CompiledOutlook(kernels, parameters)
+
+    def margin(self, dcm: Array, window: Window) -> float:
+        """See `planned_margin`."""
+        if self.outlook is None or self.outlook.count != len(window.stiffness):
+            return planned_margin(dcm, window, self._sample_time, self._foot_margin)
+        return self.outlook.margin(dcm, window, self._foot_margin)
+
+
 class CaptureMargin:
     """How far the DCM is inside what steps that are adjusted capture.
 
@@ -66,6 +89,8 @@ class CaptureMargin:
         self._hip = _edges(*2 * (np.array([0.0, 0.5 * legs.hip_width]),))[:, None]
         self._apart = 0.5 * _edges(near - far, far - near)[:, None]
         self._middle = 0.5 * _edges(near + far, near + far)[:, None]
+        kernels, edges = library(), (self._half, self._apart, self._middle)
+        self._compiled = None if kernels is None else CompiledMargins(kernels, legs, parameters, self.cycle, edges)
 
     def landed(self, growth: float, side: float, count: int) -> Array:
         """Edges of what one that has just landed captures, from its last foot, with 0, ... count - 1 steps more.
@@ -97,6 +122,8 @@ class CaptureMargin:
             steps: how many there are, at least 1.
             fixed: the present step is not moved any more.
         """
+        if self._compiled is not None and steps <= self._numbers.most_steps:
+            return self._compiled.margins(com, dcm, omega, step, steps, fixed)
         half, here, com = self._half, _edges(dcm, dcm)[:, None], _edges(com, com)[:, None]
         doubles, singles = self._times(step, fixed)
         single = np.exp(omega * singles)

@@ -5,14 +5,14 @@ import numpy as np
 from surefoot.planner.geometry import signed_distance
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
+from surefoot.planner.recovery.capture_margin import CaptureMargin, PlannedMargin
 from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepBounds, StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.adaptation import with_step_in_place, with_steps_repeated
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import room_left
-from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_within
+from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_within, unshifted
 from surefoot.planner.types import Array, Balance, Foot, PhaseKind
 
 
@@ -30,7 +30,8 @@ class Recovery:
     def __init__(self, execution: Execution, half_size: Array) -> None:
         self._execution, legs = execution, execution.legs
         self._parameters = p = execution.schedule.ground.parameters
-        self.adjustment = None if legs is None else StepAdjustment(legs, p)
+        self._planned = PlannedMargin(p)
+        self.adjustment = None if legs is None else StepAdjustment(legs, p, self._planned.outlook)
         self._movable = None if legs is None else CaptureMargin(legs, p, half_size)
 
     def steps_out(self, local: Array, window: Window) -> bool:
@@ -89,7 +90,7 @@ class Recovery:
             last: the plan before; None for the first.
         """
         execution, p, dcm = self._execution, self._parameters, _dcm(local, window)
-        planned = movable = planned_margin(dcm, window, p.sample_time, p.foot_margin)
+        planned = movable = self._planned.margin(dcm, window)
         if step is None:
             planned = movable = max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm))
         elif self._movable is not None and execution.adapts:
@@ -129,6 +130,8 @@ class Recovery:
         stance, free, legs = schedule.step(landed).place, execution.free, execution.legs
         if legs is None:
             return reachable_shifts(self._parameters, increment, stance.foot.other.side, free, here, left)
+        if adjusted is None and not execution.adapted:
+            return unshifted(free)
         boxes = np.stack((increment, increment), axis=1)
         for n, step in enumerate(schedule.after(landed)[:2] if execution.adapted else ()):
             room = increment[n] + room_left(step, stance, self._parameters.recovery.parallel)

@@ -22,25 +22,24 @@ with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, 
   least_single, nor below what body and foot need to come to the height of the footstep.
 
 Solver: for given times p* follows in closed form, since the CoP does what it can; p is p* brought into the limits, the
-boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken. Other
-times than planned have to save `least_saving`. Nothing is solved while the CoP alone brings the DCM back until the foot
-lands, but for `tolerance`: without need nothing is adapted.
-
-It is the law of Khadiv et al. (IEEE Transactions on Robotics 2020) with the CoP as one more means, with double support,
-and with the limits of the legs as they are, over a list of times in place of a QP.
+boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken.
+docs/recovery.md says more of it.
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
-from surefoot.planner.geometry import seen_from
+from surefoot.native.library import library
+from surefoot.planner.geometry import seen_from, wrap_angle
 from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.recovery.compiled import CompiledAdjustment, CompiledOutlook
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.execution import Execution
-from surefoot.planner.steps.step import room_left, shortest_swing
+from surefoot.planner.steps.step import Step, room_left, shortest_swing
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseKind
 
@@ -95,14 +94,14 @@ class StepProblem:
         if not phase.leads_to:
             return None
         schedule, clock, landed = execution.schedule, execution.clock, execution.landed
-        step, stance = schedule.step(landed + 1), schedule.step(landed).place
+        step = schedule.step(landed + 1)
         swings, foot, numbers = phase.kind is PhaseKind.SINGLE, step.place.foot, schedule.ground.parameters.recovery
         yet = min(1.0, (step.touchdown - clock.now) / step.single)
         legs = execution.legs
         shortest = 0.0 if legs is None else shortest_swing(step, legs, numbers.lifting)
         if execution.swing is not None:
             moving = execution.swing.evaluate(time)[1, :2] @ rotation
-        place = replace(seen_from(stance, step.place), yaw=schedule.turn(step.number))
+        place, face = _landing_place(step, schedule.step(landed), numbers.parallel)
         return cls(
             place=place,
             swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
@@ -110,11 +109,18 @@ class StepProblem:
             single=phase.left if swings else step.single * clock.sample_time,
             cycle=schedule.gait.period,
             shortest=yet * shortest,
-            face=place.position[:2] + room_left(step, stance, numbers.parallel),
+            face=face,
             crosses=schedule.may_cross(step.number),
             last=schedule.stops(clock.now),
             adapted=execution.adapted,
         )
+
+
+@lru_cache(maxsize=2)
+def _landing_place(step: Step, stance: Step, parallel: float) -> tuple[Footstep, Array]:
+    """Place and face of a `StepProblem`, the same from plan to plan; `parallel` as of `room_left`."""
+    place = replace(seen_from(stance.place, step.place), yaw=wrap_angle(step.place.yaw - stance.place.yaw))
+    return place, place.position[:2] + room_left(step, stance.place, parallel)
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,13 +144,15 @@ class StepAdjustment:
     Args:
         legs: what they can do.
         parameters: of the planner.
+        outlook: where kernels are told of windows, if others have it in common; one of its own by default.
     """
 
-    def __init__(self, legs: LegReach, parameters: PlannerParameters) -> None:
+    def __init__(self, legs: LegReach, parameters: PlannerParameters, outlook: CompiledOutlook | None = None) -> None:
         self._legs, self._timing = legs, parameters.step_adaptation.timing
         self._sample_time, self._numbers = parameters.sample_time, parameters.recovery
         self._authority = np.array(parameters.cop_authority)
-        self._changes = np.array(parameters.recovery.time_changes)
+        self._changes, kernels = np.array(parameters.recovery.time_changes), library()
+        self._compiled = None if kernels is None else CompiledAdjustment(kernels, legs, parameters, outlook)
 
     def solve(self, com: Array, dcm: Array, window: Window, step: StepProblem) -> StepBounds | None:
         """The solution; None where nothing has to be adjusted, or the step has no place to land.
@@ -156,6 +164,9 @@ class StepAdjustment:
             step: as scheduled.
         """
         t, numbers, count = self._sample_time, self._numbers, len(window.stiffness)
+        if self._compiled is not None and count == self._compiled.count:
+            found = self._compiled.solve(com, dcm, window, step)
+            return None if found is None else StepBounds(*found)
         lift = min(round(step.double / t), count - 3)
         land = min(max(round((step.double + step.single) / t), lift + 1), count - 2)
         # The DCM that keeps bounded what comes, and what a shift of the step does to it.

@@ -4,8 +4,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
-from surefoot.native.library import Bound, Library
+from surefoot.native.library import Library
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import (
     CLIMB_SHARE,
@@ -21,6 +22,7 @@ from surefoot.planner.references.zmp_reference import Support, ZmpReference
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
+from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import GRAVITY, Array
 
 if TYPE_CHECKING:
@@ -85,7 +87,8 @@ class CompiledPreview:
             kernels.bind(name, self._bound) for name in ("preview_look", "preview_weigh", "preview_transition")
         )
         self._support: Support | None = None
-        self._sight: Bound | None = None
+        self._room, self._sight = 0, kernels.fill("Sight")
+        self.support_table = CompiledTable(kernels).fill
 
     def sight(self, execution: Execution, support: Support, moved: Callable[[Execution, Array], Array]) -> "Sight":
         """See `ReferencePreview._sight`; the height that `moved` gets is where the kernels read it."""
@@ -113,23 +116,25 @@ class CompiledPreview:
         """Look at other steps from now on."""
         schedule = execution.schedule
         table = schedule.phase_table
-        self._sight = self._kernels.fill(
-            "Sight",
-            phases=len(table.phases),
-            start=table.start,
-            length=table.length,
-            rest=table.rest,
-            kind=table.kind,
-            support=table.support,
-            contacts=table.contacts.astype(np.int64),
-            first=schedule.first_support,
-            points=len(support.heights),
-            table=support.table,
-            heights=np.ascontiguousarray(support.heights),
-            on_left=support.on_left,
-        )
-        self._bound.point(sight=self._sight)
+        size = max(len(table.phases), len(support.heights))
+        if size > self._room:
+            self._make_room(2 * size)
+        phases, points, struct = len(table.phases), len(support.heights), self._sight.struct
+        struct.phases, struct.points, struct.first = phases, points, schedule.first_support
+        for name in ("start", "length", "rest", "kind", "support", "contacts"):
+            self._rows[name][:phases] = getattr(table, name)
+        self._rows["values"][:points], self._rows["steps"][:points] = support.table
+        self._rows["heights"][:points], self._rows["on_left"][:points] = support.heights, support.on_left
         self._support = support
+
+    def _make_room(self, size: int) -> None:
+        """Memory for so many phases and support points in sight."""
+        shapes: dict[str, tuple[int, ...]] = dict.fromkeys(("kind", "support"), (size,)) | {"contacts": (size, 2)}
+        self._rows: dict[str, NDArray[Any]] = {name: np.zeros(shape, np.int64) for name, shape in shapes.items()}
+        self._rows |= {name: np.zeros(size) for name in ("start", "length", "rest", "heights", "on_left")}
+        self._rows |= {name: np.zeros((size, 7)) for name in ("values", "steps")}
+        self._room, self._sight = size, self._kernels.fill("Sight", phases=0, first=0, points=0, **self._rows)
+        self._bound.point(sight=self._sight)
 
     def _copy(self) -> Any:
         """What the kernels have made, by name, in memory of its own."""
@@ -151,3 +156,49 @@ class CompiledPreview:
             sample_time=self._sample_time,
             first=execution.schedule.first_support,
         )
+
+
+class CompiledTable:
+    """Kernel beside `planner.references.zmp_reference.support_table`.
+
+    Args:
+        kernels: the library.
+    """
+
+    def __init__(self, kernels: Library) -> None:
+        self._kernels = kernels
+        self._make_room(16)
+
+    def fill(
+        self, schedule: Schedule, landed: int, free: tuple[bool, bool], half_size: Array, stay: bool = False
+    ) -> Array:
+        """See `support_table`."""
+        steps, points = len(schedule.steps), len(schedule.supports)
+        if max(steps, points) > len(self._yaws):
+            self._make_room(2 * max(steps, points))
+        struct = self._bound.struct
+        struct.points, struct.stance, struct.stay = points, schedule.index(landed), stay
+        self._free[:], self._half_size[:] = free, half_size
+        self._positions[:steps], self._yaws[:steps] = schedule.positions, schedule.yaws
+        self._supports[:points] = schedule.supports
+        self._run()
+        return self._table[:, :points].copy()
+
+    def _make_room(self, size: int) -> None:
+        """Memory for so many steps and support points."""
+        self._free, self._half_size, self._positions = np.zeros(2), np.zeros(2), np.zeros((size, 3))
+        self._yaws, self._supports, self._table = np.zeros(size), np.zeros((size, 2), np.int64), np.zeros((2, size, 7))
+        self._bound = self._kernels.fill(
+            "SupportTable",
+            points=0,
+            stance=0,
+            stay=False,
+            free=self._free,
+            positions=self._positions,
+            yaws=self._yaws,
+            supports=self._supports,
+            half_size=self._half_size,
+            values=self._table[0],
+            steps=self._table[1],
+        )
+        self._run = self._kernels.bind("support_table_fill", self._bound)

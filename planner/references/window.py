@@ -23,6 +23,7 @@ from surefoot.planner.references.zmp_reference import (
     ZmpReference,
     load_left,
     present_support,
+    support_table,
     zmp_reference,
 )
 from surefoot.planner.steps.execution import Execution
@@ -168,7 +169,9 @@ class ReferencePreview:
 
     def support(self, execution: Execution) -> Support:
         """What carries the robot now."""
-        self._support = present_support(self._support, execution, self._half_size, self._margin, self._room)
+        tabulated = support_table if self._compiled is None else self._compiled.support_table
+        last, half_size = self._support, self._half_size
+        self._support = present_support(last, execution, half_size, self._margin, self._room, tabulated)
         return self._support
 
     def window(

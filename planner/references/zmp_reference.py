@@ -1,5 +1,6 @@
 """ZMP planner: the present support, and the ZMP reference over a window, linear in the next two footsteps."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -142,6 +143,7 @@ class Support:
         outer: support polygon of the planned soles, shape (v, 2) [m].
         inner: support polygon of the soles shrunk to the ZMP margin, shape (v, 2) [m].
         footholds: where the left and the right foot stand, or stood last.
+        standing: those on which the robot stands.
     """
 
     key: SupportKey
@@ -153,6 +155,7 @@ class Support:
     outer: Array
     inner: Array
     footholds: tuple[Footstep, Footstep]
+    standing: tuple[Footstep, ...]
 
 
 def load_left(samples: PhaseSamples, support: Support) -> Array:
@@ -162,7 +165,12 @@ def load_left(samples: PhaseSamples, support: Support) -> Array:
 
 
 def present_support(
-    last: Support | None, execution: Execution, half_size: Array, margin: float, room: tuple[float, float]
+    last: Support | None,
+    execution: Execution,
+    half_size: Array,
+    margin: float,
+    room: tuple[float, float],
+    tabulated: Callable[..., Array] = support_table,
 ) -> Support:
     """The support of this tick, the last one while its key stays.
 
@@ -172,26 +180,31 @@ def present_support(
         half_size: half of the sole's length and width, shape (2,) [m].
         margin: share of the sole in which the ZMP must stay [-].
         room: what of the half size the ankles can bear, forward and sideways [m].
+        tabulated: `support_table`, or a kernel in its place.
     """
     schedule, landed, phase = execution.schedule, execution.landed, execution.phase
     key = SupportKey(schedule, landed, phase.start, execution.free)
     if last is not None and last.key == key:
         return last
     latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
-    standing = [latest] if phase.kind is PhaseKind.SINGLE else [latest, before]
-    outer, inner = (
-        convex_hull(np.concatenate([sole_corners(foot, scale * half_size) for foot in standing]))
-        for scale in (1.0, margin)
-    )
+    standing = (latest,) if phase.kind is PhaseKind.SINGLE else (latest, before)
+    if last is not None and [*map(id, last.standing)] == [*map(id, standing)]:
+        outer, inner = last.outer, last.inner
+    else:
+        outer, inner = (
+            convex_hull(np.concatenate([sole_corners(foot, scale * half_size) for foot in standing]))
+            for scale in (1.0, margin)
+        )
     stay = not schedule.ground.terrain.footholds.follow
     return Support(
         key=key,
         rotation=frame_rotation(latest.yaw),
         origin=latest.position[:2],
-        table=support_table(schedule, landed, key.free, np.minimum(margin * half_size, room), stay),
+        table=tabulated(schedule, landed, key.free, np.minimum(margin * half_size, room), stay),
         heights=schedule.support_points[:, 2],
         on_left=schedule.at_supports(np.array([float(step.place.foot is Foot.LEFT) for step in schedule.steps])),
         outer=outer,
         inner=inner,
         footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),
+        standing=standing,
     )

@@ -38,12 +38,7 @@ def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None,
 
 
 def with_steps_repeated(schedule: Schedule, number: int) -> Schedule:
-    """After a step both feet land once more where they are, before anything else.
-
-    Args:
-        schedule: the steps in sight.
-        number: of the step, which is being swung.
-    """
+    """After the step of a number, which is being swung, both feet land once more where they are, before all else."""
     stride = schedule.step(number).stride
     again = schedule.until(number, stands=False).followed(stride.scaled(-1.0), None, inserted=True)
     return again.followed(stride, None, inserted=True)
@@ -67,12 +62,9 @@ def aligned(schedule: Schedule, number: int) -> Schedule:
 
 
 def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule:
-    """The foot that a step has left too far behind for its leg rolls as it leaves the ground.
+    """The foot that a step, just landed, has left too far behind for its leg rolls as it leaves the ground.
 
-    Args:
-        schedule: the steps in sight.
-        number: of the step, which has just landed.
-        radius: how far from under its hip a sole reaches flat [m].
+    `radius` is how far from under its hip a sole reaches flat [m].
     """
     stance, leaving, at = schedule.step(number), schedule.step(number - 1).place, schedule.index(number) + 1
     if at == len(schedule.steps) or schedule.steps[at].stop is not None:

@@ -167,13 +167,9 @@ def fitted(gait: GaitParameters, region: StepRegion) -> GaitParameters:
 
 
 def fastest(twist: Twist, duration: float, width: float, region: StepRegion) -> Twist:
-    """The command of the same direction, at most as fast, whose steps are just within a region.
+    """The velocity of the same direction, at most as fast, whose steps of a duration [s] are just within a region.
 
-    Args:
-        twist: the command.
-        duration: of a step [s].
-        width: nominal step width [m].
-        region: where feet may land.
+    They are as near to the nominal width as the region lets them be [m].
     """
 
     def inside(factor: float) -> bool:
@@ -189,7 +185,7 @@ def fastest(twist: Twist, duration: float, width: float, region: StepRegion) -> 
 
 
 def _half_width(gait: GaitParameters, foot: Foot) -> Array:
-    return np.array([0.0, 0.5 * gait.step_width if foot is Foot.LEFT else -0.5 * gait.step_width])
+    return np.array([0.0, 0.5 * gait.step_width * foot.side])
 
 
 def _stride_to(footstep: Footstep, stance: Array, yaw: float, gait: GaitParameters) -> Twist:

@@ -14,7 +14,7 @@ from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import StepSource
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg
-from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind
 
 _LEAST_LEFT = 3.0
@@ -42,7 +42,7 @@ class Execution:
     Args:
         schedule: the steps in sight.
         window: how far a plan looks ahead [samples].
-        legs: what they can do; None where it is not known.
+        legs: see the attribute.
 
     Attributes:
         schedule: the steps in sight, which reach as far as any plan of the present phase looks.
@@ -126,11 +126,7 @@ class Execution:
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
     def advance(self, feet: FeetState) -> None:
-        """Go on by one tick.
-
-        Args:
-            feet: the measured feet.
-        """
+        """Go on by one tick, with the measured feet."""
         following = self.clock.after(1.0)
         phase, swing = self.phase, self.phase.swing_foot
         over = following >= phase.end - CLOCK_ROUNDING
@@ -198,11 +194,7 @@ class Execution:
         return True
 
     def fix(self, position: Array) -> None:
-        """Decide the next footstep.
-
-        Args:
-            position: where it lands, shape (3,) [m].
-        """
+        """Decide where the next footstep lands, shape (3,) [m]."""
         self.schedule = self.schedule.moved(self.landed + 1, position)
         self.fixed = True
 
@@ -228,21 +220,21 @@ class Execution:
             time: now [s].
             shifts: shifts of the first two from their nominal increments, in the world frame, shape (2, 2) [m].
         """
-        planned, shift, free = [], np.zeros(2), self.free
-        for ahead, step in enumerate(self.schedule.after(self.landed)[:_TOLD]):
+        planned, ahead, left = [], 0.0, 0.0
+        ways = [*zip(self.free, shifts.tolist(), strict=True), *(_TOLD - len(shifts)) * [(False, [0.0, 0.0])]]
+        for step, (free, way) in zip(self.schedule.after(self.landed), ways, strict=False):
             place = step.place
-            position, normal = place.position.copy(), place.normal
-            if ahead < len(free) and free[ahead]:
-                shift = shift + shifts[ahead] if self._wide else shifts[ahead]
-            elif not self._wide:
-                shift = np.zeros(2)
-            position[:2] += shift
-            if abs(shift[0]) + abs(shift[1]) > _SAME_GROUND * self._size.length:
-                x, y = float(position[0]), float(position[1])
-                position[2] = self._terrain.height(x, y)
+            (x, y, z), normal = place.position.tolist(), place.normal
+            if not self._wide:
+                ahead = left = 0.0
+            if free:
+                ahead, left = ahead + way[0], left + way[1]
+            x, y = x + ahead, y + left
+            if abs(ahead) + abs(left) > _SAME_GROUND * self._size.length:
+                z = self._terrain.height(x, y)
                 normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
             touchdown = time + self.clock.until(step.touchdown) * self._parameters.sample_time
-            planned.append(Footstep(place.foot, position, place.yaw, normal, step.number, touchdown))
+            planned.append(Footstep(place.foot, np.array([x, y, z]), place.yaw, normal, step.number, touchdown))
         return tuple(planned)
 
     def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool) -> None:
@@ -260,8 +252,7 @@ class Execution:
             yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
             pose = sole_pose(feet.position[foot], yaw, leaving.normal)
             course = self.schedule.step(self.phase.step).course
-            times = swing_times(time, self.left, course, self._parameters)
-            self.swing = start_swing(foot, pose, target, times, course.height, self._parameters)
+            self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters)
         elif not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
             # Over edges the foot keeps to the times in which its course clears them.
             gliding = self.adapted and self._wide

@@ -45,24 +45,18 @@ class Path:
         place = middle + frame_rotation(yaw) @ (0.0, side * stride.width)
         return Path(middle, self.start_yaw, turned, stride.width), place
 
-    @classmethod
-    def begin(cls, feet: FeetState, terrain: Terrain, width: float) -> "Path":
-        """It starts midway between the feet with their mean heading, or where the terrain says.
-
-        Its heading is unwrapped from the right foot's.
-        """
-        right = float(feet.yaw[Foot.RIGHT])
-        if terrain.path_start is not None:
-            x, y, yaw = terrain.path_start
-            return cls(np.array([x, y]), right + wrap_angle(yaw - right), 0.0, width)
-        middle = 0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2])
-        yaw = right + 0.5 * wrap_angle(float(feet.yaw[Foot.LEFT]) - right)
-        return cls(np.asarray(middle), yaw, 0.0, width)
-
 
 def start_footholds(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> tuple[Path, tuple[Footstep, Footstep]]:
-    """Where the path begins, and the two start feet, the one that moves first in front."""
-    path = Path.begin(feet, terrain, gait.step_width)
+    """Where the path begins, and the two start feet, the one that moves first in front.
+
+    It starts midway between the feet with their mean heading, or where the terrain says; its heading is unwrapped from
+    the right foot's.
+    """
+    middle, right = 0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2]), float(feet.yaw[Foot.RIGHT])
+    yaw = right + 0.5 * wrap_angle(float(feet.yaw[Foot.LEFT]) - right)
+    if terrain.path_start is not None:
+        middle, yaw = np.array(terrain.path_start[:2]), right + wrap_angle(terrain.path_start[2] - right)
+    path = Path(middle, yaw, 0.0, gait.step_width)
     rows = (gait.step_foot(-1), gait.step_foot(0))
     position = feet.position[list(rows)]
     normals = terrain.normals(position[:, :2])

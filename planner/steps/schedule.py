@@ -5,6 +5,7 @@ them, then single and double supports in turn. The last double support brings th
 robot stands until the next bout.
 """
 
+from bisect import bisect_right
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -83,6 +84,10 @@ class Schedule:
         return PhaseTable.of(self.phases)
 
     @cached_property
+    def _starts(self) -> list[float]:
+        return [phase.start for phase in self.phases]
+
+    @cached_property
     def first_support(self) -> int:
         """Number in the walk of the first support point in sight."""
         return max(self.phases[0].support - 2, 0)
@@ -146,11 +151,11 @@ class Schedule:
 
     def phase(self, clock: float) -> Phase:
         """The phase at an instant, the first in sight if it lies before."""
-        return next((p for p in reversed(self.phases) if p.start <= clock + CLOCK_ROUNDING), self.phases[0])
+        return self.following(clock)[0]
 
     def following(self, clock: float) -> tuple[Phase, ...]:
         """The phase at an instant and those after it."""
-        return self.phases[self.phases.index(self.phase(clock)) :]
+        return self.phases[max(bisect_right(self._starts, clock + CLOCK_ROUNDING) - 1, 0) :]
 
     def stops(self, clock: float) -> bool:
         """Whether the robot stands at an instant, or will with the next step that lands."""
@@ -273,12 +278,7 @@ class Schedule:
         return kept
 
     def retimed(self, gait: GaitParameters, now: float) -> "Schedule":
-        """All phases to come have the durations of a gait; those that have begun keep theirs on the clock.
-
-        Args:
-            gait: what all steps to come have in common.
-            now: [samples].
-        """
+        """All phases to come have the durations of a gait; those that have begun by now keep theirs on the clock."""
         begun, steps = self.phase(now).start, [self.steps[0]]
         single, double = durations(gait, self.ground.parameters.sample_time)
         for step in self.steps[1:]:

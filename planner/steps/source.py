@@ -34,11 +34,7 @@ class StepSource(Protocol):
 
 
 class GaitSource:
-    """The steps of a gait.
-
-    Args:
-        gait: the gait.
-    """
+    """The steps of a gait."""
 
     def __init__(self, gait: GaitParameters) -> None:
         self._strides, self._begins = gait.strides, gait.begins
@@ -78,13 +74,9 @@ class CommandSource:
     Args:
         gait: gives the step width, the stride of a walk to a place, and the rest before the first step.
         region: where feet may land.
-        twist: the velocity to follow.
-        places: where to go in its place.
+        twist: the velocity to follow where there are no places to go to; an attribute.
+        places: where to go, in order; likewise.
         size: of the robot.
-
-    Attributes:
-        twist: the velocity to follow where there are no places to go to.
-        places: where to go, in order.
     """
 
     def __init__(
@@ -103,11 +95,7 @@ class CommandSource:
         self._reached: dict[int, int] = {}
 
     def followed(self, period: float) -> Twist:
-        """The velocity that is followed for the one asked for.
-
-        Args:
-            period: time from one lift-off to the next [s].
-        """
+        """The velocity that is followed for the one asked for, with so much time from one lift-off to the next [s]."""
         return fastest(self.twist, period, self._width, self._region)
 
     def order(self, step: int, before: Twist | None, here: Twist, period: float) -> tuple[Twist, float] | None:

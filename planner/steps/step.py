@@ -14,7 +14,7 @@ from surefoot.planner.swing.course import Ground, swing_course
 from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
 from surefoot.planner.swing.leg_reach import PEAK, LegReach
 from surefoot.planner.swing.step_region import check_reach
-from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing, swing_times
+from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, Foot, Footstep, Twist
 
 _MEASURED = 6
@@ -241,15 +241,9 @@ def lay(
 
 
 def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
-    """By which a step may be moved on its face from where it now is to land.
+    """By which a step may be moved on its face from where it now is to land, in the heading of its stance foot.
 
-    Args:
-        step: the step.
-        stance: gives the heading in which that is told.
-        parallel: angle up to which the room is the same there [rad].
-
-    Returns:
-        Least and greatest way, shape (2, 2) [m].
+    Told as `turned_room` is.
     """
     yaw = step.nominal.yaw
     way = (step.place.position - step.nominal.position)[:2] @ frame_rotation(yaw)
@@ -257,15 +251,9 @@ def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
 
 
 def turned_room(room: Array, angle: float, parallel: float) -> Array:
-    """The part of a room around a footstep that is a box in another frame.
+    """The part of a room around a footstep that is a box in another frame, where the footstep has a heading [rad].
 
-    Args:
-        room: least and greatest way in the footstep's heading, shape (2, 2) [m].
-        angle: heading of the footstep in that frame [rad].
-        parallel: angle up to which it is the same there [rad].
-
-    Returns:
-        Least and greatest way in that frame, shape (2, 2) [m].
+    Rooms are told as least and greatest way, shape (2, 2) [m]; up to the angle `parallel` both are the same [rad].
     """
     if not np.isfinite(room).all() or abs(angle) < parallel:
         return room
@@ -278,13 +266,7 @@ def turned_room(room: Array, angle: float, parallel: float) -> Array:
 
 
 def shortest_swing(step: Step, legs: LegReach, lifting: float) -> float:
-    """Shortest time in which body and foot can come to the height of a step [s].
-
-    Args:
-        step: the step.
-        legs: give the acceleration of the foot.
-        lifting: vertical acceleration of the body [m/s^2].
-    """
+    """Shortest time in which body, with an acceleration [m/s^2], and foot can come to the height of a step [s]."""
     return math.sqrt(max(PEAK * abs(step.lift) / lifting, step.hardest / legs.acceleration[0]))
 
 
@@ -297,5 +279,5 @@ def _hardest(swing: SwingTrajectory, way: float) -> float:
 
 def unit_swing(samples: float, climb: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTrajectory:
     """A swing of so many samples from the origin at time 0 to a footstep one metre ahead that lies higher [m]."""
-    end, times = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0]), swing_times(0.0, samples, course, parameters)
-    return start_swing(Foot.LEFT, np.zeros(6), end, times, course.height, parameters)
+    end = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0])
+    return start_swing(Foot.LEFT, np.zeros(6), end, 0.0, samples, course, parameters)

@@ -11,7 +11,7 @@ from surefoot.errors import ParameterError
 from surefoot.planner.geometry import sole_pose, sole_rotation
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.trajectory import SwingCourse, start_swing, swing_times
+from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Array, Foot, Footstep
 
 EDGE_CLEARANCE = 0.02
@@ -153,7 +153,6 @@ def _flown(start: Array, end: Array, course: SwingCourse, samples: float, parame
 
     It comes to rest there, as if the touchdown had no speed: with it the sole is higher by part of a millimetre.
     """
-    times = swing_times(0.0, samples, course, parameters)
     at_rest = replace(parameters, search=replace(parameters.search, touchdown_speed=0.0))
-    swing = start_swing(Foot.LEFT, start, end, times, course.height, at_rest)
-    return swing.positions(np.linspace(0.0, times.touchdown, _INSTANTS))
+    swing = start_swing(Foot.LEFT, start, end, 0.0, samples, course, at_rest)
+    return swing.positions(np.linspace(0.0, swing.touchdown_time, _INSTANTS))

@@ -115,10 +115,7 @@ def bump(s: float) -> tuple[float, float, float]:
 def stretched(ahead: float, radius: float, length: float = 1.0) -> float:
     """Pitch that a foot needs so far behind the other one that its leg is too short [rad].
 
-    Args:
-        ahead: distance of the other foot [m].
-        radius: how far from under its hip a sole reaches flat [m].
-        length: size of the robot (see `surefoot.similarity`) [-].
+    The other foot is ahead [m]; a sole reaches flat a radius from under its hip [m]; `length` is the robot's size [-].
     """
     return min(max(_PER_WAY / length * (ahead - _SHORT * radius), 0.0), _MOST)
 
@@ -128,13 +125,7 @@ _PER_WAY, _SHORT, _MOST = 3.0, 1.1, 0.5
 
 
 def rolls(leaving: Footstep, stance: Footstep, half_length: float) -> bool:
-    """Whether the foot of a step is so far behind the other one that it rolls.
-
-    Args:
-        leaving: nominal foothold that the foot leaves.
-        stance: that of the other foot.
-        half_length: of the sole [m].
-    """
+    """Whether the foot of a step is so far behind the other one, half a sole's length given [m], that it rolls."""
     ahead = (stance.position - leaving.position)[:2] @ frame_rotation(stance.yaw)
     return bool(ahead[0] > _LEAST_STEP * half_length)
 

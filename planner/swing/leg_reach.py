@@ -188,13 +188,13 @@ class LegReach:
             return lacking
         time = self._swing_times(singles)[which[1], None, None]
         way, onward = (places[which] - here)[:, None], speed * time
-        passed = here + way * _AT_REST[0][:, None] + onward * _MOVING[0][:, None]
+        passed = here + way * AT_REST[0][:, None] + onward * MOVING[0][:, None]
         met = ((np.abs(passed[..., 0]) < self.clear) & (side * passed[..., 1] < self.near)).any(axis=1)
         corner = np.stack((np.copysign(self.clear, crossing[which]), np.full(len(met), side * self.near)), axis=1)
         astray = corner[:, None] - passed
-        rows, best = np.arange(len(met)), np.argmin((astray**2).sum(axis=-1) / _DEARER, axis=1)
-        bend = way * _AT_REST[1][:, None] + onward * _MOVING[1][:, None]
-        bend = bend + astray[rows, best][:, None] * _AROUND[best][..., None]
+        rows, best = np.arange(len(met)), np.argmin((astray**2).sum(axis=-1) / DEARER, axis=1)
+        bend = way * AT_REST[1][:, None] + onward * MOVING[1][:, None]
+        bend = bend + astray[rows, best][:, None] * AROUND[best][..., None]
         hardest = (np.abs(bend) / (time**2 * self.acceleration)).max(axis=(1, 2))
         lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
         return lacking
@@ -238,7 +238,7 @@ def around_stance_leg(
 _SHARES = np.linspace(0.1, 0.9, 9)
 """Shares of a swing's time at which its way around the stance leg is looked at [-]."""
 
-_DEARER = (_SHARES * (1.0 - _SHARES)) ** 5
+DEARER = (_SHARES * (1.0 - _SHARES)) ** 5
 """What a way round at these is divided by to be compared."""
 
 
@@ -261,4 +261,4 @@ def _unit_ways() -> tuple[Array, Array, Array]:
     return rest, moving, np.array(around)
 
 
-_AT_REST, _MOVING, _AROUND = _unit_ways()
+AT_REST, MOVING, AROUND = _unit_ways()

@@ -105,12 +105,7 @@ def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]
 
 
 def check_reach(number: int, place: Footstep, parameters: PlannerParameters) -> None:
-    """Refuse a nominal footstep outside the reach box.
-
-    Args:
-        number: of the footstep, from 1.
-        place: where it lands, seen from its stance foot.
-        parameters: give the box.
+    """Refuse a nominal footstep of a number that lands outside the reach box, seen from its stance foot.
 
     Raises:
         ParameterError: it is out of reach; its key is ("footsteps", number - 1, "ahead" or "beside").
@@ -142,12 +137,18 @@ def shifts_within(boxes: Array, increment: Array, free: tuple[bool, bool]) -> Sh
         increment: nominal increments.
         free: whether each of them may be shifted.
     """
-    lower, upper = np.full((2, 2), -_UNUSED), np.full((2, 2), _UNUSED)
-    for j in np.flatnonzero(np.array(free)):
-        lower[j], upper[j] = boxes[j] - increment[j]
+    moves = np.array(free)[:, None]
+    lower = np.where(moves, boxes[:, 0] - increment, -_UNUSED)
+    upper = np.where(moves, boxes[:, 1] - increment, _UNUSED)
     if free[1]:
         lower[1], upper[1] = np.minimum(lower[1], 0.0), np.maximum(upper[1], 0.0)
     return lower, upper
+
+
+def unshifted(free: tuple[bool, bool]) -> Shifts:
+    """Those of footsteps that stay where they are."""
+    bounds = [[0.0, 0.0] if moves else [_UNUSED, _UNUSED] for moves in free]
+    return -np.array(bounds), np.array(bounds)
 
 
 def reachable_shifts(
@@ -160,13 +161,7 @@ def reachable_shifts(
 ) -> Shifts:
     """Those within the paper's reachable area, the first step also within what its foot can be swung to in time.
 
-    Args:
-        parameters: give area and swing speed.
-        increment: nominal increments.
-        side: +1 where the next step is a left one, -1 where it is a right one.
-        free: whether each of them may be shifted.
-        swing: position of the swing foot from the stance foot, shape (2,) [m], or None when no foot swings.
-        time_left: time until the first of them lands [s].
+    Arguments are as of `planner.laws.law.StepContext`; `side` is that of the next step.
     """
     lower, upper = shifts_within(np.array([reach_box(parameters, s) for s in (side, -side)]), increment, free)
     if swing is None or not free[0]:

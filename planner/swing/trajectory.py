@@ -238,66 +238,49 @@ class SwingCourse:
     height: float
 
 
-@dataclass(frozen=True, slots=True)
-class SwingTimes:
-    """Instants of a swing, on the planner's clock except the touchdown [s].
-
-    Attributes:
-        lift: the foot leaves the ground.
-        glide_start: it begins to move horizontally.
-        apex: it is highest.
-        glide_end: it has stopped to move horizontally.
-        touchdown: it is planned to land.
-    """
-
-    lift: float
-    glide_start: float
-    apex: float
-    glide_end: float
-    touchdown: float
-
-
-def swing_times(start: float, samples: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTimes:
-    """Times [s] of a swing in a single support of so many samples that begins at `start`."""
-    t = parameters.sample_time
-    touchdown = start + samples * t - min(parameters.touchdown_lead, _MOST_LEAD * samples * t)
-    glide_start, apex, glide_end = (
-        start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
-    )
-    return SwingTimes(start, glide_start, apex, min(glide_end, touchdown), touchdown)
-
-
 def start_swing(
-    foot: Foot, pose: Array, target: Array, times: SwingTimes, clearance: float, parameters: PlannerParameters
+    foot: Foot,
+    pose: Array,
+    target: Array,
+    start: float,
+    samples: float,
+    course: SwingCourse,
+    parameters: PlannerParameters,
 ) -> SwingTrajectory:
-    """Swing from rest.
+    """Swing from rest, which ends some time before the single support does.
 
     Args:
         foot: the foot that swings.
         pose: lift-off position and angles, shape (6,).
         target: touchdown position and angles, shape (6,).
-        times: of the swing.
-        clearance: height of the apex above the higher of both ends [m].
-        parameters: give the search for the ground.
+        start: when its single support begins [s].
+        samples: how long that lasts [samples].
+        course: of the swing; its instants are on a grid of samples.
+        parameters: of the planner.
     """
-    rest = np.zeros((3, 6))
+    t, rest = parameters.sample_time, np.zeros((3, 6))
     rest[0] = pose
+    touchdown = start + samples * t - min(parameters.touchdown_lead, _MOST_LEAD * samples * t)
+    glide_start, apex, glide_end = (
+        start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
+    )
+    glide_end = min(glide_end, touchdown)
     trajectory = SwingTrajectory(
         foot=foot,
-        start_time=times.glide_start,
-        glide_end=times.glide_end,
-        apex_time=times.apex,
-        touchdown_time=times.touchdown,
+        start_time=glide_start,
+        glide_end=glide_end,
+        apex_time=apex,
+        touchdown_time=touchdown,
         target=np.array(target),
-        clearance=clearance,
+        clearance=course.height,
         search=parameters.search,
-        level=_to_rest(rest[:, _GLIDING], target[_GLIDING], times.glide_end - times.glide_start),
-        rise_start=times.lift,
+        level=_to_rest(rest[:, _GLIDING], target[_GLIDING], glide_end - glide_start),
+        rise_start=start,
         rise=np.zeros((6, 1)),
-        fall_start=times.apex,
+        fall_start=apex,
         fall=np.zeros((6, 1)),
     )
-    return trajectory._with_height(times.lift, rest[:, 2:3], max(float(pose[2]), float(target[2])) + clearance)
+    return trajectory._with_height(start, rest[:, 2:3], max(float(pose[2]), float(target[2])) + course.height)
 
 
 def detour(time: float, duration: float) -> tuple[Array, Array]:

@@ -6,7 +6,8 @@
 enum { SHIFTS = 2, EXTRA = 4 };
 
 /* Counterpart of `planner.model.dcm.viability_weights`. */
-static void viability(const double *stiffness, const double *omega, double sample_time, int64_t count, double *weights) {
+static void viability(const double *stiffness, const double *omega, double sample_time, int64_t count,
+                      double *weights) {
     double sum = 0.0, before = 1.0;
     weights[0] = 0.0;
     for (int64_t k = 1; k < count; k++) {
@@ -50,8 +51,8 @@ static void write_errors(const FootstepQps *qps, int64_t samples, double *end_bo
         end[m + step] = -sum;
     }
     for (int axis = 0; axis < 2; axis++) {
-        const double *b = beside[axis], time = t * n;
-        qps->h[rows * axis + 2 * n] = b[0] + time * b[1] + (0.5 * time * time) * b[2] + end_share * (b[1] + time * b[2]);
+        const double *b = beside[axis], time = t * n, speed = b[1] + time * b[2];
+        qps->h[rows * axis + 2 * n] = b[0] + time * b[1] + (0.5 * time * time) * b[2] + end_share * speed;
         end_box[axis] = qps->terminal_margin * qps->half_size[2 * n + axis];
     }
 }

@@ -536,9 +536,9 @@ typedef struct {
 /*
  * Counterpart of `planner.references.leg_offset.nominal_feet` without a swing that is flown.
  *
- * Of each phase from that of the first sample on `phases` has 35 numbers: rows of `steps` before, stance and after; 1 for
- * a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of the
- * swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
+ * Of each phase from that of the first sample on `phases` has 35 numbers: rows of `steps` before, stance and after; 1
+ * for a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of
+ * the swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
  * the coefficients of progress, rise and fall. Soles and angles have rows of `most` samples.
  */
 typedef struct {
@@ -561,8 +561,8 @@ void nominal_feet_make(const NominalFeet *feet, int64_t samples);
 /*
  * Counterpart of `planner.references.leg_offset.LegOffset.made` with feet that are there.
  *
- * Feet have rows of `most` + 1 samples, heights of `most`. In `scratch`, `points` and `bends` a row takes `stride`, which
- * is 8 more than that; they have 23 rows, and 3 for each point.
+ * Feet have rows of `most` + 1 samples, heights of `most`. In `scratch`, `points` and `bends` a row takes `stride`,
+ * which is 8 more than that; they have 23 rows, and 3 for each point.
  */
 typedef struct {
     const LegChain *chain;
@@ -598,10 +598,27 @@ typedef struct {
     const int64_t *contacts;
     int64_t first;
     int64_t points;
-    const double *table;
+    const double *values;
+    const double *steps;
     const double *heights;
     const double *on_left;
 } Sight;
+
+/* Counterpart of `planner.references.zmp_reference.support_table`, of the steps of a schedule. */
+typedef struct {
+    int64_t points;
+    int64_t stance;
+    int64_t stay;
+    const double *free;
+    const double *positions;
+    const double *yaws;
+    const int64_t *supports;
+    const double *half_size;
+    double *values;
+    double *steps;
+} SupportTable;
+
+void support_table_fill(const SupportTable *table);
 
 /* Counterpart of `planner.references.window.ReferencePreview`: one sample before a window, those of it, one after. */
 typedef struct {
@@ -733,5 +750,108 @@ typedef struct {
 } MotionInWorld;
 
 void motion_in_world(const MotionInWorld *motion);
+
+/* Counterpart of a `planner.references.window.Window`, as far as recovery looks at it. */
+typedef struct {
+    int64_t count;
+    double sample_time;
+    const double *stiffness;
+    const double *omega;
+    const double *point;
+    const double *gain;
+    const double *half_size;
+    double *decay;
+} Outlook;
+
+void outlook_decay(const Outlook *ahead);
+double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin);
+
+/* Counterpart of `planner.swing.leg_reach.LegReach`; its unit ways are rows of values at so many shares of a swing. */
+typedef struct {
+    double radius;
+    double hip_width;
+    int64_t crosses;
+    double across;
+    const double *acceleration;
+    double touchdown_lead;
+    double sample_time;
+    int64_t shares;
+    const double *at_rest;
+    const double *moving;
+    const double *around;
+    const double *dearer;
+} Legs;
+
+/* Counterpart of `planner.recovery.step_adjustment.StepProblem`, with the state that is to be captured, and what of the
+ * legs depends on the step's turn. */
+typedef struct {
+    double com[2];
+    double dcm[2];
+    double omega;
+    double nominal[2];
+    double side;
+    double swing[4];
+    double double_left;
+    double single_left;
+    double cycle;
+    double shortest;
+    double face[4];
+    double crosses;
+    double last;
+    double adapted;
+    double near;
+    double clear;
+} Landing;
+
+/* Counterpart of `planner.recovery.capture_margin.CaptureMargin`; of the four edges see there. */
+typedef struct {
+    const Legs *legs;
+    const Landing *step;
+    double cycle;
+    int64_t timing;
+    const double *half;
+    const double *apart;
+    const double *middle;
+    int64_t time_count;
+    const double *times;
+    double least_double;
+    double least_single;
+    double longer;
+    double *captured;
+    double *margins;
+} Capture;
+
+void capture_margins(const Capture *capture, int64_t steps, int64_t fixed);
+
+/* Counterpart of `planner.recovery.step_adjustment.StepAdjustment`; its result are time, box, and whether there is
+ * more to catch. */
+typedef struct {
+    const Legs *legs;
+    const Landing *step;
+    const Outlook *ahead;
+    int64_t timing;
+    const double *authority;
+    int64_t change_count;
+    const double *changes;
+    double *times;
+    double shift_weight;
+    double second_weight;
+    double time_weight;
+    double stretch_weight;
+    double swing_weight;
+    double cross_factor;
+    double least_saving;
+    double cop_share;
+    double landing_share;
+    double landing_spare;
+    double tolerance;
+    double unheld_share;
+    double stand_share;
+    double least_double;
+    double least_single;
+    double *result;
+} Adjustment;
+
+int64_t adjustment_solve(const Adjustment *program);
 
 #endif

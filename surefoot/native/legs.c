@@ -60,7 +60,7 @@ static void turn_row(const double *angles, int64_t count, double *restrict cosin
     }
 }
 
-/* Counterpart of `_pitched`: a vector of a foot that is pitched heel up by rows of angles, in the frames of its rows. */
+/* Counterpart of `_pitched`: a vector of a foot, pitched heel up by rows of angles, in the frames of its rows. */
 static void pitched(const double *vector, double forward, double outward, const double *frame, const double *turn,
                     int64_t stride, int64_t count, double *restrict out) {
     const double *c = frame, *s = frame + stride, *cosine = turn, *sine = turn + stride;
@@ -95,8 +95,8 @@ static void place_frames(const LegOffset *legs, int64_t count) {
 }
 
 /* Counterpart of `LegChain._hips`, of one leg; `c` and `s` are the trunk's heading. */
-static void place_hips(const LegChain *chain, const Vectors *restrict middle, const Vectors *restrict ankle, double side,
-                       const double *restrict c, const double *restrict s, Vectors *restrict hip) {
+static void place_hips(const LegChain *chain, const Vectors *restrict middle, const Vectors *restrict ankle,
+                       double side, const double *restrict c, const double *restrict s, Vectors *restrict hip) {
     const double half = side * chain->hip_half_width, beside = chain->hip_lever[0], above = chain->hip_lever[1];
     for (int l = 0; l < LANES; l++) {
         hip->x[l] = middle->x[l] - half * s[l];
@@ -207,7 +207,8 @@ static void place_points(const LegOffset *legs, int64_t first, int64_t last) {
         store(legs, ANKLE + leg, first, &ankle[leg]);
         store(legs, FOOT + leg, first, &foot);
     }
-    for (int i = 0; i < 3; i++) own[i] = chain->trunk_mass * chain->trunk[i] + 2.0 * chain->foot_mass * chain->foot_centre[i];
+    for (int i = 0; i < 3; i++)
+        own[i] = chain->trunk_mass * chain->trunk[i] + 2.0 * chain->foot_mass * chain->foot_centre[i];
     for (int l = 0; l < LANES; l++) {
         fixed.x[l] = chain->at_ankle * (ankle[0].x[l] + ankle[1].x[l]) + own[0] * c[l] - own[1] * s[l];
         fixed.y[l] = chain->at_ankle * (ankle[0].y[l] + ankle[1].y[l]) + own[0] * s[l] + own[1] * c[l];

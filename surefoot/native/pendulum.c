@@ -47,7 +47,8 @@ void motion_in_world(const MotionInWorld *motion) {
     double state[2][3];
     memcpy(state, motion->state, sizeof state);
     for (int64_t k = 0; k <= last; k++) {
-        const double *offset = motion->offset + 2 * k, *gain = motion->gain + 2 * k, softness = 1.0 / motion->stiffness[k];
+        const double *offset = motion->offset + 2 * k, *gain = motion->gain + 2 * k;
+        const double softness = 1.0 / motion->stiffness[k];
         double zmp[2], reference[2];
         for (int axis = 0; axis < 2; axis++) {
             const double *s = state[axis];

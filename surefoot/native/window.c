@@ -53,10 +53,56 @@ static void look_up_phases(const Preview *preview) {
     }
 }
 
+/* Counterpart of `planner.references.zmp_reference._inscribed_boxes`, of one step. */
+static void inscribed_box(const double *half_size, double yaw, double *box) {
+    const double a = half_size[0], b = half_size[1], c = fabs(cos(yaw)), s = fabs(sin(yaw));
+    const double scale = fmin(a / (a * c + b * s), b / (a * s + b * c));
+    box[0] = scale * a;
+    box[1] = scale * b;
+}
+
+/* Counterpart of `planner.references.zmp_reference._joint_boxes`, of one pair of feet. */
+static void join_boxes(double x, double y, double *box) {
+    const double a = box[0], b = box[1], most = fmax(2.0 * x * y, 1e-12);
+    const double sideways = clamp((a * y - b * x) / most, 0.0, 1.0), ahead = clamp((b * x - a * y) / most, 0.0, 1.0);
+    const double wide[2] = {a - sideways * x, b + sideways * y}, along[2] = {a + ahead * x, b - ahead * y};
+    memcpy(box, wide[0] * wide[1] >= along[0] * along[1] ? wide : along, sizeof wide);
+}
+
+void support_table_fill(const SupportTable *table) {
+    const double *origin = table->positions + 3 * table->stance, yaw = table->yaws[table->stance];
+    const double c = cos(yaw), s = sin(yaw);
+    for (int64_t r = 0; r < table->points; r++) {
+        const int64_t feet[2] = {table->supports[2 * r], table->supports[2 * r + 1]};
+        const double *one = table->positions + 3 * feet[0], *other = table->positions + 3 * feet[1];
+        const double x = 0.5 * (one[0] + other[0]) - origin[0], y = 0.5 * (one[1] + other[1]) - origin[1];
+        double *row = table->values + COLUMNS * r, box[2][2];
+        row[0] = x * c + y * s;
+        row[1] = y * c - x * s;
+        for (int64_t j = 0; j < 2; j++) {
+            const int64_t moved = table->stance + 1 + j;
+            double shifted = 0.0;
+            for (int i = 0; i < 2; i++)
+                shifted += (table->stay ? feet[i] == moved : feet[i] >= moved) ? table->free[j] : 0.0;
+            row[2 + j] = 0.5 * shifted;
+        }
+        for (int i = 0; i < 2; i++) inscribed_box(table->half_size, table->yaws[feet[i]] - yaw, box[i]);
+        for (int i = 0; i < 2; i++) row[4 + i] = 0.5 * (box[0][i] + box[1][i]);
+        if (feet[0] != feet[1]) {
+            const double dx = other[0] - one[0], dy = other[1] - one[1];
+            join_boxes(0.5 * fabs(dx * c + dy * s), 0.5 * fabs(dy * c - dx * s), row + 4);
+        }
+        row[6] = 0.5 * (one[2] + other[2]);
+    }
+    memset(table->steps + COLUMNS * (table->points - 1), 0, COLUMNS * sizeof(double));
+    for (int64_t i = 0; i < COLUMNS * (table->points - 1); i++)
+        table->steps[i] = table->values[COLUMNS + i] - table->values[i];
+}
+
 /* Counterpart of `planner.references.zmp_reference.zmp_reference` and `load_left`, from the second sample on. */
 static void refer(const Preview *preview) {
     const Sight *sight = preview->sight;
-    const double *values = sight->table, *steps = sight->table + COLUMNS * sight->points;
+    const double *values = sight->values, *steps = sight->steps;
     for (int64_t k = 1; k + 1 < preview->samples; k++) {
         const int64_t index = preview->index[k], next = index + 1 < sight->points ? index + 1 : index, at = k - 1;
         const double share = preview->fraction[k];

@@ -1,6 +1,7 @@
 """The compiled kernels of a plan against their plain counterparts, plan by plan, on real walks."""
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -82,14 +83,22 @@ class Plans:
         self.unlike: dict[str, float] = {}
         self.seen: Counter[str] = Counter()
         self._pair(self.planner._preview, compiled._preview, "window")
+        self._pair(self.planner._preview, compiled._preview, "support", lambda support: support.table)
+        plain, twin = self.planner._recovery, compiled._recovery
+        self._pair(plain._planned, twin._planned, "margin")
+        if plain.adjustment is not None:
+            assert plain.adjustment._compiled is None
+            assert twin.adjustment._compiled is not None
+            self._pair(plain._movable, twin._movable, "margins")
+            self._pair(plain.adjustment, twin.adjustment, "solve")
 
-    def _pair(self, plain: Any, compiled: Any, method: str) -> None:
-        """Have a method of one object also asked of another one, and what both say compared."""
+    def _pair(self, plain: Any, compiled: Any, method: str, part: Callable[[Any], Any] = lambda found: found) -> None:
+        """Have a method of one object also asked of another one, and what both say, or a part of it, compared."""
         does, twin = getattr(plain, method), getattr(compiled, method)
 
         def both(*given: Any) -> Any:
             found = does(*given)
-            self._hold(method, found, twin(*given))
+            self._hold(method, part(found), part(twin(*given)))
             return found
 
         setattr(plain, method, both)

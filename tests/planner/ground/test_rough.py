@@ -13,7 +13,7 @@ from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground, swing_course
-from surefoot.planner.swing.trajectory import start_swing, swing_times
+from surefoot.planner.swing.trajectory import start_swing
 from surefoot.planner.types import Foot
 
 pytestmark = pytest.mark.unit
@@ -104,15 +104,14 @@ def test_the_turning_sole_clears_all_blocks_and_lands_flat(stand, seed):
     for number, ends in enumerate(zip(plan, plan[2:], strict=False), 1):
         course = swing_course(number, *ends, samples, 0.05, Ground(terrain, HALF_SOLE, parameters))
         start, end = (sole_pose(place.position, place.yaw, place.normal) for place in ends)
-        times = swing_times(0.0, samples, course, parameters)
-        swing = start_swing(Foot.LEFT, start, end, times, course.height, parameters)
-        for time in np.arange(0.0, times.touchdown, 0.01):
+        swing = start_swing(Foot.LEFT, start, end, 0.0, samples, course, parameters)
+        for time in np.arange(0.0, swing.touchdown_time, 0.01):
             pose = swing.evaluate(time)[0]
             points = pose[:3] + outline @ sole_rotation(*pose[3:]).T
             gap = np.min(points[:, 2] - terrain.heights(points[:, :2]))
             far = min(np.linalg.norm(pose[:2] - place[:2]) for place in (start, end)) > 0.06
             assert gap > (0.018 if far else -2e-3)
-        np.testing.assert_allclose(sole_rotation(*swing.evaluate(times.touchdown)[0, 3:])[:, 2], ends[1].normal)
+        np.testing.assert_allclose(sole_rotation(*swing.evaluate(swing.touchdown_time)[0, 3:])[:, 2], ends[1].normal)
 
 
 def test_ground_that_lies_under_footsteps_asks_for_them():

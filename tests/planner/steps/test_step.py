@@ -15,7 +15,7 @@ from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import room_left, shortest_swing
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import PEAK, LegReach
-from surefoot.planner.swing.trajectory import start_swing, swing_times
+from surefoot.planner.swing.trajectory import start_swing
 
 pytestmark = pytest.mark.unit
 
@@ -99,8 +99,7 @@ def test_a_climb_is_hurried_no_more_than_body_and_foot_can_be(stand, direction, 
     poses = [
         sole_pose(place.position, place.yaw, place.normal) for place in (schedule.step(step - 2).place, order.place)
     ]
-    times = swing_times(0.0, 45.0, order.course, PlannerParameters())
-    swing = start_swing(order.place.foot, *poses, times, order.course.height, PlannerParameters())
+    swing = start_swing(order.place.foot, *poses, 0.0, 45.0, order.course, PlannerParameters())
     hardest = np.abs([swing.evaluate(at)[2, :3] for at in np.linspace(0.0, usual, 500, endpoint=False)]).max()
     lifted = PEAK * abs(order.lift) / quickest**2
     swung = hardest * (usual / quickest) ** 2

@@ -9,7 +9,7 @@ from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.course import EDGE_CLEARANCE, Ground, swing_course
-from surefoot.planner.swing.trajectory import start_swing, swing_times
+from surefoot.planner.swing.trajectory import start_swing
 from surefoot.planner.types import FeetState, Foot, Footstep
 
 pytestmark = pytest.mark.unit
@@ -34,15 +34,14 @@ def courses_of(plan, terrain, half_size, samples=75):
 def swings(plan, courses, samples):
     for row, course in enumerate(courses, start=2):
         ends = [sole_pose(place.position, place.yaw, place.normal) for place in (plan[row - 2], plan[row])]
-        times = swing_times(0.0, samples, course, PARAMETERS)
-        yield ends, times, start_swing(Foot.LEFT, *ends, times, course.height, PARAMETERS)
+        yield start_swing(Foot.LEFT, *ends, 0.0, samples, course, PARAMETERS)
 
 
 def clearances(plan, terrain, half_size, samples):
     """The least height of the whole sole over what is neither its lift-off nor its landing place, of each step [m]."""
-    for _, times, swing in swings(plan, courses_of(plan, terrain, half_size, samples), samples):
+    for swing in swings(plan, courses_of(plan, terrain, half_size, samples), samples):
         clearance = []
-        for time in np.arange(0.0, times.touchdown, 0.002):
+        for time in np.arange(0.0, swing.touchdown_time, 0.002):
             pose = swing.evaluate(time)[0]
             grid = sole_corners(Footstep(Foot.LEFT, pose[:3], float(pose[3])), half_size)
             heights = terrain.heights(grid)
@@ -86,9 +85,9 @@ def test_a_plain_swing_would_stub_its_toe():
     plan, terrain = walk_plan(Direction.UP, 0.185, 0.24)
     half_size = np.array([0.11, 0.05])
     plain = courses_of(plan_footsteps(GaitParameters(), stand_here(), flat()), flat(), half_size)
-    (_, times, swing) = list(swings(plan, plain[:2], 45))[1]
+    swing = list(swings(plan, plain[:2], 45))[1]
     depth = []
-    for time in np.arange(0.0, times.touchdown, 0.01):
+    for time in np.arange(0.0, swing.touchdown_time, 0.01):
         pose = swing.evaluate(time)[0]
         corners = sole_corners(Footstep(Foot.LEFT, pose[:3], 0.0), half_size)
         depth.append(pose[2] - terrain.heights(corners).max())

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.trajectory import SwingCourse, SwingTimes, start_swing, swing_times
+from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot
 
 pytestmark = pytest.mark.unit
@@ -14,7 +14,9 @@ TARGET = np.array([1.4, 0.15, 0.0, 0.2, -0.15, 0.0])
 
 def swing(height=0.0, clearance=0.05, glide=(2.0, 2.4, 2.8)):
     target = TARGET + np.array([0.0, 0.0, height, 0.0, 0.0, 0.0])
-    return start_swing(Foot.LEFT, START, target, SwingTimes(2.0, *glide, 2.8), clearance, PlannerParameters())
+    begin, apex, end = ((time - 2.0) / 0.8 for time in glide)
+    course = SwingCourse(apex, begin, end, clearance)
+    return start_swing(Foot.LEFT, START, target, 2.0, 40, course, PlannerParameters(touchdown_lead=0.0))
 
 
 @pytest.mark.parametrize("height", [0.0, 0.15, -0.15])
@@ -84,11 +86,10 @@ def test_without_ground_the_sole_searches_downwards_without_a_jump_in_speed():
 def test_positions_at_many_instants_are_those_of_evaluate():
     """With a glide that begins late and ends early, also after the target has moved."""
     pose, target = np.array([0.0, 0.1, 0.2, 0.1, 0.0, 0.05]), np.array([0.4, 0.2, 0.35, -0.1, 0.1, 0.0])
-    times = swing_times(1.0, 40, SwingCourse(0.6, 0.15, 0.8, 0.05), PlannerParameters())
-    swing = start_swing(Foot.LEFT, pose, target, times, 0.05, PlannerParameters())
+    swing = start_swing(Foot.LEFT, pose, target, 1.0, 40, SwingCourse(0.6, 0.15, 0.8, 0.05), PlannerParameters())
     moved = swing.retargeted(1.4, target + np.array([0.05, -0.03, 0.01, 0.1, 0.0, 0.0]))
     for trajectory, start in ((swing, 1.0), (moved, 1.4)):
-        instants = np.linspace(start, times.touchdown, 97)
+        instants = np.linspace(start, swing.touchdown_time, 97)
         each = [trajectory.evaluate(float(time))[0] for time in instants]
         np.testing.assert_allclose(trajectory.positions(instants), each, atol=1e-12)
 

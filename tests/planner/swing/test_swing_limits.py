@@ -5,7 +5,7 @@ import pytest
 
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.swing.trajectory import SwingTimes, start_swing
+from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot
 
 pytestmark = pytest.mark.unit
@@ -22,9 +22,8 @@ def test_a_way_around_the_stance_leg_lacks_what_hips_cannot_swing_of_it(time, he
     swung = np.array([here, np.zeros(2)])
     lacking = LEGS.shortfall(swung, 1.0, np.array([time, 2.0]), np.tile(place, (1, 2, 1)))[0]
     length = time - P.touchdown_lead
-    times = SwingTimes(0.0, 0.0, 0.5 * length, length, length)
     pose, target = np.append(here, np.zeros(4)), np.append(place, np.zeros(4))
-    swing = start_swing(Foot.LEFT, pose, target, times, 0.05, P)
+    swing = start_swing(Foot.LEFT, pose, target, 0.0, time / P.sample_time, SwingCourse(0.5, 0.0, 1.0, 0.05), P)
     instants = np.linspace(0.0, length, 100)
     bent = swing.around(LEGS.corner(swing.positions(instants)[:, :2], 1.0), 0.1 * length)
     hardest = np.abs([bent.evaluate(at)[2, :2] / LEGS.acceleration for at in instants[:-1]]).max()

@@ -16,7 +16,7 @@ from surefoot.scenarios.log import read
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 
-CHANNEL_PARTS = ("state", "wbc_build", "wbc_solve", "planner", "log", "physics", "tick")
+CHANNEL_PARTS = ("state", "wbc_build", "wbc_solve", "planner", "log", "physics", "tick", "controller")
 
 
 def arguments() -> argparse.Namespace:

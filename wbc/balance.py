@@ -1,7 +1,7 @@
 """CoM law: time-varying DCM feedback through the ZMP, and a spring-damper for the height."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,7 +71,7 @@ class SupportRegion:
         if self._rebuild is not None:
             self._positions[:], self._rotations[:] = positions, rotations
             self._rebuild(*active, rolling)
-            self._edges = [(a, b, c, d, e) for a, b, c, d, e in self.edges[: self.edge_count[0]].tolist()]
+            self._edges = self.edges[: self.edge_count[0]].tolist()
             return
         from scipy.spatial import ConvexHull
 
@@ -98,7 +98,7 @@ class SupportRegion:
         return nearest
 
 
-_Edge = tuple[float, float, float, float, float]
+_Edge = Sequence[float]
 """Start point, unit direction and length of an edge of a counter-clockwise polygon."""
 
 

@@ -192,9 +192,9 @@ class CompiledRows(RowWriter):
             place: slice(at.start + vectors + numbers, at.stop + vectors + numbers) for place, at in derived.items()
         }
         row = np.zeros(_width(places))
-        self._row, self._places = row[:vectors], numbers
-        self._pack = struct.Struct(f"{numbers}d").pack_into
-        self._numbers_at = row[vectors : vectors + numbers].data.cast("B")
+        self._row, self._announced = row[:vectors], numbers
+        # From plain numbers straight into memory: an array of them would take longer.
+        self._pack, self._bytes, self._behind = struct.Struct(f"{numbers}d").pack_into, row.data.cast("B"), 8 * vectors
         self._put = self._bind(kernels, row, places)
         self._deriving: Callable[[], None] | None = None
         if layout.compiled is not None:
@@ -231,9 +231,9 @@ class CompiledRows(RowWriter):
         """See `RowWriter`; numbers that are not as many as announced are refused at once."""
         if vectors:
             np.concatenate(vectors, out=self._row)
-        if len(numbers) != self._places:
-            raise ValueError(f"a row of {len(numbers)} numbers, where there are places for {self._places}")
-        self._pack(self._numbers_at, 0, *numbers)
+        if len(numbers) != self._announced:
+            raise ValueError(f"a row of {len(numbers)} numbers, where there are places for {self._announced}")
+        self._pack(self._bytes, self._behind, *numbers)
         if self._deriving is not None:
             self._deriving()
         times = self._times

@@ -63,6 +63,15 @@ def test_rows_give_the_same_log_as_single_appends(tmp_path):
     assert all(first[topic].content() == second[topic].content() for topic in ("/a", "/b"))
 
 
+def test_a_row_may_be_of_vectors_alone(tmp_path):
+    spec = ChannelSpec("/c", "C", (FieldSpec("x", (3,)),))
+    with LogWriter(tmp_path / "log.mcap", {}) as writer:
+        c = writer.channel(spec)
+        row = writer.rows(RowLayout(((c, ("x",)),), ()))
+        row.append(5, (), np.array([1.0, 2.0, 3.0]))
+    assert read(tmp_path / "log.mcap")["/c"].field("x").tolist() == [[1.0, 2.0, 3.0]]
+
+
 def test_a_row_must_be_complete(tmp_path):
     with LogWriter(tmp_path / "log.mcap", {}) as writer:
         a = writer.channel(A)

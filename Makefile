@@ -44,8 +44,9 @@ format: $(VENV)/.installed-dev
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
+# make bench SECTIONS="tick startup" measures some of it.
 bench: $(VENV)/.installed-dev
-	$(BIN)/python benchmarks/control_tick.py
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks $(SECTIONS)
 
 clean:
 	rm -rf $(VENV) runs dist build

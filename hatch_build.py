@@ -1,11 +1,11 @@
 """Compiles the kernels when the package is installed or its wheel is built, see `surefoot/native`.
 
-A wheel with the library in it is tied to the platform, and to no version of Python. Where there is no compiler the
+A wheel with the library in it is tied to the platform, on Linux to a version of glibc, and to no version of Python.
+Where there is no compiler the
 package is whole without it, and runs on plain Python.
 """
 
 import importlib.util
-import sysconfig
 from pathlib import Path
 from typing import Any
 
@@ -28,4 +28,4 @@ class KernelHook(BuildHookInterface):
             return
         build_data["artifacts"].append(f"/surefoot/native/{native.LIBRARY.name}")
         build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+        build_data["tag"] = f"py3-none-{native.platform_tag()}"

@@ -1,7 +1,12 @@
 """Robot descriptions: one MJCF text per robot, read by MuJoCo and by Pinocchio."""
 
-from surefoot.models.registry import ROBOTS, UnknownRobotError, describe, explain, robot_names
-from surefoot.models.types import JointRoles, Robot, RobotDescription, RobotError, RobotOptions
+from typing import TYPE_CHECKING
+
+from surefoot.lazy import face
+
+if TYPE_CHECKING:
+    from surefoot.models.registry import ROBOTS, UnknownRobotError, describe, explain, robot_names
+    from surefoot.models.types import JointRoles, Robot, RobotDescription, RobotError, RobotOptions
 
 __all__ = [
     "ROBOTS",
@@ -15,3 +20,12 @@ __all__ = [
     "explain",
     "robot_names",
 ]
+
+if not TYPE_CHECKING:  # a type checker shall still refuse names that are not there
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            "registry": ("ROBOTS", "UnknownRobotError", "describe", "explain", "robot_names"),
+            "types": ("JointRoles", "Robot", "RobotDescription", "RobotError", "RobotOptions"),
+        },
+    )

@@ -3,6 +3,7 @@
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ def pinocchio_model(description: RobotDescription) -> pin.Model:
     Raises:
         RobotError: Pinocchio's total mass or joint order is not the description's.
     """
-    model = _read(description.mjcf)
+    model = pin.Model(_read(description.mjcf))
     mass = sum(inertia.mass for inertia in model.inertias)
     if abs(mass - description.mass) > 1e-9 * description.mass:
         what = f"Pinocchio reads {mass} kg from the MJCF of {description.name}"
@@ -37,18 +38,26 @@ def pinocchio_model(description: RobotDescription) -> pin.Model:
     return model
 
 
-def limb_shapes(description: RobotDescription, model: pin.Model) -> pin.GeometryModel:
+def limb_shapes(description: RobotDescription) -> pin.GeometryModel:
     """The robot's contact shapes, with the pairs that it must keep apart as collision pairs."""
-    with _file(description.mjcf) as path:
-        geometry = pin.buildGeomFromMJCF(model, path, pin.GeometryType.COLLISION)
+    geometry = pin.GeometryModel(_shapes(description.mjcf))
     for one, other in description.kept_apart:
         geometry.addCollisionPair(pin.CollisionPair(geometry.getGeometryId(one), geometry.getGeometryId(other)))
     return geometry
 
 
+@lru_cache(maxsize=8)
 def _read(mjcf: str) -> pin.Model:
+    """The model of a text, which has all meshes in it; run after run of a campaign is of the same robot."""
     with _file(mjcf) as path:
         return pin.buildModelFromMJCF(path)
+
+
+@lru_cache(maxsize=8)
+def _shapes(mjcf: str) -> pin.GeometryModel:
+    """Contact shapes of a text, on the joints of its model."""
+    with _file(mjcf) as path:
+        return pin.buildGeomFromMJCF(_read(mjcf), path, pin.GeometryType.COLLISION)
 
 
 @contextmanager

@@ -11,20 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from surefoot.guard import taken_for
+from surefoot.models import names
 from surefoot.models.humanoid100 import HUMANOID100
+from surefoot.models.names import SHIPPED, is_file
 from surefoot.models.types import Robot, RobotDescription, RobotError, RobotOptions, nearest
-from surefoot.plugins import Registry
 
 if TYPE_CHECKING:
     from surefoot.models.robot_file.build import Explanation
-
-ENDINGS = (".yaml", ".yml")
-"""Of robot files."""
-
-
-def is_file(reference: str) -> bool:
-    """Whether a reference to a robot is the path of a robot file, and no name."""
-    return reference.endswith(ENDINGS)
 
 
 def _of_file(path: Path, options: RobotOptions) -> RobotDescription:
@@ -33,24 +26,14 @@ def _of_file(path: Path, options: RobotOptions) -> RobotDescription:
     return describe_file(path, options)
 
 
-SHIPPED = {file.stem: file for file in sorted((Path(__file__).parent / "robots").glob("*.yaml"))}
-"""Robot files that come with this package, by name; their models come with other packages."""
-
-ROBOTS = Registry(
-    "surefoot.robots",
+ROBOTS = names.ROBOTS.filled(
     Robot,
     {HUMANOID100.name: HUMANOID100, **{name: Robot(name, partial(_of_file, file)) for name, file in SHIPPED.items()}},
 )
-"""Every robot that `robot: NAME` of a scenario can mean."""
 
 
 class UnknownRobotError(LookupError):
     """No robot has that name."""
-
-
-def said_of(name: str) -> str:
-    """What a robot file of this package says of its robot in its first line; empty for others."""
-    return SHIPPED[name].read_text(encoding="utf-8").split("\n", 1)[0].lstrip("# ") if name in SHIPPED else ""
 
 
 def robot_names() -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 import difflib
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -218,6 +218,12 @@ class RobotDescription:
             if name not in valid:
                 what = f"{'.'.join(key)} of {self.name} names '{name}', which is no {kind} of it"
                 raise RobotError(key, what, nearest(name, valid))
+
+
+def same_robot(one: RobotDescription, other: RobotDescription) -> bool:
+    """Whether two descriptions say the same."""
+    pairs = ((getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+    return one is other or all(np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b for a, b in pairs)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Planar frames, the orientation of soles, convex polygons on the ground, and quintic curves.
+"""Planar frames, the orientation of soles, one or many, convex polygons on the ground, and quintic curves.
 
 The sole's frame is turned by yaw about the vertical, then by pitch about its new lateral axis, then by roll about its
 new forward axis: R = R_z(yaw) R_y(pitch) R_x(roll). Yaw is the heading of its forward axis seen from above, whatever
@@ -99,37 +99,66 @@ def sole_corners(footstep: Footstep, half_size: Array) -> Array:
     return np.asarray(footstep.position[:2] + (CORNERS * half_size) @ rotation[:2, :2].T)
 
 
-_STRAIGHT = 1e-12
-"""Share of the square of their extent by which three points turn that lie on a line but for rounding [-]."""
+def rotations(quaternions: Array) -> Array:
+    """Rotation matrices of quaternions x y z w, shape (n, 3, 3)."""
+    x, y, z, w = quaternions.T
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return np.moveaxis(np.array(rows), -1, 0)
 
 
-def convex_hull(points: Array) -> Array:
-    """Vertices of the convex hull, anticlockwise from the one of least x, shape (v, 2).
+def forward(quaternions: Array) -> Array:
+    """Forward axes x y seen from above, of quaternions x y z w of shape (..., 4), shape (..., 2)."""
+    x, y, z, w = np.moveaxis(quaternions, -1, 0)
+    return np.stack((1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)), axis=-1)
 
-    The monotone chain of Andrew (Information Processing Letters 9, 1979); the general hull takes ten times as long.
+
+def headings(quaternions: Array) -> Array:
+    """Headings of quaternions x y z w of shape (..., 4), shape (...) [rad]."""
+    axis = forward(quaternions)
+    return np.asarray(np.arctan2(axis[..., 1], axis[..., 0]))
+
+
+def corners(poses: Array, length: float, width: float) -> Array:
+    """Corners of soles of any orientation, in order, shape (n, 4, 3) [m].
 
     Args:
-        points: shape (n, 2) [m], at least three that are not on a line.
+        poses: x y z qx qy qz qw, shape (n, 7).
+        length: of a sole [m].
+        width: of a sole [m].
     """
-    places = points.tolist()
-    order = sorted(range(len(places)), key=places.__getitem__)
-    most = _STRAIGHT * float(np.ptp(points)) ** 2
-    lower, upper = _chain(places, order, most), _chain(places, order[::-1], most)
-    return np.asarray(points[lower[:-1] + upper[:-1]])
+    local = np.column_stack((0.5 * CORNERS * (length, width), np.zeros(4)))
+    return np.asarray(poses[:, None, :3] + np.einsum("nij,kj->nki", rotations(poses[:, 3:]), local))
 
 
-def _chain(places: list[list[float]], order: list[int], most: float) -> list[int]:
-    """Those of points in order at which a way from the first to the last turns left, by more than the most."""
-    chain: list[int] = []
-    for number in order:
-        x, y = places[number]
-        while len(chain) > 1:
-            (u, v), (a, b) = places[chain[-2]], places[chain[-1]]
-            if (a - u) * (y - v) - (b - v) * (x - u) > most:
-                break
-            chain.pop()
-        chain.append(number)
-    return chain
+def level_corners(places: Array, length: float, width: float) -> Array:
+    """Corners of level soles seen from above, in order, shape (n, 4, 2) [m].
+
+    Args:
+        places: x y and a heading last, what is between does not matter, shape (n, 3 or more) [m, rad].
+        length: of a sole [m].
+        width: of a sole [m].
+    """
+    local = 0.5 * CORNERS * (length, width)
+    cosine, sine = np.cos(places[:, -1, None]), np.sin(places[:, -1, None])
+    x = places[:, 0, None] + cosine * local[:, 0] - sine * local[:, 1]
+    y = places[:, 1, None] + sine * local[:, 0] + cosine * local[:, 1]
+    return np.stack((x, y), axis=2)
+
+
+def points_seen_from(poses: Array, points: Array) -> Array:
+    """Points of the ground plane ahead and to the left of poses, shape (n, 2) [m].
+
+    Args:
+        poses: x y z yaw, shape (n, 4) or (4,) [m, rad].
+        points: in the world, shape (n, 2) [m].
+    """
+    sine, cosine = np.sin(poses[..., 3]), np.cos(poses[..., 3])
+    x, y = (points - poses[..., :2]).T
+    return np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
 
 
 def signed_distance(polygon: Array, point: Array) -> float:

@@ -80,7 +80,7 @@ class WalkingPlanner:
         region: StepRegion | None = None,
         legs: LegReach | None = None,
     ) -> None:
-        # Here, so that the first tick does not wait for them: its time is recorded.
+        # Here, so that the first tick does not wait for it: its time is recorded.
         import scipy.linalg  # noqa: F401
 
         self.gait = gait

@@ -27,10 +27,6 @@ def write_whole(path: Path, replace: bool = False) -> Iterator[Path]:
     The name is taken at once, by an empty file, so that of two processes only one gets it. A device or a pipe holds
     nothing that could be replaced, and is written to as it is.
 
-    Args:
-        path: the wanted file.
-        replace: an existing file.
-
     Yields:
         path of the file to write, which exists.
 

@@ -1,5 +1,6 @@
 """The world as MJCF text: a robot's own text with ground, terrain, light and solver options around it."""
 
+from functools import lru_cache
 from xml.etree import ElementTree
 
 from surefoot.models.types import RobotDescription
@@ -22,17 +23,31 @@ def world_mjcf(
         timestep: physics step [s].
         size: of the robot, with which the ground's compliance goes.
     """
-    root = ElementTree.fromstring(description.mjcf)
+    ground = ElementTree.Element("worldbody")
+    add_terrain(ground, terrain, size)
+    return _around(
+        description.name,
+        description.mjcf,
+        description.pelvis_body,
+        ElementTree.tostring(ground, encoding="unicode"),
+        timestep,
+    )
+
+
+@lru_cache(maxsize=4)
+def _around(name: str, robot: str, base: str, ground: str, timestep: float) -> str:
+    """See `world_mjcf`; the runs of a campaign have few worlds."""
+    root = ElementTree.fromstring(robot)
     _add_options(root, timestep)
     _add_look(root)
     worldbody = root.find("worldbody")
     asset = root.find("asset")
     if worldbody is None or asset is None:
-        what = f"the MJCF of {description.name} lacks a worldbody or asset element"
+        what = f"the MJCF of {name} lacks a worldbody or asset element"
         raise WorldError(("description", "mjcf"), what, "it must have both")
     _add_floor_materials(asset)
-    add_terrain(worldbody, terrain, size)
-    _add_sun(worldbody, description.pelvis_body)
+    worldbody.extend(ElementTree.fromstring(ground))
+    _add_sun(worldbody, base)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 

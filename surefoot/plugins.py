@@ -9,10 +9,10 @@ Nothing is imported before the name is asked for. Whatever such an object does, 
 """
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import redirect_stdout
 from functools import lru_cache
-from importlib import metadata
+from importlib import import_module, metadata
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 from typing import TypeVar, cast
@@ -20,7 +20,7 @@ from typing import TypeVar, cast
 from surefoot.errors import PluginError
 from surefoot.guard import OWN_GUARD, OWN_PACKAGE, Guard, said
 
-__all__ = ["OWN_PACKAGE", "PluginError", "Registry", "entry_points", "package_of"]
+__all__ = ["OWN_PACKAGE", "Declared", "PluginError", "Registry", "entry_points", "package_of"]
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -35,28 +35,29 @@ class Registry(Mapping[str, T]):
     Args:
         group: group of entry points, such as ``surefoot.profiles``.
         kind: class that every object must be an instance of; None for what is called, a function or a class.
-        own: the objects of this package; their names alone where a room above brings the objects by `filled`.
+        own: the objects of this package.
     """
 
-    def __init__(self, group: str, kind: type[T] | None, own: Mapping[str, T] | Sequence[str]) -> None:
+    def __init__(self, group: str, kind: type[T] | None, own: Mapping[str, T]) -> None:
         self.group = group
         self._kind = kind
-        self._names = tuple(own)
-        self._own: dict[str, T] = dict(own) if isinstance(own, Mapping) else {}
+        self._own: dict[str, T] = dict(own)
         self._added: dict[str, T] = {}
         self._loaded: dict[str, T] = {}
 
-    def filled(self, kind: type[S] | None, own: Mapping[str, S]) -> "Registry[S]":
-        """The same registry with the objects of its own names, and of which kind all are.
+    @property
+    def _names(self) -> Collection[str]:
+        """Own names."""
+        return self._own
 
-        Raises:
-            ValueError: these are not its own names.
-        """
-        if tuple(own) != self._names:
-            raise ValueError(f"{self.group} has of its own {', '.join(self._names)}, not {', '.join(own)}")
-        made = cast("Registry[S]", self)
-        made._kind, made._own = kind, dict(own)
-        return made
+    def _find(self, name: str) -> T | None:
+        """The object of an own name; None for others."""
+        return self._own.get(name)
+
+    def others(self) -> list[str]:
+        """Names that are not this package's own, sorted."""
+        found = {entry.name for entry in entry_points(group=self.group)} | set(self._added)
+        return sorted(found - set(self._names)) if found else []
 
     def add(self, name: str, thing: T) -> T:
         """Register an object for the running process, over one of the same name that was added before.
@@ -80,7 +81,9 @@ class Registry(Mapping[str, T]):
             KeyError: there is none.
             PluginError: its package cannot be loaded, or gives something of another kind, or two packages have it.
         """
-        for known in (self._own, self._added, self._loaded):
+        if (own := self._find(name)) is not None:
+            return own
+        for known in (self._added, self._loaded):
             if name in known:
                 return known[name]
         entries = self._entries(name)
@@ -93,8 +96,7 @@ class Registry(Mapping[str, T]):
         return thing
 
     def __iter__(self) -> Iterator[str]:
-        found = {entry.name for entry in entry_points(group=self.group)} | set(self._added)
-        return iter((*self._names, *sorted(found - set(self._names))))
+        return iter((*self._names, *self.others()))
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
@@ -125,13 +127,13 @@ class Registry(Mapping[str, T]):
 
         The name goes on meaning surefoot's; the other thing is never looked at.
         """
-        found = [entry for entry in entry_points(group=self.group) if entry.name in self._names]
         return {
             entry.name: PluginError(
                 f"'{entry.name}' of package {package_of(entry)} in {self.group} has the name of one of surefoot's own",
                 "give it another name there, or remove it",
             )
-            for entry in found
+            for entry in entry_points(group=self.group)
+            if entry.name in self._names
         }
 
     def refusal(self, name: str) -> PluginError | None:
@@ -159,6 +161,62 @@ class Registry(Mapping[str, T]):
         if self._kind is not None and isinstance(thing, type) and issubclass(thing, self._kind):
             raise PluginError(f"{who} in {self.group} is the class {thing.__name__}", "register an instance of it")
         raise PluginError(f"{who} in {self.group} is of type {type(thing).__name__}", f"it must be {wanted}")
+
+
+class Declared(Registry[T]):
+    """A registry whose own objects are brought by a module that need not be imported to know of them.
+
+    Args:
+        group: group of entry points.
+        said: what is said of each of its own, by name, in one line; None where its home alone knows its names.
+        home: module that brings the objects by `filled`, imported when one is asked for; empty where a room above has
+            it, which must have been imported before.
+    """
+
+    def __init__(self, group: str, said: Mapping[str, str] | None, home: str = "") -> None:
+        super().__init__(group, None, {})
+        self._said, self._home = said, home
+
+    @property
+    def said(self) -> Mapping[str, str]:
+        """What is said of each of its own, by name."""
+        if self._said is None:
+            self._come_home()
+        return self._said or {}
+
+    @property
+    def _names(self) -> Collection[str]:
+        return self.said
+
+    def _find(self, name: str) -> T | None:
+        if name in self.said and not self._own:
+            self._come_home()
+        return self._own.get(name)
+
+    def _come_home(self) -> None:
+        if self._home:
+            import_module(self._home)
+
+    def filled(
+        self, kind: type[S] | None, own: Mapping[str, S], said: Callable[[S], str] | None = None
+    ) -> "Declared[S]":
+        """The same registry with the objects of its own names.
+
+        Args:
+            kind: class of all objects, as of a registry.
+            own: the objects of this package.
+            said: what is said of one, where that was not declared.
+
+        Raises:
+            ValueError: these are not its own names.
+        """
+        if said is not None:
+            self._said = {name: said(one) for name, one in own.items()}
+        elif list(own) != list(self._said or ()):
+            raise ValueError(f"{self.group} has of its own {', '.join(self._said or ())}, not {', '.join(own)}")
+        made = cast("Declared[S]", self)
+        made._kind, made._own = kind, dict(own)
+        return made
 
 
 def entry_points(group: str) -> EntryPoints:

@@ -9,7 +9,7 @@ import pytest
 from surefoot import plugins
 from surefoot.models.registry import ROBOTS
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.plugins import OWN_PACKAGE, PluginError, Registry
+from surefoot.plugins import OWN_PACKAGE, Declared, PluginError, Registry
 from surefoot.scenarios.catalogue import SCENARIOS
 from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.run.sensing import ESTIMATORS
@@ -152,8 +152,10 @@ def test_every_registry_of_surefoot_has_a_row_in_the_documentation():
 
 
 def test_a_room_below_knows_the_names_whose_objects_a_room_above_brings():
-    names: Registry = Registry("surefoot.nothing", object, ("one", "two"))
-    assert list(names) == ["one", "two"]
+    names: Declared = Declared("surefoot.nothing", {"one": "the first", "two": "the second"})
+    assert list(names) == ["one", "two"] and names.said["two"] == "the second"
+    with pytest.raises(KeyError):
+        names["one"]  # the room above was not imported
     assert "one" in names and names.package("one") == OWN_PACKAGE
     assert names.refusal("one") is None and names.refusal("three") is None
     with pytest.raises(PluginError, match="surefoot's own"):
@@ -166,3 +168,13 @@ def test_a_room_below_knows_the_names_whose_objects_a_room_above_brings():
         filled.add("three", "3")
     filled.add("three", 3)
     assert names["three"] == 3
+
+
+def test_what_is_said_of_a_part_before_it_is_imported_is_what_it_says_itself():
+    def first_line(thing):
+        return thing.__doc__.strip().split("\n", 1)[0].rstrip(".")
+
+    assert dict(KINDS.said) == {name: first_line(type(kind)) for name, kind in KINDS.items()}
+    assert dict(ESTIMATORS.said) == {name: first_line(ESTIMATORS[name]) for name in ESTIMATORS}
+    assert dict(PROFILES.said) == {name: profile.doc for name, profile in PROFILES.items()}
+    assert dict(METRICS.said) == {name: metric.meaning for name, metric in METRICS.items()}

@@ -2,32 +2,13 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from surefoot.native.library import Library, library
-from surefoot.wbc.tunable import check, number
+from surefoot.polygon import convex_hull
+from surefoot.wbc.parameters import BalanceGains
 from surefoot.wbc.types import Array, WbcReference
-
-
-@dataclass(frozen=True, slots=True)
-class BalanceGains:
-    """Gains of the CoM law. The DCM error decays at the rate (dcm - 1) ω, so ``dcm`` has to be above 1 to balance.
-
-    Raises:
-        ParameterError: a gain is negative or not finite, or the share is not within 0 and 1.
-    """
-
-    dcm: float = number(3.0, "-", "ZMP moved per DCM error")
-    height_stiffness: float = number(60.0, "1/s^2", "vertical stiffness per mass")
-    height_damping: float = number(15.0, "1/s", "vertical damping per mass")
-    polygon_share: float = number(
-        0.95, "-", "share of the support polygon that the commanded ZMP may use", positive=True, most=1.0
-    )
-
-    def __post_init__(self) -> None:
-        check(self, "wbc", "balance")
 
 
 class SupportRegion:
@@ -73,13 +54,10 @@ class SupportRegion:
             self._rebuild(*active, rolling)
             self._edges = self.edges[: self.edge_count[0]].tolist()
             return
-        from scipy.spatial import ConvexHull
-
         edge = self._corners * np.array([0.0, 1.0])
         corners = [edge if k == rolling else self._corners for k in (0, 1)]
         soles = [positions[k, :2] + corners[k] @ rotations[k, :2, :2].T for k in (0, 1) if active[k]]
-        points = np.concatenate(soles)
-        vertices = points[ConvexHull(points).vertices].tolist()
+        vertices = convex_hull(np.concatenate(soles)).tolist()
         self._edges = [_edge(*start, *end) for start, end in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
         self.edge_count[0] = len(self._edges)
         self.edges[: len(self._edges)] = self._edges

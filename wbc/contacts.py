@@ -2,34 +2,8 @@
 
 from dataclasses import dataclass
 
-from surefoot.wbc.tunable import check, number
+from surefoot.wbc.parameters import ContactParameters
 from surefoot.wbc.types import FootSensing, WbcReference
-
-
-@dataclass(frozen=True, slots=True)
-class ContactParameters:
-    """Thresholds of the contact schedule.
-
-    Raises:
-        ParameterError: one is negative or not finite, a time or a number of ticks is zero, or a share is above 1.
-    """
-
-    felt_force: float = number(8.0, "N", "normal force above which a foot feels the ground")
-    felt_ticks: int = number(2, "-", "consecutive control ticks of that force before it counts", positive=True)
-    early_progress: float = number(0.6, "-", "share of its swing from which a swing foot may land", most=1.0)
-    early_cap: float = number(50.0, "N", "load allowed on a foot that landed before its time")
-    loading_time: float = number(
-        0.05, "s", "time in which a landed foot's allowed load grows to the full weight", positive=True
-    )
-    unloading_time: float = number(
-        0.1, "s", "time before lift-off in which a foot's allowed load shrinks to its planned share", positive=True
-    )
-    share_margin: float = number(
-        0.5, "-", "allowed load above the planned share at the start of unloading, of the weight"
-    )
-
-    def __post_init__(self) -> None:
-        check(self, "wbc", "schedule")
 
 
 @dataclass(frozen=True, slots=True)

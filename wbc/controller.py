@@ -25,9 +25,10 @@ from surefoot.wbc.separation import Separation
 from surefoot.wbc.solvers import QpSolution, equalities_only, make_solver
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
+from surefoot.wbc.tasks.registry import TaskLayout
 from surefoot.wbc.tasks.stack import TaskStack
 from surefoot.wbc.tasks.swing import AnkleStops
-from surefoot.wbc.tasks.task import Task, TaskLayout
+from surefoot.wbc.tasks.task import Task
 from surefoot.wbc.tasks.trunk import HipStops
 from surefoot.wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
 

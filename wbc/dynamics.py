@@ -1,7 +1,6 @@
 """Hard rows of the whole-body QP: floating-base dynamics, rigid contacts, wrench cones, torque and joint limits."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,26 +9,9 @@ from surefoot.wbc.contacts import ContactState
 from surefoot.wbc.leaning import FREE
 from surefoot.wbc.limits import AccelerationBounds, JointLimits
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.parameters import ContactGains
 from surefoot.wbc.qp import FOOT_ROWS, QpData, QpLayout
-from surefoot.wbc.tunable import check, number
 from surefoot.wbc.types import Array
-
-
-@dataclass(frozen=True, slots=True)
-class ContactGains:
-    """Stabilisation of the rigid contacts.
-
-    Raises:
-        ParameterError: a gain is negative or not finite.
-    """
-
-    damping: float = number(20.0, "1/s", "decay of a sole's remaining velocity")
-    levelling: float = number(
-        100.0, "1/s^2", "stiffness that turns an active sole flat on the ground of its planned normal"
-    )
-
-    def __post_init__(self) -> None:
-        check(self, "wbc", "contact")
 
 
 class HardConstraints:

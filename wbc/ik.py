@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+import daqp
 import numpy as np
 import pinocchio as pin
-import qpsolvers
 
 from surefoot.wbc.leaning import FREE, line_frame
 from surefoot.wbc.limits import JointLimits
@@ -138,8 +138,11 @@ class PostureIk:
         Raises:
             ArithmeticError: the solver finds none, since the problem is no number.
         """
-        found = qpsolvers.solve_qp(step.H, step.g, lb=step.lower, ub=step.upper, solver="daqp")
-        if found is None:
+        n = self._model.nv
+        found, _, flag, _ = daqp.solve(
+            step.H, step.g, np.zeros((0, n)), step.upper, step.lower, np.zeros(n, dtype=np.intc)
+        )
+        if flag <= 0:
             raise ArithmeticError(
                 f"posture step of robot '{self._model.name}' has no solution: joint positions {step.q[7:]}"
             )

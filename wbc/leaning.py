@@ -8,11 +8,14 @@ that leans far the other way.
 """
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin
 
 from surefoot.wbc.types import Array
+
+if TYPE_CHECKING:
+    import pinocchio as pin
 
 INWARD, OVER = 0.1, 0.02
 """Angle by which a foot leans inward when it stands on its inner edge, and within which around it the line goes over
@@ -24,7 +27,7 @@ FREE = 3
 _OUTWARD = (1.0, -1.0)
 
 
-def line_frame(foot: int, rotation: Array, half_width: float) -> pin.SE3:
+def line_frame(foot: int, rotation: Array, half_width: float) -> "pin.SE3":
     """Frame of the line on which a leaning sole stands, as seen from the sole's: x along the line, y level.
 
     Args:
@@ -32,12 +35,20 @@ def line_frame(foot: int, rotation: Array, half_width: float) -> pin.SE3:
         rotation: of the sole in the world, shape (3, 3).
         half_width: of the sole [m].
     """
-    lean, outward = math.atan2(rotation[2, 1], rotation[2, 2]), _OUTWARD[foot]
-    share = min(max((INWARD - outward * lean) / OVER, -1.0), 1.0)
-    return pin.SE3(pin.utils.rotate("x", -lean), np.array([0.0, outward * share * half_width, 0.0]))
+    import pinocchio as pin  # a verdict needs the line's centre alone
+
+    lean, beside = _line(foot, rotation, half_width)
+    return pin.SE3(pin.utils.rotate("x", -lean), np.array([0.0, beside, 0.0]))
 
 
 def line_centre(foot: int, position: Array, rotation: Array, half_width: float) -> Array:
     """Centre of the line in the world, shape (3,) [m]; position, shape (3,) [m], and rotation are those of the sole."""
-    beside: Array = line_frame(foot, rotation, half_width).translation
-    return np.asarray(position + rotation @ beside)
+    _, beside = _line(foot, rotation, half_width)
+    return np.asarray(position + rotation @ np.array([0.0, beside, 0.0]))
+
+
+def _line(foot: int, rotation: Array, half_width: float) -> tuple[float, float]:
+    """Angle by which a sole leans [rad], and how far beside its centre the line is, left positive [m]."""
+    lean, outward = math.atan2(rotation[2, 1], rotation[2, 2]), _OUTWARD[foot]
+    share = min(max((INWARD - outward * lean) / OVER, -1.0), 1.0)
+    return lean, outward * share * half_width

@@ -1,33 +1,15 @@
 """Distances between the robot's own limbs as bounds on the joint accelerations of one tick."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
 from surefoot.wbc.compiled import CompiledTerms, moving_columns
-from surefoot.wbc.tunable import check, number
+from surefoot.wbc.parameters import SeparationParameters
 from surefoot.wbc.types import Array
 
 _WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
-
-
-@dataclass(frozen=True, slots=True)
-class SeparationParameters:
-    """When limbs keep away from each other. An approach of up to attention / horizon can be stopped.
-
-    Raises:
-        ParameterError: one is negative or not finite, or the attention or the horizon is zero.
-    """
-
-    clearance: float = number(0.003, "m", "distance that must remain")
-    attention: float = number(0.04, "m", "distance from which a pair is looked at", positive=True)
-    horizon: float = number(0.02, "s", "time constant T of the critically damped approach", positive=True)
-    slots: int = number(3, "-", "pairs that are looked at in one tick, the nearest ones")
-
-    def __post_init__(self) -> None:
-        check(self, "wbc", "separation")
 
 
 class Separation:

@@ -10,6 +10,7 @@ import numpy as np
 from proxsuite import proxqp
 
 from surefoot.native.library import Library, library
+from surefoot.wbc.parameters import SOLVER_NAMES
 from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
 from surefoot.wbc.types import Array
 
@@ -231,11 +232,7 @@ class CompiledEqualities:
         self._qp = qp
 
 
-SOLVERS: dict[str, Callable[[], QpSolver]] = {
-    EqualityFirst.name: EqualityFirst,
-    Daqp.name: Daqp,
-    ProxQp.name: ProxQp,
-}
+SOLVERS: dict[str, Callable[[], QpSolver]] = dict(zip(SOLVER_NAMES, (EqualityFirst, Daqp, ProxQp), strict=True))
 """Makers of the solvers by name."""
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 from surefoot.models import inertia
 from surefoot.models.humanoid100.limbs import (
@@ -63,6 +64,7 @@ _ROLES = JointRoles(
 )
 
 
+@lru_cache(maxsize=16)
 def describe(options: RobotOptions) -> RobotDescription:
     """The robot with the chosen feet and payload.
 

@@ -94,7 +94,7 @@ def files_of(path: Path) -> tuple[tuple[str, Path | None], ...]:
     file = read(path)
     own = (("robot file", path.absolute()),)
     if _is_name(file.model):
-        from surefoot.models.registry import SHIPPED
+        from surefoot.models.names import SHIPPED
 
         return (*own, *(files_of(SHIPPED[file.model]) if file.model in SHIPPED else ()))
     from surefoot.models.robot_file.files import read_document, srdf_of

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.planner.geometry import CORNERS, frame_rotation
@@ -48,6 +49,22 @@ class Box:
         z = face[2] - (points - face[:2]) @ normal[:2] / normal[2]
         local = (np.column_stack((points, z)) - self.center) @ self.rotation[:, :2]
         return z, np.min(self.half_size[:2] - np.abs(local), axis=1)
+
+    def touched(self, soles: Array, half: Array) -> NDArray[np.bool_]:
+        """Which soles have a part over it: rectangles on the ground are apart if an axis of one of them parts them.
+
+        Args:
+            soles: places and headings, shape (n, 3) [m, rad].
+            half: half length and width of a sole, shape (2,) [m].
+        """
+        centre, size, axes = self.center[:2], self.half_size[:2], self.rotation[:2, :2].T
+        c, s = np.cos(soles[:, 2]), np.sin(soles[:, 2])
+        own = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=1)
+        between = centre - soles[:, :2]
+        across = np.abs(own @ axes.T)  # of each axis of the sole along each of the box
+        apart_by_sole = np.abs(np.einsum("nij,nj->ni", own, between)) > half + across @ size
+        apart_by_box = np.abs(between @ axes.T) > size + np.einsum("nij,i->nj", across, half)
+        return np.asarray(~(apart_by_sole.any(axis=1) | apart_by_box.any(axis=1)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +147,19 @@ class Terrain:
             margins[carrying] = corner_inside.min(axis=1)[carrying]
         return margins
 
+    def carries(self, soles: Array, half: Array, number: int) -> bool:
+        """Whether a sole has a part over a box, and other ground does not bury the box there; as of `Box.touched`."""
+        box = self.boxes[number]
+        over = soles[box.touched(soles, half)]
+        ahead = np.stack([np.cos(over[:, 2]), np.sin(over[:, 2])], axis=-1)
+        left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
+        points = over[:, None, :2] + (_PATCH * half) @ np.stack([ahead, left], axis=1)
+        top, inside = box.top(points.reshape(-1, 2))
+        under = self.heights(points.reshape(-1, 2)) > top + _ABOVE
+        within, free = (mask.reshape(-1, len(_PATCH)) for mask in (inside >= 0.0, (inside >= 0.0) & ~under))
+        # A corner of the box between the points counts as free.
+        return bool((free.any(axis=1) | ~within.any(axis=1)).any())
+
     def free_area(self, position: Array, yaw: float, half_size: Array, length: float = 1.0) -> Array:
         """How far a sole may be moved on the face that carries it, ahead and to the left of where it was to land.
 
@@ -159,6 +189,12 @@ class Terrain:
 
 _WAYS = 0.01 * np.arange(1.0, 81.0)
 """Ways by which a sole might be moved on its face, of the reference robot as all lengths here [m]."""
+
+_PATCH = np.stack(np.meshgrid(np.linspace(-1.0, 1.0, 9), np.linspace(-1.0, 1.0, 5)), axis=-1).reshape(-1, 2)
+"""Points of a sole at which the ground under it is looked at, in its half sizes [-]."""
+
+_ABOVE = 1e-6
+"""Height by which other ground lies above a box that it buries [m]."""
 
 _SHANK = 0.04
 """Way beyond a sole in which the ground must not rise for it to be moved there [m]."""

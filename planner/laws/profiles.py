@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from surefoot.planner.laws import names
 from surefoot.planner.laws.dcm_feedback import DcmFeedback
 from surefoot.planner.laws.footstep_tvmpc import ConstantHeightTvmpc, FootstepTvmpc
 from surefoot.planner.laws.law import MotionPlanner
@@ -12,7 +13,6 @@ from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import Planner
 from surefoot.planner.references.com_height import HeightProfile, PaperHeight
-from surefoot.plugins import Registry
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,18 +54,16 @@ _PAPER = PlannerParameters(
 )
 _REPAIRED = replace(_PAPER, moves=BLOCK_STARTS)
 
+_SAID = names.PROFILES.said
+
 _OWN = (
-    Profile(
-        "default", "soft TVMPC with the footsteps in the QP", PlannerParameters(), FootstepTvmpc, True, catches=True
-    ),
-    Profile("paper", "the paper's TVMPC as printed", _PAPER, paper_law, moves=True, height=PaperHeight()),
-    Profile("repaired", "the paper's TVMPC with more moves and a terminal bound", _REPAIRED, repaired_law, moves=True),
-    Profile(
-        "lti", "default without preview of the dynamics", PlannerParameters(), ConstantHeightTvmpc, True, catches=True
-    ),
-    Profile("preview", "ZMP preview control of a cart-table", PlannerParameters(), ZmpPreview, moves=False),
-    Profile("dcm", "instantaneous DCM feedback, without a QP", PlannerParameters(), DcmFeedback, moves=False),
+    Profile("default", _SAID["default"], PlannerParameters(), FootstepTvmpc, True, catches=True),
+    Profile("paper", _SAID["paper"], _PAPER, paper_law, moves=True, height=PaperHeight()),
+    Profile("repaired", _SAID["repaired"], _REPAIRED, repaired_law, moves=True),
+    Profile("lti", _SAID["lti"], PlannerParameters(), ConstantHeightTvmpc, True, catches=True),
+    Profile("preview", _SAID["preview"], PlannerParameters(), ZmpPreview, moves=False),
+    Profile("dcm", _SAID["dcm"], PlannerParameters(), DcmFeedback, moves=False),
 )
 
-PROFILES = Registry("surefoot.profiles", Profile, {profile.name: profile for profile in _OWN})
+PROFILES = names.PROFILES.filled(Profile, {profile.name: profile for profile in _OWN})
 """Every profile by its name: these, and those of other packages (see `surefoot.plugins`)."""

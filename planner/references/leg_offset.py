@@ -300,15 +300,16 @@ class _CompiledOffset:
         (rotation, origin), position, steps = frame, schedule.positions, schedule.steps
         numbers, last = range(which[0], which[-1] + 1), len(steps) - 1
         elapsed = samples.elapsed[which.searchsorted(numbers)].tolist()
-        phases = np.empty((len(numbers), 35))
+        phases, heads = np.empty((len(numbers), 35)), []
         for told, number, gone in zip(phases, numbers, elapsed, strict=True):
             phase, late = samples.phases[number], 0.0
             row, single = schedule.index(phase.leaves - 1), phase.kind is PhaseKind.SINGLE
             if single:
                 swing, late = _swing(phase, schedule, gone)
                 told[9:] = _told(swing) if late else _usually_told(schedule.step(phase.step))
-            stance = row - 1 if row else last, row, min(row + 1, last), steps[row].place.foot
-            told[:9] = *stance, single, late, *(phase.roll or _LEVEL)
+            rows = row - 1 if row else last, row, min(row + 1, last)
+            heads.append((*rows, steps[row].place.foot is Foot.RIGHT, single, late, *(phase.roll or _LEVEL)))
+        phases[:, :9] = heads
         places = np.empty((last + 1, 4))
         places[:, :2], places[:, 2], places[:, 3] = (position[:, :2] - origin) @ rotation, position[:, 2], schedule.yaws
         self._feet.struct.heading_of_frame = math.atan2(rotation[1, 0], rotation[0, 0])

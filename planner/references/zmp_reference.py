@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.planner.geometry import convex_hull, frame_rotation, sole_corners
+from surefoot.planner.geometry import frame_rotation, sole_corners
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
+from surefoot.polygon import convex_hull
 
 
 @dataclass(frozen=True, slots=True)

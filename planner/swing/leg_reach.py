@@ -231,7 +231,7 @@ def around_stance_leg(
     if corner is None:
         return swing
     bent = swing.around(origin + rotation @ corner, sample_time)
-    hardest = np.abs([bent.evaluate(instant)[2, :2] @ rotation for instant in times.tolist()]).max(axis=0)
+    hardest = np.abs(bent.bends(times) @ rotation).max(axis=0)
     return bent if (hardest <= legs.acceleration).all() else swing
 
 

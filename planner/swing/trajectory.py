@@ -122,6 +122,15 @@ class SwingTrajectory:
             result[k, 2] -= self.search.motion(float(times[k]) - self.touchdown_time)[0]
         return result
 
+    def bends(self, times: Array) -> Array:
+        """Horizontal acceleration at instants from the start of the glide on, shape (n, 2) [m/s^2]."""
+        after = times >= self.bend_time - TOUCHING
+        since = times - np.where(after, self.bend_time, self.start_time)
+        powers = _BENDING * since[:, None] ** _EXPONENTS[:-2]
+        bends = np.where(after[:, None], powers @ self.onward[2:, :2], powers @ self.level[2:, :2])
+        bends[times >= self.glide_end - TOUCHING] = 0.0
+        return bends
+
     def place(self, time: float) -> tuple[float, float]:
         """Where a swing that does not bend is at an instant, x and y in plain numbers, which are fast [m]."""
         if time >= self.touchdown_time - TOUCHING:
@@ -219,6 +228,7 @@ class SwingTrajectory:
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 _EXPONENTS = np.arange(6)
+_BENDING = (_EXPONENTS * (_EXPONENTS - 1.0))[2:]
 
 
 @dataclass(frozen=True, slots=True)

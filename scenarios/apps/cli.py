@@ -121,7 +121,7 @@ def list_(as_json: AsJson = False) -> None:
 @app.command()
 def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocompletion=scenarios_from)]) -> None:
     """Print the YAML of a scenario or campaign, to start from."""
-    from surefoot.scenarios.apps.listing import starter
+    from surefoot.scenarios.apps.starter import starter
 
     typer.echo(starter(scenario), nl=False)
 
@@ -154,10 +154,11 @@ class RunOptions:
 @with_options(RunOptions)
 def run(told: RunOptions) -> None:
     """Run a scenario, write its log and judge it."""
+    from surefoot.native.library import is_missed
     from surefoot.scenarios.run.run import run_scenario
     from surefoot.scenarios.setup.load import load, locate
     from surefoot.scenarios.show.console import ProgressLine, print_result
-    from surefoot.scenarios.show.replay.live import LiveView, check
+    from surefoot.scenarios.show.replay.beside import LiveView, check
 
     asked = overrides(told.set_, told.seed)
     loaded = load(told.scenario, asked)
@@ -174,6 +175,8 @@ def run(told: RunOptions) -> None:
             typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
         else:
             print_result(loaded.name, result.verdict, result.log)
+        if is_missed():
+            typer.echo("run on plain Python, which is slower; `python -m surefoot.native` says why", err=True)
         if result.interrupted:
             typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
             raise typer.Exit(INTERRUPTED)

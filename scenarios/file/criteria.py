@@ -10,13 +10,7 @@ Limit = Annotated[float | tuple[float, ...], BeforeValidator(as_tuple)]
 
 
 class Bound(Group):
-    """Bounds on one metric; a list-valued metric is bounded element by element.
-
-    Attributes:
-        min: least value allowed, one for all elements or one per element.
-        max: greatest value allowed, likewise.
-        equals: the value itself, or the name of another metric that it must equal.
-    """
+    """Bounds on one metric; of a list-valued one element by element, by one limit for all or one for each."""
 
     min: Limit | None = Field(default=None, description="least value allowed")
     max: Limit | None = Field(default=None, description="greatest value allowed")

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import Field as DataclassField
 from dataclasses import fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
@@ -27,6 +27,14 @@ class Group(BaseModel):
 def key(default: Any, description: str) -> Any:
     """A key with its default, and what it is in a few words."""
     return Field(default=default, description=description)
+
+
+def groups_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    """The groups that an annotation names, however deep in it."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from groups_in(part)
 
 
 def as_tuple(value: Any) -> Any:
@@ -140,22 +148,13 @@ else:
 
 
 def recovery_parameters(settings: "RecoverySettings | None", usual: RecoveryParameters) -> RecoveryParameters:
-    """Numbers of the planner's recovery, with what a scenario changes of them.
-
-    Args:
-        settings: the group ``planner.recovery``; None for none.
-        usual: those of this robot.
-    """
+    """Numbers of a planner's recovery, with what a scenario's group ``planner.recovery``, if any, changes of them."""
     changed: RecoveryParameters = _changed(usual, settings)
     return changed
 
 
 def controller_parameters(settings: "ControllerSettings | None", size: Similarity = REFERENCE_SIZE) -> WbcParameters:
-    """The controller's parameters for a robot of a size, with what a scenario changes of them.
-
-    Args:
-        settings: the group ``wbc``; None for none.
-        size: of the robot.
+    """The controller's parameters for a robot of a size, with what a scenario's group ``wbc``, if any, changes of them.
 
     Raises:
         ParameterError: a number is out of its range, or a solver unknown.
@@ -165,11 +164,7 @@ def controller_parameters(settings: "ControllerSettings | None", size: Similarit
 
 
 def controller_faults(settings: "ControllerSettings | None") -> list[ParameterError]:
-    """List what `controller_parameters` would refuse: the fault of every key, each looked at alone.
-
-    Args:
-        settings: the group ``wbc``; None for none.
-    """
+    """List what `controller_parameters` would refuse of a group: the fault of every key, each looked at alone."""
     faults = []
     for alone in () if settings is None else _one_by_one(settings):
         try:

@@ -1,53 +1,15 @@
-"""Names that a scenario may use and other packages may bring: their registries, and what is wrong with a name."""
+"""Names that a scenario may use and other packages may bring: how a value is checked, and what is wrong with one."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
+from surefoot.models.names import is_file
 from surefoot.plugins import OWN_PACKAGE, Registry
 from surefoot.scenarios.errors import Key, Problem, dotted
-
-TERRAIN_KINDS: Registry[Any] = Registry("surefoot.terrains", object, ("flat", "stairs", "blocks", "slope"))
-"""Of ``terrain.kind``; what builds the ground, `surefoot.scenarios.setup.terrain` brings."""
-
-SOURCES: Registry[Any] = Registry("surefoot.estimators", None, ("truth",))
-"""Of ``sensing.source``; what estimates the state, `surefoot.scenarios.run.sensing` brings."""
-
-
-def profiles() -> Registry[Any]:
-    """Of ``planner.profile``."""
-    from surefoot.planner.laws.profiles import PROFILES
-
-    return PROFILES
-
-
-def tasks() -> Registry[Any]:
-    """Of each element of ``wbc.tasks``."""
-    from surefoot.wbc.tasks import TASKS
-
-    return TASKS
-
-
-def robots() -> Registry[Any]:
-    """Of ``robot``."""
-    from surefoot.models.registry import ROBOTS
-
-    return ROBOTS
-
-
-DEFAULTS = {"terrain": "flat", "planner": "default", "sensing": "truth", "robot": "humanoid100"}
-"""Names that are always there, by the group of the key."""
-
-REGISTRIES: dict[Key, Callable[[], Registry[Any]]] = {
-    ("robot",): robots,
-    ("terrain", "kind"): lambda: TERRAIN_KINDS,
-    ("planner", "profile"): profiles,
-    ("sensing", "source"): lambda: SOURCES,
-    ("wbc", "tasks"): tasks,
-}
-"""By the key that names a part, or several; asked only when a name is looked at, so that nothing is imported before."""
+from surefoot.scenarios.file.registries import DEFAULTS, REGISTRIES
 
 
 def usable(found: Registry[Any]) -> list[str]:
@@ -71,10 +33,10 @@ class OneOf:
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """Describe as a literal would; what a broken package has registered is not among the names."""
-        return {"enum": usable(self._names()), "type": "string"}
+        return {"enum": usable(self._names), "type": "string"}
 
     def _check(self, value: str) -> str:
-        if value == self._default or value in (known := list(self._names())):
+        if value == self._default or value in (known := list(self._names)):
             return value
         names = [repr(name) for name in known]
         expected = " or ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)
@@ -83,32 +45,22 @@ class OneOf:
 
 
 def unusable(keys: Any) -> list[Problem]:
-    """List names whose package cannot be used, or has taken a name of surefoot's own for something else.
-
-    Args:
-        keys: plain values of a scenario; what is of another type, or unknown, is for the schema to say.
-    """
-    refused = ((key, registry().refusal(name)) for key, name, registry in _named(keys))
+    """List a scenario's names whose package cannot be used, or has taken one of surefoot's own for something else."""
+    refused = ((key, registry.refusal(name)) for key, name, registry in _named(keys))
     return [Problem(key, f"{dotted(key)} {why.what}", why.right) for key, why in refused if why is not None]
 
 
 def unknown(keys: Any) -> list[Problem]:
-    """List names that no installed package brings; no package is loaded.
-
-    Args:
-        keys: plain values of a scenario.
-    """
+    """List a scenario's names, among plain values, that no installed package brings; no package is loaded."""
     return [
         Problem(key, f"{dotted(key)} '{name}' is not known here", "install the package that brings it")
         for key, name, registry in _named(keys)
-        if name != DEFAULTS.get(str(key[0])) and name not in registry()
+        if name != DEFAULTS.get(str(key[0])) and name not in registry
     ]
 
 
-def _named(keys: Any) -> Iterator[tuple[Key, str, Callable[[], Registry[Any]]]]:
+def _named(keys: Any) -> Iterator[tuple[Key, str, Registry[Any]]]:
     """Every name that is written, with its place; a robot file is no name."""
-    from surefoot.models.registry import is_file
-
     for key, registry in REGISTRIES.items():
         value = keys
         for part in key:

@@ -12,18 +12,9 @@ from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 from surefoot.plugins import PluginError
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
-from surefoot.scenarios.file.names import DEFAULTS, TERRAIN_KINDS, OneOf
-from surefoot.scenarios.file.units import (
-    HERTZ,
-    KILOGRAM,
-    METRE,
-    METRE_PER_SECOND,
-    NEWTON,
-    RADIAN,
-    RADIAN_PER_SECOND,
-    SECOND,
-    Unit,
-)
+from surefoot.scenarios.file.names import OneOf
+from surefoot.scenarios.file.registries import DEFAULTS, TERRAIN_KINDS
+from surefoot.scenarios.file.units import METRE, RADIAN, SECOND, Unit
 
 LONGEST_RUN = 86_400.0
 """Bound on the simulated time [s]."""
@@ -41,13 +32,13 @@ Span = Annotated[float, Field(gt=0, le=LONGEST_RUN), SECOND]
 Instant = Annotated[float, Field(ge=0, le=LONGEST_RUN), SECOND]
 Apex = Annotated[float, Field(gt=0, le=0.5), METRE]
 Turns = Annotated[float, Field(ge=-1e3, le=1e3), RADIAN]
-Velocity = Annotated[float, Field(ge=-10, le=10), METRE_PER_SECOND]
-YawRate = Annotated[float, Field(ge=-10, le=10), RADIAN_PER_SECOND]
-Mass = Annotated[float, Field(ge=0, le=1000), KILOGRAM]
+Velocity = Annotated[float, Field(ge=-10, le=10), Unit("m/s")]
+YawRate = Annotated[float, Field(ge=-10, le=10), Unit("rad/s")]
+Mass = Annotated[float, Field(ge=0, le=1000), Unit("kg")]
 Noise = Annotated[float, Field(ge=0, le=0.1)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
-Rate = Annotated[int, Field(ge=1, le=100_000), WHOLE, HERTZ]
-Newtons = Annotated[float, Field(ge=-1e6, le=1e6), NEWTON]
+Rate = Annotated[int, Field(ge=1, le=100_000), WHOLE, Unit("Hz")]
+Newtons = Annotated[float, Field(ge=-1e6, le=1e6), Unit("N")]
 Force = Annotated[tuple[Newtons, Newtons, Newtons], BeforeValidator(as_tuple)]
 Offset = Annotated[float, Field(ge=-0.5, le=0.5), METRE]
 Impulse = Annotated[float, Field(ge=0, le=100), Unit("N·s/kg")]
@@ -85,12 +76,7 @@ class TerrainSettings(Group):
 
 
 def model_of(model: type[BaseModel], values: Any) -> type[BaseModel]:
-    """The model of a group with these values: of the ground, the one that its kind brings if it has keys of its own.
-
-    Args:
-        model: of the group, as the schema has it.
-        values: plain ones, of which any may be wrong.
-    """
+    """The model of a group with plain values, also wrong ones: of the ground that of its kind, if it has own keys."""
     kind = values.get("kind") if model is TerrainSettings and isinstance(values, dict) else None
     if not isinstance(kind, str) or kind == DEFAULTS["terrain"]:
         return model
@@ -227,9 +213,9 @@ class Sensing(Group):
     zmp_noise: Height = key(0.0, "of the ZMP that the planner measures")
     com_noise: Height = key(0.0, "of the CoM that the planner measures; of its velocity 5 / s times as much")
     encoder_noise: Annotated[NonNegative, RADIAN] = key(0.0, "of the joint encoders")
-    gyro_noise: Annotated[NonNegative, RADIAN_PER_SECOND] = key(0.0, "of the gyroscope")
+    gyro_noise: Annotated[NonNegative, Unit("rad/s")] = key(0.0, "of the gyroscope")
     accelerometer_noise: Annotated[NonNegative, Unit("m/s^2")] = key(0.0, "of the accelerometer")
-    wrench_noise: Annotated[NonNegative, NEWTON] = key(0.0, "of the foot force sensors")
+    wrench_noise: Annotated[NonNegative, Unit("N")] = key(0.0, "of the foot force sensors")
     latency: Instant = key(0.0, "age of the measurement")
     force_estimate: bool = key(
         True, "a lasting external force and the true weight are estimated from what the feet feel, and counted with"

@@ -1,9 +1,11 @@
 """YAML text to plain values that know where they stand in the text."""
 
 import math
+import pickle
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import IO, Any
 
 import yaml
@@ -73,12 +75,7 @@ class Source:
 
 
 def decoded(file: IO[bytes], name: str, most_bytes: int = MAX_BYTES) -> str:
-    """Text of an open file, whoever it is from.
-
-    Args:
-        file: opened to read bytes.
-        name: what to call it in messages.
-        most_bytes: that it may have.
+    """Text of an open file, whoever it is from, of at most so many bytes; its name is for messages.
 
     Raises:
         ScenarioError: it is too large, or no UTF-8.
@@ -95,12 +92,7 @@ def decoded(file: IO[bytes], name: str, most_bytes: int = MAX_BYTES) -> str:
 
 
 def parse(text: str, name: str, most_values: int = MAX_VALUES) -> Source:
-    """Read YAML text.
-
-    Args:
-        text: one YAML document.
-        name: what to call the text in messages.
-        most_values: that it may hold once aliases are expanded.
+    """Read YAML text, named for messages, of at most so many values once aliases are expanded.
 
     Returns:
         its values with their places; keys given twice are listed as problems.
@@ -108,11 +100,19 @@ def parse(text: str, name: str, most_values: int = MAX_VALUES) -> Source:
     Raises:
         ScenarioError: the text is no YAML, nests too deep or expands to too many values.
     """
+    found = pickle.loads(_read(text, name, most_values))  # a copy, since overrides are set in place
+    assert isinstance(found, Source)
+    return found
+
+
+@lru_cache(maxsize=16)
+def _read(text: str, name: str, most_values: int) -> bytes:
+    """See `parse`, pickled; the runs of a campaign begin with the same text."""
     source = Source(name)
     try:
-        root = _Composer(text, most_values).get_single_node()
+        root = Composer(text, most_values).get_single_node()
         if root is not None:
-            source.value = _Reader(source, most_values).read(root, ())
+            source.value = Reader(source, most_values).read(root, ())
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = f"{mark.line + 1}:{mark.column + 1}" if mark else "1:1"
@@ -125,7 +125,7 @@ def parse(text: str, name: str, most_values: int = MAX_VALUES) -> Source:
         raise ScenarioError([message]) from None
     except RecursionError:
         raise ScenarioError([f"{name}:1:1: nested too deep; at most {MAX_DEPTH} levels"]) from None
-    return source
+    return pickle.dumps(source)
 
 
 def plain_scalar(text: str) -> Any:
@@ -137,7 +137,7 @@ def plain_scalar(text: str) -> Any:
     return float(text) if _FLOAT.fullmatch(text) else text
 
 
-class _Composer(yaml.SafeLoader):
+class Composer(yaml.SafeLoader):
     """Composes nodes, and stops before nesting exhausts the interpreter's stack, or their number time and memory."""
 
     depth = made = 0
@@ -147,6 +147,7 @@ class _Composer(yaml.SafeLoader):
         self.most = most_values
 
     def compose_node(self, parent: Any, index: Any) -> Any:
+        """See PyYAML."""
         self.depth += 1
         self.made += index is not None  # which is None of a key
         if self.made > self.most:
@@ -169,7 +170,7 @@ class _Composer(yaml.SafeLoader):
         return yaml.composer.ComposerError(None, None, reason, mark)
 
 
-class _Reader:
+class Reader:
     """Builds values from nodes and remembers the places."""
 
     def __init__(self, source: Source, most_values: int) -> None:
@@ -177,6 +178,7 @@ class _Reader:
         self._count = 0
 
     def read(self, node: yaml.Node, key: Key) -> Any:
+        """The value of a node at a path."""
         self._count += 1
         if self._count > self._most or len(key) > MAX_DEPTH:
             reason = f"more than {self._most} values or {MAX_DEPTH} levels once aliases are expanded"
@@ -186,7 +188,7 @@ class _Reader:
             return self._mapping(node, key)
         if isinstance(node, yaml.SequenceNode):
             return [self.read(item, (*key, i)) for i, item in enumerate(node.value)]
-        plain = isinstance(node, yaml.ScalarNode) and node.style is None
+        plain = isinstance(node, yaml.ScalarNode) and not node.style
         return plain_scalar(node.value) if plain else node.value
 
     def _mapping(self, node: yaml.MappingNode, key: Key) -> dict[str, Any]:
@@ -203,7 +205,7 @@ class _Reader:
                 self._source.problems.append(Problem(path, what, "keep one of them", at_key=True))
                 continue
             self._source.key_places[path] = spot
-            if key_node.value == "<<" and key_node.style is None:
+            if key_node.value == "<<" and not key_node.style:
                 self._source.problems.append(Problem(path, "'<<' merges no groups here", "write the keys", at_key=True))
                 continue
             values[key_node.value] = self.read(value_node, path)
@@ -220,10 +222,6 @@ Overrides = Sequence[str] | Mapping[str, Any]
 
 def apply_overrides(source: Source, overrides: Overrides) -> None:
     """Set values in place, in order; list elements are reached by index.
-
-    Args:
-        source: the scenario's values.
-        overrides: what to set.
 
     Raises:
         ScenarioError: one is no setting, or its key leads into a scalar or past the end of a list.

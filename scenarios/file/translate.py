@@ -10,6 +10,7 @@ from pydantic_core import ErrorDetails
 
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.group import groups_in
 from surefoot.scenarios.file.schema import Scenario, model_of
 from surefoot.scenarios.file.units import meant, unit_of
 
@@ -36,13 +37,7 @@ _BOUNDS = {"greater_than": ("gt", "more than"), "greater_than_equal": ("ge", "at
 
 
 def problems_of(error: ValidationError, data: Any, root: type[BaseModel] = Scenario) -> list[Problem]:
-    """Say each validation error once, at the deepest path that exists in the data.
-
-    Args:
-        error: of the root's validation.
-        data: that was validated.
-        root: group of all keys.
-    """
+    """Say each validation error once, at the deepest path that exists in the data."""
     found: dict[Key, Problem] = {}
     for detail in error.errors(include_url=False):
         problem = _problem(detail, data, root)
@@ -116,7 +111,7 @@ def _group(root: type[BaseModel], key: Key, data: Any) -> type[BaseModel]:
         if get_origin(annotation) is dict:
             next(parts, None)
         data = data.get(part) if isinstance(data, dict) else None
-        model = model_of(next(a for a in (annotation, *getattr(annotation, "__args__", ())) if _is_model(a)), data)
+        model = model_of(next(groups_in(annotation)), data)
     return cast("type[BaseModel]", model)
 
 
@@ -125,10 +120,6 @@ def _unit(root: type[BaseModel], key: Key, data: Any) -> str:
     *group, last = (part for part in key if isinstance(part, str))
     field = _group(root, tuple(group), data).model_fields.get(last)
     return unit_of(field.annotation, field.metadata) if field is not None else ""
-
-
-def _is_model(annotation: Any) -> bool:
-    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
 
 
 def _short(value: Any) -> str:

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Mapping
 from decimal import Decimal
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
@@ -73,22 +73,20 @@ def _si(value: Decimal, spelling: str) -> float | int:
     return int(value) if value == value.to_integral_value() and abs(value) < 10**15 else float(value)
 
 
+def is_number(value: Any) -> bool:
+    """Whether a value is a number, be it NaN or infinite, and no truth value."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
 def _with_article(kind: str) -> str:
     return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
 
 
-METRE, SECOND, RADIAN, NEWTON, KILOGRAM, HERTZ = map(Unit, ("m", "s", "rad", "N", "kg", "Hz"))
-METRE_PER_SECOND, RADIAN_PER_SECOND = Unit("m/s"), Unit("rad/s")
+METRE, SECOND, RADIAN = map(Unit, ("m", "s", "rad"))
 
 
 def meant(value: float, si: str, most: float) -> str:
-    """What a bare number that is too large was probably meant to be, as the end of a sentence; empty when unclear.
-
-    Args:
-        value: as given, in SI.
-        si: unit of its key.
-        most: greatest size that the key may have.
-    """
+    """What a number in SI, beyond the most of a key, was probably meant to be, as a sentence's end; or empty."""
     for spelling in {"m": ("cm", "mm"), "s": ("ms",), "rad": (_DEGREE,), "rad/s": (f"{_DEGREE}/s",)}.get(si, ()):
         factor = _SPELLINGS[si][1][spelling]
         if (
@@ -99,8 +97,9 @@ def meant(value: float, si: str, most: float) -> str:
     return ""
 
 
-def unit_of(annotation: Any, metadata: list[Any]) -> str:
-    """SI unit of a key, or of the elements of a list; empty when it has none."""
+def unit_of(annotation: Any, metadata: list[Any], elements: bool = True) -> str:
+    """SI unit of a key, or else of the elements of a list; empty when it has none."""
     found = next((one.si for one in metadata if isinstance(one, Unit)), "")
-    inner = (unit_of(part, list(getattr(part, "__metadata__", ()))) for part in get_args(annotation))
+    parts = () if get_origin(annotation) is tuple and not elements else get_args(annotation)
+    inner = (unit_of(part, list(getattr(part, "__metadata__", ())), elements) for part in parts)
     return found or next(filter(None, inner), "")

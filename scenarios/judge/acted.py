@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.ground.terrain import Box, Terrain
+from surefoot.planner.geometry import headings
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import CommandSettings
-from surefoot.scenarios.judge.body import headings
-from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, Mask, RunView
+from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, RunView
 from surefoot.scenarios.judge.feet import terrain_of
 from surefoot.scenarios.judge.walking import fall_time, runs_of
 from surefoot.scenarios.record.provenance import END_RECORD
@@ -26,13 +25,7 @@ _SAME_TIME = 1e-6
 
 
 def not_there(metrics: Mapping[str, object], criteria: Mapping[str, Bound], length: float) -> Iterator[str]:
-    """Say what of its way the robot has not gone, unless a criterion says how far from it it may be.
-
-    Args:
-        metrics: of the run.
-        criteria: that are asked.
-        length: of the robot over that of the reference [-].
-    """
+    """Say what of its way a robot of a length [-] has not gone, unless a criterion says how far from it it may be."""
     for name, near, unit in (("place_error", AT_PLACE * length, "m"), ("heading_error", AT_HEADING, "rad")):
         error = metrics.get(name)
         if isinstance(error, float) and name not in criteria and error > near:
@@ -45,14 +38,7 @@ def not_there(metrics: Mapping[str, object], criteria: Mapping[str, Bound], leng
 
 @dataclass(frozen=True, slots=True)
 class _Gait:
-    """When a run planned, and what its feet did.
-
-    Attributes:
-        plans: times of the plans, shape (n,) [s].
-        time: of the control ticks, shape (m,) [s].
-        phase: 0 standing, 1 double, 2 single support, shape (m,).
-        swings: first and last tick of each swing.
-    """
+    """Times of plans and ticks [s], phases (0 stand, 1 double, 2 single), and first and last ticks of the swings."""
 
     plans: Array
     time: Array
@@ -132,7 +118,7 @@ def unmet_ground(run: RunView) -> Iterator[str]:
     for key, numbers in unforeseen.items():
         # Noise leaves the ground as it is believed to be where the robot starts; a box may lie there too.
         stances = soles if key.startswith("errors.ground.") else later
-        if not any(_stands_on(stances, half, number, ground) for number in numbers):
+        if not any(ground.carries(stances, half, number) for number in numbers):
             yield f"{key} never acted: no foot came upon ground that is not as believed"
 
 
@@ -145,45 +131,6 @@ def _stances(run: RunView, start: int) -> Array:
         sole = run.sole(foot)[rows]
         found.append(np.column_stack([sole[:, :2], headings(sole[:, 3:])]))
     return np.concatenate(found)
-
-
-_PATCH = np.stack(np.meshgrid(np.linspace(-1.0, 1.0, 9), np.linspace(-1.0, 1.0, 5)), axis=-1).reshape(-1, 2)
-"""Points of a sole at which the ground under it is looked at, in its half sizes [-]."""
-
-_ABOVE = 1e-6
-"""Height by which other ground lies above a box that it buries [m]."""
-
-
-def _stands_on(soles: Array, half: Array, number: int, ground: Terrain) -> bool:
-    """Whether a sole has a part over a box of the ground, and other ground does not bury the box there."""
-    box = ground.boxes[number]
-    over = soles[_touches(soles, half, box)]
-    ahead = np.stack([np.cos(over[:, 2]), np.sin(over[:, 2])], axis=-1)
-    left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
-    points = over[:, None, :2] + (_PATCH * half) @ np.stack([ahead, left], axis=1)
-    top, inside = box.top(points.reshape(-1, 2))
-    under = ground.heights(points.reshape(-1, 2)) > top + _ABOVE
-    within, free = (mask.reshape(-1, len(_PATCH)) for mask in (inside >= 0.0, (inside >= 0.0) & ~under))
-    # A corner of the box between the points counts as free.
-    return bool((free.any(axis=1) | ~within.any(axis=1)).any())
-
-
-def _touches(soles: Array, half: Array, box: Box) -> Mask:
-    """Which soles have a part over a box: two rectangles on the ground are apart if an axis of one of them parts them.
-
-    Args:
-        soles: places and headings, shape (n, 3).
-        half: half length and width of a sole, shape (2,) [m].
-        box: of the ground.
-    """
-    centre, size, axes = box.center[:2], box.half_size[:2], box.rotation[:2, :2].T
-    c, s = np.cos(soles[:, 2]), np.sin(soles[:, 2])
-    own = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=1)
-    between = centre - soles[:, :2]
-    across = np.abs(own @ axes.T)  # of each axis of the sole along each of the box
-    apart_by_sole = np.abs(np.einsum("nij,nj->ni", own, between)) > half + across @ size
-    apart_by_box = np.abs(between @ axes.T) > size + np.einsum("nij,i->nj", across, half)
-    return np.asarray(~(apart_by_sole.any(axis=1) | apart_by_box.any(axis=1)))
 
 
 def contradictions(run: RunView) -> tuple[str, ...]:

@@ -1,17 +1,21 @@
 """A log as metrics and health checks see it: gathered in one pass with bounded memory, on common control ticks."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import tempfile
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from functools import cached_property
-from pathlib import Path
-from typing import Any, Protocol
+from typing import IO, TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.judge.body import headings, knees
-from surefoot.scenarios.judge.columns import Columns
-from surefoot.scenarios.log import ChannelData, Log
+from surefoot.planner.geometry import headings
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.judge.body import knees
+from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import RunConstants
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.log import ChannelData, Log
 
 Reads = Mapping[str, tuple[str, ...]]
 """Names of fields by topic."""
@@ -31,67 +35,97 @@ TIME = "time_ns"
 """Key of the times of a topic's messages, among those of its fields."""
 
 
-class Channel(Protocol):
-    """Messages of a topic."""
-
-    @property
-    def time_ns(self) -> NDArray[np.int64]:
-        """Simulated time of each, shape (n,) [ns]."""
-        ...
-
-    @property
-    def time(self) -> NDArray[np.float64]:
-        """Simulated time of each, shape (n,) [s]."""
-        ...
-
-    def __len__(self) -> int: ...
-
-    def field(self, name: str) -> NDArray[Any]:
-        """Values of a field, shape (n, *field shape)."""
-        ...
+HELD_BYTES = 16 << 20
+"""What all columns together may take in memory: a minute of a walk."""
 
 
-class Source(Protocol):
-    """A log, a part of one, or what was kept of one."""
+class Columns:
+    """Arrays by key, each joined of its parts.
 
-    @property
-    def path(self) -> Path:
-        """Where the log is."""
-        ...
+    From a file an array is mapped anew whenever it is asked for, so that its memory is free again as soon as it is
+    dropped, however long the log.
+    """
 
-    @property
-    def size(self) -> int:
-        """Of the log [bytes]."""
-        ...
+    def __init__(self) -> None:
+        self._parts: dict[Hashable, list[NDArray[Any]]] = {}
+        self._files: dict[Hashable, IO[bytes]] = {}
+        self._kinds: dict[Hashable, tuple[tuple[int, ...], np.dtype[Any]]] = {}
+        self._rows: dict[Hashable, int] = {}
+        self._unlike: set[Hashable] = set()
+        self._held, self._spilled = 0, False
 
-    @property
-    def metadata(self) -> Mapping[str, Mapping[str, str]]:
-        """Of the log."""
-        ...
+    def __contains__(self, key: Hashable) -> bool:
+        return key in self._kinds
 
-    def __contains__(self, topic: str) -> bool: ...
+    def __iter__(self) -> Iterator[Hashable]:
+        return iter(self._kinds)
 
-    def __getitem__(self, topic: str) -> Channel: ...
+    def add(self, key: Hashable, values: NDArray[Any]) -> None:
+        """Append a part, which is copied; a key whose parts cannot be joined is forgotten.
 
+        Raises:
+            LogError: there is no room for the files.
+        """
+        kind, sound = (values.shape[1:], values.dtype), values.ndim > 0 and not values.dtype.hasobject
+        if key in self._unlike or not sound or self._kinds.setdefault(key, kind) != kind:
+            self.forget(key)
+            return
+        self._rows[key] = self._rows.get(key, 0) + len(values)
+        if self._spilled:
+            self._write(key, values)
+            return
+        self._parts.setdefault(key, []).append(np.array(values))
+        self._held += values.nbytes
+        if self._held > HELD_BYTES:
+            self._spill()
 
-class Window:
-    """A part of a log."""
+    def forget(self, key: Hashable) -> None:
+        """Drop what there is of a key, and what comes."""
+        self._unlike.add(key)
+        for table in (self._parts, self._files, self._kinds):
+            table.pop(key, None)
 
-    def __init__(self, log: Log, channels: Mapping[str, Channel]) -> None:
-        self.path, self.size, self.metadata = log.path, log.size, log.metadata
-        self._channels = channels
+    def __len__(self) -> int:
+        return len(self._kinds)
 
-    def __contains__(self, topic: str) -> bool:
-        return topic in self._channels
+    def rows(self, key: Hashable) -> int:
+        """Length of an array."""
+        return self._rows.get(key, 0)
 
-    def __getitem__(self, topic: str) -> Channel:
-        return self._channels[topic]
+    def __getitem__(self, key: Hashable) -> NDArray[Any]:
+        """The array of a key; it cannot be written to."""
+        shape, dtype = self._kinds[key]
+        if not self._spilled:
+            self._parts[key] = [np.concatenate(self._parts[key])]
+            (values,) = self._parts[key]
+            values.flags.writeable = False
+            return values
+        if not self._rows[key] or 0 in shape:
+            return np.empty((self._rows[key], *shape), dtype)
+        self._files[key].flush()
+        return np.asarray(np.memmap(self._files[key], dtype, "r", shape=(self._rows[key], *shape)))
+
+    def _spill(self) -> None:
+        self._spilled = True
+        for key, parts in self._parts.items():
+            for part in parts:
+                self._write(key, part)
+        self._parts.clear()
+
+    def _write(self, key: Hashable, values: NDArray[Any]) -> None:
+        try:
+            if key not in self._files:
+                self._files[key] = tempfile.TemporaryFile(prefix="surefoot-")  # noqa: SIM115  open as long as it is used
+            self._files[key].write(values.tobytes())
+        except OSError as error:
+            what = f"{tempfile.gettempdir()}: no place to digest a long log, {reason(error)}"
+            raise LogError(f"{what}; set TMPDIR to a directory with more room") from None
 
 
 class KeptChannel:
     """Fields of a channel over the whole run; one that was not kept is read from the log when it is asked for."""
 
-    def __init__(self, log: Log, topic: str, columns: Columns) -> None:
+    def __init__(self, log: "Log", topic: str, columns: Columns) -> None:
         self._log, self._topic = log, topic
         self._columns = columns
 
@@ -114,29 +148,44 @@ class KeptChannel:
         return self._columns[kept] if kept in self._columns else self._log[self._topic].field(name)
 
 
-Reduce = Callable[[Source], Mapping[Any, NDArray[Any]]]
-"""Reduces a part of a log to narrow arrays by key, in order of time."""
+Channel: TypeAlias = "ChannelData | KeptChannel"
 
 
-class Digest:
-    """What was kept of a log; stands for it where metrics are computed.
+class Window:
+    """Some channels of a log: of a part of it, or what was kept of the whole.
 
     Attributes:
         path: of the log.
         size: of the log [bytes].
         metadata: of the log.
+    """
+
+    def __init__(self, log: "Log", channels: Mapping[str, Channel]) -> None:
+        self.path, self.size, self.metadata = log.path, log.size, log.metadata
+        self._channels = channels
+
+    def __contains__(self, topic: str) -> bool:
+        return topic in self._channels
+
+    def __getitem__(self, topic: str) -> Channel:
+        return self._channels[topic]
+
+
+Source: TypeAlias = "Log | Window"
+
+Reduce = Callable[[Source], Mapping[Any, NDArray[Any]]]
+"""Reduces a part of a log to narrow arrays by key, in order of time."""
+
+
+class Digest(Window):
+    """What was kept of a log; stands for it where metrics are computed.
+
+    Attributes:
         reduced: what `reduce` gave, over the whole run.
     """
 
-    def __init__(self, log: Log, reads: Iterable[Reads], reduce: Reduce) -> None:
-        """Go through the log once; its damage is then known.
-
-        Args:
-            log: a log.
-            reads: fields that are held for the whole run; wider ones are reduced tick by tick.
-            reduce: is applied to every part.
-        """
-        self.path, self.size, self.metadata = log.path, log.size, log.metadata
+    def __init__(self, log: "Log", reads: Iterable[Reads], reduce: Reduce) -> None:
+        """Go through the log once, reducing every part and holding narrow fields; its damage is then known."""
         held = _united((HELD, *reads))
         topics = [topic for topic in held if topic in log.numeric]
         kept, self.reduced = Columns(), Columns()
@@ -148,24 +197,15 @@ class Digest:
                         kept.add((topic, name), channel.field(name))
             for key, values in reduce(Window(log, channels)).items():
                 self.reduced.add(key, values)
-        self._channels = {topic: KeptChannel(log, topic, kept) for topic in topics}
-
-    def __contains__(self, topic: str) -> bool:
-        return topic in self._channels
-
-    def __getitem__(self, topic: str) -> KeptChannel:
-        return self._channels[topic]
+        super().__init__(log, {topic: KeptChannel(log, topic, kept) for topic in topics})
 
 
 LAG_NS = 100_000_000
 """What is put off at most [ns]."""
 
 
-def _in_step(windows: Iterable[dict[str, ChannelData]]) -> Iterator[dict[str, ChannelData]]:
-    """The same windows, each with whole control ticks.
-
-    A chunk ends with a tick whose last messages are in the next one; such a tick is put off until it is whole.
-    """
+def _in_step(windows: Iterable[dict[str, "ChannelData"]]) -> Iterator[dict[str, "ChannelData"]]:
+    """The same windows, each with whole control ticks: one whose last messages are in the next chunk is put off."""
     rest: dict[str, ChannelData] = {}
     for channels in windows:
         joined = {topic: rest[topic].joined(channel) if rest else channel for topic, channel in channels.items()}

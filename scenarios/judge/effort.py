@@ -15,15 +15,13 @@ SHORTEST_WAY = 0.05
 
 @reduction("/torque")
 def torque_ratio(run: RunView) -> Array:
-    """Largest commanded joint torque over its limit at each tick, shape (n,)."""
-    return np.asarray(np.max(np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit), axis=1))
+    """Largest commanded joint torque over its limit at each tick, and the number of that joint, shape (n, 2)."""
+    return _largest(np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit))
 
 
-@reduction("/torque")
-def strained_joint(run: RunView) -> Array:
-    """Which joint is nearest to its torque limit at each tick, index, shape (n,)."""
-    ratio = np.abs(run.field("/torque", "command")) / np.array(run.constants.torque_limit)
-    return np.asarray(np.argmax(ratio, axis=1).astype(np.uint8))
+def _largest(by_joint: Array) -> Array:
+    """The largest value of each row, and the joint that has it, shape (n, 2)."""
+    return np.column_stack((by_joint.max(axis=1), by_joint.argmax(axis=1)))
 
 
 @reduction("/torque")
@@ -35,39 +33,18 @@ def knee_torque_squared(run: RunView) -> Array:
 
 
 @reduction("/measurement")
-def joint_limit_margin(run: RunView) -> Array:
-    """Least distance of a joint from its limits at each tick, shape (n,) [rad]."""
-    return np.asarray(_limit_margins(run).min(axis=1))
-
-
-@reduction("/measurement")
-def joint_at_limit(run: RunView) -> Array:
-    """Which joint is nearest to its limits at each tick, index, shape (n,)."""
-    return np.asarray(np.argmin(_limit_margins(run), axis=1).astype(np.uint8))
-
-
-def _limit_margins(run: RunView) -> Array:
+def joint_overrun(run: RunView) -> Array:
+    """How far a joint is beyond its limits at most at each tick, negative inside [rad], and which; shape (n, 2)."""
     position = run.field("/measurement", "joint_position")
-    below = position - np.array(run.constants.position_lower)
-    above = np.array(run.constants.position_upper) - position
-    return np.asarray(np.minimum(below, above))
+    below = np.array(run.constants.position_lower) - position
+    return _largest(np.maximum(below, position - np.array(run.constants.position_upper)))
 
 
 @reduction("/measurement")
 def joint_speed_ratio(run: RunView) -> Array:
-    """Largest joint speed over the joint's no-load speed at each tick, shape (n,); NaN in a log without these."""
-    return np.asarray(_speed_ratios(run).max(axis=1))
-
-
-@reduction("/measurement")
-def fastest_joint(run: RunView) -> Array:
-    """Which joint is nearest to its no-load speed at each tick, index, shape (n,)."""
-    return np.asarray(np.argmax(_speed_ratios(run), axis=1).astype(np.uint8))
-
-
-def _speed_ratios(run: RunView) -> Array:
+    """Largest joint speed over the joint's no-load speed at each tick, NaN in a log without these, and the joint."""
     speed = np.abs(run.field("/measurement", "joint_velocity"))
-    return np.asarray(speed / np.array(run.constants.velocity_limit or (np.nan,)))
+    return _largest(speed / np.array(run.constants.velocity_limit or (np.nan,)))
 
 
 @reduction("/measurement")
@@ -87,7 +64,7 @@ def joint_power(run: RunView) -> Array:
 @metric(shown=(1e2, "% of the limit"), reduces=(torque_ratio,), body=True, least=0.0)
 def torque_ratio_max(run: RunView) -> float:
     """Largest commanded joint torque over its limit [-]."""
-    return float(run.reduced(torque_ratio).max())
+    return float(run.reduced(torque_ratio)[:, 0].max())
 
 
 @metric(
@@ -103,19 +80,19 @@ def knee_torque_rms(run: RunView) -> float | None:
 @metric(shown=OF_THE_TIME, reduces=(torque_ratio,), body=True, least=0.0, most=1.0)
 def torque_at_limit_fraction(run: RunView) -> float:
     """Share of ticks at which some joint's commanded torque is at its limit [-]."""
-    return float(np.mean(run.reduced(torque_ratio) >= AT_LIMIT))
+    return float(np.mean(run.reduced(torque_ratio)[:, 0] >= AT_LIMIT))
 
 
-@metric(unit="rad", shown=DEG, reduces=(joint_limit_margin,), body=True, tolerance=(0.005, 0.0))
+@metric(unit="rad", shown=DEG, reduces=(joint_overrun,), body=True, tolerance=(0.005, 0.0))
 def joint_limit_margin_min(run: RunView) -> float:
     """Least distance of a joint from its limits, negative beyond them [rad]."""
-    return float(run.reduced(joint_limit_margin).min())
+    return 0.0 - float(run.reduced(joint_overrun)[:, 0].max())
 
 
 @metric(shown=(1e2, "% of no-load speed"), reduces=(joint_speed_ratio,), body=True)
 def joint_speed_ratio_max(run: RunView) -> float:
     """Largest joint speed over the joint's no-load speed, above 1 where no motor could follow [-]."""
-    return float(run.reduced(joint_speed_ratio).max())
+    return float(run.reduced(joint_speed_ratio)[:, 0].max())
 
 
 @metric(unit="rad", shown=DEG, reads={"/reference": ()}, reduces=(knee_flexion,), body=True, tolerance=(0.005, 0.0))

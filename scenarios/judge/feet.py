@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.geometry import sole_corners
+from surefoot.planner.geometry import corners, headings, rotations, sole_corners
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.types import GRAVITY, Foot, Footstep
-from surefoot.scenarios.judge.body import corners, feet_lean, headings, rotations
+from surefoot.scenarios.judge.body import feet_lean
 from surefoot.scenarios.judge.digest import Array, Mask, Reads, Rows, RunView
 from surefoot.scenarios.judge.metric import DEG, MM, metric
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
@@ -131,13 +131,7 @@ def stances(run: RunView, until: int | None = None) -> list[Stance]:
 
 @dataclass(frozen=True, slots=True)
 class Slip:
-    """How far a sole moved during a stance.
-
-    Attributes:
-        foot: 0 left, 1 right.
-        tick: tick at which the sole was farthest from where it began.
-        distance: horizontal distance of its farthest corner then [m].
-    """
+    """How far the farthest corner of a sole (0 left, 1 right) moved in a stance [m], and at which tick it was there."""
 
     foot: int
     tick: int

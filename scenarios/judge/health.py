@@ -150,10 +150,10 @@ _PARTS = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log")
 
 def torque_saturation(run: RunView) -> Finding:
     """Largest commanded torque over its limit [-]."""
-    ratio = run.reduced(effort.torque_ratio)
+    ratio, numbers = run.reduced(effort.torque_ratio).T
     saturated = ratio >= effort.AT_LIMIT
     worst = int(np.argmax(saturated) if saturated.any() else np.nanargmax(ratio))
-    joint = run.constants.joint_names[int(run.reduced(effort.strained_joint)[worst])]
+    joint = run.constants.joint_names[int(numbers[worst])]
     cause = (
         f"{joint} is at its torque limit, joints are saturated in {np.count_nonzero(saturated)} ticks: the motion asks "
         "for more than the motor gives, by an impact, a push, a straight knee or a gain that is too high"
@@ -163,8 +163,8 @@ def torque_saturation(run: RunView) -> Finding:
 
 def joint_stops(run: RunView) -> Finding:
     """Least distance of a joint from its stops before a fall, negative past them [rad]."""
-    worst, joint = _joint(run, -run.reduced(effort.joint_limit_margin), effort.joint_at_limit)
-    margin = float(run.reduced(effort.joint_limit_margin)[worst])
+    worst, joint, over = _joint(run, effort.joint_overrun)
+    margin = 0.0 - over
     cause = (
         f"{joint} is {np.degrees(-margin):.1f} deg past its stop, as only a simulated one allows: the motion asks for "
         "more than the joint has, or a push or an impact overcame the controller"
@@ -176,8 +176,7 @@ def joint_speeds(run: RunView) -> Finding:
     """Largest joint speed over the joint's no-load speed before a fall [-]."""
     if not run.constants.velocity_limit:
         return judged("joint_speeds", False, None, None, "")
-    worst, joint = _joint(run, run.reduced(effort.joint_speed_ratio), effort.fastest_joint)
-    ratio = float(run.reduced(effort.joint_speed_ratio)[worst])
+    worst, joint, ratio = _joint(run, effort.joint_speed_ratio)
     cause = (
         f"{joint} turns at {100 * ratio:.0f} % of its no-load speed, where a real motor has no torque left and the "
         "simulated one has all of it: what comes after is not to be trusted"
@@ -185,10 +184,11 @@ def joint_speeds(run: RunView) -> Finding:
     return judged("joint_speeds", ratio > 1.0, float(run.time[worst]), ratio, cause)
 
 
-def _joint(run: RunView, value: Array, which: Reduction) -> tuple[int, str]:
-    """The tick before a fall at which a value is greatest, and which joint that is."""
-    worst = int(np.argmax(np.nan_to_num(value[: max(_standing(run), 1)], nan=-np.inf)))
-    return worst, run.constants.joint_names[int(run.reduced(which)[worst])]
+def _joint(run: RunView, largest: Reduction) -> tuple[int, str, float]:
+    """The tick before a fall at which a value is greatest, which joint has it, and the value."""
+    values, numbers = run.reduced(largest).T
+    worst = int(np.argmax(np.nan_to_num(values[: max(_standing(run), 1)], nan=-np.inf)))
+    return worst, run.constants.joint_names[int(numbers[worst])], float(values[worst])
 
 
 def estimator_drift(run: RunView) -> Finding:
@@ -255,9 +255,9 @@ def not_finite(run: RunView) -> Finding:
     """Ticks with a state, sensor value or torque that is not a number."""
     values = {
         "/truth": run.field("/truth", "com").sum(axis=1) + run.sole(0).sum(axis=1) + run.sole(1).sum(axis=1),
-        "/measurement": run.reduced(effort.joint_power) + run.reduced(effort.joint_limit_margin),
+        "/measurement": run.reduced(effort.joint_power) + run.reduced(effort.joint_overrun)[:, 0],
         "/estimate": run.field("/estimate", "com").sum(axis=1),
-        "/torque": run.reduced(effort.torque_ratio),
+        "/torque": run.reduced(effort.torque_ratio)[:, 0],
     }
     bad = {topic: ~np.isfinite(value) for topic, value in values.items()}
     count = int(sum(np.count_nonzero(where) for where in bad.values()))
@@ -301,8 +301,7 @@ READS: Reads = {
 """Fields that the checks read, beside those that tell a fall."""
 
 REDUCTIONS = (
-    *(effort.torque_ratio, effort.strained_joint, effort.joint_limit_margin, effort.joint_at_limit),
-    *(effort.joint_speed_ratio, effort.fastest_joint, effort.joint_power),
+    *(effort.torque_ratio, effort.joint_overrun, effort.joint_speed_ratio, effort.joint_power),
     balance.zmp_depth,
 )
 """Reductions that the checks use."""

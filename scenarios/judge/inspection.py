@@ -14,13 +14,7 @@ from surefoot.scenarios.log.reader import RECOVERED
 
 @dataclass(frozen=True, slots=True)
 class TopicRate:
-    """How much of a topic there is.
-
-    Attributes:
-        topic: its name.
-        messages: how many.
-        rate: over the time of the log [Hz].
-    """
+    """How many messages there are of a topic, and how many over the time of the log [Hz]."""
 
     topic: str
     messages: int

@@ -8,6 +8,7 @@ import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib import import_module
 from operator import attrgetter
 from pickle import PicklingError
@@ -77,6 +78,16 @@ class Reduction:
     def __reduce__(self) -> ByName:
         """Go to another process by name."""
         return _by_name(self, self.function)
+
+
+@lru_cache(maxsize=1024)
+def _given(function: Callable[..., Any]) -> tuple[Any, ...]:
+    """Types of what a function gives; the schema of criteria compares each metric with all others."""
+    try:
+        given = get_type_hints(function).get("return", NoneType)
+    except Exception:  # annotations in quotes are expressions of their author
+        return (NoneType,)
+    return get_args(given) if isinstance(given, UnionType) or get_origin(given) is Union else (given,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,11 +162,7 @@ class Metric(Generic[T]):
     @property
     def _kinds(self) -> tuple[Any, ...]:
         """What its function gives; what cannot be told counts as None."""
-        try:
-            given = get_type_hints(self.function).get("return", NoneType)
-        except Exception:  # annotations in quotes are expressions of their author
-            return (NoneType,)
-        return get_args(given) if isinstance(given, UnionType) or get_origin(given) is Union else (given,)
+        return _given(self.function)
 
     def applies(self, fidelity: str) -> bool:
         """Whether runs of a fidelity have it."""
@@ -212,20 +219,8 @@ def metric(
 ) -> Callable[[Callable[[RunView], T]], Metric[T]]:
     """Make a function of a run a metric of its name; the first line of its documentation says what it is.
 
-    Args:
-        unit: of the value, SI; empty for a plain number.
-        shown: factor and unit in which a person is shown the value; by default as it is.
-        size: number of elements, when it is a list.
-        parts: names of the parts, when it is a dict.
-        needs: topics without which it is None; by default those of ``reads`` and ``reduces``.
-        reads: fields that it reads, by topic.
-        reduces: reductions that it uses.
-        body: whether a pendulum has not got it.
-        repeatable: whether two runs of the same scenario give the same value.
-        least: value that it never goes below by its nature; a criterion that asks for no more is refused.
-        most: value that it never exceeds, likewise.
-        tolerance: by how much two runs may differ that `surefoot check` takes for the same, in its unit and as a share
-            of its value; by default what its unit says, and counts not at all.
+    Arguments are attributes of `Metric`; ``shown`` is its factor and unit, by default those of the value, ``needs`` are
+    by default the topics of ``reads`` and of ``reduces``, its reductions.
 
     Raises:
         ParameterError: these do not make a metric.
@@ -249,11 +244,7 @@ def metric(
 
 
 def _check(made: Metric[Any]) -> None:
-    """Refuse what could not be computed, shown or bounded.
-
-    Raises:
-        ParameterError: it is such.
-    """
+    """Refuse, by a ParameterError, what could not be computed, shown or bounded."""
     who = f"metric {made.name}"
     if not made.name.isidentifier() or keyword.iskeyword(made.name) or made.name in RESERVED:
         raise ParameterError(("name",), f"{who}: not a name for a metric", f"none of {', '.join(RESERVED)}, and a word")

@@ -1,25 +1,24 @@
 """The metrics there are, ours and those of other packages, and their values for a log."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from surefoot.errors import PartError
 from surefoot.guard import Guard, MisfitError, shown
-from surefoot.plugins import PluginError, Registry
+from surefoot.plugins import Declared, PluginError
 from surefoot.scenarios.errors import LogError, Problem, nearest
-from surefoot.scenarios.judge import balance, computing, effort, feet, health, walking
+from surefoot.scenarios.judge import balance, computing, effort, feet, health, names, walking
 from surefoot.scenarios.judge.digest import Digest, Reads, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
-from surefoot.scenarios.log import Log
 
-GROUP = "surefoot.metrics"
-"""Entry points by which other packages bring metrics: the metric's name, and where the `Metric` is."""
+if TYPE_CHECKING:
+    from surefoot.scenarios.log import Log
 
 
 def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
@@ -39,7 +38,7 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
 OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, computing)
 """Ours, in the order in which they are shown."""
 
-METRICS: Registry[Metric[Any]] = Registry(GROUP, Metric, OWN)
+METRICS: Declared[Metric[Any]] = names.METRICS.filled(Metric, OWN, lambda metric: metric.meaning)
 """All by name: ours, then those of other packages."""
 
 
@@ -83,15 +82,10 @@ def _meant(name: str) -> str:
 
 
 def _usable(name: str) -> Metric[Any]:
-    """The metric of a name.
-
-    Raises:
-        KeyError: there is none.
-        PluginError: its package cannot be loaded, or has it under another name.
-    """
+    """The metric of a name; KeyError for none, PluginError where its package is broken or names it otherwise."""
     found = METRICS[name]
     if found.name != name:
-        raise PluginError(f"'{name}' in {GROUP} is named '{found.name}' where it is made", "give both one name")
+        raise PluginError(f"'{name}' in {METRICS.group} is named '{found.name}' where it is made", "give both one name")
     return found
 
 
@@ -108,16 +102,13 @@ class Measured:
     notes: tuple[str, ...]
 
 
-def compute(log: Log | Digest) -> dict[str, Any]:
+def compute(log: "Log | Digest") -> dict[str, Any]:
     """The values of `measure`, which has the arguments and errors."""
     return measure(log).values
 
 
-def measure(log: Log | Digest) -> Measured:
-    """Compute every metric; one of another package that fails is None and a note.
-
-    Args:
-        log: a log of a run, whole or truncated, or its digest.
+def measure(log: "Log | Digest") -> Measured:
+    """Compute every metric of a log, whole or truncated; one of another package that fails is None and a note.
 
     Raises:
         LogError: the log does not describe a run.
@@ -164,26 +155,26 @@ def _foreign_value(run: RunView, name: str, notes: list[str]) -> Any:
 def _value(run: RunView, metric: Metric[Any]) -> Any:
     if not metric.applies(run.constants.fidelity) or not run.has(*metric.needs):
         return None
-    return _plain(metric(run))
+    return plain(metric(run))
 
 
-def _plain(value: Any) -> Any:
-    """The value for JSON: what is not a finite number becomes None, and a number of a class of its own a plain one."""
+def plain(value: Any, lost: Callable[[float], str | None] = lambda _: None) -> Any:
+    """The value for JSON: numbers of classes of their own as plain ones, and what is ``lost``: those not finite."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, list | tuple):
-        return [_plain(element) for element in value]
+        return [plain(element, lost) for element in value]
     if isinstance(value, dict):
-        return {key: _plain(element) for key, element in value.items()}
+        return {key: plain(element, lost) for key, element in value.items()}
     if isinstance(value, float):
-        return float.__pos__(value) if math.isfinite(value) else None
+        return float.__pos__(value) if math.isfinite(value) else lost(value)
     return int.__pos__(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
 _REDUCING = Guard("a reduction")
 
 
-def digest(log: Log) -> Digest:
+def digest(log: "Log") -> Digest:
     """Gather what the metrics and the health checks need, in one pass with bounded memory.
 
     Raises:
@@ -214,12 +205,8 @@ def digest(log: Log) -> Digest:
     return gathered
 
 
-def _check_joints(log: Log, joints: int) -> None:
-    """Refuse a log whose joints are not as many as its run has.
-
-    Raises:
-        LogError: it is such a log.
-    """
+def _check_joints(log: "Log", joints: int) -> None:
+    """Refuse, by a LogError, a log whose joints are not as many as its run has."""
     for topic, name in (("/torque", "command"), ("/measurement", "joint_position")):
         shapes = [field.shape for field in log.fields(topic) if field.name == name] if topic in log.numeric else []
         if shapes and shapes != [(joints,)]:

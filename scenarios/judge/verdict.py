@@ -14,9 +14,10 @@ from pydantic import ValidationError
 from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.dumped import parse_dumped
 from surefoot.scenarios.file.names import unknown
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import decoded, parse
+from surefoot.scenarios.file.source import decoded
 from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.acted import contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import Digest, RunView
@@ -87,18 +88,8 @@ def _number(name: str, shown: float) -> str:
 
 def asked(criteria: Mapping[str, Bound], fidelity: str) -> dict[str, Bound]:
     """The criteria on metrics that a fidelity has; the others are in the notes."""
-    return {name: bound for name, bound in criteria.items() if not _bodiless(name, fidelity)}
-
-
-def _bodiless(criterion: str, fidelity: str) -> bool:
-    metric = known(criterion)
-    return metric is not None and not metric.applies(fidelity)
-
-
-def _skipped(criteria: Mapping[str, Bound], fidelity: str) -> Iterator[str]:
-    for name in criteria:
-        if _bodiless(name, fidelity):
-            yield f"criterion {name} is not asked: a pendulum has no such metric"
+    metrics = {name: known(name) for name in criteria}
+    return {name: criteria[name] for name, metric in metrics.items() if metric is None or metric.applies(fidelity)}
 
 
 def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
@@ -187,11 +178,7 @@ class Verdict:
 
 
 def judge(log: Log, gathered: Digest | None = None) -> Verdict:
-    """Judge a run by its log alone.
-
-    Args:
-        log: the log.
-        gathered: its digest, where it was gathered before.
+    """Judge a run by its log alone, or by the digest of it that was gathered before.
 
     Raises:
         LogError: the log does not describe a run.
@@ -210,9 +197,10 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     )
     undone = (*idle, *not_there(measured.values, criteria, size.length))
     reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
-    skipped = _skipped(scenario.criteria, scenario.fidelity)
+    skipped = [name for name in scenario.criteria if name not in criteria]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
-    said = (*skipped, *idle_keys, *_degraded(measured.values), *measured.notes)
+    unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)
+    said = (*unasked, *idle_keys, *_degraded(measured.values), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 
@@ -228,7 +216,8 @@ def scenario_of(log: Log) -> Scenario:
 def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
     """The scenario of a log, and which of its names nobody knows here."""
     try:
-        source = parse(decoded(BytesIO(log.attachments[SCENARIO_FILE]), SCENARIO_FILE), SCENARIO_FILE)
+        text = decoded(BytesIO(log.attachments[SCENARIO_FILE]), SCENARIO_FILE)
+        source = parse_dumped(text, SCENARIO_FILE)
         keys, absent = source.value, unknown(source.value)
         # Without its kind the other keys of the ground mean nothing.
         places = [replace(one, key=one.key[:1]) if one.key[0] == "terrain" else one for one in absent]
@@ -286,11 +275,7 @@ def _unfinished(log: Log) -> list[str]:
 
 
 def agenda_of(log: Log, scenario: Scenario) -> Agenda:
-    """What was to happen in a run; of a log that does not tell, as far as its scenario does.
-
-    Args:
-        log: of the run.
-        scenario: that it carries.
+    """What was to happen in the run of a log; of one that does not tell, as far as its scenario does.
 
     Raises:
         LogError: what the log tells of it cannot be read.

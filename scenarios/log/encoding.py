@@ -6,23 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import lz4.frame
 import zstandard
+from mcap import records
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import (
-    Attachment,
-    AttachmentIndex,
-    Channel,
-    Chunk,
-    ChunkIndex,
-    DataEnd,
-    Footer,
-    McapRecord,
-    Metadata,
-    MetadataIndex,
-    Schema,
-    Statistics,
-    SummaryOffset,
-)
 
 from surefoot.scenarios.errors import LogError
 
@@ -41,12 +27,7 @@ def compress(data: bytes, method: str) -> bytes:
 
 
 def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:
-    """Decompress a chunk.
-
-    Args:
-        data: compressed bytes.
-        method: as of `compress`.
-        size: bytes that must come out.
+    """Decompress a chunk, of which so many bytes must come out, by a method as of `compress`.
 
     Raises:
         LogError: the bytes are damaged or the method is unknown.
@@ -78,14 +59,14 @@ def _unzstd(data: bytes | memoryview, size: int) -> bytes:
 MAGIC = b"\x89MCAP0\r\n"
 
 
-def encoded(record: McapRecord) -> bytes:
+def encoded(record: records.McapRecord) -> bytes:
     """Encode a record with its opcode and length."""
     builder = RecordBuilder()
     record.write(builder)
     return bytes(builder.end())  # type: ignore[no-untyped-call]
 
 
-def chunk_head(chunk: Chunk) -> bytes:
+def chunk_head(chunk: records.Chunk) -> bytes:
     """Encode a chunk's record up to its data, which follow as they are: they are not copied once more."""
     method, size = chunk.compression.encode(), len(chunk.data)
     times = (chunk.message_start_time, chunk.message_end_time, chunk.uncompressed_size, chunk.uncompressed_crc)
@@ -124,40 +105,42 @@ class Summary:
     """Everything a reader wants to know before it reads the messages."""
 
     def __init__(self) -> None:
-        self._schemas: list[Schema] = []
-        self._channels: list[Channel] = []
+        self._schemas: list[records.Schema] = []
+        self._channels: list[records.Channel] = []
         self._chunks = Packed()
         self._times: tuple[int, int] | None = None
-        self._attachments: list[AttachmentIndex] = []
-        self._metadata: list[MetadataIndex] = []
+        self._attachments: list[records.AttachmentIndex] = []
+        self._metadata: list[records.MetadataIndex] = []
 
-    def add_channel(self, schema: Schema | None, channel: Channel) -> None:
+    def add_channel(self, schema: records.Schema | None, channel: records.Channel) -> None:
         """Note a channel and its schema, when it is new."""
         if schema is not None and all(known.id != schema.id for known in self._schemas):
             self._schemas.append(schema)
         self._channels.append(channel)
 
-    def add_metadata(self, record: Metadata, position: int) -> bytes:
+    def add_metadata(self, record: records.Metadata, position: int) -> bytes:
         """Note a metadata record at a file position and encode it."""
         data = encoded(record)
-        self._metadata.append(MetadataIndex(position, len(data), record.name))
+        self._metadata.append(records.MetadataIndex(position, len(data), record.name))
         return data
 
-    def add_attachment(self, record: Attachment, position: int) -> bytes:
+    def add_attachment(self, record: records.Attachment, position: int) -> bytes:
         """Note an attachment at a file position and encode it."""
         data = encoded(record)
         size = len(record.data)
         stamps = (record.log_time, record.create_time)
-        self._attachments.append(AttachmentIndex(position, len(data), *stamps, size, record.name, record.media_type))
+        self._attachments.append(
+            records.AttachmentIndex(position, len(data), *stamps, size, record.name, record.media_type)
+        )
         return data
 
-    def add_chunk(self, chunk: Chunk, position: int, length: int, indexes: Sequence[tuple[int, bytes]]) -> None:
+    def add_chunk(self, chunk: records.Chunk, position: int, length: int, indexes: Sequence[tuple[int, bytes]]) -> None:
         """Note a chunk of `length` bytes at a file position, followed by the MessageIndex records of its channels."""
         offsets, end = {}, position + length
         for channel_id, index in indexes:
             offsets[channel_id] = end
             end += len(index)
-        entry = ChunkIndex(
+        entry = records.ChunkIndex(
             chunk_length=length,
             chunk_start_offset=position,
             compression=chunk.compression,
@@ -173,14 +156,8 @@ class Summary:
         self._times = min(first, chunk.message_start_time), max(last, chunk.message_end_time)
 
     def finish(self, position: int, counts: Mapping[int, int], crc: int) -> bytes:
-        """Give the end of the file: end of data, summary, footer, magic.
-
-        Args:
-            position: where it will stand in the file.
-            counts: messages by channel.
-            crc: CRC-32 of everything before it.
-        """
-        end = encoded(DataEnd(crc))
+        """Give the end of the file at a position: end of data with the CRC-32 of all before, summary, footer, magic."""
+        end = encoded(records.DataEnd(crc))
         start = position + len(end)
         groups: list[tuple[Opcode, list[bytes]]] = [
             (Opcode.SCHEMA, [*map(encoded, self._schemas)]),
@@ -191,20 +168,20 @@ class Summary:
             (Opcode.METADATA_INDEX, [*map(encoded, self._metadata)]),
         ]
         summary, offsets = bytearray(), bytearray()
-        for opcode, records in groups:
-            data = b"".join(records)
+        for opcode, group in groups:
+            data = b"".join(group)
             if data:
-                offsets += encoded(SummaryOffset(opcode, start + len(summary), len(data)))
+                offsets += encoded(records.SummaryOffset(opcode, start + len(summary), len(data)))
                 summary += data
         offset_start = start + len(summary)
         summary += offsets
-        footer = encoded(Footer(start, offset_start, 0))
+        footer = encoded(records.Footer(start, offset_start, 0))
         summary_crc = zlib.crc32(footer[:-4], zlib.crc32(summary))
-        return b"".join((end, summary, encoded(Footer(start, offset_start, summary_crc)), MAGIC))
+        return b"".join((end, summary, encoded(records.Footer(start, offset_start, summary_crc)), MAGIC))
 
-    def _statistics(self, counts: Mapping[int, int]) -> Statistics:
+    def _statistics(self, counts: Mapping[int, int]) -> records.Statistics:
         start, end = self._times or (0, 0)
-        return Statistics(
+        return records.Statistics(
             attachment_count=len(self._attachments),
             channel_count=len(self._channels),
             channel_message_counts=dict(counts),

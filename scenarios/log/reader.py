@@ -125,13 +125,9 @@ class Log:
         return self._read([topic], chunks)[topic].between(first, last)
 
     def windows(self, topics: Collection[str], duration: float = WINDOW) -> Iterator[dict[str, ChannelData]]:
-        """Go through the file once, a while at a time, with bounded memory.
+        """Go through the file once in bounded memory, topics together, for a duration at a time, to the next chunk [s].
 
         Chunks that do not agree with their checksum are left out and noted in `damage`.
-
-        Args:
-            topics: what to read; every one is in each of the windows.
-            duration: of a window, to the next whole chunk [s].
 
         Raises:
             LogError: there is no such topic, or its messages are not of a fixed layout.

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
-from mcap.records import Attachment, Chunk, Header, MessageIndex, Metadata
+from mcap.records import Chunk, Header, MessageIndex, Metadata
 from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
@@ -38,11 +38,6 @@ class Recovery:
 def recover(source: str | Path, target: str | Path, replace: bool = False) -> Recovery:
     """Write everything sound of a log to a new file, which appears under its name only when it is whole.
 
-    Args:
-        source: a log.
-        target: the file.
-        replace: an existing file.
-
     Raises:
         LogError: the source is no MCAP file, the target is the source, exists or cannot be written.
     """
@@ -73,7 +68,7 @@ class _Rewriter:
         origin = Metadata(RECOVERED, {"from": shown(self._log.path.name), "lost": "; ".join(self._log.losses())})
         self._write(self._summary.add_metadata(origin, self._position))
         for attachment in contents.attachments:
-            self._attach(attachment)
+            self._write(self._summary.add_attachment(attachment, self._position))
         self._define()
         for place, index in chunks:
             chunk = Chunk(
@@ -88,9 +83,6 @@ class _Rewriter:
         self._loose()
         self._write(self._summary.finish(self._position, self._counts, self._crc))
         return sum(self._counts.values())
-
-    def _attach(self, attachment: Attachment) -> None:
-        self._write(self._summary.add_attachment(attachment, self._position))
 
     def _define(self) -> None:
         contents = self._log.contents

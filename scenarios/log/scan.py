@@ -198,11 +198,7 @@ def index_chunk(data: bytes, contents: Contents) -> dict[int, NDArray[np.void]]:
 
 
 def _take_indexes(data: Buffer, position: int, contents: Contents) -> int:
-    """Take the sound message indexes after a chunk in a tight loop, since they are most of a file's records.
-
-    Returns:
-        where the first other record begins.
-    """
+    """Take the sound indexes after a chunk, most of a file's records, in a tight loop; gives where they end."""
     unpack, size = _INDEX_RECORD.unpack_from, len(data) - _INDEX_RECORD.size
     places = contents.chunks[-1].places if contents.chunks else array("Q")
     while position <= size:

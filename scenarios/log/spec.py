@@ -13,12 +13,13 @@ import json
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from math import prod
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from google.protobuf import descriptor_pb2
+from google.protobuf.message import Message
 from mcap.opcode import Opcode
 from numpy.typing import ArrayLike, NDArray
 
@@ -51,11 +52,7 @@ class FieldSpec:
         return prod(self.shape)
 
     def columns(self, joints: Sequence[str] = ()) -> Iterator["Column"]:
-        """Every element as a column of a table.
-
-        Args:
-            joints: names of the robot's joints in order; () when they are not known.
-        """
+        """Every element as a column of a table, called by the robot's joints in order where they are known."""
         units, names = self._element_units(), self._joint_names(joints)
         for place in np.ndindex(self.shape):
             name = f"{self.name}.{names[place[0]]}" if names else "_".join((self.name, *map(str, place)))
@@ -186,6 +183,7 @@ def blank_records(fields: tuple[FieldSpec, ...], channel_id: int, count: int) ->
     return records
 
 
+@lru_cache(maxsize=128)
 def file_descriptor_set(spec: ChannelSpec) -> bytes:
     """Serialized protobuf ``FileDescriptorSet`` of a channel's message, with units and frames as comments."""
     file = descriptor_pb2.FileDescriptorProto(name=f"{PACKAGE}/{spec.message}.proto", package=PACKAGE, syntax="proto3")
@@ -225,14 +223,6 @@ SECONDS, NANOS = (1 << 34) + 0x5EED5, (1 << 29) + 0xF00D
 _SLOT = 0x7E57_AB1E_0000_0000
 _STAMP = struct.Struct("<B5sB5s")
 _SECONDS_TAG, _NANOS_TAG = 0x08, 0x10
-
-
-class Message(Protocol):
-    """What is used of a protobuf message."""
-
-    def SerializeToString(self, *, deterministic: bool = ...) -> bytes:  # noqa: N802  protobuf's name
-        """Encode."""
-        ...
 
 
 def slot(index: int) -> float:

@@ -138,6 +138,12 @@ class RunConstants:
         return {name: json.dumps(value) for name, value in written.items()}
 
     @classmethod
+    @cache
+    def _adapter(cls) -> "TypeAdapter[RunConstants]":
+        """Reads one back; made once, which takes longer than all that it reads."""
+        return TypeAdapter(cls)
+
+    @classmethod
     def from_metadata(cls, records: Mapping[str, Mapping[str, str]], log_name: str) -> "RunConstants":
         """Read back.
 
@@ -150,7 +156,7 @@ class RunConstants:
         """
         try:
             values = {name: json.loads(text) for name, text in records[RECORD].items()}
-            found = TypeAdapter(cls).validate_python(values)
+            found = cls._adapter().validate_python(values)
         except (KeyError, TypeError, ValueError, OverflowError, RecursionError):
             raise LogError(f"{log_name}: does not describe a run; give a log that `surefoot run` has written") from None
         if wrong := found._impossible():
@@ -224,6 +230,12 @@ class Agenda:
         return {name: json.dumps(value) for name, value in asdict(self).items()}
 
     @classmethod
+    @cache
+    def _adapter(cls) -> "TypeAdapter[Agenda]":
+        """Reads one back; made once, which takes longer than all that it reads."""
+        return TypeAdapter(cls)
+
+    @classmethod
     def from_metadata(cls, records: Mapping[str, Mapping[str, str]], log_name: str) -> "Agenda | None":
         """Read back; None where the log has none.
 
@@ -234,7 +246,7 @@ class Agenda:
             return None
         try:
             values = {name: json.loads(text) for name, text in records[AGENDA_RECORD].items()}
-            return TypeAdapter(cls).validate_python(values)
+            return cls._adapter().validate_python(values)
         except (ValueError, RecursionError):
             what = "does not say in words that can be read what was to happen in its run"
             raise LogError(f"{log_name}: {what}; give a log that `surefoot run` has written") from None

@@ -278,7 +278,7 @@ def _controller(walk: Walk, body: Body, posture: Array, parts: Parts) -> WholeBo
         leg_joints=body.leg_joints,
         control_period=1.0 / walk.rates.control,
         parameters=walk.controller,
-        limbs=limb_shapes(robot, body.model),
+        limbs=limb_shapes(robot),
         arm_joints=(shoulders[0], shoulders[1]) if shoulders else None,
         arm_back=robot.roles.arm_back,
         tasks=tuple(_tasks(walk, body, parts)),

@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
-from surefoot.planner.geometry import convex_hull, sole_corners
+from surefoot.planner.geometry import sole_corners
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.plants import CartTable, IdealFeet, Pendulum
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep
+from surefoot.polygon import convex_hull
 from surefoot.scenarios.file.schema import PendulumSettings
 from surefoot.scenarios.judge.body import lost
 from surefoot.scenarios.log import LogWriter

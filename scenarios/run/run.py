@@ -1,12 +1,14 @@
 """Runs a scenario: the log is written while the loop goes on, and the verdict is then computed from the log file."""
 
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController, threadpool_limits
 
 from surefoot.errors import PartError
 from surefoot.guard import said, shown
@@ -173,7 +175,13 @@ def _own_folder(out: Path, walk: Walk) -> Iterator[Path]:
 
 def one_thread() -> threadpool_limits:
     """One thread for linear algebra: matrices of this size lose more in waiting than they gain in sharing."""
-    return threadpool_limits(1)
+    return cast("threadpool_limits", _libraries(len(sys.modules)).limit(limits=1))
+
+
+@lru_cache(maxsize=1)
+def _libraries(_modules: int) -> ThreadpoolController:
+    """The libraries that are loaded, looked for again when modules were imported, with which they come."""
+    return ThreadpoolController()
 
 
 def closed_loop(walk: Walk, writer: LogWriter, parts: "Parts | None" = None) -> ClosedLoop:

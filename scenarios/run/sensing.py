@@ -11,7 +11,7 @@ from surefoot.planner.model.filter import ZMP_ONLY, CentroidalFilter, FilterNois
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import GRAVITY, CentroidalState
 from surefoot.plugins import Registry
-from surefoot.scenarios.file.names import SOURCES
+from surefoot.scenarios.file.registries import SOURCES
 from surefoot.scenarios.file.schema import Sensing
 from surefoot.scenarios.record.walk import PlannerState
 from surefoot.scenarios.setup.walk import Walk

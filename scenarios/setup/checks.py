@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from surefoot.errors import ParameterError, at_least, at_most
-from surefoot.models.facts import RobotFacts
+from surefoot.models.facts import RobotFacts, longest_step
 from surefoot.planner.geometry import seen_from
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.references.com_height import highest_apex
@@ -19,11 +19,12 @@ from surefoot.planner.types import Footstep, Twist
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.group import controller_faults
-from surefoot.scenarios.file.schema import Gait, Sensing
+from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.file.units import meant
+from surefoot.scenarios.setup.criteria import AVAILABLE
 from surefoot.scenarios.setup.events import cut_off, idle_commands, never_act, slight, told_problems
 from surefoot.scenarios.setup.formulation import LONGEST_REACH
-from surefoot.scenarios.setup.gait import commanded, leg_span, longest_step, step_region, twist_of, uncommanded
+from surefoot.scenarios.setup.gait import commanded, step_region, twist_of, uncommanded
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot import Robots, is_known
 from surefoot.scenarios.setup.terrain.ground import uneven_problems
@@ -34,14 +35,6 @@ MOST_SAMPLES = 1_000_000
 
 _PERIOD = 4
 """Footsteps after which a gait on flat ground only repeats itself: the first, one of each foot, the last."""
-
-_SENSED = ("source", "zmp_noise", "com_noise", "force_estimate")
-"""What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
-
-AVAILABLE: dict[Key, tuple[Any, ...]] = {
-    ("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED
-}
-"""Values of the format's keys that this version has; of other keys it has all."""
 
 _PENDULUM_FAULTS = ("planner_freeze", "state_nan")
 
@@ -284,7 +277,7 @@ def _command_problems(walk: Walk) -> list[Problem]:
 def _commanded_step_problems(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:
     """Name velocities whose steps are out of reach with the fastest possible, or the first footstep that is."""
     gait = walk.keys.gait
-    sole, span = (facts.foot_length, facts.foot_width), leg_span(gait.com_height, facts)
+    sole, span = (facts.foot_length, facts.foot_width), facts.leg_span(gait.com_height)
     parameters = replace(walk.formulation.usual, reach_length=LONGEST_REACH * walk.size.length)
     region = step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
     for index, command in enumerate(gait.velocity):
@@ -324,7 +317,8 @@ def _too_fast(gait: Gait, twist: Twist, region: StepRegion) -> str | None:
     limit = fastest(twist, _period(gait), gait.step_width, region)
     if limit == twist:
         return None
-    speeds = ", ".join(f"{name} {_toward_zero(value):g}" for name, value in limit.velocity.items())
+    never_faster = {name: math.trunc(1000.0 * value) / 1000.0 for name, value in limit.velocity.items()}
+    speeds = ", ".join(f"{name} {value:g}" for name, value in never_faster.items())
     return f"the fastest in this direction is {speeds}; or take faster steps"
 
 
@@ -336,8 +330,3 @@ def _period(gait: Gait) -> float:
 def _step_text(stride: Twist) -> str:
     named = zip(stride, ("m ahead", "m to the left", "rad of turn"), strict=False)
     return " and ".join(f"{value:.3g} {unit}" for value, unit in named if value)
-
-
-def _toward_zero(value: float) -> float:
-    """Three decimals, never faster."""
-    return math.trunc(1000.0 * value) / 1000.0

@@ -10,21 +10,23 @@ from typing import Any
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.names import usable
-from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
+from surefoot.scenarios.file.schema import Scenario, Sensing, TerrainSettings, model_of
 from surefoot.scenarios.judge.metric import TRUTH, Metric
 from surefoot.scenarios.judge.metrics import METRICS, known
-from surefoot.scenarios.setup.checks import AVAILABLE
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.terrain import KINDS
+
+_SENSED = ("source", "zmp_noise", "com_noise", "force_estimate")
+"""What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
+
+AVAILABLE: dict[Key, tuple[Any, ...]] = {
+    ("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED
+}
+"""Values of the format's keys that this version has; of other keys it has all."""
 
 
 def criteria_problems(criteria: Mapping[str, Bound], fidelity: str) -> list[Problem]:
-    """List criteria that check nothing, one fault each; names that are no metrics are for others to say.
-
-    Args:
-        criteria: as the user gave them.
-        fidelity: of the run.
-    """
+    """List criteria that check nothing in a fidelity, a fault each; names that are no metrics are for others to say."""
     found = [(name, bound, known(name)) for name, bound in criteria.items()]
     metrics = [metric for _, _, metric in found if metric is not None]
     problems = [
@@ -37,12 +39,7 @@ def criteria_problems(criteria: Mapping[str, Bound], fidelity: str) -> list[Prob
 
 
 def comparable(name: str, metric: Metric[Any]) -> tuple[str, ...]:
-    """Names of the metrics that a metric may be required to equal: of its kind, and one of the two always there.
-
-    Args:
-        name: of the metric, or of a part of it.
-        metric: itself.
-    """
+    """Names of metrics that a metric, or its part, may be required to equal: of its kind, one of both always there."""
     if name != metric.name or metric.size > 1:
         return ()
     others = ((other, known(other)) for other in METRICS if other != name)
@@ -139,13 +136,16 @@ def published() -> dict[str, Any]:
     schema = {"$schema": DIALECT, **Scenario.model_json_schema(), "description": DESCRIPTION}
     keys = schema["properties"]
     files = {"type": "string", "pattern": r"\.ya?ml$"}
-    keys["robot"] = {**keys["robot"], "anyOf": [{"enum": list(RegisteredRobots().names())}, files]}
+    keys["robot"] = {**keys["robot"], "anyOf": [{"enum": list(Robots().names())}, files]}
     keys["robot"].pop("type")
     for key, values in AVAILABLE.items():
         _narrow(schema, key, list(values))
     ground = schema["$defs"]["TerrainSettings"]
     for kind in usable(KINDS):
-        own = model_of(TerrainSettings, {"kind": kind}).model_json_schema()
+        model = model_of(TerrainSettings, {"kind": kind})
+        if model is TerrainSettings:
+            continue
+        own = model.model_json_schema()
         ground["properties"] = own["properties"] | ground["properties"]
         schema["$defs"] = own.get("$defs", {}) | schema["$defs"]
     bounds = {name: _criterion(name, metric) for metric in filter(None, map(known, METRICS)) for name in metric.bounded}

@@ -283,10 +283,7 @@ def _told_problems(walk: Walk, key: Key, command: CommandSettings) -> Iterator[P
 
 
 def _unheard(walk: Walk, key: Key) -> Iterator[Problem]:
-    """List what of a promised command no plan hears of: it comes after the last one, or is superseded before the next.
-
-    A command is taken by the first plan at or after its time; of two that one plan takes the later one holds.
-    """
+    """List what of a promised command no plan hears of: the first at its time or later takes it, of two the last."""
     told, index = walk.keys.commands, int(key[1])
     command, name = told[index], f"commands.{key[1]}"
     rate, end = walk.keys.rates.planner, walk.keys.duration

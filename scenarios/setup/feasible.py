@@ -5,13 +5,17 @@ What a refusal proposes has been tried: the scenario with it goes through every 
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import yaml
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.models.types import same_robot
+from surefoot.planner.laws.profiles import PROFILES
+from surefoot.plugins import OWN_PACKAGE
 from surefoot.scenarios.errors import Key, ScenarioError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.keys import scenario_key
@@ -71,14 +75,9 @@ def _value(key: str, value: Any) -> str:
 
 
 def proposed(walk: Walk, body: Body, key: Key) -> Proposal | None:
-    """What to set over a walk that a robot cannot do, of which it can do the result; None if nothing was found.
+    """What to set over a walk, refused at a key, of which its robot can do the result; None if nothing was found.
 
     Whatever the next refusal is about gives way next.
-
-    Args:
-        walk: that is refused.
-        body: its robot.
-        key: at which it is.
     """
     from surefoot.scenarios.setup.load import read_scenario
 
@@ -100,12 +99,42 @@ def proposed(walk: Walk, body: Body, key: Key) -> Proposal | None:
     return None
 
 
-def _fit(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia]":
-    """See `made_ready`; says what is wrong and not what would be right.
+class _Likeness:
+    """A walk of a body, equal to those that differ in nothing on which stances and first steps depend.
 
-    Raises:
-        ParameterError: the robot cannot do the walk.
+    Of what other packages bring nobody knows what it depends on.
     """
+
+    _ASIDE: ClassVar = {"name", "seed", "pushes", "faults", "criteria"}
+
+    def __init__(self, walk: Walk, body: Body) -> None:
+        self.walk, self.body = walk, body
+        self._keys = walk.keys.model_dump_json(exclude=self._ASIDE)
+        self._rest = walk.size, walk.wider, walk.foot_length
+        self._own = KINDS.package(walk.keys.terrain.kind) == OWN_PACKAGE and PROFILES.owns(walk.formulation.profile)
+
+    def __hash__(self) -> int:
+        return hash(self._keys)
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, _Likeness)
+            and (self._own or self is other)
+            and (self._keys, self._rest) == (other._keys, other._rest)
+            and self.walk.formulation.profile is other.walk.formulation.profile
+            and same_robot(self.body.robot, other.body.robot)
+        )
+
+
+def _fit(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia]":
+    """See `made_ready`; its ParameterError says what is wrong and not what would be right."""
+    posture, leg = _fitting(_Likeness(walk, body))
+    return posture.copy(), leg
+
+
+@lru_cache(maxsize=32)
+def _fitting(alike: _Likeness) -> "tuple[NDArray[np.float64], LegInertia]":
+    walk, body = alike.walk, alike.body
     posture = start_posture(walk, body)
     check_stances(walk, body, posture)
     leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)
@@ -116,15 +145,7 @@ def _fit(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia]":
 
 @dataclass(frozen=True, slots=True)
 class _Calm:
-    """How far a walk gives way.
-
-    Attributes:
-        steps: share of its steps [-].
-        ground: share of what makes its ground uneven [-].
-        time: of a single support, over that of the walk [-].
-        posture: 0 for its own, then in turn the robot's usual one, a lower and a higher one.
-        refused: how often something else than speed, ground or start was in the way.
-    """
+    """Shares of steps, ground and time to give way by, a posture to take, how often something else was in the way."""
 
     steps: float = 1.0
     ground: float = 1.0

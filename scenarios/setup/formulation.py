@@ -23,7 +23,7 @@ from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.group import recovery_parameters
 from surefoot.scenarios.file.schema import PlannerSettings
-from surefoot.scenarios.setup.gait import leg_span, longest_landing, step_region
+from surefoot.scenarios.setup.gait import longest_landing, step_region
 from surefoot.scenarios.setup.parts import profile_guard
 from surefoot.scenarios.setup.terrain.ground import Ground
 from surefoot.similarity import Similarity
@@ -160,22 +160,15 @@ class Formulation:
 
 def region_of(parameters: PlannerParameters, facts: RobotFacts, com_height: float) -> StepRegion:
     """Where a step that is commanded while it walks may land: within reach of planner and, with some left, legs."""
-    span, sole = LEG_SHARE * leg_span(com_height, facts), (facts.foot_length, facts.foot_width)
+    span, sole = LEG_SHARE * facts.leg_span(com_height), (facts.foot_length, facts.foot_width)
     return step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
 
 
 def leg_reach(parameters: PlannerParameters, facts: RobotFacts, com_height: float, standing_height: float) -> LegReach:
-    """What the legs can do to catch the body.
-
-    Args:
-        parameters: of the planner.
-        facts: of the robot.
-        com_height: of the gait [m].
-        standing_height: CoM over the soles at which the walk begins and ends [m].
-    """
+    """What the legs can do to catch a body with its CoM at a height in the gait, and at one in standing [m]."""
     recovery = parameters.recovery
     return LegReach(
-        radius=0.5 * LEG_SHARE * leg_span(com_height, facts),
+        radius=0.5 * LEG_SHARE * facts.leg_span(com_height),
         hip_width=facts.hip_width,
         near=parameters.reach_width[0],
         across=recovery.across,
@@ -188,13 +181,7 @@ def leg_reach(parameters: PlannerParameters, facts: RobotFacts, com_height: floa
 
 
 def cop_room(leg: LegInertia, facts: RobotFacts, mass: float) -> tuple[float, float]:
-    """How far from a sole's centre the ankle's torques bear the robot, ahead and behind, and to both sides [m].
-
-    Args:
-        leg: of the robot.
-        facts: of the robot.
-        mass: that it bears [kg].
-    """
+    """How far from a sole's centre ankles bear a mass [kg], ahead and behind, and to both sides [m]."""
     if leg.chain is None:
         return math.inf, math.inf
     levers = [ANKLE_SHARE * torque / (GRAVITY * mass) for torque in facts.ankle_torque]

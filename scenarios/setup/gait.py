@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.errors import ParameterError
-from surefoot.models.facts import RobotFacts
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.commands import Command, footstep_bouts, leading_foot, velocity_bouts, walk_of
@@ -15,14 +14,7 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.source import CommandSource, steps_ordered
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PhaseKind, Twist
-from surefoot.scenarios.file.schema import (
-    CommandSettings,
-    FootstepSettings,
-    Gait,
-    PushSettings,
-    Start,
-    VelocitySettings,
-)
+from surefoot.scenarios.file import schema
 
 EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
@@ -37,17 +29,17 @@ FINAL_STAND = 2.5
 """Standing after the last double support that ends a run whose duration is not given, of the reference robot [s]."""
 
 
-def commanded(keys: Gait) -> bool:
+def commanded(keys: schema.Gait) -> bool:
     """Whether the gait is given by a velocity or by footsteps."""
     return bool(keys.velocity or keys.footsteps)
 
 
-def uncommanded(keys: Gait) -> Gait:
+def uncommanded(keys: schema.Gait) -> schema.Gait:
     """The same gait without velocity and footsteps."""
     return keys.model_copy(update={"velocity": (), "footsteps": ()})
 
 
-def gait_of(keys: Gait) -> GaitParameters:
+def gait_of(keys: schema.Gait) -> GaitParameters:
     """The gait in the planner's terms; the widths of its strides are not yet fitted to where feet may land.
 
     Raises:
@@ -83,22 +75,22 @@ def longest_landing(gait: GaitParameters) -> float:
     return max((abs(float(place.position[0])) for place in places), default=0.0)
 
 
-def twist_of(command: VelocitySettings) -> Twist:
+def twist_of(command: schema.VelocitySettings) -> Twist:
     """The velocity that a command asks for."""
     return Twist(command.v_x, command.v_y, command.yaw_rate)
 
 
-def velocities_of(commands: Sequence[VelocitySettings]) -> list[Command]:
+def velocities_of(commands: Sequence[schema.VelocitySettings]) -> list[Command]:
     """Velocity commands in the planner's terms."""
     return [Command(twist_of(command), time=command.time) for command in commands]
 
 
-def footsteps_of(footsteps: Sequence[FootstepSettings]) -> list[Footstep]:
+def footsteps_of(footsteps: Sequence[schema.FootstepSettings]) -> list[Footstep]:
     """Footsteps in the planner's terms, in the frame between the start feet."""
     return [Footstep(Foot[step.foot.upper()], np.array([step.x, step.y, 0.0]), step.yaw) for step in footsteps]
 
 
-def command_of(settings: CommandSettings) -> Command:
+def command_of(settings: schema.CommandSettings) -> Command:
     """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
     velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
     twist = None if velocity == (None, None, None) else Twist(*(value or 0.0 for value in velocity))
@@ -108,14 +100,14 @@ def command_of(settings: CommandSettings) -> Command:
     return Command(twist, places, *gait, time=settings.time)
 
 
-def waypoints_of(keys: Gait, start: Start) -> tuple[Twist, ...]:
+def waypoints_of(keys: schema.Gait, start: schema.Start) -> tuple[Twist, ...]:
     """The places of `gait.waypoints` in the world frame."""
     origin, rotation = np.array([start.x, start.y]), frame_rotation(start.yaw)
     places = ((origin + rotation @ (to.x, to.y), to.yaw + start.yaw) for to in keys.waypoints)
     return tuple(Twist(float(place[0]), float(place[1]), heading) for place, heading in places)
 
 
-def told_until(gait: GaitParameters, command: CommandSettings) -> float:
+def told_until(gait: GaitParameters, command: schema.CommandSettings) -> float:
     """Time at which the robot stands after a command that lets it stop, or a little later [s]."""
     return command.time + _STOPPING * gait.period
 
@@ -141,38 +133,7 @@ def step_region(
     return StepRegion(parameters.reach_length, width, sole, gap, leg_span=leg_span, hip_width=hip_width)
 
 
-def leg_span(com_height: float, facts: RobotFacts) -> float:
-    """Largest distance between two soles with the hips over their middle, less the hip width sideways [m].
-
-    Args:
-        com_height: of the gait [m].
-        facts: of the robot.
-    """
-    span = longest_step(facts.leg_length, com_height - facts.com_above_hip, facts.hip_width, facts.hip_width)
-    return 0.0 if math.isnan(span) else span
-
-
-def longest_step(leg_length: float, hip_height: float, hip_width: float, step_width: float) -> float:
-    """Longest step with flat soles, the CoM halfway between the feet at touchdown.
-
-    Each straight leg then spans half the step forward, half the difference of foot and hip spacing sideways and the hip
-    height upward.
-
-    Args:
-        leg_length: hip centre to sole with the knee straight [m].
-        hip_height: hip centre above the soles at touchdown [m].
-        hip_width: distance between the hip centres [m].
-        step_width: lateral distance between the soles' centres [m].
-
-    Returns:
-        forward distance between the soles' centres [m]; NaN when the hips are out of reach of feet side by side.
-    """
-    sideways = (step_width - hip_width) / 2
-    square = leg_length**2 - hip_height**2 - sideways**2
-    return 2 * math.sqrt(square) if square >= 0 else math.nan
-
-
-def push_time(gait: GaitParameters, push: PushSettings) -> float:
+def push_time(gait: GaitParameters, push: schema.PushSettings) -> float:
     """Begin [s] of a push, given directly or by step, phase and fraction of that phase.
 
     Raises:
@@ -203,7 +164,7 @@ class PushPoint:
     promised: bool = True
 
     @classmethod
-    def of(cls, push: PushSettings) -> "PushPoint | None":
+    def of(cls, push: schema.PushSettings) -> "PushPoint | None":
         """The point of a push; None of one that begins at a time."""
         if push.step is None or push.phase is None:
             return None
@@ -220,7 +181,7 @@ class PushPoint:
         return f"fraction {self.fraction:g} of the {self.kind.name.lower()} support of step {self.step}"
 
 
-def push_force(push: PushSettings, mass: float) -> Array:
+def push_force(push: schema.PushSettings, mass: float) -> Array:
     """Force of a push, given directly or by its impulse per mass [kg], shape (3,) [N]."""
     if push.impulse is None:
         return np.array(push.force or np.zeros(3))

@@ -13,6 +13,7 @@ import yaml
 from pydantic import ValidationError
 
 from surefoot.errors import ParameterError, PartError
+from surefoot.models.names import is_file
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError
 from surefoot.scenarios.file.criteria import Bound
@@ -23,18 +24,10 @@ from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.encoding import MAGIC
-from surefoot.scenarios.record.provenance import (
-    AFTER_FALL,
-    COMMAND_RECORD,
-    END_RECORD,
-    PARTS_RECORD,
-    PUSH_RECORD,
-    SCENARIO_FILE,
-    STOPPED,
-)
+from surefoot.scenarios.record import provenance
 from surefoot.scenarios.setup.checks import check
 from surefoot.scenarios.setup.criteria import criteria_problems
-from surefoot.scenarios.setup.robot import RegisteredRobots, Robots
+from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.sized import say_for, walk_of
 from surefoot.scenarios.setup.terrain import kind_of
 
@@ -70,17 +63,20 @@ def attached_scenario(path: str) -> tuple[str, str]:
     """
     try:
         log = read(path)
-        text = _as_run(decoded(BytesIO(log.attachments[SCENARIO_FILE]), f"{path}/{SCENARIO_FILE}"), log.metadata)
+        text = _as_run(
+            decoded(BytesIO(log.attachments[provenance.SCENARIO_FILE]), f"{path}/{provenance.SCENARIO_FILE}"),
+            log.metadata,
+        )
     except LogError as error:
         raise ScenarioError([str(error)]) from None
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError):
-        what = f"{path}: carries no readable {SCENARIO_FILE}, so it cannot be run again"
+        what = f"{path}: carries no readable {provenance.SCENARIO_FILE}, so it cannot be run again"
         raise ScenarioError([f"{what}; give a log that `surefoot run` has written"]) from None
-    if PARTS_RECORD in log.metadata:
-        parts = ", ".join(f"{name} {part}" for name, part in log.metadata[PARTS_RECORD].items())
+    if provenance.PARTS_RECORD in log.metadata:
+        parts = ", ".join(f"{name} {part}" for name, part in log.metadata[provenance.PARTS_RECORD].items())
         what = f"{path}: was made by a program with parts of its own ({parts}), which no log can carry"
         raise ScenarioError([f"{what}; run that program again"])
-    return text, f"{path}/{SCENARIO_FILE}"
+    return text, f"{path}/{provenance.SCENARIO_FILE}"
 
 
 def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
@@ -94,19 +90,19 @@ def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
             for name, record in metadata.items()
             if name.startswith(kind)
         ]
-        for keys, kind in (("pushes", PUSH_RECORD), ("commands", COMMAND_RECORD))
+        for keys, kind in (("pushes", provenance.PUSH_RECORD), ("commands", provenance.COMMAND_RECORD))
     }
-    end = metadata.get(END_RECORD, {})
-    if not any(given.values()) and end.get("reason") != STOPPED:
+    end = metadata.get(provenance.END_RECORD, {})
+    if not any(given.values()) and end.get("reason") != provenance.STOPPED:
         return text
-    keys = parse(text, SCENARIO_FILE).value
+    keys = parse(text, provenance.SCENARIO_FILE).value
     keys |= {name: [*keys.get(name, []), *values] for name, values in given.items() if values}
     if end:
-        keys["duration"] = float(end["time"]) + (AFTER_FALL if end["kind"] == "fall" else 0.0)
+        keys["duration"] = float(end["time"]) + (provenance.AFTER_FALL if end["kind"] == "fall" else 0.0)
         for name in ("pushes", "commands", "faults"):
             # What was to come later has not acted.
             keys[name] = [entry for entry in keys.get(name, []) if (entry.get("time") or 0.0) < keys["duration"]]
-        if end.get("reason") == STOPPED or end["kind"] == "fall":
+        if end.get("reason") == provenance.STOPPED or end["kind"] == "fall":
             for name in ("pushes", "commands"):
                 keys[name] = [{**entry, "live": True} for entry in keys[name]]
             keys["faults"] = [_until(keys["duration"], entry) for entry in keys["faults"]]
@@ -122,10 +118,7 @@ def _until(end: float, fault: dict[str, Any]) -> dict[str, Any]:
 
 
 def written(reference: str) -> Written:
-    """The text of a scenario.
-
-    Args:
-        reference: as of `load`.
+    """The text of a scenario, by a reference as of `load`.
 
     Raises:
         ScenarioError: it cannot be found or read.
@@ -171,14 +164,8 @@ def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None
 
 
 def locate(reference: str, overrides: Overrides, refusal: SetupError) -> ScenarioError:
-    """Say where the cause of a refusal stands: at the key that it names, else at the scenario's begin.
-
-    Args:
-        reference: as given to `load`, as are the overrides.
-        overrides: ``key=value``.
-        refusal: of a part of the stack.
-    """
-    source = _source(written(reference), overrides, RegisteredRobots())
+    """Say where the cause of a refusal stands: at the key that it names, else at the begin; arguments of `load`."""
+    source = _source(written(reference), overrides, Robots())
     return ScenarioError([source.describe(refusal.problem)])
 
 
@@ -186,7 +173,7 @@ def read_scenario(
     text: str, place: str, stem: str, overrides: Overrides = (), robots: Robots | None = None
 ) -> Scenario:
     """Check a scenario as it is `Written`; other arguments and errors as of `load`."""
-    robots = robots or RegisteredRobots()
+    robots = robots or Robots()
     source = _source(Written(text, place, stem), overrides, robots)
     scenario, problems = _validated(source.value)
     problems = [*source.problems, *problems]
@@ -208,20 +195,13 @@ def key_problems(written: Written, overrides: Overrides) -> list[Problem]:
     Raises:
         ScenarioError: it is no scenario, or an override leads nowhere.
     """
-    return _validated(_source(written, overrides, RegisteredRobots()).value)[1]
+    return _validated(_source(written, overrides, Robots()).value)[1]
 
 
 def for_robot(
     written: Written, values: Mapping[str, Any], origin: str, robot: str | None, robots: Robots
 ) -> dict[str, Any]:
-    """What values that are set over a scenario are for another robot, without those that it has of its own.
-
-    Args:
-        written: the scenario.
-        values: by dotted key.
-        origin: the robot that they are written for.
-        robot: the one that walks; None for the scenario's own.
-        robots: that may be named.
+    """What values by key, for an origin, are for a robot, or the scenario's own; without those that it has itself.
 
     Raises:
         ScenarioError: the scenario cannot be read, or a key leads nowhere.
@@ -240,11 +220,7 @@ def for_robot(
 
 
 def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
-    """The values of a scenario's text, as they are for its robot, with what is set over them.
-
-    Raises:
-        ScenarioError: it is no group of keys, or an override leads nowhere.
-    """
+    """The values of a scenario's text, as they are for its robot, with what is set over them; or a ScenarioError."""
     name = written.place
     source = parse(written.text, name)
     if source.value is None:
@@ -269,7 +245,7 @@ def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     of, walk = (_sound({**one, "robot": name}, robots) for one, name in zip((before, source.value), names, strict=True))
     if of is None or walk is None:
         return
-    from surefoot.scenarios.setup.posture import bent_alike
+    from surefoot.scenarios.setup.stances import bent_alike
 
     with suppress(ParameterError):
         source.value["gait"]["com_height"] = bent_alike(of, walk)
@@ -305,8 +281,6 @@ def _told(source: Source, problems: list[Problem]) -> list[str]:
 
 def _place_robot(source: Source, folder: Path) -> None:
     """Name a robot file by its full path, so that the scenario means the same wherever it is read again."""
-    from surefoot.models.registry import is_file
-
     robot = source.value.get("robot")
     if isinstance(robot, str) and is_file(robot):
         source.value["robot"] = os.path.normpath(folder.absolute() / robot)

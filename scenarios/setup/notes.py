@@ -1,9 +1,9 @@
 """What to know of a scenario that passes the checks: keys that have no effect in it, and times that look mistaken."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from surefoot.plugins import PluginError
-from surefoot.scenarios.file.schema import Gait, PendulumSettings, Rates, TerrainSettings
+from surefoot.scenarios.file.schema import PendulumSettings, Rates, Scenario, TerrainSettings
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.record.provenance import Agenda
 from surefoot.scenarios.setup.events import events
@@ -16,12 +16,7 @@ _PLANT_READS = {"pendulum": ("feedback",), "cart_table": ()}
 
 
 def notes(walk: Walk, driven: bool = False) -> tuple[str, ...]:
-    """List them, one sentence each.
-
-    Args:
-        walk: the scenario.
-        driven: whether its robot was told by hand how to walk.
-    """
+    """List them, one sentence each; those of a robot that was told by hand how to walk if it was ``driven``."""
     still = () if driven or walk.keys.gait.steps or commanded(walk.keys.gait) or walk.told else _without_steps(walk)
     return (*_unlikely(walk), *_without_effect(walk), *_without_occasion(walk), *still, *_cut_short(walk))
 
@@ -58,15 +53,19 @@ def _without_effect(walk: Walk) -> Iterator[str]:
     walker = walk.walker
     yield from () if walker.has_body else _not_felt(walk)
     for group, name in walker.unfelt:
-        settings = getattr(keys, group)
-        if getattr(settings, name) != default_of(type(settings), name, walk.size):
-            yield f"{group}.{name} has no effect on a {walker.thing}"
+        yield from (f"{key} has no effect on a {walker.thing}" for key in _given(walk, group, (name,)))
     if walker.has_body:
         return
     if keys.wbc is not None:
         yield "wbc has no effect on a pendulum"
     if keys.rates.physics not in (Rates().physics, clock(Rates(), walk.size.time).physics):
         yield "rates.physics has no effect on a pendulum"
+
+
+def _given(walk: Walk, group: str, names: Iterable[str]) -> Iterator[str]:
+    """Those of a group's keys, dotted, that are not the defaults of a robot of this size."""
+    settings, model = getattr(walk.keys, group), type(Scenario.model_fields[group].default)
+    return (f"{group}.{name}" for name in names if getattr(settings, name) != default_of(model, name, walk.size))
 
 
 def _no_equal_steps(walk: Walk) -> Iterator[str]:
@@ -78,18 +77,15 @@ def _no_equal_steps(walk: Walk) -> Iterator[str]:
         instead, names = "commands and gait.steps 0", EQUAL_STEPS[1:]
     # Of a walk to a place it is the longest stride.
     bound = gait.waypoints or any(command.place is not None for command in commands)
-    for name in names if instead else ():
-        if not (bound and name == "step_length") and getattr(gait, name) != default_of(Gait, name, walk.size):
-            yield f"gait.{name} has no effect beside {instead}"
+    taken = [name for name in names if instead and not (bound and name == "step_length")]
+    yield from (f"{key} has no effect beside {instead}" for key in _given(walk, "gait", taken))
 
 
 def _not_felt(walk: Walk) -> Iterator[str]:
     """Tell what a pendulum, which is one body, and its plant make nothing of."""
     pendulum, load = walk.keys.pendulum, walk.keys.errors.payload
-    for name in PendulumSettings.model_fields:
-        read = name == "plant" or name in _PLANT_READS[pendulum.plant]
-        if not read and getattr(pendulum, name) != default_of(PendulumSettings, name, walk.size):
-            yield f"pendulum.{name} has no effect on pendulum.plant {pendulum.plant}"
+    unread = [name for name in PendulumSettings.model_fields if name not in ("plant", *_PLANT_READS[pendulum.plant])]
+    yield from (f"{key} has no effect on pendulum.plant {pendulum.plant}" for key in _given(walk, "pendulum", unread))
     bodies = {f"pushes.{index}.body": push.body for index, push in enumerate(walk.keys.pushes)}
     bodies["errors.payload.body"] = None if load is None else load.body
     yield from (f"{name} has no effect on a pendulum" for name, body in bodies.items() if body is not None)
@@ -104,10 +100,8 @@ _TIMES = ("single_support", "double_support", "initial_stand")
 
 def _without_steps(walk: Walk) -> Iterator[str]:
     """Tell what a robot that takes no step has no use for."""
-    keys = walk.keys
-    for name in (*_STEPPING, *(() if keys.duration is None else _TIMES)):
-        if getattr(keys.gait, name) != default_of(Gait, name, walk.size):
-            yield f"gait.{name} has no effect on a robot that takes no step"
+    names = (*_STEPPING, *(() if walk.keys.duration is None else _TIMES))
+    yield from (f"{key} has no effect on a robot that takes no step" for key in _given(walk, "gait", names))
 
 
 def _without_occasion(walk: Walk) -> Iterator[str]:
@@ -128,10 +122,8 @@ def _unshaped(walk: Walk) -> Iterator[str]:
         yield from walk.ground.kind.notes(walk.ground)
     except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
         return
-    for name in TerrainSettings.model_fields:
-        elsewhere = name not in shaping
-        if elsewhere and getattr(terrain, name) != default_of(TerrainSettings, name, walk.size):
-            yield f"terrain.{name} has no effect on terrain.kind {terrain.kind}"
+    elsewhere = [name for name in TerrainSettings.model_fields if name not in shaping]
+    yield from (f"{key} has no effect on terrain.kind {terrain.kind}" for key in _given(walk, "terrain", elsewhere))
 
 
 def _cut_short(walk: Walk) -> Iterator[str]:

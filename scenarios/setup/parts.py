@@ -21,12 +21,7 @@ Shape = tuple[int, ...]
 
 
 def profile_guard(profile: Profile, given: bool) -> Guard:
-    """What stands around the calls of what a profile brings.
-
-    Args:
-        profile: of the planner.
-        given: whether a program has handed it over, in place of a name.
-    """
+    """What stands around the calls of what a profile brings, which a program may have given in place of a name."""
     if PROFILES.owns(profile) or not given:
         return PROFILES.guard(profile.name)
     return Guard(f"profile '{profile.name}' of this program")

@@ -11,6 +11,7 @@ from surefoot.models.facts import ankle_pitch, pitch_joints, shank_outline, yaw_
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
+from surefoot.polygon import convex_hull
 from surefoot.scenarios.setup.walk import Walk
 
 if TYPE_CHECKING:
@@ -58,12 +59,7 @@ class Rehearsed:
 
 
 def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
-    """Refuse a walk whose first steps the legs cannot make.
-
-    Args:
-        walk: what is to run.
-        feet: where the feet stand at the start.
-        leg: the legs.
+    """Refuse a walk whose first steps the legs cannot make from where the feet stand at the start.
 
     Raises:
         ParameterError: a joint would have to be faster than it can, or go farther, or a shank would meet an edge.
@@ -195,14 +191,12 @@ def _check_ankles(robot: "RobotDescription", angles: Array, way: Rehearsed) -> N
 
 
 def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]) -> None:
-    from scipy.spatial import ConvexHull
-
     _, knees, ankles = joints
     for foot in Foot:
         outline = shank_outline(walk.robot, foot)
         if len(outline) < 3:
             continue
-        depth, at = _overlap(walk, way, foot, outline[ConvexHull(outline).vertices], knees[foot], ankles[foot])
+        depth, at = _overlap(walk, way, foot, convex_hull(outline), knees[foot], ankles[foot])
         if depth > -_CLEAR * walk.size.length:
             near = f"{depth:.3f} m into" if depth > 0.0 else f"within {-depth:.3f} m of"
             raise ParameterError(
@@ -214,10 +208,14 @@ def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]
 
 
 def _overlap(walk: Walk, way: Rehearsed, foot: int, outline: Array, knees: Array, ankles: Array) -> tuple[float, int]:
-    """How deep the shank of a standing foot is in an edge ahead at worst, negative outside, and when [m, ticks]."""
-    from scipy.spatial import ConvexHull
+    """How deep the shank of a standing foot is in an edge ahead at worst, negative outside, and when [m, ticks].
 
-    hull, worst, when, known = ConvexHull(outline), -math.inf, 0, (math.nan, math.nan)
+    The outline is convex and anticlockwise.
+    """
+    sides = np.roll(outline, -1, axis=0) - outline
+    outward = np.column_stack((sides[:, 1], -sides[:, 0])) / np.linalg.norm(sides, axis=1)[:, None]
+    room = np.einsum("ij,ij->i", outward, outline)
+    worst, when, known = -math.inf, 0, (math.nan, math.nan)
     edges = np.zeros((0, 2))
     for k in np.flatnonzero(way.standing[foot]):
         sole, heading = way.soles[foot, k], np.array([math.cos(way.heading[foot, k]), math.sin(way.heading[foot, k])])
@@ -230,7 +228,7 @@ def _overlap(walk: Walk, way: Rehearsed, foot: int, outline: Array, knees: Array
         ankle = np.array([(ankles[k] - sole)[:2] @ heading, ankles[k, 2] - sole[2]])
         R = np.array([[up[1], up[0]], [-up[0], up[1]]])  # columns: ahead, along the shank
         local = (edges - ankle) @ R
-        inside = -(hull.equations[:, :2] @ local.T + hull.equations[:, 2:]).max(axis=0)
+        inside = (room[:, None] - outward @ local.T).min(axis=0)
         if inside.max() > worst:
             worst, when = float(inside.max()), int(k)
     return worst, when

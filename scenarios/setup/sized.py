@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeVar
 
 from pydantic import BaseModel
 from pydantic_core import PydanticCustomError
@@ -22,13 +22,13 @@ from surefoot.planner.parameters import RecoveryParameters
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.group import groups_in
 from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario, model_of
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
-from surefoot.scenarios.file.units import Unit, unit_of
+from surefoot.scenarios.file.units import Unit, is_number, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
-from surefoot.scenarios.setup.posture import POSTURE, Rule, nearer_landings, rules
-from surefoot.scenarios.setup.robot import Robots, is_known
+from surefoot.scenarios.setup.robot import POSTURE, Robots, Rule, is_known, nearer_landings, rules
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
@@ -128,16 +128,7 @@ def _soles(values: Any) -> RobotSettings:
 
 @dataclass(frozen=True, slots=True)
 class _Translation:
-    """From a robot to another one.
-
-    Attributes:
-        source: the file.
-        origin: name of the robot that it is written for.
-        before: facts of that one, with the soles that the file gives it.
-        after: of the one that it is run with.
-        effort: how many times the share of its motors' torque that one takes to stand on one foot.
-        rules: of the keys that follow from more than its size.
-    """
+    """From a robot, with the soles that its file gives it, to another; the rules are of keys beyond what size says."""
 
     source: Source
     origin: str
@@ -218,13 +209,13 @@ class _Translation:
         if metric.name != _TORQUE:
             return _times(limit, _against(self.after.size, self.before.size, metric.unit))
         scaled = _times(limit, self.effort)
-        return max(limit, min(scaled, 1.0 - _RESERVE)) if _is_number(limit) else limit
+        return max(limit, min(scaled, 1.0 - _RESERVE)) if is_number(limit) else limit
 
     def _number(self, value: Any, unit: str, key: Key) -> Any:
         """The value for the other robot."""
         with suppress(PydanticCustomError):
             value = Unit(unit).number(value)
-        rule = self.rules.get(key) if _is_number(value) else None
+        rule = self.rules.get(key) if is_number(value) else None
         if rule is not None:
             return rule(value, self.before, self.after)
         return _times(value, _against(self.after.size, self.before.size, unit))
@@ -316,19 +307,8 @@ def _against(after: Similarity, before: Similarity, unit: str) -> float:
 def _entries(model: type[BaseModel]) -> Iterator[tuple[str, str, type[BaseModel] | None]]:
     """Keys of a group with their units and, where they hold groups, the type of these."""
     for name, field in model.model_fields.items():
-        inner = None if name == "criteria" else next(_groups(field.annotation), None)
+        inner = None if name == "criteria" else next(groups_in(field.annotation), None)
         yield name, unit_of(field.annotation, field.metadata), inner
-
-
-def _groups(annotation: Any) -> Iterator[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _groups(part)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _times(value: Any, factor: float | list[float]) -> Any:
@@ -338,5 +318,5 @@ def _times(value: Any, factor: float | list[float]) -> Any:
         return type(value)(_times(part, one) for part, one in zip(value, factors, strict=False))
     if isinstance(factor, list):
         return value
-    plain = _is_number(value) and math.isfinite(value)
+    plain = is_number(value) and math.isfinite(value)
     return value * factor if plain and factor != 1.0 else value

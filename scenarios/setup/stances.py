@@ -23,8 +23,9 @@ from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.heel_off import FootRoll, roll_span, rolls
 from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
-from surefoot.scenarios.setup.stance import Body, start_posture
-from surefoot.scenarios.setup.walk import Walk
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.setup.stance import Body, body_of, start_posture
+from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.wbc.ik import PostureIk, PostureResult, PostureTarget
 from surefoot.wbc.statics import bearing_torque
 
@@ -74,12 +75,7 @@ class Stance:
 
 
 def check_stances(walk: Walk, body: Body, q: Array) -> None:
-    """Refuse a walk some stance of which the joints do not reach or hold.
-
-    Args:
-        walk: the walk.
-        body: that shall walk it.
-        q: where it stands at the start, shape (nq,).
+    """Refuse a walk some stance of which a body's joints do not reach or hold; ``q`` is its start, shape (nq,).
 
     Raises:
         ParameterError: says at which footstep, and which joint is at the end of its range or would need more than its
@@ -108,6 +104,53 @@ def least_bend(walk: Walk, body: Body) -> float | None:
     straight = body.robot.straight_joint_positions[knees]
     taken = [_taken(ik, walk, stance, q, _EXACTLY).q for stance in _stances(walk)]
     return min((float(np.abs(one[7:][knees] - straight).min()) for one in taken), default=None)
+
+
+_WAYS = (-0.06, 0.03)
+"""How far lower and higher it is sought, of the leg's length [-]."""
+
+_DECIMALS = 4
+"""Of a height [m]."""
+
+
+def bent_alike(before: Scenario, after: Scenario) -> float:
+    """CoM height with which the straightest knee is bent as that of another robot on its walk [m].
+
+    Equal legs alone do not say it. Where the CoM is beside the hips, how much of the mass is in the legs, how long the
+    soles are and how far apart the hips, all of that moves the hips over the feet. So both robots stand as they would.
+
+    Args:
+        before: the walk of the other one.
+        after: the same walk of the one in question, at about that height.
+
+    Returns:
+        The height; as it is where no stance is known beforehand, or none near it makes them alike.
+
+    Raises:
+        ParameterError: the other one cannot stand so.
+    """
+    from scipy.optimize import brentq
+
+    of, walk = resolve(before), resolve(after)
+    body, leg, height = body_of(walk.robot), walk.robot.leg_length, walk.gait.com_height
+
+    def bend(tried: float) -> float:
+        """With the CoM at a height; none where the legs do not reach."""
+        gait = after.gait.model_copy(update={"com_height": tried})
+        try:
+            return least_bend(replace(walk, keys=after.model_copy(update={"gait": gait})), body) or 0.0
+        except ParameterError:
+            return 0.0
+
+    wanted = least_bend(of, body_of(of.robot))
+    if wanted is None:
+        return height
+    low, high = (height + leg * way for way in _WAYS)
+    try:
+        found = brentq(lambda tried: bend(tried) - wanted, low, high, xtol=0.5 * 10.0**-_DECIMALS)
+    except ValueError:  # nowhere between them
+        return height
+    return round(float(found), _DECIMALS)
 
 
 def _taken(ik: PostureIk, walk: Walk, stance: Stance, q: Array, tolerance: float = MISSING) -> PostureResult:

@@ -1,9 +1,10 @@
 """What a scenario means, each part derived once, in the terms of the layers below; nobody there sees a scenario."""
 
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from operator import index
 from typing import TYPE_CHECKING, Any
 
@@ -231,11 +232,7 @@ class Walk:
         return leg_reach(self.parameters, self.facts, self.gait.com_height, self.standing_height)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
-        """The planner of this walk: the profile's own, or the walking planner with the profile's law.
-
-        Args:
-            feet: where the feet stand at the start.
-            leg: inertia of the legs.
+        """The planner of this walk, of feet and legs at its start: the profile's own, or the walking one with its law.
 
         Raises:
             ParameterError: it cannot plan this gait.
@@ -314,12 +311,7 @@ class Walk:
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:
-    """Say what a checked scenario means.
-
-    Args:
-        scenario: fit to run.
-        robot: in place of the one that it names.
-        profile: in place of the planner's profile that it names.
+    """Say what a checked scenario means, with a robot and a profile, if given, in place of those that it names.
 
     Raises:
         ParameterError: a part refuses its parameters.
@@ -337,4 +329,11 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
 
 def scenario_yaml(scenario: Scenario) -> str:
     """The scenario as run: every key with its value, but for those left null."""
-    return yaml.safe_dump(scenario.model_dump(mode="json", exclude_none=True), sort_keys=False)
+    groups = scenario.model_dump(mode="json", exclude_none=True)
+    return "".join(_group_yaml(name, json.dumps(group)) for name, group in groups.items())
+
+
+@lru_cache(maxsize=256)
+def _group_yaml(name: str, group: str) -> str:
+    """A key with its group, given as JSON: most are the same from run to run of a campaign."""
+    return yaml.safe_dump({name: json.loads(group)}, sort_keys=False)

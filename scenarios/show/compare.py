@@ -8,7 +8,7 @@ from typing import Any
 from rich.table import Table
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.judge.metrics import known, plain
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
@@ -107,13 +107,13 @@ class Comparison:
             "identical": self.identical,
             "summary": self.summary,
             "tolerance": self.tolerance,
-            "first_divergence": None if self.first is None else _plain(asdict(self.first)),
+            "first_divergence": None if self.first is None else plain(asdict(self.first), str),
             "versions": [asdict(one) for one in self.versions],
-            "settings": _plain([asdict(one) for one in self.settings]),
+            "settings": plain([asdict(one) for one in self.settings], str),
             "files": list(self.files),
             "records": list(self.records),
             "metrics": {one.name: {"a": one.a, "b": one.b, "difference": one.delta} for one in self.metrics},
-            "channels": [{**_plain(asdict(one)), "same": one.same} for one in self.channels],
+            "channels": [{**plain(asdict(one), str), "same": one.same} for one in self.channels],
             "only_a": list(self.only_a),
             "only_b": list(self.only_b),
             "notes": [*self.notes, *self.unread],
@@ -121,12 +121,7 @@ class Comparison:
 
 
 def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[Comparison, Log, Log]:
-    """Compare two logs, also truncated ones and ones of different versions.
-
-    Args:
-        path_a: first log.
-        path_b: second log.
-        tolerance: as of `compare_channels`.
+    """Compare two logs, also truncated ones and ones of different versions; a tolerance as of `compare_channels`.
 
     Returns:
         the comparison, and both logs.
@@ -159,14 +154,7 @@ def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[C
 
 
 def draw(found: Comparison, a: Log, b: Log, out: Path, replace: bool = False) -> None:
-    """Draw both runs over each other.
-
-    Args:
-        found: their comparison.
-        a: first log.
-        b: second log.
-        out: file to write, PNG, SVG or PDF by its ending.
-        replace: an existing file.
+    """Draw two runs that were compared over each other, as PNG, SVG or PDF by the file's ending.
 
     Raises:
         LogError: there is nothing to draw, or the file exists or cannot be written.
@@ -198,15 +186,6 @@ def _damage(name: str, log: Log, common: tuple[str, ...]) -> list[str]:
     notes = [f"{name} is truncated: it can be read up to {log.time_range()[1]:.3f} s"] if log.truncated else []
     notes += [f"{name}: {damage}" for damage in dict.fromkeys(log.damage)]
     return notes + [f"{topic} of {name} has no layout of fixed size: not compared" for topic in unreadable(log, common)]
-
-
-def _plain(value: Any) -> Any:
-    """The value for JSON: tuples as lists, what is not a finite number as text."""
-    if isinstance(value, dict):
-        return {key: _plain(part) for key, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def print_comparison(found: Comparison) -> None:

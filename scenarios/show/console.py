@@ -32,11 +32,7 @@ WIDTH = 10_000
 
 
 class TerminalLine:
-    """One line on standard error for as long as its context, only on a terminal.
-
-    Args:
-        columns: that it shows.
-    """
+    """One line of some columns on standard error for as long as its context, only on a terminal."""
 
     def __init__(self, *columns: ProgressColumn) -> None:
         console = Console(stderr=True)
@@ -181,14 +177,7 @@ _ROWS_AT_ONCE = 4096
 
 
 def selected(log: Log, topic: str, start: float | None, end: float | None, field: str | None) -> ChannelData:
-    """Messages of a topic in a window of time, with one field or all.
-
-    Args:
-        log: the log.
-        topic: its topic.
-        start: first time [s]; None from the beginning.
-        end: last time [s]; None to the end.
-        field: the field; None for all.
+    """Messages of a topic in a window of time, open where an end is None [s], with one field or all.
 
     Raises:
         LogError: there is no such topic or field, its messages are not of a fixed layout, or none is in the window.

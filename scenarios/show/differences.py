@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.source import parse
+from surefoot.scenarios.file.units import is_number
 from surefoot.scenarios.judge.metrics import measure
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE
@@ -121,19 +123,18 @@ def _order(found: ChannelDifference) -> tuple[float, int]:
 
 def _compare(a: ChannelData, b: ChannelData, tolerance: float, reach_ns: int) -> ChannelDifference:
     rows_a, rows_b = _paired(a.time_ns, b.time_ns)
-    exact, tolerated = _Earliest(), _Earliest()
+    times, exact, tolerated = a.time_ns[rows_a], [], []
     shared = {field.name: field for field in b.fields}
     for field in a.fields:
         if _same_layout(field, shared.get(field.name)):
             values = a.field(field.name)[rows_a], b.field(field.name)[rows_b]
-            exact.look(field.name, _bits_differ(*values), *values)
-            tolerated.look(field.name, _values_differ(*values, tolerance), *values)
-    times = a.time_ns[rows_a]
+            exact += _first(field.name, times, _bits_differ(*values), *values)
+            tolerated += _first(field.name, times, _values_differ(*values, tolerance), *values)
     return ChannelDifference(
         topic=a.topic,
         messages=(len(a), len(b)),
-        exact=exact.point(times),
-        tolerated=tolerated.point(times),
+        exact=_earliest(exact),
+        tolerated=_earliest(tolerated),
         only_one=_only_one(a.time_ns, b.time_ns, reach_ns),
         layout=tuple(_layout_differences(a, b)),
     )
@@ -164,29 +165,21 @@ def _only_one(a: NDArray[np.int64], b: NDArray[np.int64], reach_ns: int) -> floa
     return float(alone[0]) * 1e-9 if len(alone) else None
 
 
-class _Earliest:
-    """The earliest difference seen so far; of fields that differ in one message the first one."""
+def _earliest(found: list[tuple[int, FirstDifference]]) -> FirstDifference | None:
+    """Of several fields that of the earliest row; of those that differ in one message the first one."""
+    return min(found, key=itemgetter(0))[1] if found else None
 
-    def __init__(self) -> None:
-        self._row: int | None = None
-        self._field = ""
-        self._values = (0.0, 0.0)
 
-    def look(self, name: str, differs: NDArray[np.bool_], a: NDArray[Any], b: NDArray[Any]) -> None:
-        """Look at one field: where it differs and its values, all of shape (n, *field shape)."""
-        rows = np.flatnonzero(differs.reshape(len(differs), -1).any(axis=1)) if len(differs) else np.zeros(0, np.intp)
-        if not len(rows) or (self._row is not None and rows[0] >= self._row):
-            return
-        self._row = int(rows[0])
-        element = tuple(int(i) for i in np.argwhere(differs[self._row])[0])
-        self._field = name + "".join(f"[{i}]" for i in element)
-        self._values = float(a[self._row][element]), float(b[self._row][element])
-
-    def point(self, times_ns: NDArray[np.int64]) -> FirstDifference | None:
-        """Give it with its time."""
-        if self._row is None:
-            return None
-        return FirstDifference(float(times_ns[self._row]) * 1e-9, self._field, *self._values)
+def _first(
+    name: str, times_ns: NDArray[np.int64], differs: NDArray[np.bool_], a: NDArray[Any], b: NDArray[Any]
+) -> list[tuple[int, FirstDifference]]:
+    """The first row at which a field differs, and its first element there; empty if it does not."""
+    rows = np.flatnonzero(differs.reshape(len(differs), -1).any(axis=1)) if len(differs) else np.zeros(0, np.intp)
+    if not len(rows):
+        return []
+    row, element = int(rows[0]), tuple(int(i) for i in np.argwhere(differs[rows[0]])[0])
+    place, values = name + "".join(f"[{i}]" for i in element), (float(a[row][element]), float(b[row][element]))
+    return [(row, FirstDifference(float(times_ns[row]) * 1e-9, place, *values))]
 
 
 def _bits_differ(a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:
@@ -223,13 +216,7 @@ VERSIONS_RECORD = "versions"
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A value of two logs.
-
-    Attributes:
-        name: what it is.
-        a: in the first log, None when it is not there.
-        b: in the second log, None when it is not there.
-    """
+    """A named value of two logs, None in the one in which it is not there."""
 
     name: str
     a: Any
@@ -238,8 +225,7 @@ class Difference:
     @property
     def delta(self) -> float | None:
         """Second minus first, when both are numbers."""
-        numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in (self.a, self.b))
-        return float(self.b - self.a) if numbers else None
+        return float(self.b - self.a) if is_number(self.a) and is_number(self.b) else None
 
 
 def differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[Difference, ...]:

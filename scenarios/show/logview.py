@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry import points_seen_from
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.record.provenance import RECORD
@@ -86,12 +87,7 @@ class LogView:
         return np.asarray(self._channel(topic).time[self._rows(topic)])
 
     def field(self, topic: str, name: str, *shape: int) -> Array:
-        """Values of a field in the window, shape (n, *shape); what is no number or absurd is NaN.
-
-        Args:
-            topic: of the channel.
-            name: of its field.
-            shape: that each value must have; -1 for any extent.
+        """Values of a field in the window, shape (n, *shape), -1 for any extent; what is no number or absurd is NaN.
 
         Raises:
             MissingError: there is no such field of that shape, or no message of it.
@@ -129,7 +125,7 @@ class LogView:
         rows = rows_at(planned, times)
         left, right = (self.field("/footsteps", f"current_{name}", 4)[rows] for name in FOOT_NAMES)
         pose = np.select([foot[:, None] == 0, foot[:, None] == 1], [left, right], (left + right) / 2)
-        seen = seen_from(pose, points)
+        seen = points_seen_from(pose, points)
         seen[1:][np.diff(foot) != 0] = np.nan
         return seen
 
@@ -145,18 +141,6 @@ class LogView:
         if not len(rows):
             raise MissingError(f"{topic} in this window")
         return rows
-
-
-def seen_from(poses: Array, points: Array) -> Array:
-    """Points of the ground plane ahead and to the left of poses, shape (n, 2) [m].
-
-    Args:
-        poses: x y z yaw, shape (n, 4) or (4,) [m, rad].
-        points: in the world, shape (n, 2) [m].
-    """
-    sine, cosine = np.sin(poses[..., 3]), np.cos(poses[..., 3])
-    x, y = (points - poses[..., :2]).T
-    return np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
 
 
 def rows_at(clock: Array, times: Array) -> NDArray[np.intp]:

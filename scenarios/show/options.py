@@ -76,11 +76,7 @@ LogFile = Annotated[Path, typer.Argument(help="A log, also a truncated one.")]
 
 
 def with_options(kind: Callable[..., T]) -> Callable[[Callable[[T], None]], Callable[..., None]]:
-    """Make a command of a function of one value, whose fields are the command's options.
-
-    Args:
-        kind: a dataclass whose fields are annotated as parameters of commands are.
-    """
+    """Make a command of a function of a dataclass, whose fields are annotated as parameters of commands are."""
 
     def decorate(act: Callable[[T], None]) -> Callable[..., None]:
         def command(**given: Any) -> None:

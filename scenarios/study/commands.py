@@ -23,7 +23,7 @@ app = typer.Typer()
 
 def _campaigns_from(incomplete: str) -> list[str]:
     """Campaigns that begin so."""
-    from surefoot.scenarios.study.campaigns.campaign import shipped
+    from surefoot.scenarios.study.campaigns.shipped import shipped
 
     return [name for name in shipped() if name.startswith(incomplete)]
 

@@ -8,10 +8,12 @@ machine's instructions only those that every x86-64 processor since 2009 has.
 import hashlib
 import os
 import platform
+import re
 import shlex
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tempfile
 from pathlib import Path
 
@@ -35,6 +37,23 @@ def digest() -> str:
 def is_built() -> bool:
     """Whether there is a library of these very sources. It is not loaded: one that is stale would then stay."""
     return LIBRARY.exists() and digest().encode() in LIBRARY.read_bytes()
+
+
+def platform_tag(library: bytes | None = None) -> str:
+    """Which platforms a wheel with the library in it runs on, as the last part of its tag.
+
+    On Linux those whose glibc has the symbols that the library asks for: ``manylinux_2_35_x86_64`` (PEP 600) where the
+    newest of them came with glibc 2.35, and at least 2.17, which is the oldest that installers know by that name.
+
+    Args:
+        library: its content; that which is built by default.
+    """
+    platform_name = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+    content = LIBRARY.read_bytes() if library is None else library
+    asked = [int(minor) for minor in re.findall(rb"GLIBC_2\.(\d+)", content)]
+    if not asked or not platform_name.startswith("linux_"):
+        return platform_name
+    return f"manylinux_2_{max(17, *asked)}_{platform_name.removeprefix('linux_')}"
 
 
 def build() -> str:

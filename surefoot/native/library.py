@@ -178,6 +178,11 @@ def library() -> Library | None:
     return None if os.environ.get(VARIABLE) == "0" else _loaded()
 
 
+def is_missed() -> bool:
+    """Whether there are no compiled kernels though nobody asked for plain Python."""
+    return library() is None and os.environ.get(VARIABLE) != "0"
+
+
 @cache
 def _loaded() -> Library | None:
     """The library, loaded once. A checkout, which has the sources, makes a missing or stale one anew."""

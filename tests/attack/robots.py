@@ -114,7 +114,7 @@ def bases() -> list[dict[str, bytes]]:
 
 def _known() -> list[dict[str, bytes]]:
     """A robot of another package, with its meshes where they are."""
-    from surefoot.models.registry import SHIPPED
+    from surefoot.models.names import SHIPPED
     from surefoot.models.robot_file.paths import resolve
     from surefoot.models.robot_file.schema import read
 

@@ -27,9 +27,9 @@ def refusal(robots, text, overrides=()):
 
 @pytest.fixture
 def robots():
-    from surefoot.scenarios.setup.robot import RegisteredRobots
+    from surefoot.scenarios.setup.robot import Robots
 
-    return RegisteredRobots()
+    return Robots()
 
 
 CASES = {

@@ -12,7 +12,7 @@ from mutations import TEXTS, text_of, trial
 from surefoot.scenarios.errors import LONGEST_SENTENCE, ScenarioError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.load import load, read_scenario
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.walk import Walk, scenario_yaml
 
 MOST_LINES = 25
@@ -37,7 +37,7 @@ def outcome(make, seed):
         pytest.fail(f"seed {seed}: {type(error).__name__}: {error}")
     else:
         assert isinstance(scenario, Scenario)
-        again = read_scenario(scenario_yaml(scenario), "f.yaml", "f", (), RegisteredRobots())
+        again = read_scenario(scenario_yaml(scenario), "f.yaml", "f", (), Robots())
         assert again == scenario, f"seed {seed}: the scenario as run is another"
         assert Walk(again).duration > 0.0, f"seed {seed}"
         result = "scenario"
@@ -46,7 +46,7 @@ def outcome(make, seed):
 
 
 def attack(seeds):
-    robots = RegisteredRobots()
+    robots = Robots()
     found = []
     for seed in seeds:
         text = text_of(seed)
@@ -73,7 +73,7 @@ def numbers(group, *path):
 
 
 def extremes(values, texts=("{}",)):
-    robots, found = RegisteredRobots(), []
+    robots, found = Robots(), []
     for text in texts:
         for key in numbers(Scenario):
             for value in values:

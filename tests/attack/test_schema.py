@@ -11,8 +11,7 @@ from surefoot.scenarios import catalogue
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.metric import Metric, metric
 from surefoot.scenarios.judge.metrics import METRICS, register, unknown_metrics
-from surefoot.scenarios.setup.checks import AVAILABLE
-from surefoot.scenarios.setup.criteria import criteria_problems, published
+from surefoot.scenarios.setup.criteria import AVAILABLE, criteria_problems, published
 
 pytestmark = pytest.mark.unit
 

@@ -12,7 +12,8 @@ import yaml
 from surefoot.scenarios.apps.cli import app
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.show.options import keys
-from surefoot.scenarios.study.campaigns.campaign import read_campaign, shipped
+from surefoot.scenarios.study.campaigns.campaign import read_campaign
+from surefoot.scenarios.study.campaigns.shipped import shipped
 
 pytestmark = pytest.mark.unit
 

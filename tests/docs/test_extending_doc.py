@@ -8,7 +8,7 @@ import pytest
 from dotted import named
 
 import surefoot
-from surefoot.scenarios.file.names import REGISTRIES
+from surefoot.scenarios.file.registries import REGISTRIES
 from surefoot.scenarios.file.schema import Scenario
 
 pytestmark = pytest.mark.unit

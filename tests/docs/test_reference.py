@@ -12,7 +12,7 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import Robots
 
 pytestmark = pytest.mark.unit
 
@@ -75,7 +75,7 @@ def test_scenarios_of_the_documentation_load(page):
     examples = re.findall(r"(?s)```yaml\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"))
     assert examples
     for text in examples:
-        read_scenario(text, "example.yaml", "example", (), RegisteredRobots())
+        read_scenario(text, "example.yaml", "example", (), Robots())
 
 
 def test_the_faults_that_the_page_shows_are_those_that_are_found():
@@ -83,7 +83,7 @@ def test_the_faults_that_the_page_shows_are_those_that_are_found():
     text = re.search(r"(?s)```yaml\n(.*?)```", page)[1].replace("steps: 6", "step: 6").replace("0.25", "0.9", 1)
     shown = re.search(r"(?s)```\n(pushed\.yaml:.*?)\n```", page)[1]
     with pytest.raises(ScenarioError) as refusal:
-        read_scenario(text, "pushed.yaml", "pushed", (), RegisteredRobots())
+        read_scenario(text, "pushed.yaml", "pushed", (), Robots())
     assert str(refusal.value) == shown
 
 

@@ -22,8 +22,7 @@ def test_engines_agree_on_a_robot_with_meshes(meshed) -> None:
 
 
 def test_pinocchio_has_the_corners_of_the_text(meshed) -> None:
-    pair = EnginePair(meshed.robot)
-    shapes = limb_shapes(meshed.robot, pair.pin_model)
+    shapes = limb_shapes(meshed.robot)
     for name, corners in meshed.hulls.items():
         shape = shapes.geometryObjects[shapes.getGeometryId(name)]
         found = shape.geometry.points() @ shape.placement.rotation.T + shape.placement.translation
@@ -32,7 +31,7 @@ def test_pinocchio_has_the_corners_of_the_text(meshed) -> None:
 
 def test_engines_agree_on_the_distances_of_hulls(meshed) -> None:
     pair, rng = EnginePair(meshed.robot), np.random.default_rng(3)
-    shapes, data = limb_shapes(meshed.robot, pair.pin_model), mujoco.MjData(pair.mj_model)
+    shapes, data = limb_shapes(meshed.robot), mujoco.MjData(pair.mj_model)
     placed, seen = shapes.createData(), 0
     for _ in range(10):
         q, v = pair.random_state(rng)

@@ -6,7 +6,7 @@ import pytest
 
 from surefoot import plugins
 from surefoot.models import ROBOTS, Robot, RobotError, RobotOptions, UnknownRobotError, describe, robot_names
-from surefoot.models.registry import SHIPPED
+from surefoot.models.names import SHIPPED
 
 pytestmark = pytest.mark.unit
 

@@ -10,8 +10,9 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from packaging.tags import Tag, sys_tags
 
-from surefoot.native.build import LIBRARY, is_built
+from surefoot.native.build import LIBRARY, is_built, platform_tag
 
 pytestmark = pytest.mark.unit
 
@@ -56,8 +57,18 @@ def test_the_wheel_of_the_sdist_is_the_same(distributions, wheel_from_sdist):
 def test_a_wheel_with_compiled_kernels_is_of_its_platform_and_of_any_python(distributions):
     built = f"surefoot/native/{LIBRARY.name}" in files_of(distributions[0])
     assert built == is_built()
-    platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
-    assert distributions[0].stem.endswith(f"-py3-none-{platform if built else 'any'}")
+    *_, python, abi, system = distributions[0].stem.split("-")
+    assert (python, abi, system) == ("py3", "none", platform_tag() if built else "any")
+    assert Tag(python, abi, system) in set(sys_tags()), "which an installer takes here"
+
+
+def test_the_tag_names_the_oldest_glibc_that_has_the_symbols_of_the_library(monkeypatch):
+    monkeypatch.setattr(sysconfig, "get_platform", lambda: "linux-x86_64")
+    assert platform_tag(b"GLIBC_2.2.5 GLIBC_2.14") == "manylinux_2_17_x86_64"
+    assert platform_tag(b"GLIBC_2.35 GLIBC_2.4") == "manylinux_2_35_x86_64"
+    assert platform_tag(b"musl") == "linux_x86_64"
+    monkeypatch.setattr(sysconfig, "get_platform", lambda: "macosx-11.0-arm64")
+    assert platform_tag(b"GLIBC_2.35") == "macosx_11_0_arm64"
 
 
 def test_without_a_compiler_the_wheel_is_whole_but_for_the_kernels(wheel_from_sdist, wheel_without_compiler):

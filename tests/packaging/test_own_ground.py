@@ -12,7 +12,7 @@ from surefoot.scenarios.file.schema import RobotSettings
 from surefoot.scenarios.log import read
 from surefoot.scenarios.setup.criteria import published
 from surefoot.scenarios.setup.load import Written, for_robot
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.scenarios.setup.walk import Walk
 
@@ -101,9 +101,9 @@ def test_a_key_of_its_own_has_units_grows_with_the_robot_and_is_in_the_schema(di
 
     assert width().terrain.bank == 1.5
     assert Walk(width()).ground.true_terrain.boxes[0].half_size[1] == 0.75
-    length = RegisteredRobots().facts("g1", RobotSettings()).size.length
+    length = Robots().facts("g1", RobotSettings()).size.length
     text = Written("terrain: {kind: ditch}\n", "f.yaml", "f")
-    sized = for_robot(text, {"terrain.bank": 1.5}, "humanoid100", "g1", RegisteredRobots())
+    sized = for_robot(text, {"terrain.bank": 1.5}, "humanoid100", "g1", Robots())
     assert sized["terrain.bank"] == pytest.approx(1.5 * length)
     assert published()["$defs"]["TerrainSettings"]["properties"]["bank"]["unit"] == "m"
 

@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
-from surefoot.planner.geometry import convex_hull, nearest_point, signed_distance, sole_corners
+from surefoot.planner.geometry import nearest_point, signed_distance, sole_corners
 from surefoot.planner.types import Foot, Footstep
+from surefoot.polygon import convex_hull
 
 pytestmark = pytest.mark.unit
 
@@ -33,3 +35,14 @@ def test_sole_is_anticlockwise_and_turned():
     corners = sole_corners(Footstep(Foot.LEFT, np.array([1.0, 2.0, 0.0]), np.pi / 2), np.array([0.11, 0.05]))
     np.testing.assert_allclose(np.ptp(corners, axis=0), [0.1, 0.22])
     assert signed_distance(corners, np.array([1.0, 2.0])) == pytest.approx(0.05)
+
+
+def test_hull_of_soles_is_that_of_qhull_from_its_leftmost_corner():
+    rng, half = np.random.default_rng(2), np.array([0.11, 0.05])
+    for turned in np.concatenate((np.zeros(20), rng.uniform(-3.0, 3.0, 40))):
+        place, way = rng.normal(size=2), np.array([rng.uniform(-0.4, 0.4), -0.2])
+        feet = (Footstep(foot, np.append(at, 0.0), turned) for foot, at in zip(Foot, (place, place + way), strict=True))
+        points = np.concatenate([sole_corners(foot, half) for foot in feet])
+        hull, wanted = convex_hull(points), points[ConvexHull(points).vertices]
+        assert hull[0].tolist() == min(points.tolist())
+        np.testing.assert_array_equal(hull, np.roll(wanted, -wanted.tolist().index(hull[0].tolist()), axis=0))

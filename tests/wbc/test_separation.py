@@ -20,7 +20,7 @@ UNBOUNDED = 1e9
 
 @pytest.fixture(scope="module")
 def geometry(robot) -> pin.GeometryModel:
-    return limb_shapes(describe("humanoid100", RobotOptions()), robot.model)
+    return limb_shapes(describe("humanoid100", RobotOptions()))
 
 
 def _nearest(robot, geometry: pin.GeometryModel, q: np.ndarray) -> tuple[int, float]:

@@ -38,7 +38,7 @@ def controller(size, robot, parameters):
         robot.leg_joints,
         0.002 * size.time,
         parameters,
-        limb_shapes(d, model),
+        limb_shapes(d),
         robot.shoulders,
     )
     return WholeBodyController(model, robot.frames, sole, limits, *given)

@@ -7,11 +7,15 @@ default ones, or registered by name in ``TASKS``, as what makes it for a robot:
     still-hand = "my_package.hand:StillHand"        # StillHand(model, frames) is a Task
 """
 
-from surefoot.plugins import Registry
-from surefoot.wbc.tasks.default import DEFAULT_LAYOUT
-from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
-from surefoot.wbc.tasks.stack import TaskStack
-from surefoot.wbc.tasks.task import Task, TaskFactory, TaskLayout, Weighted, angular_acceleration
+from typing import TYPE_CHECKING
+
+from surefoot.lazy import face
+
+if TYPE_CHECKING:
+    from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
+    from surefoot.wbc.tasks.registry import DEFAULT_LAYOUT, TASKS, TaskLayout
+    from surefoot.wbc.tasks.stack import TaskStack
+    from surefoot.wbc.tasks.task import Task, TaskFactory, Weighted, angular_acceleration
 
 __all__ = [
     "DEFAULT_LAYOUT",
@@ -26,5 +30,13 @@ __all__ = [
     "angular_acceleration",
 ]
 
-TASKS: Registry[TaskFactory] = Registry("surefoot.tasks", None, {})
-"""Tasks of other packages by name: a ``TaskFactory`` each."""
+if not TYPE_CHECKING:  # a type checker shall still refuse names that are not there
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            "parameters": ("TaskGains", "TaskWeights"),
+            "registry": ("DEFAULT_LAYOUT", "TASKS", "TaskLayout"),
+            "stack": ("TaskStack",),
+            "task": ("Task", "TaskFactory", "Weighted", "angular_acceleration"),
+        },
+    )

@@ -1,10 +1,11 @@
 """The tasks that every controller has."""
 
-from surefoot.wbc.balance import BalanceGains, SupportRegion
+from surefoot.wbc.balance import SupportRegion
+from surefoot.wbc.parameters import BalanceGains
 from surefoot.wbc.tasks.momentum import AngularMomentum, CentreOfMass
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.swing import AnkleStops, SwingFoot
-from surefoot.wbc.tasks.task import Task, TaskLayout, layout_of
+from surefoot.wbc.tasks.task import Task
 from surefoot.wbc.tasks.trunk import HipStops, Pelvis, Torso
 
 
@@ -42,9 +43,3 @@ def default_tasks(
         *(trunk if waist else trunk[:1]),
         SwingFoot(weights, gains, toe, length, ankles, leaning),
     )
-
-
-DEFAULT_LAYOUT: TaskLayout = layout_of(
-    default_tasks(TaskWeights(), TaskGains(), BalanceGains(), SupportRegion(1.0, 1.0, 1.0), 0.0, 1.0)
-)
-"""Names and sizes of the default tasks, in the order of their rows."""

@@ -5,9 +5,10 @@ from collections.abc import Callable
 import numpy as np
 
 from surefoot.native.library import Bound
-from surefoot.wbc.balance import BalanceGains, SupportRegion, com_acceleration
+from surefoot.wbc.balance import SupportRegion, com_acceleration
 from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.parameters import BalanceGains
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.task import Vector
 from surefoot.wbc.types import GRAVITY, Array, WbcReference

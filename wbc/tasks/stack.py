@@ -9,7 +9,8 @@ from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.qp import QpData
 from surefoot.wbc.tasks.diagonal import DiagonalTerm
-from surefoot.wbc.tasks.task import CompiledTask, Task, TaskLayout, layout_of
+from surefoot.wbc.tasks.registry import TaskLayout
+from surefoot.wbc.tasks.task import CompiledTask, Task, layout_of
 from surefoot.wbc.types import Array, WbcReference
 
 

@@ -9,12 +9,10 @@ import pinocchio as pin
 from surefoot.native.library import Bound
 from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.tasks.registry import TaskLayout
 from surefoot.wbc.types import Array, WbcReference
 
 Vector = tuple[float, float, float]
-
-TaskLayout = tuple[tuple[str, int], ...]
-"""Names and sizes of tasks, in the order of their rows."""
 
 
 class Task(Protocol):

@@ -23,14 +23,7 @@ PATIENCE = 2.0
 
 @dataclass(slots=True, eq=False)
 class _OpenPage:
-    """A page, or a program that sends inputs as a page does.
-
-    Attributes:
-        loop: of its socket.
-        news: there is something to tell.
-        drawn: it has drawn what it was told last.
-        number: of the news that it drew last; None as long as it has drawn none.
-    """
+    """A page, or a program that sends as one does: its loop, news to tell, whether and what it drew of them last."""
 
     loop: asyncio.AbstractEventLoop
     news: asyncio.Event = field(default_factory=asyncio.Event)

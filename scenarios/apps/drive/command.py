@@ -56,13 +56,7 @@ def drive(
 
 
 def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Callable[[str], None]) -> None:
-    """Drive a scenario's robot until a signal ends it.
-
-    Args:
-        scenario: of every run.
-        out: directory that gets a folder for each run.
-        port: of the page; the first free one if None.
-        say: is told where the page is, and where each run's log.
+    """Drive a scenario's robot until a signal ends it; ``say`` is told where the page and where each log is.
 
     Raises:
         MissingExtraError: viser is not installed.

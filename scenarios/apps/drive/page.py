@@ -72,13 +72,7 @@ _SOON = "<!doctype html><meta http-equiv=refresh content=1><title>surefoot drive
 
 
 class DrivePage:
-    """Shows the runs of a session, and gives it what the user does; see `session.DriveView`.
-
-    Args:
-        viewer: shows the robot.
-        gate: of the viewer, which gets the page.
-        inputs: get what the user does.
-    """
+    """Shows the runs of a session in a viewer, and puts what the user does into its inputs; see `session.DriveView`."""
 
     def __init__(self, viewer: "viser.ViserServer", gate: Gate, inputs: "SimpleQueue[Input]") -> None:
         self._viewer, self._gate, self._inputs = viewer, gate, inputs
@@ -187,11 +181,7 @@ class DrivePage:
         return {"impulse": size, "specific": size / self._pictures.walk.true_mass}
 
     def _take(self, given: Mapping[str, Any]) -> None:
-        """Take what the page sends.
-
-        Raises:
-            ValueError: it is not what the page would send.
-        """
+        """Take what the page sends; ValueError where it is not what the page would send."""
         kind = given.get("kind")
         if kind == "click":
             self._impulse = _above_zero(given, "impulse", self._size.times(GREATEST_IMPULSE, "N·s"))

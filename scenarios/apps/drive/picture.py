@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from surefoot.models.pinocchio import pinocchio_model
+from surefoot.planner.geometry import points_seen_from
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import Foot, Footstep
 from surefoot.scenarios import palette
@@ -18,7 +19,7 @@ from surefoot.scenarios.record.body import contact_points
 from surefoot.scenarios.run.simulation import Tick
 from surefoot.scenarios.setup.stance import frames_of
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.scenarios.show.logview import FOOT_NAMES, seen_from
+from surefoot.scenarios.show.logview import FOOT_NAMES
 from surefoot.scenarios.show.replay.content import PUSH_SHOWN, Array, Facts, Replay, Track, sole_corners, tracks
 from surefoot.scenarios.show.replay.extract import surfaces
 from surefoot.sim.bodies import BodyPoses
@@ -53,11 +54,8 @@ class Picture(Replay):
 class Pictures:
     """Makes the pictures of a walk's runs.
 
-    Args:
-        walk: what is simulated, in full physics.
-
     Attributes:
-        walk: likewise.
+        walk: what is simulated, in full physics.
         sole: length and width of the robot's [m].
     """
 
@@ -119,7 +117,7 @@ class Pictures:
         if plan.phase.stance is not None:
             self._alone = plan.phase.stance
         feet = plan.footholds if self._alone is None else (plan.footholds[self._alone],)
-        ahead, left = seen_from(np.mean([_pose(foot) for foot in feet], axis=0), points).T
+        ahead, left = points_seen_from(np.mean([_pose(foot) for foot in feet], axis=0), points).T
         margins = [plan.balance.planned, plan.balance.movable]
         return ahead.tolist(), left.tolist(), margins, measurement.wrench[:, 2].tolist()
 

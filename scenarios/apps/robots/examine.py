@@ -18,7 +18,7 @@ from surefoot.models.robot_file.build import Explanation
 from surefoot.models.types import RobotDescription, RobotError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.setup.gait import leg_span
+from surefoot.scenarios.judge.metrics import plain
 from surefoot.scenarios.setup.stance import Body, TorqueMargin, body_of, on_one_foot, standing
 from surefoot.scenarios.show.console import plain_table
 
@@ -138,7 +138,7 @@ def examine(robot: RobotDescription) -> Examination:
         one_foot=one,
         both_height=_other_height(body, both, lambda other: standing(other, 0.0)[0]),
         one_height=_other_height(body, one, on_one_foot),
-        longest_step=leg_span(robot.com_height, facts_of(robot)),
+        longest_step=facts_of(robot).leg_span(robot.com_height),
         touching=_touching(robot, q),
     )
 
@@ -263,14 +263,5 @@ def to_json(explained: Explanation, found: Examination) -> dict[str, Any]:
         "derived": list(explained.derived),
         "notes": [*explained.notes, *found.notes],
         "faults": list(found.faults),
-        "measured": _finite(asdict(found)),
+        "measured": plain(asdict(found)),
     }
-
-
-def _finite(value: Any) -> Any:
-    """The same without numbers that JSON has not."""
-    if isinstance(value, dict):
-        return {name: _finite(inner) for name, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(inner) for inner in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -67,17 +67,9 @@ def chosen(names: Sequence[str]) -> tuple[str, ...]:
 def rows(
     robot: str, names: Sequence[str], walk: bool, jobs: int, out: Path, begun: Callable[[int, float], None]
 ) -> Iterator[CatalogueRow]:
-    """Scenarios of the catalogue on a robot, each looked at once, as they are known.
+    """Scenarios on a robot as they are known; ``begun`` is told how many runs of how many seconds in all are to come.
 
     The longest runs come first, so that no process waits for the others at the end.
-
-    Args:
-        robot: name or path of its file.
-        names: of the scenarios.
-        walk: whether to run what it accepts.
-        jobs: runs at once.
-        out: directory of the logs.
-        begun: is told how many runs of how much simulated time in all [s] are to come.
     """
     if not walk:
         yield from (_look(name, robot).row for name in names)
@@ -122,12 +114,7 @@ _STYLES = {"walks": "bold green", "accepted": None, "fails": "bold red", "refuse
 
 
 class CatalogueBar(TerminalLine):
-    """Prints each row as it is known, and on a terminal how much simulated time is left and how long that takes.
-
-    Args:
-        console: gets the rows; None where nobody is to see them.
-        names: of the scenarios.
-    """
+    """Prints each row on a console, if any; on a terminal how much simulated time is left, and how long that takes."""
 
     def __init__(self, console: Console | None, names: Sequence[str]) -> None:
         left = (TextColumn("left"), TimeRemainingColumn(elapsed_when_finished=True))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import cast
 
 import mujoco
@@ -267,6 +268,12 @@ def world_scene(mjcf: str) -> SceneUpdate:
         name = shape.body_name
         _add(shape, entities.setdefault(shape.body, SceneEntity(frame_id=name, id=name, frame_locked=True)))
     return SceneUpdate(entities=[entities[body] for body in sorted(entities) if _drawn(entities[body])])
+
+
+@lru_cache(maxsize=8)
+def scene_data(mjcf: str) -> bytes:
+    """The message of `world_scene`; run after run of a campaign has the same one."""
+    return world_scene(mjcf).SerializeToString(deterministic=True)
 
 
 def _drawn(entity: SceneEntity) -> bool:

@@ -15,7 +15,7 @@ from surefoot.planner.types import SolverStatus
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.spec import Template
 from surefoot.scenarios.record.foxglove import drawing as templates
-from surefoot.scenarios.record.foxglove.drawing import NOWHERE, Outlines, force_arrow, published, world_scene
+from surefoot.scenarios.record.foxglove.drawing import NOWHERE, Outlines, force_arrow, published, scene_data
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.world import World
@@ -185,7 +185,7 @@ class BodyView:
         self._scene = writer.message_channel(
             "/scene/world", published(SceneUpdate), "robot and terrain, each body in its frame"
         )
-        self._scene_data = world_scene(world.mjcf()).SerializeToString(deterministic=True)
+        self._scene_data = scene_data(world.mjcf())
         self._scene_every = control_rate * max(SCENE_PERIOD, round(len(self._scene_data) / SCENE_RATE))
         self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
         self._events = EventLog(writer)

@@ -6,11 +6,10 @@ from typing import Any, cast
 from surefoot.guard import Guarded, taken_for
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.scenarios.errors import Problem
-from surefoot.scenarios.file.names import TERRAIN_KINDS
+from surefoot.scenarios.file.registries import TERRAIN_KINDS
 from surefoot.scenarios.file.schema import Gait
-from surefoot.scenarios.setup.terrain.blocks import BlocksKind
+from surefoot.scenarios.setup.terrain.faces import BlocksKind, SlopeKind
 from surefoot.scenarios.setup.terrain.ground import Ground, TerrainKind
-from surefoot.scenarios.setup.terrain.slope import SlopeKind
 from surefoot.scenarios.setup.terrain.stairs import StairsKind
 
 

@@ -77,10 +77,7 @@ def stairs_of(ground: Ground) -> Stairs:
 
 
 def _behind(ground: Ground) -> float:
-    """How far behind mid-tread the feet stand: half of the room there, if the scenario says how long they are [m].
-
-    Going down the heel also keeps its distance from the riser behind it, or the swing would have to go over that.
-    """
+    """How far behind mid-tread feet of known length stand: half of the room, going down away from risers [m]."""
     foot, keys, length = ground.sole, ground.keys, ground.size.length
     if foot is None:
         return 0.0

@@ -14,15 +14,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry import headings, level_corners, points_seen_from, rotations
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.body import headings, level_corners, rotations
 from surefoot.scenarios.judge.verdict import scenario_of
 from surefoot.scenarios.palette import BLACK, COM, FEET, FOOTSTEP, GREY, SUPPORT, ZMP
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.kit.figures import Area, curve, heading, kept_of_path, legend, note, or_say
 from surefoot.scenarios.show.kit.shading import Background, Panel, draw_panels
-from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED, LogView, MissingError, seen_from
+from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED, LogView, MissingError
 
 Array = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def landing_errors(view: LogView) -> tuple[Array, NDArray[np.intp], Array]:
     """Landings off the plan, along and across the planned foot, shape (k, 2) [m]; foot and number of each step."""
     planned, actual = (view.field("/footstep", name, 4) for name in ("planned", "actual"))
     feet, numbers = view.field("/footstep", "foot"), view.field("/footstep", "index")
-    errors = seen_from(planned, actual[:, :2])
+    errors = points_seen_from(planned, actual[:, :2])
     sound = np.isfinite(errors).all(axis=1) & np.isin(feet, (0, 1))
     return errors[sound], feet[sound].astype(int), numbers[sound]
 

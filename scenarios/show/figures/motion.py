@@ -9,19 +9,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from surefoot.planner.types import GRAVITY
-from surefoot.scenarios.palette import (
-    BLACK,
-    COM,
-    COM_PLANNED,
-    DCM,
-    DCM_PLANNED,
-    FEET,
-    GREY,
-    PURPLE,
-    SUPPORT,
-    ZMP,
-    ZMP_PLANNED,
-)
+from surefoot.scenarios import palette
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.kit.figures import Area, curve, reference_curve, steps
 from surefoot.scenarios.show.kit.shading import Background, Panel, draw_panels
@@ -35,9 +23,9 @@ STRIP, MOST_STRIPS = 12.0, 6
 """Seconds that one strip of the balance shows legibly, and strips after which they become longer."""
 
 _REFERENCES = (
-    ("zmp_reference", 2, "ZMP reference (footsteps)", ZMP_PLANNED),
-    ("com", 3, "CoM reference", COM_PLANNED),
-    ("dcm", 2, "DCM reference", DCM_PLANNED),
+    ("zmp_reference", 2, "ZMP reference (footsteps)", palette.ZMP_PLANNED),
+    ("com", 3, "CoM reference", palette.COM_PLANNED),
+    ("dcm", 2, "DCM reference", palette.DCM_PLANNED),
 )
 """What ZMP, CoM and DCM should be: field of ``/reference``, its size, label and colour."""
 
@@ -101,14 +89,16 @@ def support_bounds(view: LogView, axis: int) -> tuple[Array, Array, Array]:
 def draw_support(axes: Axes, view: LogView, axis: int) -> None:
     """Draw the planned support in a direction, with its bounds."""
     time, low, high = support_bounds(view, axis)
-    axes.fill_between(time, low, high, step="post", color=SUPPORT, alpha=0.18, linewidth=0, zorder=1)
+    axes.fill_between(time, low, high, step="post", color=palette.SUPPORT, alpha=0.18, linewidth=0, zorder=1)
     for bound in (low, high):
-        axes.plot(time, bound, drawstyle="steps-post", color=GREY, linewidth=0.6, zorder=1.5)
+        axes.plot(time, bound, drawstyle="steps-post", color=palette.GREY, linewidth=0.6, zorder=1.5)
 
 
 def support_handle() -> Patch:
     """Entry of a legend for the support."""
-    return Patch(facecolor=SUPPORT, edgecolor=GREY, alpha=0.3, linewidth=0.5, label="planned support, bounds")
+    return Patch(
+        facecolor=palette.SUPPORT, edgecolor=palette.GREY, alpha=0.3, linewidth=0.5, label="planned support, bounds"
+    )
 
 
 def true_dcm(view: LogView) -> Array:
@@ -120,9 +110,9 @@ def true_dcm(view: LogView) -> Array:
 def _positions(axes: Axes, view: LogView, axis: int) -> None:
     draw_support(axes, view, axis)
     measured = (
-        ("ZMP measured", ZMP, "/contact", view.field("/contact", "zmp", 3), 1.1),
-        ("CoM true", COM, "/truth", view.field("/truth", "com", 3), 1.5),
-        ("DCM true", DCM, "/truth", true_dcm(view), 1.5),
+        ("ZMP measured", palette.ZMP, "/contact", view.field("/contact", "zmp", 3), 1.1),
+        ("CoM true", palette.COM, "/truth", view.field("/truth", "com", 3), 1.5),
+        ("DCM true", palette.DCM, "/truth", true_dcm(view), 1.5),
     )
     for label, color, topic, values, width in measured:
         time = view.time(topic)
@@ -137,11 +127,11 @@ def _errors(axes: Axes, view: LogView, axis: int) -> None:
     clock = view.time("/reference")
     zmp, com, dcm = (view.field("/reference", name, size)[:, :2] for name, size, *_ in _REFERENCES)
     curves = (
-        ("ZMP", ZMP, "/contact", view.field("/contact", "zmp", 3)[:, :2], zmp),
-        ("DCM", DCM, "/truth", true_dcm(view), dcm),
-        ("CoM", COM, "/truth", view.field("/truth", "com", 3)[:, :2], com),
+        ("ZMP", palette.ZMP, "/contact", view.field("/contact", "zmp", 3)[:, :2], zmp),
+        ("DCM", palette.DCM, "/truth", true_dcm(view), dcm),
+        ("CoM", palette.COM, "/truth", view.field("/truth", "com", 3)[:, :2], com),
     )
-    axes.axhline(0.0, color=GREY, linewidth=0.6)
+    axes.axhline(0.0, color=palette.GREY, linewidth=0.6)
     for name, color, topic, values, reference in curves:
         time = view.time(topic)
         wanted = np.column_stack([np.interp(time, clock, along) for along in reference.T])
@@ -151,9 +141,9 @@ def _errors(axes: Axes, view: LogView, axis: int) -> None:
 
 def _margin(axes: Axes, view: LogView) -> None:
     clock, (planned, movable) = view.time("/plan"), view.field("/plan", "capture_margin", 2).T
-    axes.axhline(0.0, color=GREY, linewidth=0.6)
-    reference_curve(axes, clock, planned, "DCM inside what is captured, steps as planned", DCM_PLANNED)
-    curve(axes, clock, movable, "the same, steps moved", DCM, linewidth=1.2)
+    axes.axhline(0.0, color=palette.GREY, linewidth=0.6)
+    reference_curve(axes, clock, planned, "DCM inside what is captured, steps as planned", palette.DCM_PLANNED)
+    curve(axes, clock, movable, "the same, steps moved", palette.DCM, linewidth=1.2)
 
 
 def draw_height(area: Area, view: LogView, behind: Background) -> None:
@@ -163,14 +153,14 @@ def draw_height(area: Area, view: LogView, behind: Background) -> None:
 
 
 def _height(axes: Axes, view: LogView) -> None:
-    curve(axes, view.time("/truth"), view.field("/truth", "com", 3)[:, 2], "true", COM, linewidth=1.5)
+    curve(axes, view.time("/truth"), view.field("/truth", "com", 3)[:, 2], "true", palette.COM, linewidth=1.5)
     planned = view.field("/reference", "com", 3)[:, 2]
-    reference_curve(axes, view.time("/reference"), planned, "reference", COM_PLANNED)
+    reference_curve(axes, view.time("/reference"), planned, "reference", palette.COM_PLANNED)
 
 
 def _jerk(axes: Axes, view: LogView) -> None:
     first = view.field("/plan", "jerk", -1, 2)[:, 0]
-    for values, name, color in zip(first.T, "xy", (PURPLE, BLACK), strict=True):
+    for values, name, color in zip(first.T, "xy", (palette.PURPLE, palette.BLACK), strict=True):
         curve(axes, view.time("/plan"), values, f"jerk {name}", color, drawstyle="steps-post", linewidth=0.9)
 
 
@@ -181,19 +171,19 @@ def draw_feet(area: Area, view: LogView, behind: Background) -> None:
 
 
 def _sole_heights(axes: Axes, view: LogView) -> None:
-    for name, color in zip(FOOT_NAMES, FEET, strict=True):
+    for name, color in zip(FOOT_NAMES, palette.FEET, strict=True):
         pose = view.field("/truth", f"{name}_sole", 7)
         curve(axes, view.time("/truth"), pose[:, 2], f"{name} sole", color, linewidth=1.4)
     height, swings = view.field("/reference", "swing_position", 3)[:, 2], view.field("/reference", "stance") >= 0
-    reference_curve(axes, view.time("/reference"), np.where(swings, height, np.nan), "swing reference", BLACK)
+    reference_curve(axes, view.time("/reference"), np.where(swings, height, np.nan), "swing reference", palette.BLACK)
 
 
 def _forces(axes: Axes, view: LogView) -> None:
     forces = view.field("/contact", "normal_force", 2)
     for foot, name in enumerate(FOOT_NAMES):
-        curve(axes, view.time("/contact"), forces[:, foot], f"{name} foot", FEET[foot])
+        curve(axes, view.time("/contact"), forces[:, foot], f"{name} foot", palette.FEET[foot])
     try:
         weight = view.number("mass") * GRAVITY
     except MissingError:
         return
-    axes.axhline(weight, color=GREY, linewidth=0.8, linestyle="--", label=f"weight {weight:.0f} N")
+    axes.axhline(weight, color=palette.GREY, linewidth=0.8, linestyle="--", label=f"weight {weight:.0f} N")

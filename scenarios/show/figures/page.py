@@ -132,12 +132,7 @@ _REASON = 90
 
 @dataclass(frozen=True, slots=True)
 class Plotted:
-    """What was drawn.
-
-    Attributes:
-        path: of the file.
-        notes: what of the log could not be read, in words.
-    """
+    """The file that was drawn, and what of the log could not be read, in words."""
 
     path: Path
     notes: tuple[str, ...]
@@ -216,14 +211,7 @@ _BOTH = (
 
 
 def overlay(a: LogView, b: LogView, header: str, divergence: float | None) -> Figure:
-    """Draw both runs on one page.
-
-    Args:
-        a: first run.
-        b: second run.
-        header: says which they are.
-        divergence: time at which they part [s], None when they do not.
-    """
+    """Draw both runs on one page below a header, with a line where they part [s], None when they do not."""
 
     def both(axes: Axes, _: LogView, topic: str, name: str, axis: int) -> None:
         """Draw a channel of both runs; one that has not got it is left out, and named when neither has."""

@@ -59,12 +59,7 @@ def in_style() -> Iterator[None]:
 
 
 def canvas(width: float, heights: Sequence[float]) -> tuple[Figure, list[SubFigure]]:
-    """An empty figure and its rows, laid out without overlap.
-
-    Args:
-        width: of the figure [in].
-        heights: of the rows [in].
-    """
+    """An empty figure of a width, and its rows of some heights [in], laid out without overlap."""
     figure = Figure(figsize=(width, sum(heights)), layout=ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.05))
     rows = figure.subfigures(len(heights), 1, height_ratios=list(heights), squeeze=False)
     return figure, list(rows[:, 0])

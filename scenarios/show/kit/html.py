@@ -42,12 +42,7 @@ def tag(name: str, content: str, **attributes: str) -> str:
 
 
 def document(title: str, body: str) -> str:
-    """A whole page.
-
-    Args:
-        title: of the window.
-        body: HTML.
-    """
+    """A whole page: the title of its window, and its body, HTML."""
     style = (files(__package__) / "page.css").read_text(encoding="utf-8")
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
     return (
@@ -74,14 +69,7 @@ def details(summary: str, content: str, name: str = "") -> str:
 
 @dataclass(frozen=True, slots=True)
 class TableCell:
-    """A cell of a table.
-
-    Attributes:
-        text: as shown.
-        kind: CSS classes.
-        value: the number behind the text, in SI units; None for words.
-        below: a second, quiet line.
-    """
+    """A cell of a table: its text, CSS classes, the number in SI behind the text, and a second, quiet line."""
 
     text: str
     kind: str = ""

@@ -26,13 +26,7 @@ _MOST_NAMED = 80
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A time in which one thing lasted.
-
-    Attributes:
-        start: [s].
-        end: [s].
-        value: what lasted.
-    """
+    """A time from its start to its end [s] in which a value lasted."""
 
     start: float
     end: float
@@ -125,16 +119,7 @@ def draw_panels(
     panels: Sequence[Panel],
     stretch: tuple[float, float] | None = None,
 ) -> list[Axes]:
-    """Draw panels; gives their axes, top first.
-
-    Args:
-        area: to fill.
-        view: gives the window.
-        behind: what happened in it.
-        title: of the family; none if empty.
-        panels: top first.
-        stretch: of time to show, the whole window by default [s].
-    """
+    """Draw panels under a title, if any, over a stretch of time, all by default [s]; gives their axes, top first."""
     heights = [panel.height for panel in panels]
     axes: list[Axes] = list(area.subplots(len(panels), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0])
     if title:
@@ -160,12 +145,7 @@ def background(view: LogView) -> Background:
 
 
 def stretches(time: np.ndarray, values: np.ndarray) -> tuple[Stretch, ...]:
-    """Times in which a row of integers stayed the same.
-
-    Args:
-        time: shape (n,) [s].
-        values: shape (n, k).
-    """
+    """Times in which a row of integers, shape (n, k), stayed the same, on a clock of shape (n,) [s]."""
     starts = np.flatnonzero(np.concatenate(([True], np.any(values[1:] != values[:-1], axis=1))))
     ends = np.append(starts[1:], len(time) - 1)
     rows = np.nan_to_num(values[starts]).astype(int).tolist()

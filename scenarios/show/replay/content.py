@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry import level_corners, rotations
 from surefoot.scenarios import palette
-from surefoot.scenarios.judge.body import level_corners, rotations
 from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.logview import FOOT_NAMES
 
@@ -45,13 +45,7 @@ class Frames:
     rows: NDArray[np.intp]
 
     def strongest(self, strength: Array, ticks: Array, seconds: float) -> NDArray[np.intp]:
-        """Row of the largest value within some seconds before each frame, the frame's own included.
-
-        Args:
-            strength: by control tick.
-            ticks: time of the control ticks [s].
-            seconds: how far to look back [s].
-        """
+        """Row of the greatest strength, by control tick, within some seconds before each frame, its own included."""
         first = np.minimum(np.searchsorted(ticks, self.time - seconds), self.rows)
         windows = zip(first.tolist(), self.rows.tolist(), strict=True)
         return np.array([begin + int(strength[begin : end + 1].argmax()) for begin, end in windows])

@@ -4,9 +4,6 @@ from collections.abc import Iterator
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial.transform import Rotation
 
 from surefoot.scenarios.errors import LogError
@@ -17,21 +14,11 @@ from surefoot.scenarios.log import Log
 from surefoot.scenarios.palette import FEET, Color
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.show.logview import FOOT_NAMES, rows_at
-from surefoot.scenarios.show.replay.content import (
-    PUSH_SHOWN,
-    Array,
-    Facts,
-    Footprint,
-    Frames,
-    Replay,
-    ReplayWindow,
-    SoleSize,
-    Surface,
-    sole_corners,
-    tracks,
-)
+from surefoot.scenarios.show.replay import content
+from surefoot.scenarios.show.replay.content import Array, Frames, Replay, ReplayWindow
 from surefoot.sim.bodies import BodyPoses
-from surefoot.sim.shapes import Shape, drawn_shapes
+from surefoot.sim.shapes import drawn_shapes
+from surefoot.sim.triangles import Triangles, merged, triangles
 
 
 def choose_frames(run: RunView, window: ReplayWindow) -> Frames:
@@ -64,11 +51,7 @@ def choose_frames(run: RunView, window: ReplayWindow) -> Frames:
 
 
 def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
-    """Read what there is to show.
-
-    Args:
-        log: of a run in full physics, also a truncated one.
-        window: what part of it; all by default.
+    """Read what there is to show in a window of a log of full physics, also a truncated one; all of it by default.
 
     Raises:
         LogError: the log does not describe such a run, or has nothing in that window.
@@ -96,18 +79,14 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
         body_position=position,
         body_quaternion=quaternion,
         surfaces=surfaces(model),
-        tracks=tuple(tracks(facts)),
+        tracks=tuple(content.tracks(facts)),
         footprints=tuple(_taken_footprints(run, frames, facts.sole)),
         mjcf=mjcf,
     )
 
 
 def _world(log: Log) -> tuple[str, mujoco.MjModel]:
-    """The world that was simulated, as MJCF and compiled.
-
-    Raises:
-        LogError: the log has none, or it is damaged.
-    """
+    """The world that was simulated, as MJCF and compiled; LogError where the log has none, or it is damaged."""
     try:
         text = log.attachments[WORLD_FILE].decode()
     except (KeyError, UnicodeDecodeError):
@@ -138,7 +117,7 @@ def _pushed_body(log: Log, run: RunView) -> str:
     return bodies[0] if len(bodies) == 1 else torso(run.constants.roles)
 
 
-def _facts(run: RunView, frames: Frames, pushed: Array) -> Facts:
+def _facts(run: RunView, frames: Frames, pushed: Array) -> content.Facts:
     """What the marks tell; the push is the strongest of the last moments, at a place of shape (n, 3) [m]."""
     rows, count = frames.rows, len(frames.rows)
     ahead, ahead_foot = np.empty((count, 0, 4)), np.empty((count, 0))
@@ -147,7 +126,7 @@ def _facts(run: RunView, frames: Frames, pushed: Array) -> Facts:
         then = rows_at(planned.time, frames.time)
         ahead, ahead_foot = planned.field("next")[then], planned.field("next_foot")[then]
     push = run.field("/measurement", "external_force")
-    return Facts(
+    return content.Facts(
         com=run.field("/truth", "com")[rows],
         dcm=run.field("/estimate", "dcm")[rows],
         zmp=run.field("/contact", "zmp")[rows],
@@ -161,125 +140,33 @@ def _facts(run: RunView, frames: Frames, pushed: Array) -> Facts:
         force=np.stack([run.field("/measurement", f"wrench_{side}")[rows, :3] for side in FOOT_NAMES], axis=1),
         ahead=ahead,
         ahead_foot=ahead_foot,
-        push=push[frames.strongest(np.linalg.norm(push, axis=1), run.time, PUSH_SHOWN)],
+        push=push[frames.strongest(np.linalg.norm(push, axis=1), run.time, content.PUSH_SHOWN)],
         pushed=pushed,
         sole=(run.constants.foot_length, run.constants.foot_width),
     )
 
 
-def _taken_footprints(run: RunView, frames: Frames, sole: SoleSize) -> Iterator[Footprint]:
+def _taken_footprints(run: RunView, frames: Frames, sole: content.SoleSize) -> Iterator[content.Footprint]:
     """Where the feet stood at first, and every touchdown until the last frame."""
     if run.has("/footsteps"):
         first = run.log["/footsteps"]
         for color, name in zip(FEET, FOOT_NAMES, strict=True):
-            yield Footprint(color, sole_corners(first.field(f"current_{name}")[:1], sole)[0], float(first.time[0]))
+            yield content.Footprint(
+                color, content.sole_corners(first.field(f"current_{name}")[:1], sole)[0], float(first.time[0])
+            )
     if run.has("/footstep"):
         taken = run.log["/footstep"]
-        corners = sole_corners(taken.field("actual"), sole)
+        corners = content.sole_corners(taken.field("actual"), sole)
         for time, foot, place in zip(taken.time.tolist(), taken.field("foot").tolist(), corners, strict=True):
             if time <= frames.time[-1] and np.isfinite(place).all():
-                yield Footprint(FEET[foot == 1], place, time)
+                yield content.Footprint(FEET[foot == 1], place, time)
 
 
-Faces = NDArray[np.int64]
-Triangles = tuple[Array, Faces]
-
-CREASE = np.deg2rad(35.0)
-"""Triangles that meet at a larger angle have an edge between them [rad]."""
-
-SEGMENTS = 20
-"""Around the axis of a lathed body; half as many from pole to pole."""
-
-
-def surfaces(model: mujoco.MjModel) -> tuple[Surface, ...]:
+def surfaces(model: mujoco.MjModel) -> tuple[content.Surface, ...]:
     """Every visible geom but the endless ground, geoms of one body and one colour merged."""
     groups: dict[tuple[int, Color], list[Triangles]] = {}
     for shape in drawn_shapes(model):
-        vertices, faces = _triangles(shape)
+        vertices, faces = triangles(shape)
         placed = vertices @ shape.rotation.T + shape.position, faces
         groups.setdefault((shape.body, shape.color[:3]), []).append(placed)
-    return tuple(Surface(body, color, *_merged(parts)) for (body, color), parts in groups.items())
-
-
-def _merged(parts: list[Triangles]) -> Triangles:
-    offsets = np.cumsum([0, *(len(vertices) for vertices, _ in parts[:-1])])
-    faces = [faces + offset for (_, faces), offset in zip(parts, offsets, strict=True)]
-    return np.concatenate([vertices for vertices, _ in parts]), np.concatenate(faces)
-
-
-def _triangles(shape: Shape) -> Triangles:
-    radius, _, half_length = shape.half_size
-    if shape.mesh is not None:
-        return creased(shape.mesh.vertices, shape.mesh.faces)
-    match shape.kind:
-        case "box":
-            return box(shape.half_size)
-        case "cylinder":
-            return cylinder(radius, half_length)
-        case "capsule":
-            return capsule(radius, half_length)
-    return ellipsoid(shape.half_size)
-
-
-def creased(vertices: Array, faces: Faces) -> Triangles:
-    """A mesh with the vertices of its sharp edges once for each side, where a viewer's smooth shading then ends."""
-    a, b, c = vertices[faces].transpose(1, 0, 2)
-    normals = np.cross(b - a, c - a)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
-    edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    order = np.lexsort(edges.T)
-    same = (edges[order[1:]] == edges[order[:-1]]).all(axis=1)
-    one, other = order[:-1][same] // 3, order[1:][same] // 3
-    smooth = np.einsum("ij,ij->i", normals[one], normals[other]) > np.cos(CREASE)
-    links = coo_array((smooth[smooth], (one[smooth], other[smooth])), shape=(len(faces), len(faces)))
-    _, side = connected_components(links, directed=False)
-    corners = np.stack([faces, np.broadcast_to(side[:, None], faces.shape)], axis=2).reshape(-1, 2)
-    kept, places = np.unique(corners, axis=0, return_inverse=True)
-    return vertices[kept[:, 0]], places.reshape(faces.shape)
-
-
-def ellipsoid(radii: Array) -> Triangles:
-    """Ellipsoid about the origin with these half axes, shape (3,) [m]."""
-    angle = np.linspace(-np.pi / 2, np.pi / 2, SEGMENTS // 2 + 1)
-    vertices, faces = _lathe(np.cos(angle), np.sin(angle))
-    return vertices * radii, faces
-
-
-def capsule(radius: float, half_length: float) -> Triangles:
-    """Capsule along z; the half length is that of its straight part [m]."""
-    angle = np.linspace(0, np.pi / 2, SEGMENTS // 4 + 1)
-    r, z = radius * np.cos(angle), radius * np.sin(angle) + half_length
-    return _lathe(np.concatenate([r[::-1], r]), np.concatenate([-z[::-1], z]))
-
-
-def cylinder(radius: float, half_length: float) -> Triangles:
-    """Cylinder along z; caps and mantle share no vertices, so that the edges are sharp."""
-    ends = np.array([-half_length, half_length])
-    bottom = _lathe(np.array([0.0, radius]), ends[[0, 0]])
-    mantle = _lathe(np.array([radius, radius]), ends)
-    top = _lathe(np.array([radius, 0.0]), ends[[1, 1]])
-    return _merged([bottom, mantle, top])
-
-
-def box(half_size: Array) -> Triangles:
-    """Box about the origin with sharp edges; half sizes of shape (3,) [m]."""
-    square = np.array([[-1.0, -1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
-    faces = np.array([[0, 1, 2], [0, 2, 3]])
-    # Cyclic permutations of the axes keep the orientation, so does a turn by half about x.
-    half_turn = np.array([1.0, -1.0, -1.0])
-    sides = [np.roll(square * flip, axis, axis=1) for axis in range(3) for flip in (np.ones(3), half_turn)]
-    vertices, faces = _merged([(side, faces) for side in sides])
-    return vertices * half_size, faces
-
-
-def _lathe(radius: Array, height: Array) -> Triangles:
-    """Turn a profile, given from the bottom to the top, about the z axis."""
-    angle = np.linspace(0, 2 * np.pi, SEGMENTS, endpoint=False)
-    x, y = np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))
-    vertices = np.stack([x, y, np.broadcast_to(height[:, None], x.shape)], axis=2).reshape(-1, 3)
-    ring = np.arange((len(radius) - 1) * SEGMENTS).reshape(-1, SEGMENTS)
-    beside, above, both = np.roll(ring, -1, axis=1), ring + SEGMENTS, np.roll(ring, -1, axis=1) + SEGMENTS
-    faces = np.stack([ring, beside, both, ring, both, above], axis=2).reshape(-1, 3)
-    corners = vertices[faces]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    return vertices, faces[area > 1e-12]
+    return tuple(content.Surface(body, color, *merged(parts)) for (body, color), parts in groups.items())

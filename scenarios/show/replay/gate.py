@@ -98,13 +98,7 @@ class Gate:
         return None
 
     def answered(self, connection: "ServerConnection", request: "Request", viewer: Answer) -> "Response | None":
-        """The answer to a request; None makes it a websocket.
-
-        Args:
-            connection: that the request came on.
-            request: in question.
-            viewer: answers with the viewer's own page.
-        """
+        """The answer to a request, with the viewer's own page where that is asked for; None makes it a websocket."""
         if (refusal := self.refusal(request)) is not None:
             return connection.respond(HTTPStatus.FORBIDDEN, refusal + "\n")
         name = self._name(request)
@@ -181,10 +175,7 @@ def _hostname(host: str) -> str | None:
 
 @contextlib.contextmanager
 def serving(gate: Gate | None = None) -> "Iterator[viser.ViserServer]":
-    """A viewer for as long as the context lasts; it says nothing on standard output.
-
-    Args:
-        gate: who may come in; nobody can connect if None.
+    """A viewer for as long as the context lasts, silent on standard output; nobody can connect without a gate.
 
     Raises:
         MissingExtraError: viser is not installed.
@@ -248,12 +239,7 @@ def _note(_: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
 
 @dataclass(slots=True)
 class _Connections:
-    """All connections to a server.
-
-    Attributes:
-        loop: of the server.
-        made: those that are still there.
-    """
+    """All connections to the server of a loop that are still there."""
 
     loop: asyncio.AbstractEventLoop
     made: WeakSet[Any] = field(default_factory=WeakSet)
@@ -297,11 +283,7 @@ _NO_GET = (
 
 
 def _bound(port: int | None) -> socket.socket:
-    """A socket that listens on a port, the first free one if None.
-
-    Raises:
-        LogError: it is taken.
-    """
+    """A socket that listens on a port, the first free one if None; LogError where it is taken."""
     for tried in range(PORT, PORT + TRIES) if port is None else ():
         with contextlib.suppress(OSError):
             return socket.create_server((LOCALHOST, tried))

@@ -1,9 +1,6 @@
-"""A replay that goes along: of a log that may still grow, and beside a run while it goes on."""
+"""A replay that goes along with a log that may still grow."""
 
-import contextlib
 import math
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -11,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from surefoot.scenarios.errors import LogError, require
+from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
-from surefoot.scenarios.output import reason, refuse_existing
-from surefoot.scenarios.run.skeleton import OnProgress, Progress
+from surefoot.scenarios.output import reason
 from surefoot.scenarios.show.logview import rows_at
 from surefoot.scenarios.show.replay.content import Replay, ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
@@ -23,69 +19,6 @@ from surefoot.scenarios.show.replay.scene import ViserScene
 
 if TYPE_CHECKING:
     import viser
-
-
-def check(fidelity: str, *, video: Path | None, view: bool, replace: bool = False) -> None:
-    """Say before a run what its pictures would lack after it.
-
-    Raises:
-        MissingExtraError: an optional package is not installed.
-        LogError: the fidelity has no body to show, or the video exists or its name does not end in .mp4.
-    """
-    if fidelity == "pendulum":
-        raise LogError("a pendulum has no body to show; drop --video and --view, or run with fidelity full")
-    if video is not None:
-        if video.suffix != ".mp4":
-            raise LogError(f"{video}: a video is an MP4 file; give a name that ends in .mp4")
-        require("av", "video", "--video")
-        refuse_existing(video, replace)
-    if view:
-        require("viser", "replay", "--view")
-
-
-LEAVE = 3.0
-"""How long a replay may take to end when it is asked to [s]."""
-
-
-class LiveView:
-    """Progress of a run, passed on; the first of it opens the replay, since the log holds something from then on.
-
-    The replay ends with the context, however that ends.
-    """
-
-    def __init__(self, on_progress: OnProgress) -> None:
-        self._log, self._on_progress = Path(), on_progress
-        self._process: subprocess.Popen[bytes] | None = None
-
-    def begin(self, log: Path) -> None:
-        """Take note of where the log is."""
-        self._log = log
-
-    def __call__(self, progress: Progress) -> None:
-        """See `OnProgress`."""
-        if self._process is None:
-            command = [sys.executable, "-m", "surefoot", "replay", str(self._log), "--live"]
-            self._process = subprocess.Popen(command, stdout=sys.stderr)
-        self._on_progress(progress)
-
-    def wait(self) -> None:
-        """Leave the replay open until Ctrl-C."""
-        if self._process is not None:
-            with contextlib.suppress(KeyboardInterrupt):
-                self._process.wait()
-
-    def __enter__(self) -> "LiveView":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._process is None:
-            return
-        self._process.terminate()
-        try:
-            self._process.wait(LEAVE)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-
 
 STEP = 0.001
 """Resolution of the timeline [s]."""
@@ -101,12 +34,7 @@ SPEEDS = {"0.1x": 0.1, "0.25x": 0.25, "0.5x": 0.5, "1x": 1.0, "2x": 2.0, "4x": 4
 
 
 def serve(path: Path, window: ReplayWindow, say: Callable[[str], None]) -> None:
-    """Serve a log on this machine until a signal ends it.
-
-    Args:
-        path: of the log, which may still be growing.
-        window: what part of it.
-        say: is told the address.
+    """Serve a log, which may still grow, on this machine until a signal ends it; ``say`` is told the address.
 
     Raises:
         MissingExtraError: viser is not installed.
@@ -126,11 +54,7 @@ def serve(path: Path, window: ReplayWindow, say: Callable[[str], None]) -> None:
 
 
 def _size(path: Path) -> int:
-    """Of a log that is followed [B].
-
-    Raises:
-        LogError: it is there no more.
-    """
+    """Of a log that is followed [B]; LogError where it is there no more."""
     try:
         return path.stat().st_size
     except OSError as error:

@@ -12,19 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from surefoot.scenarios import palette
 from surefoot.scenarios.log import read
 from surefoot.scenarios.output import refuse_existing, write_whole
-from surefoot.scenarios.palette import (
-    COM,
-    COM_PLANNED,
-    DCM,
-    DCM_PLANNED,
-    FEET,
-    ZMP,
-    ZMP_PLANNED,
-    Color,
-    hexadecimal,
-)
 from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError, rows_at
 from surefoot.scenarios.show.replay.content import Array, Replay, ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
@@ -47,7 +37,7 @@ class Curve:
     """
 
     name: str
-    color: Color
+    color: palette.Color
     topic: str
     field: str
     size: int
@@ -86,7 +76,7 @@ class Chart:
         """The chart for a script, as JSON: the curves with their values, or all of them without any."""
         curves = []
         for curve in self.curves if values is None else values:
-            told = {"name": curve.name, "color": hexadecimal(curve.color), "planned": curve.planned}
+            told = {"name": curve.name, "color": palette.hexadecimal(curve.color), "planned": curve.planned}
             if values is not None:
                 rounded = values[curve].round(4).tolist()
                 told["values"] = [value if abs(value) < np.inf else None for value in rounded]
@@ -97,21 +87,22 @@ class Chart:
 def _balance(axis: int) -> tuple[Curve, ...]:
     """Points of balance along an axis, as they are and as planned."""
     return (
-        Curve("ZMP", ZMP, "/contact", "zmp", 3, axis),
-        Curve("CoM", COM, "/truth", "com", 3, axis),
-        Curve("DCM", DCM, "/estimate", "dcm", 2, axis),
-        Curve("ZMP planned", ZMP_PLANNED, "/reference", "zmp", 2, axis, planned=True),
-        Curve("CoM planned", COM_PLANNED, "/reference", "com", 3, axis, planned=True),
-        Curve("DCM planned", DCM_PLANNED, "/reference", "dcm", 2, axis, planned=True),
+        Curve("ZMP", palette.ZMP, "/contact", "zmp", 3, axis),
+        Curve("CoM", palette.COM, "/truth", "com", 3, axis),
+        Curve("DCM", palette.DCM, "/estimate", "dcm", 2, axis),
+        Curve("ZMP planned", palette.ZMP_PLANNED, "/reference", "zmp", 2, axis, planned=True),
+        Curve("CoM planned", palette.COM_PLANNED, "/reference", "com", 3, axis, planned=True),
+        Curve("DCM planned", palette.DCM_PLANNED, "/reference", "dcm", 2, axis, planned=True),
     )
 
 
 _MARGINS = (
-    Curve("steps as planned", DCM_PLANNED, "/plan", "capture_margin", 2, 0, planned=True),
-    Curve("steps moved", DCM, "/plan", "capture_margin", 2, 1),
+    Curve("steps as planned", palette.DCM_PLANNED, "/plan", "capture_margin", 2, 0, planned=True),
+    Curve("steps moved", palette.DCM, "/plan", "capture_margin", 2, 1),
 )
 _FORCES = tuple(
-    Curve(f"{name} foot", FEET[foot], "/contact", "normal_force", 2, foot) for foot, name in enumerate(FOOT_NAMES)
+    Curve(f"{name} foot", palette.FEET[foot], "/contact", "normal_force", 2, foot)
+    for foot, name in enumerate(FOOT_NAMES)
 )
 CHARTS = (
     Chart("forward of the stance foot [m]", 3, _balance(0), from_stance=True),
@@ -157,7 +148,9 @@ def page(replay: Replay, charts: Sequence[Mapping[str, Any]] = ()) -> str:
 def column(replay: Replay, layers: tuple[str, ...], charts: Sequence[Mapping[str, Any]]) -> str:
     """What stands beside the picture: title, legend, charts, and the room for viser's switches of the layers."""
     time = replay.time.round(4).tolist()
-    legend = (f'<span><b style="background:{hexadecimal(c)}"></b>{name}</span>' for name, c in replay.legend().items())
+    legend = (
+        f'<span><b style="background:{palette.hexadecimal(c)}"></b>{name}</span>' for name, c in replay.legend().items()
+    )
     return filled(
         beside(files(__package__).joinpath("column.html").read_text(encoding="utf-8")),
         {"time": time, "layers": layers, "charts": charts},

@@ -117,10 +117,6 @@ class ViserScene:
     The robot is followed by moving the world below a camera that stays, since the camera belongs to the user, who turns
     and zooms it meanwhile.
 
-    Args:
-        server: of the page.
-        replay: what is shown at first.
-
     Attributes:
         layers: nodes that hide all that is below them, by name.
         skin: names of bodies, and the nodes of the robot's surfaces on them.

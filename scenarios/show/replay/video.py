@@ -123,11 +123,7 @@ class Film:
 
 
 def _camera(asked: str) -> Camera:
-    """A camera by name, or by azimuth, elevation [deg] and distance [m]; that one follows.
-
-    Raises:
-        LogError: there is none of that name, and it is no direction either.
-    """
+    """A camera by name, or one that follows by azimuth, elevation [deg] and distance [m]; or a LogError."""
     if asked in CAMERAS:
         return CAMERAS[asked]
     try:
@@ -146,14 +142,7 @@ def _camera(asked: str) -> Camera:
 def write_video(
     log: Path, out: Path, window: ReplayWindow | None = None, film: Film | None = None, replace: bool = False
 ) -> None:
-    """Write an mp4 file of a log, with a progress line; errors as of `extract`.
-
-    Args:
-        log: to show.
-        out: the file.
-        window: what part of the log; all by default.
-        film: how; at the speed of the run, following, by default.
-        replace: an existing file.
+    """Write an mp4 file of a window of a log, with a progress line; errors as of `extract`.
 
     Raises:
         MissingExtraError: PyAV or an off-screen OpenGL is not installed.
@@ -220,13 +209,7 @@ class Caption:
     """Writes onto the pictures of one video."""
 
     def __init__(self, replay: Replay, size: tuple[int, int], speed: float) -> None:
-        """Draw what stays.
-
-        Args:
-            replay: what is shown.
-            size: width and height of the pictures [px].
-            speed: of the video over that of the run.
-        """
+        """Draw what stays, on pictures of a size [px], at a speed over that of the run."""
         self._size, self._text = size, max(min(size[1], 2 * size[0] / 3) / _LINES, _LEAST)
         still = self._sheet()
         still.text(*self._corner(0.0), replay.title, ha="left", va="top", fontsize=1.2 * self._text, bbox=_PLATE)

@@ -4,7 +4,6 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,10 +13,10 @@ from surefoot.scenarios.errors import Key, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar, setting
 from surefoot.scenarios.file.translate import problems_of
 from surefoot.scenarios.setup.load import Written, for_robot, key_problems, written
-from surefoot.scenarios.setup.robot import RegisteredRobots, Robots, is_known
+from surefoot.scenarios.setup.robot import Robots, is_known
+from surefoot.scenarios.study.campaigns.shipped import ENDING, shipped
 from surefoot.scenarios.study.campaigns.spec import MOST_RUNS, Bisect, Spec
 
-ENDING = ".yaml"
 SCENARIO, SEARCH = "scenario", "bisect."
 """Keys that are no scenario's and may vary as any other: which scenario, and the range of the search."""
 
@@ -72,7 +71,7 @@ class Campaign:
 
     def combinations(self) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
         """Labels and settings of every combination of the grid, the last axis fastest."""
-        robots = RegisteredRobots()
+        robots = Robots()
         for chosen in itertools.product(*self.axes.values()):
             labels = {name: one.label for name, one in zip(self.axes, chosen, strict=True)}
             keys = dict(self.spec.set)
@@ -85,10 +84,7 @@ class Campaign:
         return str(keys.get(SCENARIO, self.spec.scenario))
 
     def _sized(self, keys: dict[str, Any], robots: Robots) -> dict[str, Any]:
-        """Settings with those that are written for another robot than they name as they are for that one.
-
-        Values of lists, and those that are drawn or searched, stand in tables and mean what they say.
-        """
+        """Settings as they are for the robot that they name; lists and what is drawn or searched mean what they say."""
         origin, base = self.spec.sized_for, self.bases.get(self.base(keys))
         if base is None or origin in (None, keys.get("robot")):
             return keys
@@ -97,12 +93,6 @@ class Campaign:
         own = {key: value for key, value in keys.items() if key not in said and not key.startswith(SEARCH)}
         sized = for_robot(base.written, own, origin, keys.get("robot"), robots)
         return {key: sized.get(key, value) for key, value in keys.items() if key not in own or key in sized}
-
-
-def shipped() -> dict[str, Path]:
-    """The campaigns that come with Surefoot, by name."""
-    folder = Path(str(files(__package__))) / "campaigns"
-    return {path.name.removesuffix(ENDING): path for path in sorted(folder.glob(f"*{ENDING}"))}
 
 
 def read_campaign(reference: str, overrides: Sequence[str] = (), seeds: int | None = None) -> Campaign:
@@ -231,7 +221,7 @@ def _twice(campaign: Campaign) -> Iterator[Problem]:
 
 def _faults(campaign: Campaign) -> Iterator[Problem]:
     """List what is wrong with keys or values alone; what several together cannot be is told by the run itself."""
-    robots, origin = RegisteredRobots(), campaign.spec.sized_for
+    robots, origin = Robots(), campaign.spec.sized_for
     if origin is not None and not is_known(origin, robots):
         yield Problem(("sized_for",), f"unknown robot '{origin}' in sized_for", nearest(origin, robots.names()))
         return

@@ -284,11 +284,7 @@ async def _knock(distributed: ModuleType, address: str, patience: float) -> None
 
 
 def _check_versions(address: str, client: Any) -> None:
-    """Refuse workers whose runs would be others than those of this machine.
-
-    Raises:
-        ScenarioError: one lacks Surefoot, or has other versions of what a run depends on.
-    """
+    """Refuse, by a ScenarioError, workers whose runs would be others than those of this machine."""
     own = dict(relevant_versions())
     right = "install the same versions there, best from the same constraints.txt"
     try:

@@ -11,11 +11,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 from pydantic import TypeAdapter
 
-from surefoot.models.registry import describe, is_file
+from surefoot.models.names import is_file
+from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.schema import Scenario
@@ -38,13 +39,6 @@ OF_A_MACHINE = ("machine", "python")
 """Versions in which the machines of a cluster may differ from each other."""
 
 
-class _Names(NamedTuple):
-    """What a scenario names: its robot, a robot file by its full path, and every word of its keys and values."""
-
-    robot: str
-    words: frozenset[str]
-
-
 class MadeOf:
     """Digests of versions, code and robots, each robot looked at once: what changes meanwhile takes another object.
 
@@ -57,16 +51,11 @@ class MadeOf:
         self._base, self._robot = lru_cache(maxsize=None)(_named), lru_cache(maxsize=None)(robot_digest)
 
     def of(self, point: Point, anywhere: bool = False) -> str:
-        """Digest of all that the result of a run depends on but its scenario.
-
-        Args:
-            point: the run.
-            anywhere: leave out in what the machines of a cluster may differ.
-        """
-        base = self._base(point.base.written)
-        words = frozenset((*base.words, *_words(dict(point.settings))))
+        """Digest of all that a run's result depends on but its scenario; ``anywhere``: that is one on every machine."""
+        own, named = self._base(point.base.written)
+        words = frozenset((*named, *_words(dict(point.settings))))
         versions = {name: one for name, one in self._versions().items() if not (anywhere and name in OF_A_MACHINE)}
-        robot = self._robot(str(point.settings.get("robot", base.robot)))
+        robot = self._robot(str(point.settings.get("robot", own)))
         return _digest([versions, dict(packages_of(words)), robot])
 
 
@@ -78,13 +67,13 @@ def robot_digest(name: str) -> str:
         return _digest(f"{type(error).__name__}: {error}")
 
 
-def _named(written: Written) -> _Names:
-    """What a scenario names."""
+def _named(written: Written) -> tuple[str, frozenset[str]]:
+    """A scenario's robot, a robot file by its full path, and every word of its keys and values."""
     values = parse(written.text, written.place).value
     robot = str(values.get("robot", Scenario.model_fields["robot"].default)) if isinstance(values, dict) else ""
     if is_file(robot):
         robot = os.path.normpath(Path(written.place).parent.absolute() / robot)
-    return _Names(robot, frozenset(_words(values)))
+    return robot, frozenset(_words(values))
 
 
 def _words(value: Any) -> Iterator[str]:
@@ -224,13 +213,7 @@ class Journal:
 
 
 def outcome_of(cell: Searched, journal: Journal, made: Callable[[Point], bool] = lambda _: True) -> Outcome:
-    """What became of a cell, by the results that are there.
-
-    Args:
-        cell: that was asked for.
-        journal: has the results.
-        made: is asked of each run before its result is looked up, and says whether to go on.
-    """
+    """What became of a cell by the results of a journal; ``made`` says of each run before whether to go on."""
     runs: list[tuple[Point, Record]] = []
     search = cell.search()
     try:

@@ -95,14 +95,7 @@ Search = Generator[Point, Record, Threshold | None]
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """Runs that are made one after another: a single one, or a search.
-
-    Attributes:
-        campaign: that it is of.
-        labels: of the grid.
-        keys: that the grid sets.
-        seeds: of its runs.
-    """
+    """Runs that are made one after another, a single one or a search: of some labels, keys and seeds of a campaign."""
 
     campaign: Campaign
     labels: Mapping[str, Any]
@@ -126,12 +119,7 @@ class Cell:
         return None
 
     def point(self, seed: int, searched: Mapping[str, Any]) -> Point:
-        """A run of this cell.
-
-        Args:
-            seed: of everything random in it, and of what is drawn.
-            searched: values of keys that are searched.
-        """
+        """A run of this cell with a seed, also of what is drawn, and with values of the keys that are searched."""
         spec = self.campaign.spec
         drawn = {key: draw_value(draw, spec.seed, key, seed) for key, draw in spec.sample.items()}
         own = {key: value for key, value in self.keys.items() if not key.startswith(SEARCH)}

@@ -8,31 +8,13 @@ from urllib.parse import quote
 import yaml
 
 from surefoot.scenarios.record.provenance import relevant_versions
-from surefoot.scenarios.show.kit.html import (
-    MISSING,
-    PageTable,
-    TableCell,
-    TableRow,
-    details,
-    document,
-    escape,
-    figure_html,
-    number,
-    section,
-    tag,
-    tally,
-)
+from surefoot.scenarios.show.kit import html
+from surefoot.scenarios.show.kit.html import MISSING, TableRow, details, escape, number, section, tag
+from surefoot.scenarios.study.campaigns import success
 from surefoot.scenarios.study.campaigns.capturability import LIMIT_NOTE, Limits
 from surefoot.scenarios.study.campaigns.journal import JOURNAL
 from surefoot.scenarios.study.campaigns.points import Cell, Point, Record, Runs, RunStatus
 from surefoot.scenarios.study.campaigns.spec import Axis, angle_of, is_around, text, with_unit
-from surefoot.scenarios.study.campaigns.success import (
-    distributions_section,
-    judged_of,
-    map_section,
-    rate_of,
-    success_section,
-)
 from surefoot.scenarios.study.campaigns.thresholds import Found, along, are_named, bars, compass
 
 if TYPE_CHECKING:
@@ -54,22 +36,22 @@ def page(swept: "Swept", most: int = MOST_ROWS) -> str:
     elif spec.bisect is not None:
         parts.append(_thresholds(swept, axes))
     else:
-        parts += [success_section(swept, runs, axes), map_section(swept, runs, axes)]
-    parts += [distributions_section(swept, runs), _failures(swept, swept.runs, most)]
-    return document(f"{spec.name}: campaign", "\n".join(part for part in parts if part))
+        parts += [success.success_section(swept, runs, axes), success.map_section(swept, runs, axes)]
+    parts += [success.distributions_section(swept, runs), _failures(swept, swept.runs, most)]
+    return html.document(f"{spec.name}: campaign", "\n".join(part for part in parts if part))
 
 
 def _tally(swept: "Swept", runs: Runs) -> str:
     boxes = [(str(len(swept.runs)), "runs")]
     boxes += [(str(swept.count(status)), _WORDS[status]) for status in get_args(RunStatus) if swept.count(status)]
-    judged = judged_of(runs)
+    judged = success.judged_of(runs)
     if swept.campaign.spec.bisect is not None:
         done = sum(outcome.threshold is not None for outcome in swept.outcomes)
         boxes.append((f"{done} of {len(swept.outcomes)}", "thresholds found"))
     elif judged:
-        rate = rate_of(judged)
+        rate = success.rate_of(judged)
         boxes.append((f"{100 * rate.rate:.1f} %", f"success rate, 95 % interval {rate.between} %"))
-    return tally(boxes)
+    return html.tally(boxes)
 
 
 _WORDS: Mapping[RunStatus, str] = {
@@ -153,7 +135,7 @@ def _figure(swept: "Swept", found: Sequence[Found], axes: Sequence[Axis], limits
         drawn, caption = along(found, varied, key), "Thresholds. Hollow marks" + _BEYOND
     else:
         return ""
-    return figure_html(drawn, caption, "thresholds-figure")
+    return html.figure_html(drawn, caption, "thresholds-figure")
 
 
 _BEYOND = " lie beyond the end of the searched range."
@@ -181,15 +163,15 @@ def _table(swept: "Swept", ends: Sequence[tuple[Found, Runs]], axes: Sequence[Ax
         value = one.threshold.value
         beyond = {"below": "below ", "above": "above "}.get(one.threshold.side, "")
         shown = number(value) if value is not None and not beyond else f"{beyond}{number(one.shown)}"
-        row: list[TableCell | str] = [escape(text(one.labels[axis.name])) for axis in axes]
-        row.append(TableCell(shown, value=value))
+        row: list[html.TableCell | str] = [escape(text(one.labels[axis.name])) for axis in axes]
+        row.append(html.TableCell(shown, value=value))
         if limits:
             limit = limits.at(one.labels, float(one.labels[angle.name]) if angle else None)
             row.append(tag("span", number(limit), data_limit="" if limit is None else repr(limit)))
             row.append(MISSING if not limit or value is None else f"{100 * value / limit:.0f}")
         failed = next((_again(swept, *run, most=1) for run in runs if run[1].status == "fail"), MISSING)
         rows.append([*row, str(len(runs)), failed])
-    return PageTable("thresholds", [*head, "runs", "first failure"], rows).html
+    return html.PageTable("thresholds", [*head, "runs", "first failure"], rows).html
 
 
 def _failures(swept: "Swept", runs: Runs, most: int) -> str:
@@ -212,7 +194,7 @@ def _failures(swept: "Swept", runs: Runs, most: int) -> str:
         shown += len(taken)
     total = sum(map(len, groups.values()))
     left = f" Listed are {shown} of {total}; the table has all." if shown < total else ""
-    table = PageTable("failures", ["run", "why, its log, and the command that makes it again"], rows).html
+    table = html.PageTable("failures", ["run", "why, its log, and the command that makes it again"], rows).html
     return section("Runs that did not pass", tag("p", escape(intro + left)), table)
 
 

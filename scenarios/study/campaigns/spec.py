@@ -4,16 +4,16 @@ Its axes: names, units and labels of what varies, as tables, figures and pages s
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
+from collections.abc import Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self, cast
 
-from pydantic import Field, model_validator
+from pydantic import BaseModel, Field, model_validator
 
 from surefoot.scenarios.errors import nearest
-from surefoot.scenarios.file.group import WHOLE, Group
+from surefoot.scenarios.file.group import WHOLE, Group, groups_in
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.units import is_number, unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -146,12 +146,7 @@ MOST_PANELS = 12
 
 
 class Axis(NamedTuple):
-    """An axis of a campaign.
-
-    Attributes:
-        name: of its key or its own.
-        values: labels of its settings.
-    """
+    """An axis of a campaign: the name of its key, or its own, and the labels of its settings."""
 
     name: str
     values: tuple[Any, ...]
@@ -165,11 +160,6 @@ class Axis(NamedTuple):
     def heading(self) -> str:
         """Name and unit."""
         return with_unit(self.name)
-
-
-def is_number(value: Any) -> bool:
-    """Whether a value is a number, be it NaN or infinite, and no truth value."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def with_unit(key: str) -> str:
@@ -210,43 +200,21 @@ def combinations(axes: Sequence[Axis]) -> list[dict[str, Any]]:
 
 def key_unit(key: str) -> str:
     """SI unit of a scenario's key, given dotted; empty when it has none."""
-    return str(described(key).get("unit", ""))
+    return described(key)[0]
 
 
-def described(key: str) -> Mapping[str, Any]:
-    """What the schema says of a key."""
-    schema = _schema()
-    node: Mapping[str, Any] = schema
-    found: dict[str, Any] = {}
+def described(key: str) -> tuple[str, str]:
+    """Unit and description that a scenario's key has, given dotted, or the nearest one above it; empty for none."""
+    unit, description, model, field = "", "", cast("type[BaseModel] | None", Scenario), None
     for part in key.split("."):
-        node = next((one for one in _branches(node, schema) if _child(one, part) is not None), {})
-        node = _child(node, part) or {}
-        found = {**found, **{name: one[name] for one in _branches(node, schema) for name in ("unit",) if name in one}}
-        if "description" in node:
-            found["description"] = node["description"]
-    return found
-
-
-@cache
-def _schema() -> Mapping[str, Any]:
-    return Scenario.model_json_schema()
-
-
-def _branches(node: Mapping[str, Any], schema: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """A part of the schema with what it refers to."""
-    yield node
-    for branch in (*node.get("anyOf", ()), *node.get("allOf", ())):
-        yield from _branches(branch, schema)
-    if "$ref" in node:
-        yield from _branches(schema["$defs"][node["$ref"].rpartition("/")[2]], schema)
-
-
-def _child(node: Mapping[str, Any], part: str) -> Mapping[str, Any] | None:
-    if part.isdecimal():
-        several = node.get("prefixItems")
-        return several[int(part)] if several and int(part) < len(several) else node.get("items")
-    child: Mapping[str, Any] | None = node.get("properties", {}).get(part)
-    return child
+        if part.isdecimal():
+            unit = unit_of(field.annotation, field.metadata) if field is not None else ""
+            continue
+        field = model.model_fields.get(part) if model is not None else None
+        unit = unit_of(field.annotation, field.metadata, elements=False) if field is not None else unit
+        description = (field and field.description) or description
+        model = next(groups_in(field.annotation), None) if field is not None else None
+    return unit, description
 
 
 def name_axis(axes: "Axes", axis: Axis, which: str, ticks: bool = True) -> None:

@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.units import is_number
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.palette import FAIL, GREY, PASS, paler
 from surefoot.scenarios.setup.load import read_scenario
@@ -23,7 +24,6 @@ from surefoot.scenarios.study.campaigns.spec import (
     MOST_PANELS,
     Axis,
     combinations,
-    is_number,
     name_axis,
     text,
     title,
@@ -157,13 +157,7 @@ def _passed(judged: Runs) -> int:
 
 
 def success_map(axes: Sequence[Axis], square: Callable[[Mapping[str, Any]], Square], what: str) -> Figure:
-    """A map over the last two axes, with a panel for each value of those before.
-
-    Args:
-        axes: with more than one value, at least one.
-        square: at some labels.
-        what: is shown.
-    """
+    """A map over the last two axes that vary, of what is named, with a panel for each value of those before."""
     *others, rows, columns = axes if len(axes) > 1 else (Axis("", ("",)), *axes)
     every = combinations(others)[:MOST_PANELS]
     with in_style():
@@ -245,12 +239,7 @@ def _edges(values: Sequence[float]) -> list[float]:
 
 
 def success_along(axis: Axis, at: Callable[[Mapping[str, Any]], Runs]) -> Figure:
-    """Success rate along one axis, with its interval.
-
-    Args:
-        axis: of the grid.
-        at: gives the runs at some labels.
-    """
+    """Success rate along one axis with its interval, of the runs at each of its labels."""
     with in_style():
         figure, (one,) = panels(1, 2, 2.6)
         for place, value in enumerate(axis.values):

@@ -48,11 +48,7 @@ class TableColumn:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Columns of the same length.
-
-    Attributes:
-        columns: in order.
-    """
+    """Columns of the same length, in order."""
 
     columns: tuple[TableColumn, ...]
 
@@ -153,10 +149,6 @@ def wilson(successes: int, trials: int) -> SuccessRate:
     """A success rate with its 95 % interval by Wilson's score, which holds near 0 and 1 and for few trials too.
 
     E. B. Wilson, Probable inference, the law of succession, and statistical inference, JASA 22, 1927.
-
-    Args:
-        successes: how many.
-        trials: of how many, 1 or more.
     """
     interval = binomtest(successes, trials).proportion_ci(0.95, "wilson")
     return SuccessRate(successes / trials, float(interval.low), float(interval.high))
@@ -189,8 +181,7 @@ def _names(rows: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _of_key(name: str, values: Sequence[Any]) -> TableColumn:
-    said = described(name)
-    return _column(name, values, str(said.get("unit", "")), str(said.get("description", "")))
+    return _column(name, values, *described(name))
 
 
 def _column(name: str, values: Sequence[Any], unit: str, meaning: str) -> TableColumn:

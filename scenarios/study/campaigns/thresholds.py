@@ -40,13 +40,7 @@ LimitOf = Callable[[Mapping[str, Any], float | None], float | None]
 
 
 class Found(NamedTuple):
-    """Where a search ended.
-
-    Attributes:
-        labels: by axis.
-        threshold: its end.
-        range: in which it searched, low and high.
-    """
+    """Where a search of some labels, by axis, ended in its range, low and high."""
 
     labels: Mapping[str, Any]
     threshold: Threshold
@@ -66,14 +60,7 @@ class Found(NamedTuple):
 
 
 def compass(found: Sequence[Found], axes: Sequence[Axis], key: str, limit: LimitOf) -> Figure:
-    """Thresholds around the compass: a panel for each value of the first axes, a curve for each of the last one.
-
-    Args:
-        found: every search.
-        axes: with more than one value.
-        key: that was searched.
-        limit: drawn dashed where there is one.
-    """
+    """Thresholds by direction: panels by the first axes, a curve for each value of the last one, limits dashed."""
     angle = angle_of(axes)
     assert angle is not None
     others = [axis for axis in axes if axis is not angle]
@@ -162,15 +149,7 @@ def are_named(axes: Sequence[Axis]) -> bool:
 def bars(
     found: Sequence[Found], axes: Sequence[Axis], key: str, limit: LimitOf, records: Sequence[Published] = ()
 ) -> Figure:
-    """Thresholds as bars: groups by the last axis, shades by the one before it, a panel for each of those before.
-
-    Args:
-        found: every search that came to its end.
-        axes: all of them, two or more.
-        key: that was searched.
-        limit: drawn across its bar where there is one.
-        records: published values, drawn at the group that they are of, or across all groups.
-    """
+    """Thresholds as bars: groups by the last axis, shades by the one before it, a panel for each of those before."""
     *others, shades, groups = axes
     every = [labels for labels in combinations(others) if any(_is_of(one.labels, labels) for one in found)]
     columns = max(1, min(len(others[-1].values) if others else 1, MOST_COLUMNS))
@@ -225,10 +204,7 @@ def _draw_searches(axes: Axes, found: Sequence[Found], shades: Axis, groups: Axi
 
 
 def _draw_limits(axes: Axes, top: float, limits: Sequence[tuple[float, float | None]], shades: Axis) -> None:
-    """Draw limits across their bars, and let the axes end where all else does, or at limits that are not far above.
-
-    One that is far beyond is told at the upper edge.
-    """
+    """Draw limits across their bars, in axes that end where all else does or not far above; beyond, they are told."""
     known = [(at, most) for at, most in limits if most is not None]
     top = max([top, *(1.06 * most for _, most in known if most <= 1.5 * top)])
     beyond = [(at, most) for at, most in known if most > top]

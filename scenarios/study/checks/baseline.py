@@ -14,6 +14,7 @@ import yaml
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.source import decoded, parse, plain_scalar
+from surefoot.scenarios.file.units import is_number
 from surefoot.scenarios.judge.metrics import OWN, known
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
@@ -181,12 +182,7 @@ def _spoilt(what: str) -> ScenarioError:
 
 
 def _of_values(data: Any, path: Path) -> Baseline:
-    """A baseline of what its file holds.
-
-    Raises:
-        ScenarioError: its settings are no YAML.
-        ValueError: it is none; says why.
-    """
+    """A baseline of what its file holds; ScenarioError or ValueError where it is none."""
     groups = {"scenario": object, "settings": str, "metrics": dict, "trace": list}
     values = data if isinstance(data, dict) else {}
     if wrong := [name for name, kind in groups.items() if name not in values or not isinstance(values[name], kind)]:
@@ -219,11 +215,7 @@ def write_baseline(path: Path, baseline: Baseline) -> None:
 
 
 def _world(log: Log) -> Mapping[str, Option]:
-    """Options of the world that a log carries; none of a pendulum's.
-
-    Raises:
-        LogError: it is damaged.
-    """
+    """Options of the world that a log carries, none of a pendulum's; LogError where it is damaged."""
     try:
         return world_options(log.attachments[WORLD_FILE].decode()) if WORLD_FILE in log.attachments else {}
     except ValueError as error:
@@ -256,7 +248,7 @@ def read_trace(rows: Any) -> Trace:
         raise ValueError(f"its trace has columns other than {', '.join((*_LABELS, *COLUMNS))}")
     if any(len(row) != len(head) for row in below):
         raise ValueError("its trace has rows of other lengths than the first")
-    if any(not (x is None or _is_finite(x)) for row in below for x in row[2:]):
+    if any(not (x is None or (is_number(x) and math.isfinite(x))) for row in below for x in row[2:]):
         raise ValueError("its trace holds what is no finite number")
     columns = {
         name: np.array([math.nan if row[i] is None else float(row[i]) for row in below])
@@ -329,7 +321,3 @@ def _rounded(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _rounded(one) for name, one in value.items()}
     return float(f"{value:.6g}") if isinstance(value, float) else value
-
-
-def _is_finite(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

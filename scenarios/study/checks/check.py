@@ -51,13 +51,7 @@ UNTOLD: tuple[CheckStatus, ...] = ("could not run", "could not write", "unreadab
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A scenario and its baseline.
-
-    Attributes:
-        reference: as the user gave it: a catalogue name or a file.
-        scenario: fit to run.
-        baseline: where its baseline is, or would be.
-    """
+    """A scenario, fit to run, that a user referred to, and where its baseline is, or would be."""
 
     reference: str
     scenario: Scenario
@@ -125,11 +119,7 @@ def cases(references: Sequence[str], folder: Path | None = None, overrides: Sequ
 
 
 def _unfolded(reference: str) -> list[str]:
-    """The scenario files of a folder, or the reference itself.
-
-    Raises:
-        ScenarioError: the folder holds none.
-    """
+    """The scenario files of a folder, or the reference itself; ScenarioError for a folder without any."""
     folder = Path(reference)
     if reference in catalogue.OURS or not folder.is_dir():
         return [reference]
@@ -185,13 +175,7 @@ def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Check
 
 
 def compared(case: Case, before: Baseline, now: Baseline) -> Checked:
-    """What a run is by its baseline alone.
-
-    Args:
-        case: that was run.
-        before: its baseline.
-        now: what the run would be as one.
-    """
+    """What a run is by its baseline alone."""
     if others := before.others(case.scenario.name, case.settings):
         return Checked(case, "other scenario", tuple(others))
     gaps, world = before.gaps(now, case.scenario.criteria), before.other_world(now)

@@ -11,9 +11,9 @@ from functools import partial
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, headings
 from surefoot.planner.types import GRAVITY
-from surefoot.scenarios.judge.body import headings, leg
+from surefoot.scenarios.judge.body import leg
 from surefoot.scenarios.judge.digest import Array, RunView
 from surefoot.scenarios.judge.walking import runs_of
 from surefoot.scenarios.log import Log
@@ -182,14 +182,11 @@ def _sway(run: RunView) -> Array:
     return np.asarray(np.linalg.norm((run.field("/truth", "com") - run.field("/reference", "com"))[:, :2], axis=1))
 
 
-def _tilt(run: RunView) -> Array:
-    return run.field("/truth", "torso_tilt")
-
-
 def _com(run: RunView, parts: Sequence[Stage]) -> Array:
     return run.field("/truth", "com")[[one.end - 1 for one in parts]]
 
 
+_TILT: Callable[[RunView], Array] = lambda run: run.field("/truth", "torso_tilt")  # noqa: E731
 _LAG = "lag of the measured ground forces behind those that the controller plans {stage}"
 _SWING = "swing task: largest distance of the {foot} sole from its reference {stage}"
 _BALANCE = "balance: largest distance of the CoM along the ground from where the controller was to hold it {stage}"
@@ -219,7 +216,7 @@ SIGNS: tuple[Sign, ...] = (
     *map(_leg, FOOT_NAMES),
     Sign(("zmp",), 4, (5e-3, 0.05), "mm", "balance", _ZMP, _each(_zmp_error)),
     Sign(("sway",), 5, (2e-4, 0.05), "mm", "balance", _BALANCE, _each(_sway)),
-    Sign(("tilt",), 4, (2e-3, 0.05), "deg", "balance", "largest tilt of the torso {stage}", _each(_tilt), body=True),
+    Sign(("tilt",), 4, (2e-3, 0.05), "deg", "balance", "largest tilt of the torso {stage}", _each(_TILT), body=True),
     Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), "mm", "balance", "CoM at the end of {label}", _com),
 )
 """What is kept of a run; of those that part in the same stage, the first is nearest to the cause. Torques come late:

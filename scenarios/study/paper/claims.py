@@ -10,26 +10,9 @@ from typing import Literal, NamedTuple
 import yaml
 
 from surefoot.scenarios.show.kit.html import number
+from surefoot.scenarios.study.paper import studies
 from surefoot.scenarios.study.paper.results import MM, PERCENT, Results, Sample, balance_text, spread_text
-from surefoot.scenarios.study.paper.studies import (
-    CLAIMANTS,
-    GAITS,
-    HEIGHTS,
-    KNEES,
-    NOISE_ALONE,
-    NOISE_STAIRS,
-    NOISE_WALK,
-    PUSHES,
-    SHOVE_DIRECTIONS,
-    SHOVE_IMPULSES,
-    STAIRS,
-    STEP_LAW,
-    WALK,
-    ZMP_ONLY,
-    PaperWorld,
-    Study,
-    knee_study,
-)
+from surefoot.scenarios.study.paper.studies import PaperWorld, Study, knee_study
 
 Grade = Literal["holds", "holds with a change", "does not hold", "not measured"]
 
@@ -59,13 +42,7 @@ SAMPLE_TIME, _ROUNDING = 0.02, 1e-6
 
 
 class Assessment(NamedTuple):
-    """What was found about a claim.
-
-    Attributes:
-        pendulum: what the point-mass worlds show, in a sentence.
-        full: what full physics shows, in a sentence.
-        verdict: by the claim's rule.
-    """
+    """What the point-mass worlds and full physics show of a claim, in a sentence each, and the verdict by its rule."""
 
     pendulum: str
     full: str
@@ -73,15 +50,7 @@ class Assessment(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """A claim of the paper.
-
-    Attributes:
-        name: its anchor.
-        section: of the paper.
-        text: what the paper says.
-        rule: how the verdict follows from the numbers, in words.
-        judge: the same as a function.
-    """
+    """A claim of the paper: its anchor, section and words, and the rule of its verdict in words and as a function."""
 
     name: str
     section: str
@@ -137,10 +106,10 @@ def any_of(verdicts: Sequence[bool | None]) -> bool | None:
     return None if None in verdicts else False
 
 
-def survival(results: Results, studies: Sequence[Study], full: Sequence[Study], margin: float) -> Assessment:
+def survival(results: Results, points: Sequence[Study], full: Sequence[Study], margin: float) -> Assessment:
     """Whether the robot stays up and its ZMP inside, as printed, changed and in full physics."""
-    printed, *changed = ([results.sample(study, profile) for study in studies] for profile in CLAIMANTS)
-    plant = [sample for study in studies if (sample := results.sample(study, "paper", "cart-table")).outcomes]
+    printed, *changed = ([results.sample(study, profile) for study in points] for profile in studies.CLAIMANTS)
+    plant = [sample for study in points if (sample := results.sample(study, "paper", "cart-table")).outcomes]
     body = [results.sample(study, "default", "full") for study in full]
     rows = [row for row in (plant, printed, *changed) if row]
     verdict = grade(stable(printed, margin), any_of([stable(row, margin) for row in changed]), stable(body, margin))
@@ -149,7 +118,7 @@ def survival(results: Results, studies: Sequence[Study], full: Sequence[Study], 
 
 def hard_constraint(results: Results) -> Assessment:
     """Whether the constrained problem had a solution at every plan."""
-    samples, body = (results.of(WALK, "paper", "repaired", world=world) for world in _POINT_AND_BODY)
+    samples, body = (results.of(studies.WALK, "paper", "repaired", world=world) for world in _POINT_AND_BODY)
     printed, changed = (
         None if share is None or not sample.complete else share.least >= 1.0
         for sample in samples
@@ -166,10 +135,10 @@ def _feasible_text(samples: Iterable[Sample]) -> str:
 
 def zmp_filter(results: Results) -> Assessment:
     """Whether a Kalman filter that sees the ZMP alone gives a state that can be walked with."""
-    alone, both = (results.of(study, "repaired", "default") for study in (ZMP_ONLY, NOISE_ALONE))
+    alone, both = (results.of(study, "repaired", "default") for study in (studies.ZMP_ONLY, studies.NOISE_ALONE))
     rows = [f"ZMP alone, {balance_text([sample])}" for sample in alone]
     rows += [f"with the CoM, {balance_text([sample])}" for sample in both]
-    body = results.sample(NOISE_WALK, "default", "full")
+    body = results.sample(studies.NOISE_WALK, "default", "full")
     verdict = grade(stable(alone), any_of([stable([sample]) for sample in both]), stable([body]))
     return Assessment(". ".join(rows), f"with the CoM, {balance_text([body])}", verdict)
 
@@ -189,7 +158,7 @@ def frontal_effect(results: Results) -> Assessment:
 
 def _height_effect(results: Results, profile: str, world: PaperWorld) -> tuple[float, float] | None:
     """Most that a height error adds to the ZMP error's RMS, in x and in y [m]."""
-    base, *errors = (results.sample(study, profile, world) for study in (WALK, *HEIGHTS))
+    base, *errors = (results.sample(study, profile, world) for study in (studies.WALK, *studies.HEIGHTS))
     if not base.complete or not all(sample.complete and not sample.falls for sample in (base, *errors)):
         return None
     x, y = (
@@ -209,13 +178,13 @@ def _effect_text(name: str, effect: tuple[float, float] | None) -> str:
 
 def preview(results: Results) -> Assessment:
     """Whether previewing the changing dynamics lowers the ZMP error."""
-    points = {study: _gain(results, study, "pendulum") for study in (WALK, *STAIRS)}
-    body = {study: _gain(results, study, "full") for study in (WALK, *STAIRS[:2])}
+    points = {study: _gain(results, study, "pendulum") for study in (studies.WALK, *studies.STAIRS)}
+    body = {study: _gain(results, study, "full") for study in (studies.WALK, *studies.STAIRS[:2])}
     verdict: Grade = "not measured"
     if all(points.values()):
         better = {study: gain is not None and gain[0] >= BETTER and gain[1] for study, gain in points.items()}
-        on_stairs = all(better[study] for study in STAIRS)
-        verdict = grade(on_stairs and better[WALK], on_stairs)
+        on_stairs = all(better[study] for study in studies.STAIRS)
+        verdict = grade(on_stairs and better[studies.WALK], on_stairs)
     return Assessment(_gains_text(points), _gains_text(body), verdict)
 
 
@@ -235,7 +204,7 @@ def _gains_text(gains: Mapping[Study, tuple[float, bool] | None]) -> str:
 
 def adaptation(results: Results) -> Assessment:
     """Whether moving the next footstep lets the robot survive stronger pushes; by the printed law, whether it walks."""
-    law = results.sample(STEP_LAW, "paper")
+    law = results.sample(studies.STEP_LAW, "paper")
     fixed, moved = (_largest_mean(results, kind) for kind in ("none", "location"))
     if fixed is None or moved is None:
         return Assessment("not measured", "not run", "not measured")
@@ -249,15 +218,15 @@ def adaptation(results: Results) -> Assessment:
 
 def _largest_mean(results: Results, kind: str) -> float | None:
     """Largest impulse survived, mean over directions; one below the least tried counts as a step of the ladder less."""
-    step = SHOVE_IMPULSES[1] - SHOVE_IMPULSES[0]
-    found = [results.survived(kind, direction) for direction in SHOVE_DIRECTIONS]
-    largest = [max(impulses, default=SHOVE_IMPULSES[0] - step) for impulses in found if impulses is not None]
+    step = studies.SHOVE_IMPULSES[1] - studies.SHOVE_IMPULSES[0]
+    found = [results.survived(kind, direction) for direction in studies.SHOVE_DIRECTIONS]
+    largest = [max(impulses, default=studies.SHOVE_IMPULSES[0] - step) for impulses in found if impulses is not None]
     return sum(largest) / len(largest) if len(largest) == len(found) else None
 
 
 def online(results: Results) -> Assessment:
     """Whether a plan is made within a sample time."""
-    points, body = results.of(WALK, *CLAIMANTS), results.sample(WALK, "default", "full")
+    points, body = results.of(studies.WALK, *studies.CLAIMANTS), results.sample(studies.WALK, "default", "full")
     medians = [sample.greatest("planner_time", "median") for sample in (points[0], body)]
     known = [median for median in medians if median is not None]
     if len(known) < len(medians):
@@ -274,24 +243,18 @@ def _plan_time_text(sample: Sample) -> str:
 
 
 def saving(results: Results, metric: str, name: str) -> Assessment:
-    """Whether stretched knees take less effort than bent ones at the same speed.
-
-    Args:
-        results: of the knee studies.
-        metric: that measures the effort.
-        name: of it.
-    """
-    found = {gait: _saving(results, gait, metric) for gait in GAITS}
+    """Whether stretched knees take less effort, by a metric and its name, than bent ones at the same speed."""
+    found = {gait: _saving(results, gait, metric) for gait in studies.GAITS}
     parts = [f"{gait} gait {_share_text(saved)}" for gait, saved in found.items()]
     text = f"{name}, stretched against bent knees: {', '.join(parts)}"
     lower = [saved >= SAVES for saved in found.values() if saved is not None]
-    verdict = grade(all(lower), any(lower)) if len(lower) == len(GAITS) else "not measured"
+    verdict = grade(all(lower), any(lower)) if len(lower) == len(studies.GAITS) else "not measured"
     return Assessment(_NO_KNEES, text, verdict)
 
 
 def _saving(results: Results, gait: str, metric: str) -> float | None:
     """Share of effort that stretched knees save; None unless both were walked, at the same speed."""
-    samples = [results.sample(knee_study(gait, knee), "default", "full") for knee in KNEES]
+    samples = [results.sample(knee_study(gait, knee), "default", "full") for knee in studies.KNEES]
     if not all(sample.complete and not sample.falls for sample in samples):
         return None
     speeds, efforts = ([sample.median(name) for sample in samples] for name in ("speed_mean", metric))
@@ -308,10 +271,10 @@ def _share_text(saved: float | None) -> str:
 
 def stretched_knees(results: Results) -> Assessment:
     """Whether the robot walks with mostly stretched knees."""
-    samples = {gait: results.sample(knee_study(gait, "stretched"), "default", "full") for gait in GAITS}
+    samples = {gait: results.sample(knee_study(gait, "stretched"), "default", "full") for gait in studies.GAITS}
     angles = {gait: sample.median("knee_angle_mean") for gait, sample in samples.items() if sample.complete}
     found = {gait: angle for gait, angle in angles.items() if angle is not None}
-    if len(found) < len(GAITS):
+    if len(found) < len(studies.GAITS):
         return Assessment(_NO_KNEES, "not measured", "not measured")
     parts = [f"{gait} gait {number(angle, 180 / math.pi)} degrees" for gait, angle in found.items()]
     stretched = [angle <= STRETCHED for angle in found.values()]
@@ -320,15 +283,17 @@ def stretched_knees(results: Results) -> Assessment:
 
 
 JUDGES: Mapping[str, Callable[[Results], Assessment]] = {
-    "walk": partial(survival, studies=(WALK,), full=(WALK,), margin=0.0),
+    "walk": partial(survival, points=(studies.WALK,), full=(studies.WALK,), margin=0.0),
     "hard": hard_constraint,
-    "stairs": partial(survival, studies=STAIRS[:1], full=STAIRS[:1], margin=0.0),
+    "stairs": partial(survival, points=studies.STAIRS[:1], full=studies.STAIRS[:1], margin=0.0),
     "preview": preview,
-    "noise": partial(survival, studies=(NOISE_WALK, NOISE_STAIRS), full=(NOISE_WALK,), margin=FOOT_EDGE),
+    "noise": partial(
+        survival, points=(studies.NOISE_WALK, studies.NOISE_STAIRS), full=(studies.NOISE_WALK,), margin=FOOT_EDGE
+    ),
     "filter": zmp_filter,
-    "height": partial(survival, studies=HEIGHTS, full=HEIGHTS, margin=FOOT_EDGE),
+    "height": partial(survival, points=studies.HEIGHTS, full=studies.HEIGHTS, margin=FOOT_EDGE),
     "frontal": frontal_effect,
-    "push": partial(survival, studies=PUSHES, full=PUSHES, margin=FOOT_EDGE),
+    "push": partial(survival, points=studies.PUSHES, full=studies.PUSHES, margin=FOOT_EDGE),
     "adaptation": adaptation,
     "online": online,
     "stretched": stretched_knees,

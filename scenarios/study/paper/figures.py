@@ -9,34 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
-from surefoot.scenarios.palette import (
-    BLACK,
-    BLUE,
-    COM,
-    COM_PLANNED,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    PUSH,
-    SKY,
-    VERMILION,
-    ZMP,
-    ZMP_PLANNED,
-    Color,
-)
 from surefoot.scenarios.show.figures.motion import draw_support, support_handle
-from surefoot.scenarios.show.kit.figures import (
-    DASHED,
-    PAGE_WIDTH,
-    canvas,
-    curve,
-    in_style,
-    note,
-    or_say,
-    reference_curve,
-)
+from surefoot.scenarios.show.kit import figures as kit
 from surefoot.scenarios.show.kit.shading import background
 from surefoot.scenarios.show.logview import LogView, MissingError
 from surefoot.scenarios.study.paper import studies
@@ -50,12 +27,7 @@ _HEAD = 0.55
 
 @dataclass(frozen=True, slots=True)
 class PanelColumn:
-    """Runs drawn in the same axes, most often one.
-
-    Attributes:
-        title: above the column.
-        samples: label and sample of each run; the run of the first seed is drawn.
-    """
+    """Runs drawn in the same axes, most often one: a title, and label and sample of each, whose first seed is drawn."""
 
     title: str
     samples: tuple[tuple[str, Sample], ...]
@@ -80,8 +52,8 @@ class PanelRow:
 
 def grid(columns: Sequence[PanelColumn], rows: Sequence[PanelRow]) -> Figure:
     """Draw a figure; a run that is missing leaves a note in its column."""
-    with in_style():
-        figure, (top, area) = canvas(PAGE_WIDTH, (_HEAD, sum(row.height for row in rows) + 0.5))
+    with kit.in_style():
+        figure, (top, area) = kit.canvas(kit.PAGE_WIDTH, (_HEAD, sum(row.height for row in rows) + 0.5))
         heights = [row.height for row in rows]
         axes = area.subplots(len(rows), len(columns), sharex="col", squeeze=False, height_ratios=heights)
         handles: dict[str, object] = {}
@@ -104,15 +76,15 @@ def _draw_column(axes: Sequence[Axes], column: PanelColumn, rows: Sequence[Panel
         views = [(label, _view(sample)) for label, sample in column.samples]
     except MissingError as missing:
         for one in axes:
-            note(one, str(missing))
+            kit.note(one, str(missing))
         return {}
     behind = background(max((view for _, view in views), key=lambda view: view.end))
     behind.shade(axes)
     entries: dict[str, object] = {"planned support, bounds": support_handle()}
     for one, row in zip(axes, rows, strict=True):
         for push in behind.pushes:  # 10 ms of 14 s are less than a pixel
-            one.axvline(push.start, color=PUSH, linewidth=1.0, zorder=1.2)
-        with or_say(one):
+            one.axvline(push.start, color=palette.PUSH, linewidth=1.0, zorder=1.2)
+        with kit.or_say(one):
             row.draw(one, views)
         found, labels = one.get_legend_handles_labels()
         entries |= dict(zip(labels, found, strict=True))
@@ -121,11 +93,7 @@ def _draw_column(axes: Sequence[Axes], column: PanelColumn, rows: Sequence[Panel
 
 
 def _view(sample: Sample) -> LogView:
-    """The first run of a sample.
-
-    Raises:
-        MissingError: there is none.
-    """
+    """The first run of a sample; MissingError where there is none."""
     if not sample.outcomes:
         raise MissingError("not run")
     first = sample.outcomes[0]
@@ -153,7 +121,7 @@ POINTS = 250
 _PAPER_JERK = 1.5
 """Bound on the jerk in the paper [m/s³]."""
 
-SEVERAL = (BLUE, SKY, ORANGE, VERMILION)
+SEVERAL = (palette.BLUE, palette.SKY, palette.ORANGE, palette.VERMILION)
 """Colours of runs in the same axes, from the least to the greatest value of what differs."""
 
 
@@ -161,8 +129,8 @@ def position(axes: Axes, views: Views, axis: int) -> None:
     """Reference ZMP, measured ZMP, CoM and the bounds of the support along an axis."""
     ((_, view),) = views
     draw_support(axes, view, axis)
-    _along(axes, view, "/contact", "zmp", axis, "ZMP measured", ZMP, linewidth=1.3)
-    _along(axes, view, "/truth", "com", axis, "CoM", COM, linewidth=1.4)
+    _along(axes, view, "/contact", "zmp", axis, "ZMP measured", palette.ZMP, linewidth=1.3)
+    _along(axes, view, "/truth", "com", axis, "CoM", palette.COM, linewidth=1.4)
     _around_reference(axes, view, axis, 0.12, 0.1)
 
 
@@ -175,14 +143,16 @@ def zmp_of_several(axes: Axes, views: Views, axis: int) -> None:
     _around_reference(axes, longest, axis, 0.06, 0.08)
 
 
-def _along(axes: Axes, view: LogView, topic: str, name: str, axis: int, label: str, color: Color, **style: Any) -> None:
-    curve(axes, view.time(topic), view.field(topic, name, 3)[:, axis], label, color, POINTS, **style)
+def _along(
+    axes: Axes, view: LogView, topic: str, name: str, axis: int, label: str, color: palette.Color, **style: Any
+) -> None:
+    kit.curve(axes, view.time(topic), view.field(topic, name, 3)[:, axis], label, color, POINTS, **style)
 
 
 def _around_reference(axes: Axes, view: LogView, axis: int, room: float, share: float) -> None:
     """Draw the reference of the ZMP, and leave some room around it, and a share of its range [m]."""
     reference = view.field("/reference", "zmp_reference", 2)[:, axis]
-    reference_curve(axes, view.time("/reference"), reference, "ZMP reference", ZMP_PLANNED, POINTS)
+    kit.reference_curve(axes, view.time("/reference"), reference, "ZMP reference", palette.ZMP_PLANNED, POINTS)
     reference = reference[np.isfinite(reference)]
     margin = room + share * np.ptp(reference)
     axes.set_ylim(reference.min() - margin, reference.max() + margin)
@@ -192,9 +162,18 @@ def jerk(axes: Axes, views: Views, axis: int) -> None:
     """First jerk of each plan, with the paper's bound."""
     ((_, view),) = views
     first = np.ascontiguousarray(view.field("/plan", "jerk", -1, 2)[:, 0, axis])
-    curve(axes, view.time("/plan"), first, "CoM jerk commanded", PURPLE, POINTS, drawstyle="steps-post", linewidth=0.8)
+    kit.curve(
+        axes,
+        view.time("/plan"),
+        first,
+        "CoM jerk commanded",
+        palette.PURPLE,
+        POINTS,
+        drawstyle="steps-post",
+        linewidth=0.8,
+    )
     for sign in (-1.0, 1.0):
-        axes.axhline(sign * _PAPER_JERK, color=BLACK, linewidth=0.6, linestyle=(0, (1, 2)))
+        axes.axhline(sign * _PAPER_JERK, color=palette.BLACK, linewidth=0.6, linestyle=(0, (1, 2)))
     largest = max(1.2 * _PAPER_JERK, float(np.nanmax(np.abs(first))) * 1.1)
     axes.set_ylim(-largest, largest)
 
@@ -202,20 +181,22 @@ def jerk(axes: Axes, views: Views, axis: int) -> None:
 def height(axes: Axes, views: Views) -> None:
     """Height of the CoM."""
     ((_, view),) = views
-    _along(axes, view, "/truth", "com", 2, "CoM height", COM, linewidth=1.4)
-    _along(axes, view, "/reference", "com", 2, "its reference", COM_PLANNED, linestyle=DASHED, linewidth=0.6)
+    _along(axes, view, "/truth", "com", 2, "CoM height", palette.COM, linewidth=1.4)
+    _along(
+        axes, view, "/reference", "com", 2, "its reference", palette.COM_PLANNED, linestyle=kit.DASHED, linewidth=0.6
+    )
     planned = view.field("/reference", "com", 3)[:, 2]
     axes.set_ylim(planned.min() - 0.05, planned.max() + 0.05)
 
 
 RISERS = (0.0, 0.10, 0.15, 0.18)
-_SHOWN = {"lti": VERMILION, "preview": PURPLE, "repaired": GREEN, "default": BLUE}
+_SHOWN = {"lti": palette.VERMILION, "preview": palette.PURPLE, "repaired": palette.GREEN, "default": palette.BLUE}
 
 
 def preview_chart(results: Results) -> Figure:
     """Draw it; a profile without results has no line."""
-    with in_style():
-        figure, (area,) = canvas(7.0, (2.8,))
+    with kit.in_style():
+        figure, (area,) = kit.canvas(7.0, (2.8,))
         axes = area.subplots()
         for profile, color in _SHOWN.items():
             samples = zip(RISERS, (results.sample(study, profile) for study in (WALK, *STAIRS)), strict=True)

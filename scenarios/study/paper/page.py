@@ -13,18 +13,8 @@ from matplotlib.figure import Figure
 
 from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.run.run import made_folder
-from surefoot.scenarios.show.kit.html import (
-    MISSING,
-    PageTable,
-    TableCell,
-    TableRow,
-    details,
-    document,
-    escape,
-    figure_html,
-    section,
-    tag,
-)
+from surefoot.scenarios.show.kit import html
+from surefoot.scenarios.show.kit.html import MISSING, PageTable, TableCell, TableRow, escape, section, tag
 from surefoot.scenarios.show.kit.html import tally as tally_html
 from surefoot.scenarios.study.campaigns.engine import Worker, local_workers
 from surefoot.scenarios.study.campaigns.sweep import CampaignBar
@@ -191,7 +181,7 @@ def runs_table(results: Results) -> str:
     ]
     failures = PageTable("failures", ("could not run", "why"), failed).html if failed else ""
     table = PageTable("runs-table", ("run", "end", "command"), rows, kind="runs").html
-    return failures + details(f"All {len(rows)} runs with their commands", table, name="all-runs")
+    return failures + html.details(f"All {len(rows)} runs with their commands", table, name="all-runs")
 
 
 _BALANCES: dict[str, tuple[str, tuple[Study, ...]]] = {
@@ -221,7 +211,7 @@ def page(results: Results, plates: Plates = PLATES) -> str:
     }
     content["pushes"].append(shove_table(results).html)
     written = (_section(part, content.get(part.name, []), results, plates) for part in every)
-    return document(TITLE, "\n".join((_top(results, found), _contents(every), *written)))
+    return html.document(TITLE, "\n".join((_top(results, found), _contents(every), *written)))
 
 
 def tally(claims: Judged) -> dict[Grade, int]:
@@ -253,7 +243,7 @@ def _section(part: PageSection, content: Sequence[str], results: Results, plates
     """Its text, its figures, its tables."""
     points = tag("ul", "".join(tag("li", entry) for entry in part.points)) if part.points else ""
     figures = (
-        figure_html(plates[one["name"]](results), one["caption"], one["name"], "half" if one.get("half") else "")
+        html.figure_html(plates[one["name"]](results), one["caption"], one["name"], "half" if one.get("half") else "")
         for one in part.figures
         if one["name"] in plates
     )
@@ -269,7 +259,7 @@ def _claims_table(claims: Judged) -> str:
 def _claim_row(claim: Claim, found: Assessment) -> TableRow:
     where = tag("span", f"section {escape(claim.section)}", kind="section", id=claim.name)
     verdict = tag("span", found.verdict, kind=f"verdict {_KINDS[found.verdict]}")
-    says = f"{escape(claim.text)} {where}{details('rule', escape(claim.rule))}"
+    says = f"{escape(claim.text)} {where}{html.details('rule', escape(claim.rule))}"
     return says, _sentences(found.pendulum), _sentences(found.full), verdict
 
 
@@ -281,13 +271,6 @@ def _sentences(text: str) -> str:
 PAGE_NAME, NUMBERS_NAME, RUNS_NAME = "paper.html", "paper.json", "runs"
 
 
-class PaperWritten(NamedTuple):
-    """What the command left behind: the page, and the results that it is of."""
-
-    page: Path
-    results: Results
-
-
 def paper(
     out: Path,
     jobs: int,
@@ -295,7 +278,7 @@ def paper(
     every: Sequence[Experiment] | None = None,
     workers: Callable[[Path, int, bool], Sequence[Worker]] = local_workers,
     plates: Plates = PLATES,
-) -> PaperWritten:
+) -> tuple[Path, Results]:
     """Run what has not been run and write the page.
 
     Args:
@@ -319,7 +302,7 @@ def paper(
     return write(results, out, replace, plates)
 
 
-def write(results: Results, out: Path, replace: bool = False, plates: Plates = PLATES) -> PaperWritten:
+def write(results: Results, out: Path, replace: bool = False, plates: Plates = PLATES) -> tuple[Path, Results]:
     """Write the page with these figures, and the numbers behind it.
 
     Raises:
@@ -329,7 +312,7 @@ def write(results: Results, out: Path, replace: bool = False, plates: Plates = P
         temporary.write_text(page(results, plates), encoding="utf-8")
     with write_whole(out / NUMBERS_NAME, replace) as temporary:
         temporary.write_text(json.dumps(_numbers(results), indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    return PaperWritten(out / PAGE_NAME, results)
+    return out / PAGE_NAME, results
 
 
 def _numbers(results: Results) -> dict[str, object]:

@@ -20,15 +20,8 @@ from surefoot.scenarios.study.campaigns.engine import Worker
 from surefoot.scenarios.study.campaigns.journal import Journal
 from surefoot.scenarios.study.campaigns.points import Point, Record, Single
 from surefoot.scenarios.study.campaigns.sweep import CampaignBar, run_cells
-from surefoot.scenarios.study.paper.studies import (
-    PROFILES,
-    SHOVE_IMPULSES,
-    WORLD_SETTINGS,
-    Experiment,
-    PaperWorld,
-    Study,
-    shove,
-)
+from surefoot.scenarios.study.paper import studies
+from surefoot.scenarios.study.paper.studies import Experiment, PaperWorld, Study
 
 ENDED = ("completed", "fall")
 """How a run ends that is a result; a fall is one."""
@@ -72,13 +65,7 @@ class ExperimentResult:
 def run_experiments(
     experiments: Sequence[Experiment], folder: Path, workers: Sequence[Worker], bar: CampaignBar | None = None
 ) -> tuple[ExperimentResult, ...]:
-    """Run what has not been run; one that fails does not stop the others.
-
-    Args:
-        experiments: to run.
-        folder: of all runs.
-        workers: that make the runs.
-        bar: is told each.
+    """Run what has not been run, telling a bar each; one that fails does not stop the others.
 
     Returns:
         an outcome for each experiment, in their order.
@@ -128,14 +115,7 @@ class Spread(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """Runs that differ in their seed alone.
-
-    Attributes:
-        study: that was run.
-        profile: of the planner.
-        world: in which.
-        outcomes: by seed.
-    """
+    """Runs of a study, with a profile, in a world, that differ in their seed alone."""
 
     study: Study
     profile: str
@@ -193,11 +173,7 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Results:
-    """All outcomes.
-
-    Attributes:
-        outcomes: in the order of the experiments.
-    """
+    """All outcomes, in the order of the experiments."""
 
     outcomes: tuple[ExperimentResult, ...]
 
@@ -210,15 +186,15 @@ class Results:
         """Runs of a study with some profiles."""
         return [self.sample(study, profile, world) for profile in profiles]
 
-    def samples(self, studies: Iterable[Study]) -> list[Sample]:
+    def samples(self, some: Iterable[Study]) -> list[Sample]:
         """Every sample of some studies that was run: study by study, world by world, in the order of the profiles."""
         kinds = {_kind(outcome.experiment) for outcome in self.outcomes}
-        every = product(studies, WORLD_SETTINGS, PROFILES)
+        every = product(some, studies.WORLD_SETTINGS, studies.PROFILES)
         return [self.sample(*kind) for study, world, profile in every if (kind := (study, profile, world)) in kinds]
 
     def survived(self, adaptation: str, direction: str) -> list[int] | None:
         """Impulses of a direction that did not make the robot fall [N s]; None when one of the runs is missing."""
-        samples = {i: self.sample(shove(i, direction, adaptation), "default") for i in SHOVE_IMPULSES}
+        samples = {i: self.sample(studies.shove(i, direction, adaptation), "default") for i in studies.SHOVE_IMPULSES}
         if not all(sample.complete for sample in samples.values()):
             return None
         return [impulse for impulse, sample in samples.items() if not sample.falls]
@@ -266,10 +242,6 @@ def _range(spread: Spread, scale: float, digits: int = 3) -> str:
     return "" if least == greatest else f"{least} … {greatest}"
 
 
-def _fell_text(sample: Sample) -> str:
-    return f"{sample.falls} of {len(sample.runs)}"
-
-
 def first_fall(sample: Sample) -> str:
     """When the first of those that fell did, in a phrase; empty when none fell."""
     return f"from {number(min(sample.values('fall_time')))} s on" if sample.falls else ""
@@ -277,7 +249,7 @@ def first_fall(sample: Sample) -> str:
 
 def fell_text(sample: Sample) -> str:
     """How many of how many fell, and when the first of them."""
-    return ", ".join(filter(None, (_fell_text(sample), first_fall(sample))))
+    return ", ".join(filter(None, (f"{sample.falls} of {len(sample.runs)}", first_fall(sample))))
 
 
 def balance_text(samples: Sequence[Sample]) -> str:

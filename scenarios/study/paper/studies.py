@@ -39,14 +39,7 @@ class Study:
 
 @dataclass(frozen=True, slots=True)
 class Experiment:
-    """One run.
-
-    Attributes:
-        study: what is run.
-        profile: of the planner.
-        world: in which.
-        seed: of everything random.
-    """
+    """One run: of a study, with a profile, in a world, with a seed of everything random."""
 
     study: Study
     profile: str

@@ -7,8 +7,8 @@ import pytest
 
 from surefoot.models import RobotOptions, describe
 from surefoot.models.consistency import EnginePair
+from surefoot.models.names import SHIPPED
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.models.registry import SHIPPED
 from surefoot.models.robot_file.paths import resolve
 from surefoot.models.robot_file.reduced import reduced
 from surefoot.models.robot_file.schema import read

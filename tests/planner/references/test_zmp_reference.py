@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.planner.geometry import convex_hull, frame_rotation, signed_distance, sole_corners
+from surefoot.planner.geometry import frame_rotation, signed_distance, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.zmp_reference import present_support, support_table, zmp_reference
@@ -11,6 +11,7 @@ from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
+from surefoot.polygon import convex_hull
 
 pytestmark = pytest.mark.unit
 

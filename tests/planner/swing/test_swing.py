@@ -147,3 +147,18 @@ def test_a_swing_bends_round_a_corner_smoothly_and_lands_as_before():
     again = bent.retargeted(2.1, bent.target).around(corner, 0.02)
     assert again.bend_time == pytest.approx(bent.bend_time, abs=0.021)
     np.testing.assert_allclose(again.evaluate(2.1), later, atol=1e-9)
+
+
+@pytest.mark.parametrize("bent", [False, True])
+def test_quick_looks_at_a_swing_see_what_it_does(bent):
+    trajectory = swing(0.1, glide=(2.1, 2.3, 2.6))
+    if bent:
+        trajectory = trajectory.around(np.array([1.1, 0.3]), 0.02)
+        assert trajectory.bent
+    times = np.linspace(2.1, 2.79, 70)
+    seen = np.array([trajectory.evaluate(time) for time in times.tolist()])
+    np.testing.assert_allclose(trajectory.bends(times), seen[:, 2, :2], atol=1e-9)
+    if not bent:
+        places = [trajectory.place(time) for time in times.tolist()]
+        np.testing.assert_allclose(places, seen[:, 0, :2], atol=1e-12)
+        assert trajectory.place(3.0) == tuple(trajectory.target[:2])

@@ -1,5 +1,6 @@
 """The command line: exit codes, one message for what a user can mend, JSON alone on standard output."""
 
+import importlib
 import json
 import os
 import re
@@ -13,11 +14,11 @@ import yaml
 from typer.main import get_command
 
 from surefoot.errors import ParameterError
-from surefoot.models.registry import SHIPPED
+from surefoot.models.names import SHIPPED
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.apps import cli
 from surefoot.scenarios.apps.cli import app
-from surefoot.scenarios.apps.listing import starter
+from surefoot.scenarios.apps.starter import starter
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.metrics import OWN
@@ -26,7 +27,7 @@ from surefoot.scenarios.run import interrupts, run
 from surefoot.scenarios.setup import walk
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import Robots
 
 pytestmark = pytest.mark.unit
 
@@ -38,8 +39,8 @@ def surefoot(monkeypatch, capsys, robot, robots, motion):
     def command(*arguments, loop=None):
         monkeypatch.setattr(walk, "describe", lambda name, options: robot)
         monkeypatch.setattr(run, "_simulate", loop or motion())
-        monkeypatch.setattr(RegisteredRobots, "names", lambda self: robots.names())
-        monkeypatch.setattr(RegisteredRobots, "facts", lambda self, *robot: robots.facts(*robot))
+        monkeypatch.setattr(Robots, "names", lambda self: robots.names())
+        monkeypatch.setattr(Robots, "facts", lambda self, *robot: robots.facts(*robot))
         with pytest.raises(SystemExit) as ended:
             cli.main([*map(str, arguments)])
         captured = capsys.readouterr()
@@ -426,21 +427,13 @@ def test_output_that_nobody_takes_is_no_verdict(ended, code, said):
     assert done.stderr.decode() or not said
 
 
-@pytest.mark.parametrize("words", [("list",), ("show", "walk"), ("schema",)], ids=" ".join)
-def test_a_command_that_only_reads_needs_no_engine(words):
-    heavy = ("scipy", "qpsolvers", "mujoco", "matplotlib")
-    code = (
-        f"import runpy, sys; sys.argv[1:] = {words}\n"
-        "try: runpy.run_module('surefoot', run_name='__main__')\n"
-        f"finally: print(*(m for m in {heavy} if m in sys.modules), file=sys.stderr)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout
-    assert done.stderr.strip() == ""
-
-
-def test_help_needs_no_heavy_package():
-    heavy = ("numpy", "mujoco", "pydantic")
-    code = f"import sys; import surefoot.scenarios.apps.cli; print(*(m for m in {heavy} if m in sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == ""
+@pytest.mark.parametrize("missed", [True, False])
+def test_a_run_says_once_that_it_went_without_compiled_kernels(surefoot, scenario, tmp_path, monkeypatch, missed):
+    native = importlib.import_module("surefoot.native.library")
+    monkeypatch.setattr(native, "library", lambda: None if missed else object())
+    monkeypatch.delenv(native.VARIABLE, raising=False)
+    _, out, err = surefoot("run", scenario, "--out", tmp_path, "--json")
+    assert json.loads(out)
+    assert err.count("plain Python, which is slower") == missed
+    monkeypatch.setenv(native.VARIABLE, "0")
+    assert "plain Python" not in surefoot("run", scenario, "--out", tmp_path)[2], "it was asked for"

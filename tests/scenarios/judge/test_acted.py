@@ -1,11 +1,8 @@
 """What was promised and came to nothing fails a run: commands, places, ground that no foot met, pushes cut off."""
 
-import numpy as np
 import pytest
 
 import surefoot
-from surefoot.planner.ground.terrain import Box, Terrain
-from surefoot.scenarios.judge.acted import _stands_on, _touches
 from surefoot.scenarios.run.simulation import Simulation
 
 POINT = {"fidelity": "pendulum", "criteria": {"fell": False}, "gait.initial_stand": 0.1}
@@ -80,32 +77,6 @@ def test_what_is_given_by_hand_is_no_promise_and_its_log_runs_again(tmp_path, sa
     again = surefoot.run(path, out=tmp_path / "again")
     assert again.verdict.passed, again.verdict.reasons
     assert same_content(path, again.log) == []
-
-
-@pytest.mark.unit
-def test_soles_and_boxes_meet_as_rectangles_do():
-    half = np.array([0.1, 0.05])
-    turned = np.pi / 4
-    rotation = np.eye(3)
-    rotation[:2, :2] = [[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]]
-    box = Box(np.zeros(3), np.array([0.1, 0.1, 0.01]), rotation)
-    soles = np.array([[0.0, 0.0, 0.0], [0.23, 0.0, 0.0], [0.25, 0.0, 0.0], [0.17, 0.17, 0.0], [0.0, 0.2, np.pi / 2]])
-    assert _touches(soles, half, box).tolist() == [True, True, False, False, True]
-
-
-@pytest.mark.unit
-def test_no_sole_stands_on_ground_that_is_buried():
-    def box(x, length, height):
-        return Box(np.array([x, 0.0, 0.5 * height]), 0.5 * np.array([length, 1.0, height]), np.eye(3))
-
-    half, sole = np.array([0.1, 0.05]), np.zeros((1, 3))
-    hidden, tread = box(0.0, 0.4, 0.004), box(0.0, 0.3, 0.05)
-    assert _stands_on(sole, half, 0, Terrain((hidden,)))
-    assert not _stands_on(sole, half, 0, Terrain((hidden, tread)))
-    assert _stands_on(sole, half, 1, Terrain((hidden, tread)))
-    assert _stands_on(np.array([[0.1, 0.0, 0.0]]), half, 0, Terrain((hidden, tread)))
-    assert _stands_on(sole, half, 0, Terrain((box(0.0, 0.001, 0.004), box(2.0, 0.1, 0.05))))
-    assert not _stands_on(np.array([[0.5, 0.0, 0.0]]), half, 0, Terrain((hidden,)))
 
 
 @pytest.mark.physics

@@ -14,7 +14,6 @@ from surefoot import plugins
 from surefoot.errors import ParameterError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.judge import metrics
 from surefoot.scenarios.judge.inspection import Inspection, inspect
 from surefoot.scenarios.judge.metric import RESERVED, Metric, metric, reduction
 from surefoot.scenarios.judge.metrics import METRICS, OWN, digest, gathered, register
@@ -63,8 +62,8 @@ def packaged(monkeypatch):
     """Have the entry points of packages that are not there; a target is a dotted place in this module."""
 
     def install(**targets):
-        points = [EntryPoint(name, f"{__name__}:{target}", metrics.GROUP) for name, target in targets.items()]
-        monkeypatch.setattr(plugins, "entry_points", lambda group: points if group == metrics.GROUP else [])
+        points = [EntryPoint(name, f"{__name__}:{target}", METRICS.group) for name, target in targets.items()]
+        monkeypatch.setattr(plugins, "entry_points", lambda group: points if group == METRICS.group else [])
         monkeypatch.setattr(METRICS, "_loaded", {})
 
     return install

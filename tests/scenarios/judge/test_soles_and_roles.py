@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from surefoot.planner.geometry import sole_corners
+from surefoot.planner.geometry import corners, forward, headings, level_corners, rotations, sole_corners
 from surefoot.planner.types import Foot, Footstep
-from surefoot.scenarios.judge.body import corners, forward, headings, knees, leg, level_corners, rotations, torso
+from surefoot.scenarios.judge.body import knees, leg, torso
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute
 from surefoot.scenarios.log import read

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.columns import HELD_BYTES, Columns
-from surefoot.scenarios.judge.digest import RunView
+from surefoot.scenarios.judge.digest import HELD_BYTES, Columns, RunView
 from surefoot.scenarios.judge.metrics import compute, digest
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, Log, LogWriter, read
 from surefoot.scenarios.log.spec import layout_of
@@ -63,7 +62,7 @@ def test_metrics_of_a_log_in_parts_are_those_of_the_whole(tmp_path, motion, two_
     parts, whole = compute(read(path)), RunView(read(path))
     monkeypatch.setattr(Log, "windows", partialmethod(Log.windows, duration=0.5))
     for held in (0, HELD_BYTES):
-        monkeypatch.setattr("surefoot.scenarios.judge.columns.HELD_BYTES", held)
+        monkeypatch.setattr("surefoot.scenarios.judge.digest.HELD_BYTES", held)
         gathered = digest(read(path))
         for function in gathered.reduced:
             assert np.array_equal(gathered.reduced[function], function(whole), equal_nan=True)
@@ -74,7 +73,7 @@ def test_columns_hold_the_same_in_files_as_in_memory(monkeypatch):
     held, filed = Columns(), Columns()
     for n in (3, 0, 2):
         for columns, limit in ((held, HELD_BYTES), (filed, 0)):
-            monkeypatch.setattr("surefoot.scenarios.judge.columns.HELD_BYTES", limit)
+            monkeypatch.setattr("surefoot.scenarios.judge.digest.HELD_BYTES", limit)
             columns.add("a", np.arange(4.0 * n).reshape(n, 4)[:, ::2])
             columns.add("none", np.zeros(0))
             columns.add("unlike", np.zeros((n, n)))
@@ -89,8 +88,8 @@ def test_no_room_for_a_long_log_is_a_sentence(monkeypatch):
     def full(**_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("surefoot.scenarios.judge.columns.HELD_BYTES", 0)
-    monkeypatch.setattr("surefoot.scenarios.judge.columns.tempfile.TemporaryFile", full)
+    monkeypatch.setattr("surefoot.scenarios.judge.digest.HELD_BYTES", 0)
+    monkeypatch.setattr("surefoot.scenarios.judge.digest.tempfile.TemporaryFile", full)
     with pytest.raises(LogError, match="no space left on device; set TMPDIR"):
         Columns().add("a", np.zeros(1))
 

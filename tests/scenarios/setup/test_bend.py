@@ -3,9 +3,8 @@
 import pytest
 
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.posture import bent_alike
 from surefoot.scenarios.setup.stance import body_of
-from surefoot.scenarios.setup.stances import least_bend
+from surefoot.scenarios.setup.stances import bent_alike, least_bend
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from surefoot.models.facts import longest_step
 from surefoot.planner.references.com_height import BENT_KNEES
 from surefoot.scenarios.file.schema import Gait, PushSettings, Scenario
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
-    longest_step,
     phase_of,
     push_time,
 )

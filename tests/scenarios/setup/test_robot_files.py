@@ -15,7 +15,7 @@ from surefoot.scenarios.file.schema import RobotSettings
 from surefoot.scenarios.run.run import run_constants
 from surefoot.scenarios.setup.criteria import published
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.stance import body_of, feet_at, leg_inertia, start_posture
 from surefoot.scenarios.setup.walk import resolve
 
@@ -124,5 +124,5 @@ def test_a_log_says_where_knees_are_straight(g1) -> None:
 
 
 def test_every_name_has_facts_fast_enough_to_be_asked_for_twice() -> None:
-    robots = RegisteredRobots()
+    robots = Robots()
     assert robots.facts("talos", RobotSettings()) == robots.facts("talos", RobotSettings())

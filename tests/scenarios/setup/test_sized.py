@@ -18,8 +18,7 @@ from surefoot.scenarios.file.schema import Rates, RobotSettings
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.notes import notes
-from surefoot.scenarios.setup.posture import nearer_landings
-from surefoot.scenarios.setup.robot import RegisteredRobots
+from surefoot.scenarios.setup.robot import Robots, nearer_landings
 from surefoot.scenarios.setup.sized import clock
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.similarity import Similarity
@@ -167,7 +166,7 @@ def test_a_file_for_a_robot_that_cannot_be_read_is_refused(tmp_path):
 
 
 def test_legs_are_bent_as_much_and_feet_no_nearer():
-    robots = RegisteredRobots()
+    robots = Robots()
     full, other = robots.facts("humanoid100", RobotSettings()), robots.facts("small", RobotSettings())
     wide = replace(other, com_above_hip=0.05, hip_width=0.08, shank_spacing=0.04, foot_width=0.02)
     height = com_height(0.99, full, wide)
@@ -182,7 +181,7 @@ def test_legs_are_bent_as_much_and_feet_no_nearer():
 @pytest.mark.parametrize("spacing", [0.01, 0.035, 0.06])
 @pytest.mark.parametrize("nearer", [0.0, 0.03, 0.1])
 def test_feet_whose_way_is_known_keep_a_part_of_their_room(spacing, nearer):
-    robots = RegisteredRobots()
+    robots = Robots()
     full, other = robots.facts("humanoid100", RobotSettings()), robots.facts("small", RobotSettings())
     other = replace(other, shank_spacing=spacing, foot_width=0.01)
     width, room = step_width(0.2, full, other, nearer), 0.2 - full.shank_spacing - nearer
@@ -213,7 +212,7 @@ def test_feet_may_land_anywhere_where_the_walk_turns_or_is_told(gait, told, near
 
 
 def test_treads_are_as_deep_as_soles_ask_for():
-    robots = RegisteredRobots()
+    robots = Robots()
     soles = RobotSettings(foot_length=0.2, foot_width=0.1)
     full, other = robots.facts("humanoid100", soles), robots.facts("small", RobotSettings())
     assert tread(0.3, full, replace(other, foot_length=0.04)) == 0.075
@@ -223,14 +222,14 @@ def test_treads_are_as_deep_as_soles_ask_for():
 
 
 def test_the_stance_of_the_reference_robot_is_as_written():
-    facts = RegisteredRobots().facts("humanoid100", RobotSettings())
+    facts = Robots().facts("humanoid100", RobotSettings())
     assert (facts.hip_width, facts.shank_spacing) == (HIPS, SHANKS)
 
 
 def test_a_payload_is_no_size():
     options = RobotSettings(payload_mass=7.3)
-    assert RegisteredRobots().facts("humanoid100", options).size == Similarity()
-    assert RegisteredRobots().facts("small", RobotSettings(payload_mass=0.3)).size == QUARTER
+    assert Robots().facts("humanoid100", options).size == Similarity()
+    assert Robots().facts("small", RobotSettings(payload_mass=0.3)).size == QUARTER
 
 
 @pytest.mark.parametrize("length", [0.1, 0.3, 0.62, 0.95, 1.3, 3.0])
@@ -241,7 +240,7 @@ def test_rates_divide_at_every_size(length):
 
 
 @dataclass(frozen=True)
-class Motors(RegisteredRobots):
+class Motors(Robots):
     """The robots, of which all but the reference stand on one foot with another share of their motors' torque."""
 
     share: float
@@ -276,7 +275,7 @@ def test_a_bound_in_a_list_of_one_is_that_bound(name):
 
 
 def test_a_similar_robot_stands_with_the_same_share_of_its_torque():
-    robots, options = RegisteredRobots(), RobotSettings()
+    robots, options = Robots(), RobotSettings()
     share = robots.one_foot_share("humanoid100", options)
     assert robots.one_foot_share("small", options) == pytest.approx(share, rel=1e-3)
     assert 0.3 < share < 0.45

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from surefoot.scenarios.apps.cli import app
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.run.skeleton import Progress
-from surefoot.scenarios.show.replay import live as beside
+from surefoot.scenarios.show.replay import beside
 
 pytestmark = pytest.mark.unit
 

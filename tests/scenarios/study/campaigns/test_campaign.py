@@ -8,9 +8,10 @@ import pytest
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.robot import RegisteredRobots
-from surefoot.scenarios.study.campaigns.campaign import read_campaign, shipped
+from surefoot.scenarios.setup.robot import Robots
+from surefoot.scenarios.study.campaigns.campaign import read_campaign
 from surefoot.scenarios.study.campaigns.points import Record, cells
+from surefoot.scenarios.study.campaigns.shipped import shipped
 
 pytestmark = pytest.mark.unit
 
@@ -222,7 +223,7 @@ def _settings(campaign):
 
 def test_a_campaign_is_the_same_for_robots_of_all_sizes(campaign):
     full, small = _settings(campaign(SIZED)), _settings(campaign(SIZED, "robot=g1"))
-    size = RegisteredRobots().facts("g1", RobotSettings()).size
+    size = Robots().facts("g1", RobotSettings()).size
     assert full["gait.step_length"] == 0.2
     assert small["gait.step_length"] == pytest.approx(size.length * 0.2)
     assert small["pushes"][0]["impulse"] == pytest.approx(size.factor("m/s") * 0.1)

@@ -1,11 +1,5 @@
-"""Compares QP solvers on the whole-body QPs of a real walk; its table decides ``WbcParameters.solver``.
+"""QP solvers on the whole-body QPs of a real walk; the table decides `WbcParameters.solver`."""
 
-    python benchmarks/qp_solvers.py [--scenario NAME] [--set KEY=VALUE ...] [--every N]
-
-Run it with OMP_NUM_THREADS=1 on an idle core.
-"""
-
-import argparse
 import tempfile
 import time
 from collections.abc import Callable
@@ -14,9 +8,11 @@ from pathlib import Path
 
 import daqp
 import numpy as np
-from bare_walk import BareWalk
 from scipy.optimize import nnls
 
+from benchmarks.stopwatch import TimedWalk
+from benchmarks.table import Section, Value, microseconds
+from benchmarks.tick import WALK
 from surefoot.wbc.qp import EQUALITY_ROWS, QpData
 from surefoot.wbc.solvers import Daqp, EqualityFirst, ProxQp, QpSolution, QpSolver
 
@@ -63,8 +59,9 @@ class Outcome:
     answers: list[np.ndarray | None]
 
 
-def recorded(scenario: str, overrides: list[str], every: int) -> list[QpData]:
-    walk, problems = BareWalk(scenario, tuple(overrides)), []
+def _recorded(quick: bool, every: int = 10) -> list[QpData]:
+    """The QP of every tenth tick."""
+    walk, problems = TimedWalk(WALK, ["duration=0.6"] if quick else []), []
     with tempfile.TemporaryDirectory() as folder:
         for i, _ in enumerate(walk.ticks(Path(folder) / "walk.mcap")):
             if i % every == 0:
@@ -95,31 +92,25 @@ def kkt_residual(qp: QpData, x: np.ndarray) -> float:
     return max(float(left / np.linalg.norm(qp.g)), qp.violation(x))
 
 
-def row(name: str, outcome: Outcome, problems: list[QpData], best: Outcome, unit: float) -> str:
+def solvers(quick: bool) -> Section:
+    """Each solver on the same problems, beside DAQP started from cold."""
+    problems = _recorded(quick)
+    outcomes = {name: solve_all(make(), problems) for name, make in SOLVERS.items()}
+    best = outcomes["daqp"]
+    unit = float(np.median(best.seconds))
+    rows = tuple(_row(name, outcome, problems, best, unit) for name, outcome in outcomes.items())
+    columns = ("solver", "median us", "p99 us", "over daqp", "failures", "KKT residual", "largest |x - x_daqp|")
+    ratio = float(np.median(outcomes["equality-first"].seconds)) / unit
+    note = f"{len(problems)} whole-body QPs of {WALK}"
+    return Section("solvers of the whole-body QP", columns, rows, note, {"equality-first over daqp": ratio})
+
+
+def _row(name: str, outcome: Outcome, problems: list[QpData], best: Outcome, unit: float) -> tuple[Value, ...]:
     solved = [i for i, x in enumerate(outcome.answers) if x is not None and best.answers[i] is not None]
+    median, p99 = microseconds(outcome.seconds, 50, 99)
+    failed = sum(x is None for x in outcome.answers)
     if not solved:
-        return f"{name:<22} no answers"
+        return (name, median, p99, median / (1e6 * unit), failed, None, None)
     away = max(float(np.abs(outcome.answers[i] - best.answers[i]).max()) for i in solved)
     kkt = max(kkt_residual(problems[i], outcome.answers[i]) for i in solved[:: max(1, len(solved) // 100)])
-    median, p99 = np.percentile(outcome.seconds, (50, 99)) * 1e6
-    failed = sum(x is None for x in outcome.answers)
-    return f"{name:<22} {median:>8.1f} {p99:>8.1f} {median / unit:>6.2f} {failed:>9} {kkt:>9.1e} {away:>11.1e}"
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description="Compare QP solvers on the whole-body QPs of a walk.")
-    parser.add_argument("--scenario", default="diagonal-walk", help="catalogue name or path of a scenario file")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="set a key; repeatable")
-    parser.add_argument("--every", type=int, default=10, metavar="N", help="use every N-th control tick")
-    options = parser.parse_args()
-    problems = recorded(options.scenario, options.set, options.every)
-    outcomes = {name: solve_all(make(), problems) for name, make in SOLVERS.items()}
-    best, unit = outcomes["daqp"], float(np.median(outcomes["daqp"].seconds)) * 1e6
-    print(f"{len(problems)} whole-body QPs of {options.scenario}; 'ratio' is to daqp, 'from daqp' is max |x - x_daqp|")
-    print(f"{'solver':<22} {'median':>8} {'p99 us':>8} {'ratio':>6} {'failures':>9} {'KKT':>9} {'from daqp':>11}")
-    for name, outcome in outcomes.items():
-        print(row(name, outcome, problems, best, unit))
-
-
-if __name__ == "__main__":
-    main()
+    return (name, median, p99, median / (1e6 * unit), failed, f"{kkt:.0e}", f"{away:.0e}")

@@ -1,0 +1,1 @@
+"""Measurements of what Surefoot costs; ``python -m benchmarks`` prints their table (see docs/benchmarks.md)."""

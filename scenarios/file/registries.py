@@ -1,0 +1,35 @@
+"""The registries of the parts that a scenario names; nothing is imported before a part is asked for."""
+
+from typing import Any
+
+from surefoot.models.names import ROBOTS
+from surefoot.planner.laws.names import PROFILES
+from surefoot.plugins import Declared, Registry
+from surefoot.scenarios.errors import Key
+from surefoot.wbc.tasks.registry import TASKS
+
+TERRAIN_KINDS: Declared[Any] = Declared(
+    "surefoot.terrains",
+    {
+        "flat": "The bare ground plane",
+        "stairs": "A staircase, from the middle of the start feet along the start heading",
+        "blocks": "A field of blocks; left and right ones stand side by side with a gap between them",
+        "slope": "A slope along the start heading; by default its edge is half a step ahead of the start",
+    },
+)
+"""Of ``terrain.kind``; what builds the ground, `surefoot.scenarios.setup.terrain` brings."""
+
+SOURCES: Declared[Any] = Declared("surefoot.estimators", {"truth": "No estimation: the true state. The default"})
+"""Of ``sensing.source``; what estimates the state, `surefoot.scenarios.run.sensing` brings."""
+
+DEFAULTS = {"terrain": "flat", "planner": "default", "sensing": "truth", "robot": "humanoid100"}
+"""Names that are always there, by the group of the key."""
+
+REGISTRIES: dict[Key, Registry[Any]] = {
+    ("robot",): ROBOTS,
+    ("terrain", "kind"): TERRAIN_KINDS,
+    ("planner", "profile"): PROFILES,
+    ("sensing", "source"): SOURCES,
+    ("wbc", "tasks"): TASKS,
+}
+"""By the key that names a part, or several."""

@@ -1,0 +1,49 @@
+"""Convex hulls in the plane, of the few points that soles have; a library would take a third of a second to import."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_FLAT, _ROUNDING = 1e-12, 16.0 * float(np.finfo(np.float64).eps)
+"""Which part of the extent a vertex stands out at least, and what rounding of the coordinates may feign [-]."""
+
+
+def convex_hull(points: Array) -> Array:
+    """Vertices of the convex hull, anticlockwise from the leftmost one, shape (v, 2).
+
+    Andrew's monotone chain (Information Processing Letters 9, 1979). Points on an edge, but for rounding, are none.
+
+    Args:
+        points: shape (n, 2), at least three that are not on a line.
+    """
+    ordered = sorted({(x, y) for x, y in points.tolist()})
+    hull = [*_chain(ordered)[:-1], *_chain(ordered[::-1])[:-1]]
+    extent = float(np.ptp(points, axis=0).max())
+    flat = extent * (_FLAT * extent + _ROUNDING * float(np.abs(points).max()))
+    corner = 0
+    while corner < len(hull):
+        if _left_turn(hull[corner - 1], hull[corner], hull[(corner + 1) % len(hull)]) > flat:
+            corner += 1
+        else:
+            del hull[corner]
+            corner = max(corner - 1, 0)
+    return np.array(hull)
+
+
+_Point = tuple[float, float]
+
+
+def _left_turn(a: _Point, b: _Point, c: _Point) -> float:
+    """Twice the area of a triangle, positive where the way from a by b to c turns left."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _chain(points: list[_Point]) -> list[_Point]:
+    """The points at which a way along them turns left, from the first to the last."""
+    chain: list[_Point] = []
+    for point in points:
+        while len(chain) > 1 and _left_turn(chain[-2], chain[-1], point) <= 0.0:
+            chain.pop()
+        chain.append(point)
+    return chain

@@ -1,0 +1,46 @@
+"""What commands import, in counts, which no busy machine changes; the numbers are those of `benchmarks/limits.json`."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.startup import COMMANDS, imported  # noqa: E402  found by the line above
+
+pytestmark = pytest.mark.unit
+
+LIMITS = json.loads((ROOT / "benchmarks" / "limits.json").read_text())
+
+ENGINES = {"mujoco", "pinocchio", "coal", "proxsuite", "daqp", "qpsolvers", "scipy", "matplotlib"}
+LOGS = {"mcap", "google", "lz4", "zstandard"}
+NEVER = {
+    "--help": {*ENGINES, *LOGS, "numpy", "pydantic", "yaml"},
+    "list": {*ENGINES, *LOGS, "numpy"},
+    "list --json": {*ENGINES, *LOGS},
+    "show walk": {*ENGINES, *LOGS},
+    "schema": {*ENGINES, *LOGS},
+    "run diagonal-walk": {"qpsolvers", "matplotlib", "viser", "asyncio", "multiprocessing.pool", "scipy.spatial"},
+}
+
+
+@pytest.fixture(scope="module", params=COMMANDS)
+def command(request):
+    """A command by name, and the modules that it has imported."""
+    return request.param, imported(COMMANDS[request.param])
+
+
+def test_a_command_imports_no_more_than_it_uses(command):
+    name, modules = command
+    assert NEVER[name].isdisjoint(modules)
+
+
+def test_a_command_imports_no_more_modules_than_before(command):
+    name, modules = command
+    own = [module for module in modules if module.partition(".")[0] == "surefoot"]
+    most, most_of_ours = (LIMITS[f"{which} modules that a command imports"][name] for which in ("all", "surefoot's"))
+    assert 0.85 * most_of_ours < len(own) <= most_of_ours
+    assert 0.7 * most < len(modules) <= most

@@ -96,6 +96,25 @@ static void leave(const ActiveQp *solver, int64_t place, int64_t count) {
     }
 }
 
+/* Takes back what rounding on the way has left of the constraints that are active. */
+static void mend(const ActiveQp *solver, double *none, double *r, int64_t count, double *way) {
+    const EqualityQp *qp = solver->qp;
+    const int64_t n = qp->variables, m = qp->equalities, size = m + solver->most;
+    double *left = solver->columns + size * count;
+    for (int64_t e = 0; e < m; e++) left[e] = qp->lower[n + e] - dot(qp->A + n * e, qp->x, n);
+    forward_solve(qp->schur, m, padded(m + 1), left, 1);
+    for (int64_t k = 0; k < count; k++) {
+        const int64_t code = solver->active[k], i = code / 2;
+        const double *column = solver->columns + size * k;
+        const double value = i < n ? qp->x[i] : dot(qp->A + n * (i - n), qp->x, n);
+        const double short_of = code % 2 ? value - qp->upper[i] : qp->lower[i] - value;
+        left[m + k] = (short_of - dot(column, left, m + k)) / column[m + k];
+    }
+    shares_of(solver, left, count, r);
+    memset(none, 0, n * sizeof(double));
+    go(solver, none, r, count, -1.0, way);
+}
+
 /* After `equality_qp_solve`, from its x on; returns how many inequalities came or went, -1 where it gives up. */
 int64_t active_qp_solve(const ActiveQp *solver) {
     const EqualityQp *qp = solver->qp;
@@ -104,7 +123,10 @@ int64_t active_qp_solve(const ActiveQp *solver) {
     int64_t count = 0, rounds = 0;
     for (;;) {
         const int64_t code = violated(solver, count, &slack);
-        if (code < 0) return rounds;
+        if (code < 0) {
+            mend(solver, y, r, count, way);
+            return rounds;
+        }
         if (count == solver->most) return -1;
         double own = 0.0;
         turned_normal(qp, code, y);

@@ -19,7 +19,7 @@ def test_rows_are_those_of_all_distances(kernels, name):
     """Along a way of joints at random, slowly, then by leaps."""
     robot = describe(name, RobotOptions())
     model = pinocchio_model(robot)
-    terms, shapes, parameters = RobotTerms(model, frames_of(robot)), limb_shapes(robot, model), SeparationParameters()
+    terms, shapes, parameters = RobotTerms(model, frames_of(robot)), limb_shapes(robot), SeparationParameters()
     compiled, plain = Separation(model, shapes, parameters, terms.compiled), Separation(model, shapes, parameters)
     rng, q = np.random.default_rng(7), pin.neutral(model)
     q[7:] = robot.nominal_joint_positions

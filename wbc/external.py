@@ -14,6 +14,7 @@ Times, forces and moments below are the reference robot's (see `surefoot.similar
 """
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -91,21 +92,51 @@ class LoadObserver:
         self._span = self._ticks * period
         self._felt, self._com = np.zeros(6), np.zeros(3)
         self._momentum: Array | None = None
-        self._count = 0
+        self._count = 0 if compiled is None else -1
         self._spans = np.empty((0, sum(_ROWS)))
         self._most = np.repeat(size.times(RATES, "N/s, N·m/s, 1/s"), _ROWS) * self._span
         pull = np.repeat([size.factor("N"), size.factor("N·m")], _ROWS[:2])
         self._bound, self._push = np.repeat(BOUND, _ROWS[:2]) * pull, size.times(PUSH, "N")
         self._kept, self._sudden = (tuple(limit * pull for limit in limits) for limits in (KEPT, SUDDEN))
         self._estimate = np.zeros(sum(_ROWS))
-        self._deviation = (0.0, 0.0)
+        self._deviation = self._wide_for = (0.0, 0.0)
         self._late = False
         self.load = NO_LOAD
-        self._wrench, self._add = np.zeros((2, 6)), None
+        self._wrench = np.zeros((2, 6))
+        self._add: Callable[[], None] | None = None
         if compiled is not None:
-            self._add = compiled.kernels.bind(
-                "load_sums_add", terms=compiled.bound, wrench=self._wrench, felt=self._felt, com=self._com
-            )
+            self._compile(compiled)
+
+    def _compile(self, compiled: CompiledTerms) -> None:
+        """Bind the kernels that do what `_moving` and `_end_span` do."""
+        bind, self._filled = compiled.kernels.bind, np.zeros(1, dtype=np.int64)
+        self._limits = np.array(WEIGHT), np.array(self._kept), np.array(self._sudden)
+        share_limits, kept, sudden = self._limits
+        self._add = bind("load_sums_add", terms=compiled.bound, wrench=self._wrench, felt=self._felt, com=self._com)
+        span = compiled.kernels.fill(
+            "LoadSpan",
+            terms=compiled.bound,
+            weight=self._mass * GRAVITY,
+            span=self._span,
+            ticks=self._ticks,
+            spans_count=SPANS,
+            latest_count=LATEST,
+            most_share=MOST,
+            least_press=LEAST_PRESS,
+            share_limits=share_limits,
+            kept=kept,
+            sudden=sudden,
+            bound=self._bound,
+            push=np.array(self._push, dtype=np.float64),
+            most_change=self._most,
+            felt=self._felt,
+            com=self._com,
+            momentum=np.zeros(6),
+            spans=np.zeros((SPANS, sum(_ROWS))),
+            filled=self._filled,
+            estimate=self._estimate,
+        )
+        self._begin, self._end = (bind(name, span) for name in ("load_moving", "load_span_end"))
 
     def update(self, terms: RobotTerms, wrench: Array, deviation: tuple[float, float] = (0.0, 0.0)) -> ExternalLoad:
         """The load as it is now known; call it once per control tick.
@@ -117,19 +148,52 @@ class LoadObserver:
                 multiples of it, and nothing is found where it is infinite [N, N·m].
         """
         self._deviation = deviation
+        if self._add is not None:
+            return self._update_compiled(wrench, self._add)
         if self._momentum is None:
             self._momentum = self._moving(terms)
             return self.load
-        if self._add is not None:
-            np.copyto(self._wrench, wrench)
-            self._add()
-        else:
-            self._felt += terms.sole_wrench_map @ wrench.ravel()
-            self._com += terms.com
+        self._felt += terms.sole_wrench_map @ wrench.ravel()
+        self._com += terms.com
         self._count += 1
         if self._count == self._ticks:
             self._end_span(self._momentum, self._moving(terms))
         return self.load
+
+    def _update_compiled(self, wrench: Array, add: Callable[[], None]) -> ExternalLoad:
+        """The same by kernels, for the terms that they are bound to."""
+        self._count += 1
+        if self._count == 0:
+            self._begin()
+            return self.load
+        np.copyto(self._wrench, wrench)
+        add()
+        if self._count == self._ticks:
+            self._count = 0
+            if not self._known:
+                self._late = True
+                self._end(False)
+                self._filled[0] = 0
+                return self.load
+            if self._deviation != self._wide_for:
+                self._wide_for = self._deviation
+                for limits, now in zip(self._limits, self._limits_now(), strict=True):
+                    limits[:] = now
+            if self._end(not self._late or self._filled[0] + 1 >= SPANS):
+                self._tell()
+        return self.load
+
+    @property
+    def _known(self) -> bool:
+        """Whether anything is known: what comes before that says least, and must not count when the rest is known."""
+        return math.isfinite(sum(self._deviation))
+
+    def _limits_now(self) -> tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]:
+        """Limits of the share of the weight, of what lasts, and of what acts, as wide as what is not known asks."""
+        unsure, turning = self._deviation
+        wider = np.repeat([unsure, turning], _ROWS[:2])
+        share = _wider(WEIGHT, unsure / (self._mass * GRAVITY), LASTING)
+        return share, _wider(self._kept, wider, LASTING), _wider(self._sudden, wider, ACTING)
 
     def _moving(self, terms: RobotTerms) -> Array:
         """Momentum and moment of momentum about the origin, by the model's masses, shape (6,) [N·s, N·m·s]."""
@@ -150,23 +214,14 @@ class LoadObserver:
         span = [x, y, *(n - t for n, t in zip(moment, turning, strict=True)), scale - 1.0]
         if math.isfinite(sum(span)):
             self._spans = np.concatenate((self._spans[1 - SPANS :], [span]))
-            self._follow()
+            if not self._known:
+                self._spans, self._late = self._spans[:0], True
+            elif not self._late or len(self._spans) == SPANS:
+                self._follow()
 
     def _follow(self) -> None:
         """Let the load follow what lasts."""
-        kept_limits, sudden_limits = self._kept, self._sudden
-        weight_limits: tuple[Any, ...] = WEIGHT
-        unsure, turning = self._deviation
-        if unsure or turning:
-            if not math.isfinite(unsure + turning):
-                # What comes first says least, and must not count when the rest is known.
-                self._spans, self._late = self._spans[:0], True
-                return
-            if self._late and len(self._spans) < SPANS:
-                return
-            wider = np.repeat([unsure, turning], _ROWS[:2])
-            kept_limits, sudden_limits = _wider(self._kept, wider, LASTING), _wider(self._sudden, wider, ACTING)
-            weight_limits = _wider(WEIGHT, unsure / (self._mass * GRAVITY), LASTING)
+        weight_limits, kept_limits, sudden_limits = self._limits_now()
         lasting, latest = _median(self._spans), _median(self._spans[-LATEST:])
         share = _ramp(np.array([min(max(float(lasting[-1]), -MOST), MOST)]), weight_limits)
         if len(self._spans) < SPANS:
@@ -180,6 +235,10 @@ class LoadObserver:
             pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
         wanted = np.concatenate((pull, share))
         self._estimate = self._estimate + np.clip(wanted - self._estimate, -self._most, self._most)
+        self._tell()
+
+    def _tell(self) -> None:
+        """The estimate as a load."""
         self.load = NO_LOAD
         if self._estimate.any():
             x, y, *moment, more = self._estimate.tolist()

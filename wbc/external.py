@@ -179,7 +179,7 @@ class LoadObserver:
                 self._wide_for = self._deviation
                 for limits, now in zip(self._limits, self._limits_now(), strict=True):
                     limits[:] = now
-            if self._end(not self._late or self._filled[0] + 1 >= SPANS):
+            if self._end(not self._late or int(self._filled[0]) + 1 >= SPANS):
                 self._tell()
         return self.load
 

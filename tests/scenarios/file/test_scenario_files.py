@@ -96,7 +96,7 @@ CASES = {
     ),
     "pushes: [{time: 1, impulse: -1}]": "pushes.0.impulse",
     "pushes: [{time: 1, force: [1, 2]}]": "f.yaml:1:27: pushes.0.force lacks element 2; give '2'",
-    "errors: {ground: [{x: 1, height: 0.1, length: 1, tall: 2}]}": "f.yaml:1:50: unknown key 'tall'; valid are friction,",
+    "errors: {ground: [{x: 1, height: 0.1, length: 1, tall: 2}]}": "unknown key 'tall'; valid are friction,",
     "errors: {ground: [{x: 1, height: 5, length: 1}]}": "errors.ground.0.height is 5; it must be at most 1.0 m",
     "criteria: {cop_ratio_p9: {max: 1}}": "unknown metric 'cop_ratio_p9'; did you mean 'cop_ratio_p99'?",
     "criteria: {fell: {}}": "criteria.fell: a criterion without a bound; give min, max or equals",

@@ -211,3 +211,13 @@ def shifted(coefficients: Array, time: float) -> Array:
     """The same polynomials with their local time starting at `time`."""
     powers = np.array([time**i for i in _EXPONENT])
     return np.asarray((_BINOMIAL * powers[_POWER]) @ coefficients)
+
+
+def yaw_rotations(yaw: Array) -> Array:
+    """Rotations about the vertical, shape (n, 3, 3).
+
+    Args:
+        yaw: shape (n,) [rad].
+    """
+    c, s, zero, one = np.cos(yaw), np.sin(yaw), np.zeros_like(yaw), np.ones_like(yaw)
+    return np.moveaxis(np.array(((c, -s, zero), (s, c, zero), (zero, zero, one))), -1, 0)

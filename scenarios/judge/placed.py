@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from surefoot.planner.geometry import yaw_rotations
 from surefoot.scenarios.judge.digest import Array, Mask, Reads, Rows, RunView
-from surefoot.scenarios.record.estimation import turn
 
 _TOPIC = "/estimation"
 
@@ -33,7 +33,7 @@ def to_truth(run: RunView, points: Array, rows: Rows | None = None, right: Mask 
         np.where(right[:, None], poses[1][pick][:, :size], poses[0][pick][:, :size])
         for poses in ([run.field(_TOPIC, f"{side}_sole") for side in ("left", "right")], [run.sole(0), run.sole(1)])
     )
-    R = turn(-run.field(_TOPIC, "yaw_error")[pick])[:, :size, :size]
+    R = yaw_rotations(-run.field(_TOPIC, "yaw_error")[pick])[:, :size, :size]
     away = points.reshape(len(points), -1, size) - sole[:, None]
     moved = np.einsum("nij,nkj->nki", R, away) + true[:, None]
     return np.asarray(moved.reshape(points.shape))

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from surefoot.planner.geometry import yaw_rotations
 from surefoot.readings import Readings
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import RowLayout, Rows
@@ -96,7 +97,7 @@ def _errors(rows: Rows) -> dict[tuple[str, str], Array]:
     true_soles = rows["true_soles"].reshape(n, 2, 7)[:, :, :3]
     yaw = np.arctan2(R[:, 1, 0], R[:, 0, 0]) - np.arctan2(true[:, 1, 0], true[:, 0, 0])
     yaw = (yaw + math.pi) % (2.0 * math.pi) - math.pi
-    back, each = turn(-yaw), np.arange(n)
+    back, each = yaw_rotations(-yaw), np.arange(n)
     com, true_com = rows["com"] - soles[each, stance], rows["true_com"] - true_soles[each, stance]
     velocity = (back @ rows["com_velocity"][..., None])[..., 0] - rows["true_com_velocity"]
     tilt = back @ R @ np.swapaxes(true, 1, 2)
@@ -109,13 +110,3 @@ def _errors(rows: Rows) -> dict[tuple[str, str], Array]:
         (topic, "yaw_error"): yaw,
         (topic, "place_error"): place,
     }
-
-
-def turn(yaw: Array) -> Array:
-    """Rotations about the vertical, shape (n, 3, 3).
-
-    Args:
-        yaw: shape (n,) [rad].
-    """
-    c, s, zero, one = np.cos(yaw), np.sin(yaw), np.zeros_like(yaw), np.ones_like(yaw)
-    return np.moveaxis(np.array(((c, -s, zero), (s, c, zero), (zero, zero, one))), -1, 0)

@@ -14,6 +14,7 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.walk import WalkRecorder
+from surefoot.scenarios.run.reference import ReferenceMaker
 from surefoot.scenarios.run.run import closed_loop, one_thread
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.setup.load import load
@@ -26,7 +27,7 @@ PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "Pinocchio terms": ((WholeBodyController, "observe"),),
     "planner": ((WalkingPlanner, "update"),),
     "logging of plans": ((WalkRecorder, "plan"),),
-    "plan sampled": ((PlanSampler, "sample"),),
+    "plan sampled": ((PlanSampler, "tick"), (ReferenceMaker, "reference")),
     "QP assembly": ((WholeBodyController, "build"),),
     "QP solve": ((WholeBodyController, "solve"),),
     "logging": ((Recorder, "tick"), (WalkRecorder, "reference")),

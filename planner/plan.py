@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from surefoot.planner.geometry import quintic, shifted
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.plan_kernel import COLUMNS, PlanKernel
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import (
@@ -119,6 +120,7 @@ class PlanSample:
         swing: swing sole x, y, z [m], yaw, pitch, roll [rad], shape (6,).
         swing_velocity: shape (6,) [m/s, rad/s].
         swing_acceleration: shape (6,) [m/s^2, rad/s^2].
+        point: the numbers above as the kernel gives them, shape (POINT,); None of plain Python.
     """
 
     time: float
@@ -137,6 +139,32 @@ class PlanSample:
     swing: Array
     swing_velocity: Array
     swing_acceleration: Array
+    point: Array | None = field(init=False, default=None, repr=False, compare=False)
+
+    @classmethod
+    def of_point(cls, time: float, point: Array, contacts: tuple[bool, bool], swing_foot: Foot | None) -> "PlanSample":
+        """A sample out of the numbers of the kernel, shape (POINT,)."""
+        omega, stiffness, load = point[4:7].tolist()
+        sample = cls(
+            time,
+            point[7:10],
+            point[16:19],
+            point[25:28],
+            point[36:38],
+            point[34:36],
+            point[:2],
+            point[38:],
+            omega,
+            stiffness,
+            contacts,
+            load,
+            swing_foot,
+            point[10:16],
+            point[19:25],
+            point[28:34],
+        )
+        object.__setattr__(sample, "point", point)
+        return sample
 
     def until(self, middle: "PlanSample") -> "PlanSample":
         """What is to be done over a time that begins with this sample: its state, and all else of the middle."""
@@ -156,12 +184,16 @@ class PlanSampler:
     a single support ends within an interval its foot is from then on planned to bear load. After the end of the horizon
     the last sample is held.
 
+    Args:
+        plan: the plan.
+        kernel: evaluates it; None for plain Python. It serves one sampler at a time.
+
     Attributes:
         plan: the plan.
     """
 
-    def __init__(self, plan: WalkPlan) -> None:
-        self.plan = plan
+    def __init__(self, plan: WalkPlan, kernel: PlanKernel | None = None) -> None:
+        self.plan, self._kernel = plan, kernel
         self._last = len(plan.jerk) - 1
         self._interval = -1
         self._landed = False
@@ -169,7 +201,7 @@ class PlanSampler:
         single = plan.phase.kind is PhaseKind.SINGLE
         self._lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
         self._start = plan.time
-        self._table = np.zeros((6, _COLUMNS))
+        self._table = np.zeros((6, COLUMNS))
         self._contacts = (True, True)
         self._swing_foot: Foot | None = None
 
@@ -179,12 +211,11 @@ class PlanSampler:
         Args:
             time: instant, not before the plan [s].
         """
-        step = self.plan.sample_time
-        interval = min(max(int((time - self.plan.time) / step + 1e-6), 0), self._last)
-        landed = time >= self._touchdown
-        if interval != self._interval or landed != self._landed:
-            self._enter(interval, landed)
-        t = min(max(time - self._start, 0.0), step)
+        self._go_to(time)
+        t = self._local(time)
+        if self._kernel is not None:
+            point = self._kernel.sample(t, t)[0]
+            return PlanSample.of_point(time, point, self._contacts_at(time), self._swing_foot)
         t2 = t * t
         t3 = t2 * t
         values = np.array((1.0, t, t2, t3, t3 * t, t3 * t2)) @ self._table
@@ -202,7 +233,7 @@ class PlanSampler:
             com[:2] + velocity[:2] / omega,
             omega,
             stiffness,
-            (True, True) if interval == 0 and time >= self._lands else self._contacts,
+            self._contacts_at(time),
             load,
             self._swing_foot,
             values[10:16],
@@ -210,11 +241,63 @@ class PlanSampler:
             values[28:],
         )
 
+    def tick(self, time: float, middle: float) -> tuple[PlanSample, PlanSample]:
+        """The references at an instant, and what is to be done from there on over a time with that middle [s]."""
+        now = self._place(time)
+        if self._kernel is None or self._place(middle) != now:
+            sample = self.sample(time)
+            return sample, sample.until(self.sample(middle))
+        self._go_to(time)
+        at, over = self._kernel.sample(self._local(time), self._local(middle))
+        foot = self._swing_foot
+        return (
+            PlanSample.of_point(time, at, self._contacts_at(time), foot),
+            PlanSample.of_point(middle, over, self._contacts_at(middle), foot),
+        )
+
+    def _place(self, time: float) -> tuple[int, bool]:
+        """The interval of an instant, and whether the swing foot has landed by then."""
+        since = (time - self.plan.time) / self.plan.sample_time
+        return min(max(int(since + 1e-6), 0), self._last), time >= self._touchdown
+
+    def _go_to(self, time: float) -> None:
+        interval, landed = self._place(time)
+        if interval != self._interval or landed != self._landed:
+            self._enter(interval, landed)
+
+    def _local(self, time: float) -> float:
+        """Time since the begin of the interval [s]."""
+        return min(max(time - self._start, 0.0), self.plan.sample_time)
+
+    def _contacts_at(self, time: float) -> tuple[bool, bool]:
+        return (True, True) if self._interval == 0 and time >= self._lands else self._contacts
+
     def _enter(self, i: int, landed: bool) -> None:
-        """Prepare an interval: 7 linear functions, 9 polynomials and their two derivatives as columns."""
+        """Prepare an interval: contacts, the foot that swings, and all functions of time."""
+        plan = self.plan
+        self._interval, self._landed, self._start = i, landed, plan.time + i * plan.sample_time
+        left, right = plan.contacts[i].tolist()
+        self._contacts, self._swing_foot, swing = (left, right), None, None
+        if plan.swing is not None and not plan.contacts[i, plan.swing.foot]:
+            self._swing_foot = plan.swing.foot
+            since = max(self._start, plan.swing.touchdown_time) if landed else self._start
+            swing = plan.swing.coefficients(since)
+            if self._kernel is None or since != self._start:
+                swing = shifted(swing, self._start - since)
+        if self._kernel is None:
+            self._table = self._tabulated(i, swing)
+        else:
+            quantities = (
+                plan.com, plan.com_velocity, plan.com_acceleration,
+                plan.zmp_reference, plan.zmp_offset, plan.omega, plan.stiffness, plan.load_left,
+            )  # fmt: skip
+            ends = [quantity[i : i + 2] for quantity in quantities]
+            self._kernel.enter(ends, plan.jerk[i], swing, plan.sample_time)
+
+    def _tabulated(self, i: int, swing: Array | None) -> Array:
+        """An interval: 7 linear functions, 9 polynomials and their two derivatives as columns."""
         plan, t = self.plan, self.plan.sample_time
-        self._interval, self._landed, self._start = i, landed, plan.time + i * t
-        table = np.zeros((6, _COLUMNS))
+        table = np.zeros((6, COLUMNS))
         linear, motion, rates, bends = table[:, :7], table[:, 7:16], table[:, 16:25], table[:, 25:]
         for row, k in enumerate((i, i + 1)):
             linear[row, :2], linear[row, 2:4] = plan.zmp_reference[k], plan.zmp_offset[k]
@@ -226,18 +309,11 @@ class PlanSampler:
             (plan.com[i : i + 2, 2], plan.com_velocity[i : i + 2, 2], plan.com_acceleration[i : i + 2, 2])
         )
         motion[:, 2] = quintic(heights[:, :1], heights[:, 1:], t)[:, 0]
-        left, right = plan.contacts[i].tolist()
-        self._contacts, self._swing_foot = (left, right), None
-        if plan.swing is not None and not plan.contacts[i, plan.swing.foot]:
-            self._swing_foot = plan.swing.foot
-            since = max(self._start, plan.swing.touchdown_time) if landed else self._start
-            motion[:, 3:] = shifted(plan.swing.coefficients(since), self._start - since)
+        if swing is not None:
+            motion[:, 3:] = swing
         rates[:5] = _DERIVATIVE * motion[1:]
         bends[:4] = _DERIVATIVE[:4] * rates[1:5]
-        self._table = table
+        return table
 
-
-_COLUMNS = 34
-"""Of a table: 7 linear functions, 9 polynomials and their two derivatives, as `_enter` fills them [-]."""
 
 _DERIVATIVE = np.arange(1.0, 6.0)[:, None]

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from surefoot.errors import ParameterError
+from surefoot.native.library import library
 from surefoot.planner.check import check_durations, check_height
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
@@ -80,8 +81,8 @@ class WalkingPlanner:
         region: StepRegion | None = None,
         legs: LegReach | None = None,
     ) -> None:
-        # Here, so that the first tick does not wait for it: its time is recorded.
-        import scipy.linalg  # noqa: F401
+        if library() is None:  # here, so that the first tick does not wait for it: its time is recorded
+            import scipy.linalg  # noqa: F401
 
         self.gait = gait
         self.parameters = parameters or profile.parameters

@@ -1,9 +1,11 @@
 """CoM law: time-varying DCM feedback through the ZMP, and a spring-damper for the height."""
 
 import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from surefoot.native.library import Library, library
 from surefoot.polygon import convex_hull
 from surefoot.wbc.parameters import BalanceGains
 from surefoot.wbc.types import Array, WbcReference
@@ -27,12 +29,31 @@ class SupportRegion:
         self._edges: list[_Edge] = []
         # Two convex soles of four corners have a hull of eight at most.
         self.edges, self.edge_count = np.zeros((8, 5)), np.zeros(1, dtype=np.int64)
+        self._positions, self._rotations = np.zeros((2, 3)), np.zeros((2, 3, 3))
+        kernels = library()
+        self._rebuild = None if kernels is None else self._compile(kernels)
+
+    def _compile(self, kernels: Library) -> Callable[[bool, bool, int], None]:
+        """The kernel that does what `rebuild` does."""
+        return kernels.bind(
+            "support_rebuild",
+            corners=self._corners,
+            positions=self._positions,
+            rotations=self._rotations,
+            edges=self.edges,
+            edge_count=self.edge_count,
+        )
 
     def rebuild(self, positions: Array, rotations: Array, active: tuple[bool, bool], rolling: int = -1) -> None:
         """Hull of the active soles; positions (2, 3), rotations (2, 3, 3) in the world frame.
 
         Of a rolling foot, the toe edge alone, which is where its frame is.
         """
+        if self._rebuild is not None:
+            self._positions[:], self._rotations[:] = positions, rotations
+            self._rebuild(*active, rolling)
+            self._edges = self.edges[: self.edge_count[0]].tolist()
+            return
         edge = self._corners * np.array([0.0, 1.0])
         corners = [edge if k == rolling else self._corners for k in (0, 1)]
         soles = [positions[k, :2] + corners[k] @ rotations[k, :2, :2].T for k in (0, 1) if active[k]]
@@ -55,7 +76,7 @@ class SupportRegion:
         return nearest
 
 
-_Edge = tuple[float, float, float, float, float]
+_Edge = Sequence[float]
 """Start point, unit direction and length of an edge of a counter-clockwise polygon."""
 
 

@@ -12,6 +12,7 @@ import pinocchio as pin
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.native.library import Bound, Library
 from surefoot.wbc.types import Array, WbcReference
+from surefoot.wbc.zmp import UNLOADED
 
 if TYPE_CHECKING:
     from surefoot.wbc.model import RobotTerms
@@ -40,7 +41,7 @@ class CompiledTerms:
         torso: int,
         torso_motion: tuple[Array, Array, Array],
     ) -> None:
-        self.kernels = kernels
+        self.kernels, self._data = kernels, terms.data
         self._q, self._v = np.zeros(terms.model.nq), np.zeros(terms.model.nv)
         self._mass, self._force, self._moment = np.array([terms.mass]), np.zeros(3), np.zeros(3)
         self._to_sole, self._loaded = np.zeros((2, 6, 6)), False
@@ -70,6 +71,16 @@ class CompiledTerms:
             to_sole=self._to_sole,
         )
         self._update = kernels.bind("terms_update", self.bound)
+        self._wrench, self._level, self._yaw, self._zmp = np.zeros((2, 6)), np.zeros((2, 3)), np.zeros(2), np.zeros(3)
+        self._see = kernels.bind(
+            "feet_see",
+            terms=self.bound,
+            unloaded=UNLOADED,
+            wrench=self._wrench,
+            level=self._level,
+            yaw=self._yaw,
+            zmp=self._zmp,
+        )
         self._shift, self.unshift = (kernels.bind(name, self.bound) for name in ("terms_shift", "terms_unshift"))
 
     def update(self, q: Array, v: Array, mass: float) -> None:
@@ -91,6 +102,22 @@ class CompiledTerms:
         self._shift(k, forward, pitch)
         to_sole: Array = self._to_sole[k].copy()
         return to_sole
+
+    def feet(self, wrench: Array, toe: float) -> tuple[Array, Array, Array]:
+        """Soles turned level, shape (2, 3) [m], their yaws, shape (2,) [rad], and the ZMP, shape (3,) [m].
+
+        Args:
+            wrench: sole wrenches in the sole frames, shape (2, 6) [N, N·m].
+            toe: as of `RobotTerms.level_soles`; the soles do not lean.
+        """
+        np.copyto(self._wrench, wrench)
+        self._see(toe)
+        return self._level.copy(), self._yaw.copy(), self._zmp.copy()
+
+    def pose(self, joint: int) -> tuple[Array, Array]:
+        """Orientation, by columns, and position of a joint's body in the world, where Pinocchio keeps them."""
+        placement = self._data.oMi[joint]
+        return placement.rotation, placement.translation
 
     def _sole(self, terms: "RobotTerms", k: int, frame: int) -> Bound:
         motion = terms.sole_jacobian[k], terms.sole_velocity[k], terms.sole_bias[k]
@@ -159,6 +186,9 @@ class CompiledTick:
     def refer(self, reference: WbcReference) -> None:
         """Take the reference of this tick."""
         r = reference
+        if r.numbers is not None:
+            np.copyto(self._numbers, r.numbers)
+            return
         rest = (*_NUMBERS(r), *r.load_share, *r.roll, r.swing_foot, r.rolling_foot)
         parts = (*_VECTORS(r), r.swing_rotation.ravel(), r.ground_normal.ravel(), rest)
         np.concatenate(parts, out=self._numbers)

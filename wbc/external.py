@@ -14,6 +14,7 @@ Times, forces and moments below are the reference robot's (see `surefoot.similar
 """
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -87,7 +88,7 @@ class LoadObserver:
         self._span = self._ticks * period
         self._felt, self._com = np.zeros(6), np.zeros(3)
         self._momentum: Array | None = None
-        self._count = 0
+        self._count = 0 if compiled is None else -1
         self._spans = np.empty((0, sum(_ROWS)))
         self._most = np.repeat(size.times(RATES, "N/s, N·m/s, 1/s"), _ROWS) * self._span
         pull = np.repeat([size.factor("N"), size.factor("N·m")], _ROWS[:2])
@@ -95,11 +96,39 @@ class LoadObserver:
         self._kept, self._sudden = (tuple(limit * pull for limit in limits) for limits in (KEPT, SUDDEN))
         self._estimate = np.zeros(sum(_ROWS))
         self.load = NO_LOAD
-        self._wrench, self._add = np.zeros((2, 6)), None
+        self._wrench = np.zeros((2, 6))
+        self._add: Callable[[], None] | None = None
         if compiled is not None:
-            self._add = compiled.kernels.bind(
-                "load_sums_add", terms=compiled.bound, wrench=self._wrench, felt=self._felt, com=self._com
-            )
+            self._compile(compiled)
+
+    def _compile(self, compiled: CompiledTerms) -> None:
+        """Bind the kernels that do what `_moving` and `_end_span` do."""
+        bind = compiled.kernels.bind
+        self._add = bind("load_sums_add", terms=compiled.bound, wrench=self._wrench, felt=self._felt, com=self._com)
+        span = compiled.kernels.fill(
+            "LoadSpan",
+            terms=compiled.bound,
+            weight=self._mass * GRAVITY,
+            span=self._span,
+            ticks=self._ticks,
+            spans_count=SPANS,
+            latest_count=LATEST,
+            most_share=MOST,
+            least_press=LEAST_PRESS,
+            share_limits=np.array(WEIGHT),
+            kept=np.array(self._kept),
+            sudden=np.array(self._sudden),
+            bound=self._bound,
+            push=np.array(self._push, dtype=np.float64),
+            most_change=self._most,
+            felt=self._felt,
+            com=self._com,
+            momentum=np.zeros(6),
+            spans=np.zeros((SPANS, sum(_ROWS))),
+            filled=np.zeros(1, dtype=np.int64),
+            estimate=self._estimate,
+        )
+        self._begin, self._end = (bind(name, span) for name in ("load_moving", "load_span_end"))
 
     def update(self, terms: RobotTerms, wrench: Array) -> ExternalLoad:
         """The load as it is now known; call it once per control tick.
@@ -108,18 +137,30 @@ class LoadObserver:
             terms: of the state now.
             wrench: of the soles, in their frames, shape (2, 6) [N, N·m].
         """
+        if self._add is not None:
+            return self._update_compiled(wrench, self._add)
         if self._momentum is None:
             self._momentum = self._moving(terms)
             return self.load
-        if self._add is not None:
-            np.copyto(self._wrench, wrench)
-            self._add()
-        else:
-            self._felt += terms.sole_wrench_map @ wrench.ravel()
-            self._com += terms.com
+        self._felt += terms.sole_wrench_map @ wrench.ravel()
+        self._com += terms.com
         self._count += 1
         if self._count == self._ticks:
             self._end_span(self._momentum, self._moving(terms))
+        return self.load
+
+    def _update_compiled(self, wrench: Array, add: Callable[[], None]) -> ExternalLoad:
+        """The same by kernels, for the terms that they are bound to."""
+        self._count += 1
+        if self._count == 0:
+            self._begin()
+            return self.load
+        np.copyto(self._wrench, wrench)
+        add()
+        if self._count == self._ticks:
+            self._count = 0
+            if self._end():
+                self._tell()
         return self.load
 
     def _moving(self, terms: RobotTerms) -> Array:
@@ -158,6 +199,10 @@ class LoadObserver:
             pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
         wanted = np.concatenate((pull, share))
         self._estimate = self._estimate + np.clip(wanted - self._estimate, -self._most, self._most)
+        self._tell()
+
+    def _tell(self) -> None:
+        """The estimate as a load."""
         self.load = NO_LOAD
         if self._estimate.any():
             x, y, *moment, more = self._estimate.tolist()

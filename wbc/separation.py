@@ -1,6 +1,6 @@
 """Distances between the robot's own limbs as bounds on the joint accelerations of one tick."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pinocchio as pin
@@ -49,6 +49,7 @@ class Separation:
         ]
         self._points, self._row = np.zeros((3, 3)), np.zeros(model.nv)
         self._rates = [self._compiled(compiled, *joints) for joints in self._joints] if compiled else None
+        self._due = _DuePairs(compiled, geometry, self._joints, parameters.attention) if compiled else None
 
     def write(self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
         """Write the rows of the nearest pairs; unused ones become zero rows without a bound.
@@ -61,10 +62,11 @@ class Separation:
             unbounded: value of an absent bound.
         """
         p = self._parameters
-        pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
-        pin.computeDistances(self._geometry, self._data)
-        distances = [result.min_distance for result in self._results]
-        near = [k for k, distance in enumerate(distances) if 0.0 < distance < p.attention]
+        distances = self._all_distances(data) if self._due is None else self._due_distances(data, self._due)
+        if not distances:
+            rows[:], lower[:] = 0.0, -unbounded
+            return
+        near = [k for k, distance in distances.items() if 0.0 < distance < p.attention]
         near.sort(key=distances.__getitem__)
         for slot in range(p.slots):
             if slot >= len(near):
@@ -80,6 +82,21 @@ class Separation:
                 rate = self._rates[near[slot]]()
             rows[slot] = row
             lower[slot] = -2.0 / p.horizon * rate - gap / p.horizon**2
+
+    def _all_distances(self, data: pin.Data) -> dict[int, float]:
+        pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
+        pin.computeDistances(self._geometry, self._data)
+        return {k: result.min_distance for k, result in enumerate(self._results)}
+
+    def _due_distances(self, data: pin.Data, due: "_DuePairs") -> dict[int, float]:
+        """Those that may be within the attention."""
+        distances: dict[int, float] = {}
+        for k in due.find():
+            if not distances:
+                pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
+            pin.computeDistance(self._geometry, self._data, k)
+            distances[k] = due.distances[k] = self._results[k].min_distance
+        return distances
 
     def _compiled(self, terms: CompiledTerms, first: int, second: int) -> Callable[[], float]:
         """The kernel that does what `_gradient` does for the pair of two joints' bodies."""
@@ -107,3 +124,51 @@ class Separation:
             jacobian = pin.getJointJacobian(self._model, data, joint, _WORLD_AXES)
             row += sign * (normal @ jacobian[:3] + np.cross(arm, normal) @ jacobian[3:])
         return row
+
+
+class _DuePairs:
+    """Pairs that can have come near since their distance was measured last, which most of a robot's limbs never do.
+
+    Args:
+        compiled: terms whose joints move the shapes.
+        geometry: the shapes.
+        joints: those of the two shapes of each pair.
+        attention: distance from which a pair is looked at [m].
+
+    Attributes:
+        distances: as measured last, shape (pairs,) [m].
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledTerms,
+        geometry: pin.GeometryModel,
+        joints: Sequence[tuple[int, ...]],
+        attention: float,
+    ) -> None:
+        centres, radii = [], []
+        for pair in geometry.collisionPairs:
+            shape = geometry.geometryObjects[pair.second]
+            shape.geometry.computeLocalAABB()
+            centres.append(shape.placement.act(np.array(shape.geometry.aabb_center)))
+            radii.append(shape.geometry.aabb_radius)
+        poses = [compiled.pose(joint) for pair in joints for joint in pair]
+        self.distances, self._due = np.full(len(joints), -np.inf), np.zeros(len(joints), dtype=np.int64)
+        # The kernel follows addresses, so what is there must live as long as this.
+        self._poses = poses
+        self._find = compiled.kernels.bind(
+            "pairs_due",
+            count=len(joints),
+            poses=np.array([part.ctypes.data for pose in poses for part in pose], dtype=np.int64),
+            centres=np.array(centres).reshape(-1, 3),
+            radii=np.array(radii, dtype=np.float64),
+            attention=attention,
+            places=np.zeros((len(joints), 12)),
+            distances=self.distances,
+            due=self._due,
+        )
+
+    def find(self) -> list[int]:
+        """Their numbers, in the state of the terms; each is to be measured there."""
+        found: list[int] = self._due[: self._find()].tolist()
+        return found

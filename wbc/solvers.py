@@ -14,6 +14,9 @@ from surefoot.wbc.parameters import SOLVER_NAMES
 from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
 from surefoot.wbc.types import Array
 
+MOST_ACTIVE = 16
+"""Active inequalities that the kernel takes; with more of them DAQP is as fast [-]."""
+
 
 @dataclass(frozen=True, slots=True)
 class QpSolution:
@@ -133,14 +136,16 @@ class EqualityFirst:
         self._accuracy = accuracy
         self._full = Daqp(accuracy)
         kernels = library()
-        self._equalities = equalities_only if kernels is None else CompiledEqualities(kernels).solve
+        self._compiled = None if kernels is None else CompiledEqualities(kernels, accuracy)
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
-        solution = self._equalities(qp)
+        compiled = self._compiled
+        solution = equalities_only(qp) if compiled is None else compiled.solve(qp)
         if solution is not None and solution.violation <= self._accuracy:
             return solution
-        return self._full.solve(qp)
+        active = None if solution is None or compiled is None else compiled.activate()
+        return active or self._full.solve(qp)
 
 
 def equalities_only(qp: QpData) -> QpSolution | None:
@@ -168,10 +173,10 @@ def equalities_only(qp: QpData) -> QpSolution | None:
 
 
 class CompiledEqualities:
-    """Does what ``equalities_only`` does by a kernel, which is bound anew to another QP."""
+    """Does what ``equalities_only`` does by a kernel, which is bound anew to another QP; another goes on from there."""
 
-    def __init__(self, kernels: Library) -> None:
-        self._kernels = kernels
+    def __init__(self, kernels: Library, accuracy: float) -> None:
+        self._kernels, self._accuracy = kernels, accuracy
         self._qp: QpData | None = None
 
     def solve(self, qp: QpData) -> QpSolution | None:
@@ -181,13 +186,22 @@ class CompiledEqualities:
         violation = self._run(self._split)
         return QpSolution(self._x.copy(), violation, 0) if math.isfinite(violation) else None
 
+    def activate(self) -> QpSolution | None:
+        """The minimiser of the QP last solved under all of its constraints; None where few active ones do not do."""
+        rounds = self._activate()
+        if rounds < 0:
+            return None
+        violation = self._violation()
+        # Beside what counts as none there is rounding, as of DAQP, which scales its rows.
+        return QpSolution(self._x.copy(), violation, rounds) if violation <= 100.0 * self._accuracy else None
+
     def _bind(self, qp: QpData) -> None:
         n, rows, eq = qp.g.shape[0], qp.A.shape[0], EQUALITY_ROWS
         # A right side for each equality and for the gradient, and room to make their number a multiple of four.
         width = eq + 4
         self._x, self._split = np.zeros(n), n - 2 * FOOT_ROWS
-        self._run = self._kernels.bind(
-            "equality_qp_solve",
+        bound = self._kernels.fill(
+            "EqualityQp",
             variables=n,
             equalities=eq,
             rows=rows,
@@ -201,6 +215,19 @@ class CompiledEqualities:
             schur=np.zeros((eq, width)),
             multipliers=np.zeros(eq),
             x=self._x,
+        )
+        self._run = self._kernels.bind("equality_qp_solve", bound)
+        self._violation = self._kernels.bind("qp_violation", bound)
+        self._activate = self._kernels.bind(
+            "active_qp_solve",
+            qp=bound,
+            most=MOST_ACTIVE,
+            tolerance=self._accuracy,
+            normals=np.zeros((MOST_ACTIVE, n)),
+            columns=np.zeros((MOST_ACTIVE + 1, eq + MOST_ACTIVE)),
+            multipliers=np.zeros(MOST_ACTIVE),
+            active=np.zeros(MOST_ACTIVE, dtype=np.int64),
+            work=np.zeros(2 * n + eq + MOST_ACTIVE),
         )
         self._qp = qp
 

@@ -5,7 +5,7 @@ Robot states follow Pinocchio: ``q = [base position, base quaternion xyzw, joint
 foot first. Wrenches are ``[fx, fy, fz, tx, ty, tz]`` at the sole centre in the sole frame. Units are SI.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
@@ -88,6 +88,7 @@ class WbcReference:
         rolling_foot: index of the foot that rolls about its toe edge, -1 for none; its `swing_position` is that of the
             sole as if it lay flat.
         roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
+        numbers: the kernels' struct ``Reference`` that says the same; None of one that was not made by a kernel.
     """
 
     com: Array
@@ -114,6 +115,49 @@ class WbcReference:
     ground_normal: Array
     rolling_foot: int = -1
     roll: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    numbers: Array | None = field(init=False, default=None, repr=False, compare=False)
+
+    @classmethod
+    def of_numbers(
+        cls,
+        numbers: Array,
+        planned_contact: tuple[bool, bool],
+        time_to_switch: float,
+        lifting_foot: int,
+        swing_foot: int,
+        swing_progress: float,
+        rolling_foot: int,
+    ) -> "WbcReference":
+        """A reference out of the numbers of the kernels' struct ``Reference``, and what they do not know of it."""
+        omega, stiffness, heading, heading_rate, left, right, *roll, _, _ = numbers[43:].tolist()
+        reference = cls(
+            numbers[:3],
+            numbers[3:6],
+            numbers[6:9],
+            numbers[9:11],
+            numbers[11:13],
+            omega,
+            stiffness,
+            heading,
+            heading_rate,
+            planned_contact,
+            (left, right),
+            time_to_switch,
+            lifting_foot,
+            swing_foot,
+            swing_progress,
+            numbers[13:16],
+            numbers[16:19],
+            numbers[19:22],
+            numbers[28:37].reshape(3, 3),
+            numbers[22:25],
+            numbers[25:28],
+            numbers[37:43].reshape(2, 3),
+            rolling_foot,
+            tuple(roll),
+        )
+        object.__setattr__(reference, "numbers", numbers)
+        return reference
 
 
 @dataclass(frozen=True, slots=True)

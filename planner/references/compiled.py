@@ -167,7 +167,7 @@ class CompiledTable:
 
     def __init__(self, kernels: Library) -> None:
         self._kernels = kernels
-        self._make_room(16)
+        self._make_room(0)
 
     def fill(
         self, schedule: Schedule, landed: int, free: tuple[bool, bool], half_size: Array, stay: bool = False

@@ -1,12 +1,17 @@
 """Metrics of what thinks: the state that was given, the solvers, the time they took, the log."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from surefoot.scenarios.judge.balance import rms
 from surefoot.scenarios.judge.digest import Array, Rows, RunView
 from surefoot.scenarios.judge.metric import MM, metric
 
-_SPREAD = ("median", "p99")
+_SPREAD: Mapping[str, float] = {"median": 50.0, "p99": 99.0}
+"""Percentiles by the names of their parts."""
+
+_TAIL: Mapping[str, float] = {**_SPREAD, "p999": 99.9}
 
 WARM = 60.0
 """Time by which everything that a run needs once is there [s]."""
@@ -44,7 +49,7 @@ def dcm_estimation_error_rms(run: RunView) -> list[float] | None:
     return rms(position + velocity / omega)
 
 
-@metric(unit="s", shown=(1e3, "ms"), parts=_SPREAD, reads={"/timing": ("planner",)}, repeatable=False, least=0.0)
+@metric(unit="s", shown=(1e3, "ms"), parts=tuple(_SPREAD), reads={"/timing": ("planner",)}, repeatable=False, least=0.0)
 def planner_time(run: RunView) -> dict[str, float] | None:
     """Wall-clock time of a plan: median and 99th percentile [s]."""
     spent = run.field("/timing", "planner")
@@ -54,7 +59,7 @@ def planner_time(run: RunView) -> dict[str, float] | None:
 @metric(
     unit="s",
     shown=(1e3, "ms"),
-    parts=_SPREAD,
+    parts=tuple(_SPREAD),
     reads={"/timing": ("wbc_build", "wbc_solve")},
     body=True,
     repeatable=False,
@@ -63,6 +68,25 @@ def planner_time(run: RunView) -> dict[str, float] | None:
 def wbc_time(run: RunView) -> dict[str, float] | None:
     """Wall-clock time to build and solve the whole-body QP: median and 99th percentile [s]."""
     return _spread(run.field("/timing", "wbc_build") + run.field("/timing", "wbc_solve"))
+
+
+@metric(
+    unit="s",
+    shown=(1e3, "ms"),
+    parts=tuple(_TAIL),
+    reads={"/timing": ("controller",)},
+    repeatable=False,
+    least=0.0,
+)
+def controller_time(run: RunView) -> dict[str, float] | None:
+    """Processor time of a tick without log and physics: median, 99th and 99.9th percentile [s]."""
+    return _spread(run.field("/timing", "controller"), _TAIL)
+
+
+@metric(reads={"/timing": ("controller",)}, repeatable=False, least=0.0)
+def deadlines_missed(run: RunView) -> int:
+    """Ticks that take more processor time than their period, without log and physics."""
+    return int(np.count_nonzero(run.field("/timing", "controller") * 1e-6 > 1.0 / run.constants.control_rate))
 
 
 @metric(shown=(1.0, "times real time"), reads={"/timing": ("tick",)}, repeatable=False, least=0.0)
@@ -100,11 +124,11 @@ def log_bytes(run: RunView) -> int:
     return run.log.size
 
 
-def _spread(microseconds: Array) -> dict[str, float] | None:
+def _spread(microseconds: Array, percentiles: Mapping[str, float] = _SPREAD) -> dict[str, float] | None:
     if not len(microseconds):
         return None
-    median, p99 = np.percentile(microseconds, (50, 99)) * 1e-6
-    return dict(zip(_SPREAD, (float(median), float(p99)), strict=True))
+    found = np.percentile(microseconds, list(percentiles.values())) * 1e-6
+    return dict(zip(percentiles, found.tolist(), strict=True))
 
 
 def _given(run: RunView) -> tuple[Rows, Rows]:

@@ -1,193 +1,14 @@
-"""The hot end of the log: values are copied into preallocated message records, alone or as rows of several channels."""
+"""Rows of the log: one message for each of several channels at once, with what is derived from the rest."""
 
 import struct
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from mcap.opcode import Opcode
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from surefoot.scenarios.log.spec import PREFIX_BYTES, ChannelSpec, blank_records
-
-_INDEX_HEADER = struct.Struct("<BQHI")
-
-
-class Clock:
-    """When the chunk under way is due.
-
-    Attributes:
-        due: simulated time [ns] from which the next message completes the chunk.
-        complete: completes it, at this time [ns].
-    """
-
-    def __init__(self, due: int, complete: Callable[[int], None]) -> None:
-        self.due, self.complete = due, complete
-
-
-class Waiting:
-    """Messages of one channel that wait for their chunk.
-
-    Attributes:
-        channel_id: its number in the file.
-        count: messages waiting.
-        total: messages handed over to chunks so far.
-        times: simulated time of the messages waiting [ns].
-    """
-
-    def __init__(self, channel_id: int, clock: Clock) -> None:
-        self.channel_id, self._clock = channel_id, clock
-        self.count = self.total = 0
-        self.times: list[int] = []
-
-    def take(self, offset: int) -> tuple[memoryview | bytes, bytes]:
-        """Hand over what waits.
-
-        Args:
-            offset: where its block begins in the chunk [bytes].
-
-        Returns:
-            the message records, valid until the next `append`, and their MessageIndex record.
-        """
-        raise NotImplementedError
-
-    def drop(self) -> None:
-        """Forget what waits."""
-        self.times.clear()
-        self.count = 0
-
-
-class ChannelWriter(Waiting):
-    """Messages of a fixed layout, in memory that is taken once.
-
-    Args:
-        spec: the channel.
-        channel_id: its number in the file.
-        capacity: messages that may wait.
-        clock: says when a chunk is due.
-
-    Attributes:
-        spec: the channel.
-    """
-
-    def __init__(self, spec: ChannelSpec, channel_id: int, capacity: int, clock: Clock) -> None:
-        super().__init__(channel_id, clock)
-        self.spec, self._capacity = spec, capacity
-        self._names = tuple(field.name for field in spec.fields)
-        self._records = blank_records(spec.fields, channel_id, capacity)
-        self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[name] for name in self._names)
-        self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
-        self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._records.dtype.itemsize)
-
-    def append(self, time_ns: int, *values: ArrayLike) -> None:
-        """Add a message; the values are copied.
-
-        Args:
-            time_ns: simulated time [ns].
-            values: one per field, of the field's shape.
-
-        Raises:
-            ValueError: the number of values or a shape does not fit the channel.
-            LogError: the chunk that this message completes cannot be written.
-        """
-        n = self.count
-        self.times.append(time_ns)
-        for view, value in zip(self._views, values, strict=True):
-            view[n] = value
-        self.count = n = n + 1
-        if time_ns >= self._clock.due or n == self._capacity:
-            self._clock.complete(time_ns)
-
-    def put(self, time_ns: int, *sources: object, **given: ArrayLike) -> None:
-        """Add a message by the names of its fields; the values are copied.
-
-        Args:
-            time_ns: simulated time [ns].
-            sources: whose attributes are the values of the fields of their names; of several the first that has one.
-            given: values by field, in place of those of the sources.
-
-        Raises:
-            ValueError: a field that nothing gives, or a value that is of no field; else as of `append`.
-        """
-        owners = {name: source for source in reversed(sources) for name in self._names if hasattr(source, name)}
-        found = {name: getattr(source, name) for name, source in owners.items()} | given
-        if wrong := found.keys() ^ set(self._names):
-            raise ValueError(
-                f"{self.spec.topic}: fields that nothing gives, or that it has not: {', '.join(sorted(wrong))}"
-            )
-        self.append(time_ns, *(found[name] for name in self._names))
-
-    def view(self, name: str) -> NDArray[np.generic]:
-        """Where the values of a field wait, shape (capacity, *field shape)."""
-        return self._views[self._names.index(name)]
-
-    def fill(self, times_ns: Sequence[int]) -> None:
-        """Take over messages whose values were written into the views, while none waits."""
-        self.times.extend(times_ns)
-        self.count = len(times_ns)
-
-    def take(self, offset: int) -> tuple[memoryview, bytes]:
-        """See `Waiting`."""
-        n, records = self.count, self._records
-        stamps = np.array(self.times, np.uint64)
-        for name in ("_stamp", "_log_time", "_publish_time"):
-            records[name][:n] = stamps
-        records["_sequence"][:n] = np.arange(self.total, self.total + n)
-        self.total += n
-        self.drop()
-        index = message_index(self.channel_id, stamps, self._offsets[:n] + np.uint64(offset))
-        return self._bytes[:n].data.cast("B"), index
-
-
-def message_index(channel_id: int, times_ns: ArrayLike, offsets: ArrayLike) -> bytes:
-    """MessageIndex record of a channel's messages in a chunk: times [ns] and byte offsets, shape (n,) each."""
-    times = np.asarray(times_ns, "<u8")
-    index = np.empty((len(times), 2), "<u8")
-    index[:, 0], index[:, 1] = times, offsets
-    entries = index.tobytes()
-    return _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(entries) + 6, channel_id, len(entries)) + entries
-
-
-_HEADER = struct.Struct("<BQHIQQ")
-
-
-class MessageWriter(Waiting):
-    """Encoded messages of any size; for channels slower than the control rate."""
-
-    def __init__(self, channel_id: int, clock: Clock) -> None:
-        super().__init__(channel_id, clock)
-        self._waiting: list[bytes] = []
-
-    def append(self, time_ns: int, data: bytes) -> None:
-        """Add an encoded message.
-
-        Raises:
-            LogError: the chunk that this message completes cannot be written.
-        """
-        self.times.append(time_ns)
-        self._waiting.append(data)
-        self.count += 1
-        if time_ns >= self._clock.due:
-            self._clock.complete(time_ns)
-
-    def drop(self) -> None:
-        """Forget what waits."""
-        super().drop()
-        self._waiting.clear()
-
-    def take(self, offset: int) -> tuple[bytes, bytes]:
-        """See `Waiting`."""
-        blocks, offsets = [], []
-        for time, data in zip(self.times, self._waiting, strict=True):
-            offsets.append(offset)
-            length = _HEADER.size - PREFIX_BYTES + len(data)
-            blocks.append(_HEADER.pack(Opcode.MESSAGE, length, self.channel_id, self.total, time, time) + data)
-            offset += len(blocks[-1])
-            self.total += 1
-        index = message_index(self.channel_id, self.times, offsets)
-        self.drop()
-        return b"".join(blocks), index
-
+from surefoot.native.library import Library
+from surefoot.scenarios.log.channel import ChannelWriter, Clock
 
 Array = NDArray[np.float64]
 Columns = Sequence[tuple[ChannelWriter, Sequence[str]]]
@@ -224,6 +45,8 @@ class Rows:
 
 
 Derive = Callable[[Rows], Mapping[tuple[str, str], Array]]
+CompiledDerive = Callable[[Library, Callable[..., Array]], Callable[[], None]]
+"""From the kernels, and from what gives the part of the row from one place to another, to the kernel that derives."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,6 +60,7 @@ class RowLayout:
         derive: from rows to the derived fields, by topic and name.
         more_vectors: name and size of vectors that only `derive` needs; they come after the others.
         more_numbers: names of numbers that only `derive` needs; they come after the others.
+        compiled: gives a kernel that does what `derive` does, to one row.
     """
 
     vectors: Columns
@@ -245,6 +69,7 @@ class RowLayout:
     derive: Derive | None = None
     more_vectors: Mapping[str, int] = field(default_factory=dict)
     more_numbers: Sequence[str] = ()
+    compiled: CompiledDerive | None = None
 
 
 class RowWriter:
@@ -289,7 +114,7 @@ class RowWriter:
         self._numbers.append(numbers)
         self._times.append(time_ns)
         if time_ns >= self._clock.due or len(self._times) == self._capacity:
-            self._clock.complete(time_ns)
+            self._clock.look(time_ns, len(self._times) == self._capacity)
 
     def drop(self) -> None:
         """Forget the rows that wait."""
@@ -342,3 +167,85 @@ def _width(at: Mapping[Place, slice]) -> int:
 def _views(group: Columns) -> list[tuple[tuple[str, str], NDArray[np.generic]]]:
     """Where the fields of a group wait."""
     return [((writer.spec.topic, name), writer.view(name)) for writer, names in group for name in names]
+
+
+_HEADER = ("_sequence", "_log_time", "_publish_time", "_stamp")
+"""What a kernel writes before the fields of a message, in its order."""
+
+
+class CompiledRows(RowWriter):
+    """The same by kernels: a row is put into the messages of its channels as soon as it is there.
+
+    Args:
+        layout: of the rows; what is derived has a kernel.
+        capacity: rows that may wait.
+        clock: says when a chunk is due.
+        kernels: the library.
+    """
+
+    def __init__(self, layout: RowLayout, capacity: int, clock: Clock, kernels: Library) -> None:
+        super().__init__(layout, capacity, clock)
+        vectors, numbers = (_width(at) for at in self._at)
+        places = _places([(place, at.stop - at.start) for part in self._at for place, at in part.items()])
+        derived = _places(_sizes(layout.derived))
+        places |= {
+            place: slice(at.start + vectors + numbers, at.stop + vectors + numbers) for place, at in derived.items()
+        }
+        row = np.zeros(_width(places))
+        self._row, self._announced = row[:vectors], numbers
+        # From plain numbers straight into memory: an array of them would take longer.
+        self._pack, self._bytes, self._behind = struct.Struct(f"{numbers}d").pack_into, row.data.cast("B"), 8 * vectors
+        self._put = self._bind(kernels, row, places)
+        self._deriving: Callable[[], None] | None = None
+        if layout.compiled is not None:
+            self._deriving = layout.compiled(kernels, lambda first, last: row[places[first].start : places[last].stop])
+
+    def _bind(self, kernels: Library, row: Array, places: Mapping[Place, slice]) -> Callable[[int, int, int], None]:
+        records = [writer.records for writer in self._writers]
+        views = [
+            (writer.spec.topic, field.name, writer.view(field.name))
+            for writer in self._writers
+            for field in writer.spec.fields
+        ]
+        at = [places[topic, name] for topic, name, _ in views]
+
+        def numbers(values: Iterable[int]) -> NDArray[np.int64]:
+            return np.array(list(values), dtype=np.int64)
+
+        return kernels.bind(
+            "log_row_put",
+            values=row,
+            fields=len(views),
+            first=numbers(place.start for place in at),
+            sizes=numbers(place.stop - place.start for place in at),
+            whole=numbers(view.dtype == np.int32 for *_, view in views),
+            places=numbers(view.ctypes.data for *_, view in views),
+            strides=numbers(view.strides[0] for *_, view in views),
+            channels=len(records),
+            records=numbers(record.ctypes.data for record in records),
+            lengths=numbers(record.dtype.itemsize for record in records),
+            header=numbers(records[0][name].ctypes.data - records[0].ctypes.data for name in _HEADER),
+        )
+
+    def append(self, time_ns: int, numbers: tuple[float, ...], *vectors: Array) -> None:
+        """See `RowWriter`; numbers that are not as many as announced are refused at once."""
+        if vectors:
+            np.concatenate(vectors, out=self._row)
+        if len(numbers) != self._announced:
+            raise ValueError(f"a row of {len(numbers)} numbers, where there are places for {self._announced}")
+        self._pack(self._bytes, self._behind, *numbers)
+        if self._deriving is not None:
+            self._deriving()
+        times = self._times
+        count = len(times)
+        self._put(count, time_ns, self._writers[0].total + count)
+        times.append(time_ns)
+        if time_ns >= self._clock.due or count + 1 == self._capacity:
+            self._clock.look(time_ns, count + 1 == self._capacity)
+
+    def spread(self) -> None:
+        """See `RowWriter`."""
+        if self._times:
+            for writer in self._writers:
+                writer.fill(self._times, stamped=True)
+            self.drop()

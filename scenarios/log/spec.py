@@ -15,14 +15,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from math import prod
-from operator import itemgetter
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from google.protobuf import descriptor_pb2
 from google.protobuf.message import Message
 from mcap.opcode import Opcode
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Kind = Literal["double", "int"]
 
@@ -245,27 +244,28 @@ class Template:
             ValueError: a slot stands nowhere in the message.
         """
         data = message.SerializeToString(deterministic=True)
-        places = [(place, "d", index) for index in range(size) for place in _all(data, _slot_bytes(index))]
-        missing = set(range(size)) - {index for _, _, index in places}
+        places = [(place, index) for index in range(size) for place in _all(data, _slot_bytes(index))]
+        missing = set(range(size)) - {index for _, index in places}
         if missing:
             raise ValueError(f"value {min(missing)} has no place in the message; it must stand in it at least once")
-        places += [(place, f"{_STAMP.size}s", size) for place in _all(data, _stamp(SECONDS, NANOS))]
-        form, constants, end = "<", [], 0
-        for place, kind, _ in sorted(places):
-            form += f"{place - end}s{kind}"
-            constants.append(data[end:place])
-            end = place + (_STAMP.size if kind != "d" else 8)
         self.size = size
-        self._struct = struct.Struct(f"{form}{len(data) - end}s")
-        self._parts: list[bytes | float] = [b""] * (2 * len(places) + 1)
-        self._parts[::2] = [*constants, data[end:]]
-        self._pick = itemgetter(*(index for _, _, index in sorted(places)), size)
+        self._bytes = np.frombuffer(data, np.uint8)
+        self._pick = np.array([index for _, index in places], np.intp)
+        self._values_at = _spans([place for place, _ in places], 8)
+        self._stamps_at = _spans(_all(data, _stamp(SECONDS, NANOS)), _STAMP.size)
 
-    def encode(self, time_ns: int, values: Sequence[float]) -> bytes:
+    def encode(self, time_ns: int, values: ArrayLike) -> bytes:
         """Encode the message with these values and this time [ns] in every stamp."""
-        parts = self._parts
-        parts[1::2] = self._pick((*values, _stamp(*divmod(time_ns, 1_000_000_000))))[:-1]
-        return self._struct.pack(*parts)
+        made = self._bytes.copy()
+        picked = np.asarray(values, "<f8")[self._pick]
+        made[self._values_at] = picked.view(np.uint8).reshape(-1, 8)
+        made[self._stamps_at] = np.frombuffer(_stamp(*divmod(time_ns, 1_000_000_000)), np.uint8)
+        return made.tobytes()
+
+
+def _spans(starts: Sequence[int], size: int) -> NDArray[np.intp]:
+    """Places of so many bytes from each start on, shape (starts, size)."""
+    return np.add.outer(np.array(starts, np.intp), np.arange(size))
 
 
 def _slot_bytes(index: int) -> bytes:

@@ -1,7 +1,8 @@
 """Writes a log: what the run was first, then a chunk of messages every few hundredths of a simulated second."""
 
 import zlib
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -9,9 +10,11 @@ from typing import Literal, Self
 
 from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
 
+from surefoot.native.library import library
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log.channel import ChannelWriter, Clock, MessageWriter, Waiting
 from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress, encoded
-from surefoot.scenarios.log.rows import ChannelWriter, Clock, MessageWriter, RowLayout, RowWriter, Waiting
+from surefoot.scenarios.log.rows import CompiledRows, RowLayout, RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec, file_descriptor_set
 from surefoot.scenarios.output import reason
 
@@ -92,7 +95,10 @@ class Output:
 
 Compression = Literal["lz4", "zstd", ""]
 CHUNK_PERIOD_NS = 90_000_000
-"""Simulated time in one chunk: what a killed process loses at most, and a tick [ns]."""
+"""Simulated time in one chunk: what a killed process loses at most, and the ticks in which it is written [ns]."""
+
+_WRITING_NS = 8_000_000
+"""Simulated time in which a chunk is written, a part at each tick, so that none takes long [ns]."""
 
 _CAPACITY = 128
 _PROFILE, _LIBRARY = "", "surefoot"
@@ -153,7 +159,7 @@ class LogWriter:
         self._summary = Summary()
         self._channels: list[Waiting] = []
         self._rows: list[RowWriter] = []
-        self._clock = Clock(CHUNK_PERIOD_NS, self._flush)
+        self._begin_clock()
         beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
         for name, values in metadata.items():
             beginning += self._summary.add_metadata(Metadata(name, dict(values)), len(beginning))
@@ -172,7 +178,12 @@ class LogWriter:
 
     def rows(self, layout: RowLayout) -> RowWriter:
         """Fill channels of one rate together; errors as of `RowWriter`."""
-        rows = RowWriter(layout, _CAPACITY, self._clock)
+        kernels, derives = library(), layout.derive is not None and layout.compiled is None
+        rows = (
+            RowWriter(layout, _CAPACITY, self._clock)
+            if kernels is None or derives
+            else CompiledRows(layout, _CAPACITY, self._clock, kernels)
+        )
         self._rows.append(rows)
         return rows
 
@@ -204,6 +215,13 @@ class LogWriter:
 
     def flush(self) -> None:
         """Write what waits as one chunk, if anything waits."""
+        for _ in self._writing:
+            pass
+        for _ in self._chunk():
+            pass
+
+    def _chunk(self) -> Iterator[None]:
+        """Take what waits and write it as one chunk, in parts between which more may be appended."""
         for rows in self._rows:
             rows.spread()
         waiting = [channel for channel in self._channels if channel.count]
@@ -217,8 +235,12 @@ class LogWriter:
             indexes.append((channel.channel_id, index))
             offset += len(block)
         data = b"".join(blocks)
-        chunk = Chunk(self._compression, compress(data, self._compression), end, start, zlib.crc32(data), len(data))
+        yield
+        packed = compress(data, self._compression)
+        yield
+        chunk = Chunk(self._compression, packed, end, start, zlib.crc32(data), len(data))
         head = chunk_head(chunk)
+        yield
         self._summary.add_chunk(chunk, self._output.position, len(head) + len(chunk.data), indexes)
         self._output.write(b"".join((head, chunk.data, *(index for _, index in indexes))))
 
@@ -236,9 +258,24 @@ class LogWriter:
         self._output.close()
         self.path.unlink(missing_ok=True)
 
-    def _flush(self, time_ns: int) -> None:
-        self._clock.due = time_ns + CHUNK_PERIOD_NS
+    def _begin_clock(self) -> None:
+        self._writing: Iterator[None] = iter(())
+        self._next, self._late = CHUNK_PERIOD_NS, 0
+        self._clock = Clock(self._next, self._go_on, self._full)
+
+    def _full(self, time_ns: int) -> None:
+        self._next = self._clock.due = time_ns + CHUNK_PERIOD_NS
         self.flush()
+
+    def _go_on(self, time_ns: int) -> None:
+        """Begin a chunk, or write the next part of the one that is being written."""
+        clock = self._clock
+        if time_ns >= self._next:
+            self._next, self._late = time_ns + CHUNK_PERIOD_NS, time_ns + _WRITING_NS
+            self._writing = self._chunk()
+        elif time_ns >= self._late:
+            deque(self._writing, maxlen=0)
+        clock.due = time_ns + 1 if next(self._writing, self) is None else self._next
 
     def __enter__(self) -> Self:
         return self
@@ -256,7 +293,7 @@ class NoLog(LogWriter):
         """Open nothing."""
         self._channels = []
         self._rows = []
-        self._clock = Clock(CHUNK_PERIOD_NS, self._flush)
+        self._begin_clock()
 
     def _define(self, topic: str, schema: PublishedSchema, metadata: dict[str, str]) -> int:
         return len(self._channels) + 1
@@ -273,6 +310,10 @@ class NoLog(LogWriter):
             rows.drop()
         for channel in self._channels:
             channel.drop()
+
+    def _chunk(self) -> Iterator[None]:
+        self.flush()
+        return iter(())
 
     def close(self) -> None:
         """Forget what waits."""

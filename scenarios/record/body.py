@@ -1,10 +1,12 @@
 """Writes what the robot's body and its controller exchange in one run into the log's channels."""
 
+from collections.abc import Callable
 from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.native.library import Library
 from surefoot.planner.plan import PlanSample
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import RowLayout, Rows
@@ -91,7 +93,8 @@ class Recorder:
             (torque, ("limit_ratio_max",)),
             (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
         )
-        self._row = writer.rows(RowLayout(vectors, numbers, derived, self._derived, _MORE_VECTORS, _MORE_NUMBERS))
+        more = _MORE_VECTORS, _MORE_NUMBERS
+        self._row = writer.rows(RowLayout(vectors, numbers, derived, self._derived, *more, self._compiled))
 
     def tick(
         self, time_ns: int, measurement: Measurement, truth: RobotTerms, terms: RobotTerms, planned: PlanSample,
@@ -140,3 +143,36 @@ class Recorder:
             ("/contact", "cop_left"): cop[:, 0],
             ("/contact", "cop_right"): cop[:, 1],
         }
+
+    def _compiled(self, kernels: Library, part: Callable[..., Array]) -> Callable[[], None]:
+        """The kernel that does what `_derived` does."""
+
+        def of(topic: str, first: str, last: str = "") -> Array:
+            return part((topic, first), (topic, last or first))
+
+        return kernels.bind(
+            "body_row_derive",
+            joints=len(self._inverse_limit),
+            unloaded=UNLOADED,
+            second=_SECOND,
+            without=_FALLBACK,
+            wrench=of("/measurement", "wrench_left", "wrench_right"),
+            soles=of("/truth", "left_sole", "right_sole"),
+            sole_rotation=part("sole_rotation", "sole_rotation"),
+            status=of("/wbc", "status"),
+            upright=part("upright", "upright"),
+            com=of("/estimate", "com"),
+            com_velocity=of("/estimate", "com_velocity"),
+            omega=part("omega", "omega"),
+            command=of("/torque", "command"),
+            inverse_limit=self._inverse_limit,
+            solver=of("/wbc", "solver"),
+            fallback=of("/wbc", "fallback"),
+            tilt=of("/truth", "torso_tilt"),
+            dcm=of("/estimate", "dcm"),
+            limit_ratio=of("/torque", "limit_ratio_max"),
+            zmp=of("/contact", "zmp"),
+            normal_force=of("/contact", "normal_force"),
+            cop_left=of("/contact", "cop_left"),
+            cop_right=of("/contact", "cop_right"),
+        )

@@ -227,9 +227,10 @@ def torque(n: Sizes) -> ChannelSpec:
 
 
 def timing(_: Sizes) -> ChannelSpec:
-    """Wall-clock time spent in each part of a control tick; excluded from reproducibility."""
+    """Time spent in each part of a control tick; excluded from reproducibility."""
     parts = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick")
-    fields = tuple(_scalar(part, "us", "wall-clock time") for part in parts)
+    wall = tuple(_scalar(part, "us", "wall-clock time") for part in parts)
+    fields = (*wall, _scalar("controller", "us", "processor time of the tick without its log and physics"))
     return ChannelSpec("/timing", "Timing", fields, timing.__doc__ or "")
 
 

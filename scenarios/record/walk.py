@@ -9,9 +9,11 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.native.library import library
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.steps.commands import Command
+from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, SolverStatus
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import RowLayout
@@ -24,12 +26,33 @@ _SAMPLED = ("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_refere
 _sampled = attrgetter(*_SAMPLED)
 """What the reference of a tick has of a sample of the plan, under the same names."""
 
+_STATE = {
+    "measured_com": "measured.com",
+    "measured_com_velocity": "measured.com_velocity",
+    "measured_zmp": "measured_zmp",
+    "com": "given.com",
+    "com_velocity": "given.com_velocity",
+    "com_acceleration": "acceleration",
+    "innovation": "innovation",
+}
+_PLAN = {
+    **{name: name for name in ("com", "com_velocity", "zmp", "zmp_reference", "jerk", "omega")},
+    "status": "status.solver",
+    "infeasible": "status.infeasible",
+    "falling": "status.falling",
+    "step_shift": "balance.shift",
+    "step_delay": "balance.delay",
+}
+"""Where the fields of these channels are in a planner's state and in a plan."""
+
+_FOOTSTEPS = ("current_left", "current_right", "next", "next_foot", "touchdown_time")
+
 _NO_FOOTSTEP = (math.nan,) * 4
 
 
 @dataclass(frozen=True, slots=True)
 class TickTiming:
-    """Wall-clock time of the parts of one control tick [s]."""
+    """Wall-clock time of the parts of one control tick, and the controller's processor time [s]."""
 
     state: float
     wbc_build: float
@@ -38,6 +61,7 @@ class TickTiming:
     physics: float
     log: float
     tick: float
+    controller: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +92,9 @@ class WalkRecorder:
         vectors = (*_SAMPLED, "swing_position", "swing_velocity", "support")
         numbers = ("omega", "roll", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
         self._reference = writer.rows(RowLayout(((reference, vectors),), ((reference, numbers),)))
-        self._state = writer.channel(channels.planner_state(sizes))
-        self._plan = writer.channel(channels.plan(sizes))
-        self._footsteps = writer.channel(channels.footsteps(sizes))
+        self._state = writer.channel(channels.planner_state(sizes)).filler(_STATE)
+        self._plan = writer.channel(channels.plan(sizes)).filler(_PLAN, ("slack", "held", "capture_margin"))
+        self._footsteps = writer.channel(channels.footsteps(sizes)).filler({}, _FOOTSTEPS)
         self._footstep = writer.channel(channels.footstep(sizes))
         self._command = writer.channel(channels.command(sizes))
         timing = writer.channel(channels.timing(sizes))
@@ -80,32 +104,30 @@ class WalkRecorder:
         self._process = writer.channel(channels.process(sizes))
         self._looked = -1
         self._support = np.zeros((SUPPORT_VERTICES, 2))
+        self._rolled = level, rates, position, velocity = np.zeros(6), np.zeros(6), np.zeros(3), np.zeros(3)
+        self._roll: Callable[[float, float, float], None] | None = None
+        if kernels := library():
+            self._roll = kernels.bind("roll_centre", level=level, rates=rates, position=position, velocity=velocity)
         self._rolls = sizes.nj > 0  # the ideal feet of a point mass stay level
 
     def planner_state(self, time_ns: int, state: PlannerState) -> None:
         """What the planner measured and was given."""
-        measured = state.measured
-        self._state.put(
-            time_ns, state, state.given, measured_com=measured.com, measured_com_velocity=measured.com_velocity,
-            com_acceleration=state.acceleration,
-        )  # fmt: skip
+        self._state(time_ns, state)
 
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
         """A new plan with its horizon and footsteps."""
         status, balance = plan.status, plan.balance
-        self._plan.put(
-            time_ns, status, plan, status=status.solver, slack=(status.zmp_slack.max(), status.terminal_slack.max()),
-            held=status.solver is SolverStatus.HELD, capture_margin=(balance.planned, balance.movable),
-            step_shift=balance.shift, step_delay=balance.delay,
-        )  # fmt: skip
+        slack, held = (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD
+        self._plan(time_ns, plan, slack, held, (balance.planned, balance.movable))
         ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
-        self._footsteps.put(
+        self._footsteps(
             time_ns,
-            current_left=_pose(plan.footholds[Foot.LEFT]),
-            current_right=_pose(plan.footholds[Foot.RIGHT]),
-            next=[_NO_FOOTSTEP if step is None else _pose(step) for step in ahead],
-            next_foot=[-1 if step is None else int(step.foot) for step in ahead],
-            touchdown_time=[math.nan if step is None else step.touchdown_time for step in ahead],
+            None,
+            _pose(plan.footholds[Foot.LEFT]),
+            _pose(plan.footholds[Foot.RIGHT]),
+            [_NO_FOOTSTEP if step is None else _pose(step) for step in ahead],
+            [-1 if step is None else int(step.foot) for step in ahead],
+            [math.nan if step is None else step.touchdown_time for step in ahead],
         )
         vertices = plan.support_polygon
         self._support[: len(vertices)] = vertices
@@ -133,13 +155,23 @@ class WalkRecorder:
         position, velocity = sample.swing[:3], sample.swing_velocity[:3]
         pitch = 0.0 if roll is None else roll.evaluate(sample.time)[0]
         if roll is not None and pitch and roll.foot is sample.swing_foot:
-            position, velocity = roll.centre(sample.time, sample.swing, sample.swing_velocity)
+            position, velocity = self._centre(roll, sample)
         pitches = (pitch, 0.0) if roll is not None and roll.foot is Foot.LEFT else (0.0, pitch)
         numbers = (
             sample.omega, *pitches, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
             phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
         )  # fmt: skip
         self._reference.append(time_ns, numbers, *_sampled(sample), position, velocity, self._support.ravel())
+
+    def _centre(self, roll: FootRoll, sample: PlanSample) -> tuple[Array, Array]:
+        """See `FootRoll.centre`."""
+        if self._roll is None:
+            return roll.centre(sample.time, sample.swing, sample.swing_velocity)
+        pitch, rate, _ = roll.evaluate(sample.time)
+        level, rates, position, velocity = self._rolled
+        level[:], rates[:] = sample.swing, sample.swing_velocity
+        self._roll(roll.toe, pitch, rate)
+        return position, velocity
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick, and once a simulated second the state of the process."""

@@ -21,7 +21,8 @@ from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.run.planning import FaultSchedule, RunFault, whole_body_reference
+from surefoot.scenarios.run.planning import FaultSchedule, RunFault
+from surefoot.scenarios.run.reference import ReferenceMaker
 from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look
@@ -144,6 +145,7 @@ class SimulatedRobot:
     ) -> None:
         self.world, self.controller, self._estimate = world, controller, estimator.estimate
         self._recorder, self._view = recorder, view
+        self._references = ReferenceMaker()
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
         known = estimator.is_truth and walk.true_robot is walk.robot
         self._own_truth = None if known else RobotTerms(pinocchio_model(walk.true_robot), frames_of(walk.robot))
@@ -166,7 +168,7 @@ class SimulatedRobot:
         state = self._estimate(measurement)
         if self._faults.active("state_nan", tick):
             state = RobotState(np.full_like(state.q, np.nan), state.v)
-        if not np.isfinite(np.dot(state.q, state.q) + np.dot(state.v, state.v)):
+        if not math.isfinite(np.dot(state.q, state.q) + np.dot(state.v, state.v)):
             raise RunFault(f"the measured state is not finite at {tick / self._rate:.3f} s")
         self.state = state
         self._terms = self.controller.observe(state)
@@ -176,11 +178,15 @@ class SimulatedRobot:
 
     def measured(self, now: float) -> tuple[CentroidalState, Array, FeetState]:
         """See `Walker`."""
-        terms = self._terms
+        terms, wrench = self._terms, self.measurement.wrench
         R = terms.sole_rotation
-        feet = FeetState(terms.level_soles(self._toe), np.arctan2(R[:, 1, 0], R[:, 0, 0]), self._landed)
+        if terms.compiled is not None and terms.leaning is None:
+            soles, yaw, zmp = terms.compiled.feet(wrench, self._toe)
+        else:
+            soles, yaw = terms.level_soles(self._toe), np.arctan2(R[:, 1, 0], R[:, 0, 0])
+            zmp = np.array(measured_zmp(wrench, terms.sole_position, R))
         state = CentroidalState(now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
-        return state, np.array(measured_zmp(self.measurement.wrench, terms.sole_position, R)[:2]), feet
+        return state, zmp[:2], FeetState(soles, yaw, self._landed)
 
     def _lasting(self) -> ExternalLoad | None:
         """The load that the controller counted with a tick ago, per mass."""
@@ -190,7 +196,7 @@ class SimulatedRobot:
     def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
         """See `Walker`."""
         wrench = self.measurement.wrench
-        self._reference = whole_body_reference(plan, sample)
+        self._reference = self._references.reference(plan, sample)
         forces = float(wrench[0, 2]), float(wrench[1, 2])
         sensing = FootSensing(forces, wrench if self._estimates else None)
         report = self.controller.update(self._reference, sensing, self._faults.active("qp_failure", tick))
@@ -208,8 +214,9 @@ class SimulatedRobot:
     def fallen(self, sample: PlanSample) -> bool:
         """See `Walker`."""
         terms = self._truth
-        height = terms.com[2] - min(terms.sole_position[0, 2], terms.sole_position[1, 2])
-        tilt = math.acos(min(terms.torso_rotation[2, 2], 1.0))
+        soles = terms.sole_position
+        height = terms.com.item(2) - min(soles.item(2), soles.item(5))
+        tilt = math.acos(min(terms.torso_rotation.item(2, 2), 1.0))
         return bool(lies(height, self._nominal_height, tilt, self.measurement.nonfoot_contact))
 
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:

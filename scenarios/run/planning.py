@@ -1,6 +1,5 @@
-"""The planner inside a closed loop, on its own clock and logged, and what it asks of the whole-body controller."""
+"""The planner inside a closed loop, on its own clock and logged."""
 
-import math
 from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Protocol, cast
@@ -10,8 +9,9 @@ from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.guard import OWN_GUARD, Guard
-from surefoot.planner.geometry import sole_rates, sole_rotation
-from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
+from surefoot.native.library import library
+from surefoot.planner.plan import Planner, PlanSampler, WalkPlan
+from surefoot.planner.plan_kernel import PlanKernel
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
 from surefoot.scenarios.file.schema import Fault, Rates
@@ -19,7 +19,6 @@ from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.sensing import PlannerSensing
 from surefoot.scenarios.setup.events import FaultWindow
 from surefoot.scenarios.setup.parts import plan as taken_plan
-from surefoot.wbc.types import WbcReference
 
 ROUNDING = 1e-6
 """Times of commands are compared with those of ticks with this tolerance [ticks]."""
@@ -53,7 +52,7 @@ class FaultSchedule:
 
     def active(self, kind: str, tick: int) -> bool:
         """Whether a fault of that kind acts at that control tick."""
-        return any(window.kind == kind and window.holds(tick) for window in self._windows)
+        return bool(self._windows) and any(window.kind == kind and window.holds(tick) for window in self._windows)
 
 
 class Planning:
@@ -91,6 +90,8 @@ class Planning:
         self._every, self._rate = rates.control // rates.planner, rates.control
         self.plan: WalkPlan
         self.sampler: PlanSampler
+        kernels = library()
+        self._kernel = PlanKernel(kernels) if kernels else None
         self._started = False
         self._commands = deque(sorted(commands, key=lambda command: command.time))
         self._told = False
@@ -119,7 +120,7 @@ class Planning:
         self._tell(tick)
         update: Callable[[CentroidalState, FeetState], WalkPlan] = self._guard.function(self.planner.update, taken_plan)
         self.plan = plan = update(sensed.given, feet)
-        self.sampler = PlanSampler(plan)
+        self.sampler = PlanSampler(plan, self._kernel)
         self._started = True
         self._recorder.plan(now_ns, plan)
         if self._told:
@@ -187,48 +188,3 @@ def _swinging(plan: WalkPlan) -> Foot | None:
     """The foot that swings in a plan's phase."""
     stance = plan.phase.stance
     return stance.other if plan.phase.kind is PhaseKind.SINGLE and stance is not None else None
-
-
-def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
-    """What the whole-body controller shall do at the sample's instant of the plan, or over a tick that it stands for.
-
-    The heading of pelvis and torso is the mean of both feet's yaws, so that it turns smoothly with the swing foot.
-    """
-    phase = plan.phase
-    lifts = phase.kind is PhaseKind.DOUBLE and phase.leads_to > 0
-    passed = phase.elapsed + sample.time - plan.time
-    swing, rate, bend = sample.swing, sample.swing_velocity, sample.swing_acceleration
-    roll = plan.roll
-    foot = -1 if sample.swing_foot is None else int(sample.swing_foot)
-    yaw = [plan.footholds[0].yaw, plan.footholds[1].yaw]
-    normal = np.array([plan.footholds[0].normal, plan.footholds[1].normal])
-    if foot >= 0:
-        yaw[foot] = float(swing[3])
-        normal[foot] = plan.footsteps[0].normal
-    turning, bending = sole_rates(swing[3:], rate[3:], bend[3:])
-    return WbcReference(
-        com=sample.com,
-        com_velocity=sample.com_velocity,
-        com_acceleration=sample.com_acceleration,
-        zmp=sample.pendulum_zmp,
-        zmp_offset=sample.zmp - sample.pendulum_zmp,
-        omega=sample.omega,
-        stiffness=sample.stiffness,
-        heading=0.5 * (yaw[0] + yaw[1]),
-        heading_rate=0.5 * float(rate[3]),
-        planned_contact=sample.contacts,
-        load_share=(sample.load_left, 1.0 - sample.load_left),
-        time_to_switch=max(0.0, phase.left - (sample.time - plan.time)),
-        lifting_foot=int(plan.footsteps[0].foot) if lifts else -1,
-        swing_foot=foot,
-        swing_progress=min(1.0, passed / phase.duration) if foot >= 0 and math.isfinite(phase.duration) else 0.0,
-        swing_position=swing[:3],
-        swing_velocity=rate[:3],
-        swing_acceleration=bend[:3],
-        swing_rotation=sole_rotation(*swing[3:].tolist()),
-        swing_angular_velocity=turning,
-        swing_angular_acceleration=bending,
-        ground_normal=normal,
-        rolling_foot=-1 if roll is None or not roll.rolling(sample.time) else int(roll.foot),
-        roll=(0.0, 0.0, 0.0) if roll is None else roll.evaluate(sample.time),
-    )

@@ -100,7 +100,7 @@ class PlannerSensing:
         speed = walk.size.times(VELOCITY_NOISE, "1/s") * com
         self._deviation = np.repeat([sensing.zmp_noise, com, speed], 2).reshape(3, 2)
         self._rng = np.random.default_rng(np.random.SeedSequence(walk.seed, spawn_key=(_STREAM,)))
-        self._filter = _filter(walk)
+        self._filter, self._nothing = _filter(walk), np.full(2, np.nan)
         self._ground = float(walk.ground.stance.position[:, 2].mean())
 
     def sense(self, state: CentroidalState, zmp: Array, plan: WalkPlan | None) -> PlannerState:
@@ -111,14 +111,15 @@ class PlannerSensing:
             zmp: ZMP without noise, shape (2,) [m]; NaN when the feet carry no load.
             plan: what has been done since the last measurement, None at the first.
         """
-        noise = self._deviation * np.clip(self._rng.standard_normal((3, 2)), -CLIP, CLIP)
-        com = np.append(state.com[:2] + noise[1], state.com[2])
-        velocity = np.append(state.com_velocity[:2] + noise[2], state.com_velocity[2])
-        measured, measured_zmp = replace(state, com=com, com_velocity=velocity), zmp + noise[0]
+        # numpy.clip and numpy.append take ten times as long.
+        noise = self._deviation * np.minimum(np.maximum(self._rng.standard_normal((3, 2)), -CLIP), CLIP)
+        com, velocity = state.com.copy(), state.com_velocity.copy()
+        com[:2] += noise[1]
+        velocity[:2] += noise[2]
+        measured, measured_zmp = CentroidalState(state.time, com, velocity, state.lasting), zmp + noise[0]
         kalman = self._filter
         if kalman is None:
-            nothing = np.full(2, np.nan)
-            return PlannerState(measured, measured_zmp, measured, nothing, nothing)
+            return PlannerState(measured, measured_zmp, measured, self._nothing, self._nothing)
         self._estimate(kalman, measured, measured_zmp, plan)
         x, v, a = kalman.mean
         given = replace(state, com=np.append(x, com[2]), com_velocity=np.append(v, velocity[2]))

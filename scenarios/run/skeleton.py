@@ -275,7 +275,7 @@ class ClosedLoop:
         return ""
 
     def _step(self, tick: int) -> tuple[PlanSample, bool]:
-        watch = Watch.start()
+        watch, busy = Watch.start(), time.thread_time_ns()
         begin = watch.last
         walker, planning, rate = self.walker, self.planning, self.rate
         now, now_ns = tick / rate, tick * 1_000_000_000 // rate
@@ -288,10 +288,11 @@ class ClosedLoop:
         plan = planning.plan
         if self._pushes:
             self._push(now, plan)
-        sample = planning.sampler.sample(now)
         # What is decided now acts until the next tick, so that it is to do what is planned for the middle of that; the
         # state is held against that of now, from which on it does so.
-        build_time, solve_time = walker.act(tick, plan, sample.until(planning.sampler.sample(now + 0.5 / rate)))
+        sample, until = planning.sampler.tick(now, now + 0.5 / rate)
+        build_time, solve_time = walker.act(tick, plan, until)
+        busy = time.thread_time_ns() - busy
         watch.lap()
         walker.record(now_ns, sample)
         self._recorder.reference(now_ns, plan, sample)
@@ -301,7 +302,7 @@ class ClosedLoop:
         walker.advance(now, planning.sampler)
         physics_time = watch.lap()
         parts = (state_time, build_time, solve_time, planner_time, physics_time, log_time)
-        self._recorder.timing(now_ns, TickTiming(*parts, watch.last - begin))
+        self._recorder.timing(now_ns, TickTiming(*parts, watch.last - begin, 1e-9 * busy))
         return sample, fallen
 
     def _push(self, now: float, plan: WalkPlan) -> None:

@@ -322,6 +322,173 @@ typedef struct {
 
 void sensors_read(const Sensors *sensors);
 
+/* Counterpart of the distances in `wbc.separation.Separation.write`; `poses` holds addresses, four for each pair. */
+typedef struct {
+    int64_t count;
+    const int64_t *poses;
+    const double *centres;
+    const double *radii;
+    double attention;
+    double *places;
+    const double *distances;
+    int64_t *due;
+} Pairs;
+
+int64_t pairs_due(const Pairs *pairs);
+
+/* Counterpart of `planner.plan.PlanSampler`: an interval between two samples, and two points within it. */
+typedef struct {
+    const double *ends;
+    const double *swing;
+    double *table;
+    double *points;
+} PlanInterval;
+
+void plan_interval_enter(const PlanInterval *interval, double length);
+void plan_interval_sample(const PlanInterval *interval, double now, double middle);
+
+/* Counterpart of `scenarios.run.reference.whole_body_reference`: where the feet stand and one will land. */
+typedef struct {
+    const double *point;
+    const double *yaw;
+    const double *normal;
+    const double *landing_normal;
+    const double *roll;
+    Reference *reference;
+} PlanReference;
+
+void plan_reference_fill(const PlanReference *plan, int64_t swing_foot, int64_t rolling_foot);
+
+/* Counterpart of `scenarios.log.rows.RowWriter`; places and records are addresses, strides and lengths bytes. */
+typedef struct {
+    const double *values;
+    int64_t fields;
+    const int64_t *first;
+    const int64_t *sizes;
+    const int64_t *whole;
+    const int64_t *places;
+    const int64_t *strides;
+    int64_t channels;
+    const int64_t *records;
+    const int64_t *lengths;
+    const int64_t *header;
+} LogRow;
+
+void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequence);
+
+/* Counterpart of `scenarios.record.body.Recorder._derived`, for one row. */
+typedef struct {
+    int64_t joints;
+    double unloaded;
+    double second;
+    double without;
+    const double *wrench;
+    const double *soles;
+    const double *sole_rotation;
+    const double *status;
+    const double *upright;
+    const double *com;
+    const double *com_velocity;
+    const double *omega;
+    const double *command;
+    const double *inverse_limit;
+    double *solver;
+    double *fallback;
+    double *tilt;
+    double *dcm;
+    double *limit_ratio;
+    double *zmp;
+    double *normal_force;
+    double *cop_left;
+    double *cop_right;
+} BodyRow;
+
+void body_row_derive(const BodyRow *row);
+
+/* Counterpart of the end of a span in `wbc.external.LoadObserver`. */
+typedef struct {
+    const Terms *terms;
+    double weight;
+    double span;
+    double ticks;
+    int64_t spans_count;
+    int64_t latest_count;
+    double most_share;
+    double least_press;
+    const double *share_limits;
+    const double *kept;
+    const double *sudden;
+    const double *bound;
+    const double *push;
+    const double *most_change;
+    double *felt;
+    double *com;
+    double *momentum;
+    double *spans;
+    int64_t *filled;
+    double *estimate;
+} LoadSpan;
+
+void load_moving(const LoadSpan *span);
+int64_t load_span_end(const LoadSpan *span);
+
+/* What the planner is told of the feet: counterpart of `RobotTerms.level_soles` and `wbc.zmp.measured_zmp`. */
+typedef struct {
+    const Terms *terms;
+    double unloaded;
+    const double *wrench;
+    double *level;
+    double *yaw;
+    double *zmp;
+} FeetSeen;
+
+void feet_see(const FeetSeen *feet, double toe);
+
+/* Counterpart of `planner.swing.heel_off.FootRoll.centre`: pose and rates of a level sole, and its centre rolled. */
+typedef struct {
+    const double *level;
+    const double *rates;
+    double *position;
+    double *velocity;
+} RollCentre;
+
+void roll_centre(const RollCentre *roll, double toe, double pitch, double rate);
+
+/* Counterpart of `wbc.solvers.Daqp`, after `equality_qp_solve`; of inequalities no more than `most` are active. */
+typedef struct {
+    const EqualityQp *qp;
+    int64_t most;
+    double tolerance;
+    double *normals;
+    double *columns;
+    double *multipliers;
+    int64_t *active;
+    double *work;
+} ActiveQp;
+
+int64_t active_qp_solve(const ActiveQp *solver);
+double qp_violation(const EqualityQp *qp);
+
+/* Counterpart of `wbc.balance.SupportRegion`. */
+typedef struct {
+    const double *corners;
+    const double *positions;
+    const double *rotations;
+    double *edges;
+    int64_t *edge_count;
+} Support;
+
+void support_rebuild(const Support *support, int64_t left, int64_t right, int64_t rolling);
+
+/* Kernels without numbers of their own, one after another: addresses of functions and of their structs. */
+typedef struct {
+    int64_t count;
+    const int64_t *functions;
+    const int64_t *structs;
+} Calls;
+
+void calls_run(const Calls *calls);
+
 /* Counterpart of `planner.model.dcm.nominal_motion`; `upper` is scratch. */
 typedef struct {
     double sample_time;

@@ -11,7 +11,7 @@ import logging
 import math
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import accumulate
@@ -134,6 +134,21 @@ class Library:
             raise TypeError(f"{function} works on a {struct}, not on a {type(bound.struct).__name__}")
         return _Kernel(call, ctypes.addressof(bound.struct), bound=bound)
 
+    def sequence(self, kernels: Sequence[Callable[[], Any]]) -> Callable[[], None]:
+        """Kernels that take no numbers, one after another in one call; what is no such kernel is called by Python."""
+        bound = [kernel for kernel in kernels if isinstance(kernel, _Kernel) and len(kernel.call.argtypes) == 1]
+        if len(bound) < len(kernels):
+            return partial(_call_all, tuple(kernels))
+        functions = [ctypes.cast(kernel.call, ctypes.c_void_p).value for kernel in bound]
+        calls = self.fill(
+            "Calls",
+            count=len(bound),
+            functions=np.array(functions, dtype=np.int64),
+            structs=np.array([kernel.args[0] for kernel in bound], dtype=np.int64),
+        )
+        # What the kernels are bound to must live as long.
+        return self.bind("calls_run", Bound(calls.struct, (calls, *bound)))
+
     def buffer(self, struct: str) -> tuple[Bound, Any]:
         """A struct of numbers alone, and its memory as an array, shape (numbers,)."""
         bound = self.fill(struct)
@@ -146,10 +161,16 @@ class _Kernel(partial[Any]):
 
     def __new__(cls, call: Any, address: int, bound: Bound) -> "_Kernel":
         made = super().__new__(cls, call, address)
-        made.bound = bound
+        made.bound, made.call = bound, call
         return made
 
     bound: Bound
+    call: Any
+
+
+def _call_all(kernels: Sequence[Callable[[], Any]]) -> None:
+    for kernel in kernels:
+        kernel()
 
 
 def library() -> Library | None:

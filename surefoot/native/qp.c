@@ -5,7 +5,7 @@
 /* Right sides of the triangular solves lie in rows of a whole number of these, so that loops over them are regular. */
 #define WIDTH 4
 
-static int64_t padded(int64_t count) { return (count + WIDTH - 1) / WIDTH * WIDTH; }
+int64_t padded(int64_t count) { return (count + WIDTH - 1) / WIDTH * WIDTH; }
 
 /* out -= sum of factor times row; four at a time, since to load and to store `out` costs more than the products. */
 static inline void subtract_rows(double *restrict out, int64_t count, const double *factors, int64_t factor_stride,
@@ -37,7 +37,7 @@ int cholesky(double *A, int64_t size, int64_t stride) {
 }
 
 /* Solves U'Y = B in place, for `width` right sides lying row by row. */
-static void forward(const double *U, int64_t size, int64_t stride, double *B, int64_t width) {
+void forward_solve(const double *U, int64_t size, int64_t stride, double *B, int64_t width) {
     for (int64_t i = 0; i < size; i++) {
         double *y = B + width * i;
         subtract_rows(y, width, U + i, stride, B, width, i);
@@ -46,7 +46,7 @@ static void forward(const double *U, int64_t size, int64_t stride, double *B, in
 }
 
 /* Solves U x = b in place. */
-static void backward(const double *U, int64_t size, int64_t stride, double *x) {
+void backward_solve(const double *U, int64_t size, int64_t stride, double *x) {
     for (int64_t i = size - 1; i >= 0; i--) {
         const double *row = U + stride * i;
         x[i] = (x[i] - dot(row + i + 1, x + i + 1, size - i - 1)) * row[i];
@@ -61,7 +61,7 @@ static int separable(const double *H, int64_t n, int64_t split) {
 }
 
 /* Largest violation of bounds and rows at x; not a number where x is none. */
-static double violation(const EqualityQp *qp) {
+double qp_violation(const EqualityQp *qp) {
     const int64_t n = qp->variables;
     double worst = 0.0;
     for (int64_t i = 0; i < n + qp->rows; i++) {
@@ -94,7 +94,7 @@ double equality_qp_solve(const EqualityQp *qp, int64_t split) {
     for (int64_t part = 0, first = 0; part < parts; first = ends[part++]) {
         double *block = U + n * first + first;
         if (cholesky(block, ends[part] - first, n)) return INFINITY;
-        forward(block, ends[part] - first, n, Y + width * first, width);
+        forward_solve(block, ends[part] - first, n, Y + width * first, width);
     }
     for (int64_t e = 0; e < m; e++) {
         double *row = S + width * e + e;
@@ -104,15 +104,15 @@ double equality_qp_solve(const EqualityQp *qp, int64_t split) {
     }
     for (int64_t e = 0; e < m; e++) multipliers[e] = qp->lower[n + e] + S[width * e + m];
     if (cholesky(S, m, width)) return INFINITY;
-    forward(S, m, width, multipliers, 1);
-    backward(S, m, width, multipliers);
+    forward_solve(S, m, width, multipliers, 1);
+    backward_solve(S, m, width, multipliers);
     for (int64_t i = 0; i < n; i++) {
         const double *y = Y + width * i;
         qp->x[i] = dot(y, multipliers, m) - y[m];
     }
     for (int64_t part = 0, first = 0; part < parts; first = ends[part++])
-        backward(U + n * first + first, ends[part] - first, n, qp->x + first);
-    return violation(qp);
+        backward_solve(U + n * first + first, ends[part] - first, n, qp->x + first);
+    return qp_violation(qp);
 }
 
 /* Torque, acceleration, wrenches and residuals of a solution. */

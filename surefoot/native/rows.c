@@ -106,3 +106,54 @@ double distance_rate(const Distance *distance) {
     add_point(distance, -1.0, normal, distance->points + 6, distance->second_count, distance->second_columns);
     return dot(distance->gradient, distance->terms->v, nv);
 }
+
+/* Whether c is to the right of the way from a to b, or on it. */
+static int not_left(const double *a, const double *b, const double *c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 0.0;
+}
+
+/* Anticlockwise hull of a few points by Andrew's monotone chain; sorts them. Returns how many vertices there are. */
+static int64_t hull(double (*points)[2], int64_t count, double (*vertices)[2]) {
+    int64_t found = 0;
+    for (int64_t k = 1; k < count; k++)
+        for (int64_t i = k; i > 0; i--) {
+            double *a = points[i - 1], *b = points[i];
+            if (a[0] < b[0] || (a[0] == b[0] && a[1] <= b[1])) break;
+            const double swapped[2] = {a[0], a[1]};
+            memcpy(a, b, sizeof swapped);
+            memcpy(b, swapped, sizeof swapped);
+        }
+    for (int upper = 0; upper < 2; upper++) {
+        const int64_t first = found;
+        for (int64_t k = 0; k < count; k++) {
+            const double *point = points[upper ? count - 1 - k : k];
+            while (found >= first + 2 && not_left(vertices[found - 2], vertices[found - 1], point)) found--;
+            memcpy(vertices[found++], point, sizeof *points);
+        }
+        found--; /* The last one begins the other half. */
+    }
+    return found;
+}
+
+/* Counterpart of `wbc.balance.SupportRegion.rebuild`. */
+void support_rebuild(const Support *support, int64_t left, int64_t right, int64_t rolling) {
+    const int64_t active[2] = {left, right};
+    double points[8][2], vertices[18][2];
+    int64_t count = 0;
+    for (int64_t k = 0; k < 2; k++)
+        for (int64_t i = 0; active[k] && i < 4; i++) {
+            const double *corner = support->corners + 2 * i, *R = support->rotations + 9 * k;
+            const double x = k == rolling ? 0.0 : corner[0];
+            for (int j = 0; j < 2; j++)
+                points[count][j] = support->positions[3 * k + j] + (x * R[3 * j] + corner[1] * R[3 * j + 1]);
+            count++;
+        }
+    const int64_t edges = hull(points, count, vertices);
+    support->edge_count[0] = edges;
+    for (int64_t k = 0; k < edges; k++) {
+        const double *start = vertices[k], *end = vertices[(k + 1) % edges];
+        const double x = end[0] - start[0], y = end[1] - start[1], length = hypot(x, y);
+        const double edge[5] = {start[0], start[1], x / length, y / length, length};
+        memcpy(support->edges + 5 * k, edge, sizeof edge);
+    }
+}

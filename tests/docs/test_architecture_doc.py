@@ -63,6 +63,7 @@ def test_the_picture_goes_through_a_tick_in_the_order_of_the_loop():
     calls = MagicMock()
     calls.walker.act.return_value, calls.walker.fallen.return_value = (0.0, 0.0), False
     calls.walker.measured.return_value = (None, None, None)
+    calls.planning.sampler.tick.return_value = (None, None)
     ClosedLoop(calls.walker, calls.planning, calls.recorder, 500, 1.0).step()
     verbs = {"walker": "Walker", "planning": "Planning"}
     called = [name.split(".") for name, *_ in calls.mock_calls]

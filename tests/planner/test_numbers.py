@@ -122,7 +122,7 @@ IN_BODIES = {
     "recovery.capture_margin": {1e-9},
     "recovery.step_adjustment": {1e-9},
     "references.com_height": {3.0, 6.0, 10.0, 15.0, 30.0, 60.0},
-    "references.compiled": {9, 16},
+    "references.compiled": {9},
     "references.height_transition": {6.0},
     "references.leg_offset": {6.0, 9, 16, 23, 35},
     "references.zmp_reference": {1e-12},

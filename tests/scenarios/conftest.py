@@ -136,7 +136,7 @@ class _Loop:
         )
         out["wbc"].append(ns, 0, 0, 5, 0, 1e-9, 1e-9, np.zeros(10), zero6, zero6, np.zeros(18))
         out["torque"].append(ns, np.array([30.0, -40.0, 5.0, 0.0]), 0.4)
-        out["timing"].append(ns, 10, 80, 60, 200 if ns % 20_000_000 == 0 else 0, 30, 10, 500)
+        out["timing"].append(ns, 10, 80, 60, 200 if ns % 20_000_000 == 0 else 0, 30, 10, 500, 2100 if ns == 0 else 300)
 
     def plan(self, time: float, ns: int) -> None:
         times = time + 0.02 * np.arange(51)

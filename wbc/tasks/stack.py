@@ -88,7 +88,10 @@ class TaskStack:
             H=self._H,
             g=self._g,
         )
-        self._assemble = tick.kernels.bind("stack_assemble", self.bound)
+        assemble = tick.kernels.bind("stack_assemble", self.bound)
+        # Targets of others stand between, so that there are two calls where others are.
+        self._first = tick.kernels.sequence(self._kernels) if self._others else None
+        self._last = assemble if self._others else tick.kernels.sequence([*self._kernels, assemble])
 
     def write(self, terms: RobotTerms, reference: WbcReference) -> None:
         """Write H and g of the QP for this state and reference."""
@@ -107,11 +110,11 @@ class TaskStack:
 
     def write_compiled(self, terms: RobotTerms, reference: WbcReference) -> None:
         """The same as ``write`` by kernels, after the reference was given to their tick."""
-        for kernel in self._kernels:
-            kernel()
-        for write, scale, rows, target in self._others:
-            target[:] = np.reshape(tuple(write(terms, reference, scale, rows)), target.shape)
-        self._assemble()
+        if self._first is not None:
+            self._first()
+            for write, scale, rows, target in self._others:
+                target[:] = np.reshape(tuple(write(terms, reference, scale, rows)), target.shape)
+        self._last()
 
     def residual(self, x: Array) -> Array:
         """Residuals J x - a of all tasks at the solution x, shape (rows,); those of a task without weight are zero."""

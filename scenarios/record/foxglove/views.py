@@ -1,7 +1,5 @@
 """What MCAP viewers draw of a run: bodies, forces, points and outlines, and its events in words."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
@@ -9,7 +7,7 @@ from foxglove_schemas_protobuf.Log_pb2 import Log
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from google.protobuf.message import Message as ProtobufMessage
 from google.protobuf.timestamp_pb2 import Timestamp
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from surefoot.models.types import RobotDescription
 from surefoot.planner.plan import PlanSample, WalkPlan
@@ -43,7 +41,7 @@ class Drawn:
         self._channel = writer.message_channel(topic, published(schema), doc)
         self._template = template
 
-    def append(self, time_ns: int, values: Sequence[float]) -> None:
+    def append(self, time_ns: int, values: ArrayLike) -> None:
         """Write a message with the template's values."""
         self._channel.append(time_ns, self._template.encode(time_ns, values))
 
@@ -209,8 +207,8 @@ class BodyView:
             self._scene.append(time_ns, self._scene_data)
         m, poses = measurement, self._poses
         poses.update(m.q)
-        self._tf.append(time_ns, poses.position.ravel().tolist() + poses.quaternion.ravel().tolist())
-        self._joints.append(time_ns, np.concatenate((m.joint_position, m.joint_velocity, m.joint_torque)).tolist())
+        self._tf.append(time_ns, np.concatenate((poses.position.ravel(), poses.quaternion.ravel())))
+        self._joints.append(time_ns, np.concatenate((m.joint_position, m.joint_velocity, m.joint_torque)))
         self._forces.append(time_ns, self._arrows(m, terms))
         zmp = measured_zmp(m.wrench, terms.sole_position, terms.sole_rotation)
         self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)

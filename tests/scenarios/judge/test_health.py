@@ -7,7 +7,7 @@ from surefoot.scenarios.judge.health import findings
 from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.log import read
-from surefoot.scenarios.log.rows import ChannelWriter
+from surefoot.scenarios.log.channel import ChannelWriter
 from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.unit

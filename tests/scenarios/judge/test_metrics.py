@@ -22,7 +22,8 @@ NAMES = (
     "torque_ratio_max knee_torque_rms torque_at_limit_fraction "
     "joint_limit_margin_min joint_speed_ratio_max knee_angle_mean cost_of_transport speed_mean "
     "path_length displacement heading_change com_height_range estimation_error_rms planner_infeasible_fraction "
-    "dcm_estimation_error_rms planner_time wbc_time real_time_factor memory_growth qp_failures wbc_fallbacks log_bytes"
+    "dcm_estimation_error_rms planner_time wbc_time controller_time deadlines_missed "
+    "real_time_factor memory_growth qp_failures wbc_fallbacks log_bytes"
 )
 
 
@@ -104,6 +105,8 @@ def test_effort(metrics, motion):
     assert found["real_time_factor"] == pytest.approx(4.0)
     assert found["planner_time"] == pytest.approx({"median": 200e-6, "p99": 200e-6})
     assert found["wbc_time"] == pytest.approx({"median": 140e-6, "p99": 140e-6})
+    assert found["controller_time"] == pytest.approx({"median": 300e-6, "p99": 300e-6, "p999": 300e-6})
+    assert found["deadlines_missed"] == 1
     assert found["qp_failures"] == found["wbc_fallbacks"] == 0
 
 

@@ -63,6 +63,15 @@ def test_rows_give_the_same_log_as_single_appends(tmp_path):
     assert all(first[topic].content() == second[topic].content() for topic in ("/a", "/b"))
 
 
+def test_a_row_may_be_of_vectors_alone(tmp_path):
+    spec = ChannelSpec("/c", "C", (FieldSpec("x", (3,)),))
+    with LogWriter(tmp_path / "log.mcap", {}) as writer:
+        c = writer.channel(spec)
+        row = writer.rows(RowLayout(((c, ("x",)),), ()))
+        row.append(5, (), np.array([1.0, 2.0, 3.0]))
+    assert read(tmp_path / "log.mcap")["/c"].field("x").tolist() == [[1.0, 2.0, 3.0]]
+
+
 def test_a_row_must_be_complete(tmp_path):
     with LogWriter(tmp_path / "log.mcap", {}) as writer:
         a = writer.channel(A)
@@ -75,9 +84,8 @@ def test_a_number_too_few_or_too_many_shifts_nothing_in_silence(tmp_path, number
     writer = LogWriter(tmp_path / "log.mcap", {})
     b = writer.channel(B)
     row = writer.rows(RowLayout(((b, ("y",)),), ((b, ("z",)),), more_numbers=("more",)))
-    row.append(0, numbers, np.zeros(4))
-    with pytest.raises(ValueError, match="where there are places for 2"):
-        writer.close()
+    with pytest.raises(ValueError, match="where there are places for 2"), writer:
+        row.append(0, numbers, np.zeros(4))
 
 
 def test_points_of_many_ticks_are_those_of_each():

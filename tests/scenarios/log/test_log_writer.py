@@ -13,6 +13,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
+import surefoot.scenarios.log.writer as log_writer
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.log.encoding import Packed
@@ -100,17 +101,32 @@ def test_messages_are_in_order_of_time_for_every_reader(tmp_path):
     assert [time for time, _ in messages] == sorted(time for time, _ in messages)
 
 
-def test_a_chunk_is_written_every_40_ms_of_simulated_time(tmp_path):
+@pytest.mark.parametrize("rate", [100, 500, 2000])
+def test_a_chunk_is_written_every_90_ms_of_simulated_time_within_8_ms(tmp_path, rate):
     path = tmp_path / "log.mcap"
     writer = LogWriter(path, {})
     channel = writer.channel(SPEC)
-    for tick in range(1000):
-        channel.append(tick * 2_000_000, 0.0, (1, 2, 3), tick)
-        on_disk = read(path)
-        assert on_disk.truncated
-        assert tick * 0.002 - on_disk.time_range()[1] < 0.092
+    for tick in range(2 * rate):
+        channel.append(tick * 1_000_000_000 // rate, 0.0, (1, 2, 3), tick)
+        if tick % max(rate // 500, 1) == 0:
+            on_disk = read(path)
+            assert on_disk.truncated
+            assert tick / rate - on_disk.time_range()[1] < 0.098 + 1.5 / rate
     writer.close()
-    assert len(read(path)["/x"]) == 1000
+    assert len(read(path)["/x"]) == 2 * rate
+
+
+def test_no_tick_does_all_of_a_chunk(tmp_path, monkeypatch):
+    done = []
+    monkeypatch.setattr(log_writer, "compress", lambda data, _: done.append("compressed") or data)
+    write = log_writer.Output.write
+    monkeypatch.setattr(log_writer.Output, "write", lambda self, data: done.append("written") or write(self, data))
+    with LogWriter(tmp_path / "log.mcap", {}, compression="") as writer:
+        channel = writer.channel(SPEC)
+        for tick in range(60):
+            done.clear()
+            channel.append(tick * 2_000_000, 0.0, (1, 2, 3), tick)
+            assert len(done) <= 1
 
 
 def test_wrong_values_are_refused(tmp_path):

@@ -10,7 +10,7 @@ from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.steps.gait import Bout, GaitParameters
 from surefoot.planner.types import FeetState, PhaseKind, Twist
-from surefoot.scenarios.run.planning import whole_body_reference
+from surefoot.scenarios.run.reference import whole_body_reference
 
 pytestmark = pytest.mark.unit
 

@@ -1,0 +1,70 @@
+/* Rows of the log as they lie in its messages, and what of a body's row follows from the rest of it. */
+#include "algebra.h"
+#include "kernels.h"
+
+static char *at(int64_t address) { return (char *)(intptr_t)address; }
+
+/* Puts the row into record `number` of each channel, with its time [ns] and its number in the file. */
+void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequence) {
+    const uint32_t counted = (uint32_t)sequence;
+    for (int64_t c = 0; c < row->channels; c++) {
+        char *record = at(row->records[c]) + number * row->lengths[c];
+        memcpy(record + row->header[0], &counted, sizeof counted);
+        for (int i = 1; i < 4; i++) memcpy(record + row->header[i], &time, sizeof time);
+    }
+    for (int64_t f = 0; f < row->fields; f++) {
+        char *place = at(row->places[f]) + number * row->strides[f];
+        const double *values = row->values + row->first[f];
+        if (!row->whole[f]) {
+            memcpy(place, values, row->sizes[f] * sizeof(double));
+            continue;
+        }
+        for (int64_t i = 0; i < row->sizes[f]; i++) {
+            const int32_t value = (int32_t)values[i];
+            memcpy(place + i * sizeof value, &value, sizeof value);
+        }
+    }
+}
+
+/* ZMP and centres of pressure of both soles; counterpart of `scenarios.record.body.contact_points`. */
+static void contact_points(const BodyRow *row) {
+    double total = 0.0, height = 0.0, x = 0.0, y = 0.0, force[2][3], torque[2][3];
+    for (int k = 0; k < 2; k++) {
+        const double *wrench = row->wrench + 6 * k, *rotation = row->sole_rotation + 9 * k;
+        const double normal = wrench[2] < row->unloaded ? NAN : wrench[2];
+        double *cop = k ? row->cop_right : row->cop_left;
+        cop[0] = -wrench[4] / normal;
+        cop[1] = wrench[3] / normal;
+        row->normal_force[k] = wrench[2];
+        rotate(rotation, wrench, force[k]);
+        rotate(rotation, wrench + 3, torque[k]);
+        total += force[k][2];
+        height += force[k][2] * row->soles[7 * k + 2];
+    }
+    if (total < row->unloaded) total = NAN;
+    height /= total;
+    for (int k = 0; k < 2; k++) {
+        const double *sole = row->soles + 7 * k, lever = sole[2] - height;
+        x += torque[k][0] + sole[1] * force[k][2] - lever * force[k][1];
+        y += torque[k][1] + lever * force[k][0] - sole[0] * force[k][2];
+    }
+    row->zmp[0] = -y / total;
+    row->zmp[1] = x / total;
+    row->zmp[2] = height;
+}
+
+/* Counterpart of `scenarios.record.body.Recorder._derived`. */
+void body_row_derive(const BodyRow *row) {
+    double most = 0.0;
+    contact_points(row);
+    row->solver[0] = row->status[0] == row->second;
+    row->fallback[0] = row->status[0] >= row->without;
+    row->tilt[0] = acos(row->upright[0] < 1.0 ? row->upright[0] : 1.0);
+    for (int i = 0; i < 2; i++) row->dcm[i] = row->com[i] + row->com_velocity[i] / row->omega[0];
+    for (int64_t j = 0; j < row->joints; j++) {
+        const double ratio = fabs(row->command[j] * row->inverse_limit[j]);
+        if (!(ratio <= most)) most = ratio;
+        if (most != most) break;
+    }
+    row->limit_ratio[0] = most;
+}

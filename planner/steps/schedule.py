@@ -5,9 +5,11 @@ them, then single and double supports in turn. The last double support brings th
 robot stands until the next bout.
 """
 
+import math
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +20,7 @@ from surefoot.planner.steps.footsteps import start_footholds
 from surefoot.planner.steps.gait import GaitParameters, in_samples
 from surefoot.planner.steps.phases import Phase, PhaseSamples, PhaseTable, phases_of
 from surefoot.planner.steps.source import GaitSource, StepSource
-from surefoot.planner.steps.step import Step, Stop, durations, lay, start_step
+from surefoot.planner.steps.step import Step, Stop, durations, known_step, lay, start_step
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import Array, FeetState, PhaseKind, Twist
 
@@ -47,6 +49,7 @@ class Schedule:
         stands: whether the robot stands after the last one, as far as is known for ever.
         shift: where steps that come into sight lie from their nominal places, shape (2,) [m].
         begin: phases that were over by then are forgotten [samples].
+        laid: steps of the walk as they are nominally laid, of which those that come into sight are taken.
     """
 
     gait: GaitParameters
@@ -56,6 +59,7 @@ class Schedule:
     stands: bool
     shift: Array = field(compare=False)
     begin: float
+    laid: tuple[Step, ...] = field(default=(), compare=False)
 
     @classmethod
     def start(
@@ -211,6 +215,14 @@ class Schedule:
 
     # From a schedule to the next.
 
+    def laid_out(self) -> "Schedule":
+        """The schedule that knows all steps of its source beforehand: to lay one over edges takes milliseconds.
+
+        Raises:
+            ParameterError: a footstep is out of reach, or no swing clears the edges before it.
+        """
+        return replace(self, laid=self.extended(math.inf).steps)
+
     def extended(self, until: float, now: float = 0.0) -> "Schedule":
         """Steps are asked for until all is known up to an instant, and three steps more.
 
@@ -245,13 +257,17 @@ class Schedule:
     def followed(self, stride: Twist, stop: Stop | None, inserted: bool = False) -> "Schedule":
         """The schedule with one more step."""
         one, other = self.steps[-2:]
-        step = lay(stride, (one, other), self.gait, self.ground, stop, inserted)
+        step = None if inserted else known_step(self.laid, (one, other), stride, stop, self.durations)
+        step = step or lay(stride, (one, other), self.gait, self.ground, stop, inserted)
         step = replace(step, place=step.beside(self.shift, self.ground.terrain))
-        longer = Schedule(self.gait, self.ground, self.source, (*self.steps, step), False, self.shift, self.begin)
+        longer = self._with((*self.steps, step), False, self.shift)
         # The phases until the last step stay: of a walk that is laid out as a whole there are many.
-        until = bisect_left([phase.step for phase in self.phases], other.number)
+        until = bisect_left(self.phases, other.number, key=attrgetter("step"))
         vars(longer)["phases"] = self.phases[:until] + self._remembered(phases_of((other, step), False))
         return longer
+
+    def _with(self, steps: tuple[Step, ...], stands: bool, shift: Array) -> "Schedule":
+        return Schedule(self.gait, self.ground, self.source, steps, stands, shift, self.begin, self.laid)
 
     def until(self, number: int, stands: bool) -> "Schedule":
         """The schedule without the steps after one, with which the robot then stands or not."""
@@ -325,6 +341,6 @@ class Schedule:
 
     def _placed(self, steps: tuple[Step, ...], shift: Array) -> "Schedule":
         """The schedule with steps that differ in their places alone, of which the same phases follow."""
-        placed = Schedule(self.gait, self.ground, self.source, steps, self.stands, shift, self.begin)
+        placed = self._with(steps, self.stands, shift)
         vars(placed).update({name: vars(self)[name] for name in _OF_PHASES if name in vars(self)})
         return placed

@@ -250,6 +250,29 @@ def lay(
     return step
 
 
+def known_step(
+    laid: tuple[Step, ...], before: tuple[Step, Step], stride: Twist, stop: Stop | None, lasting: tuple[float, float]
+) -> Step | None:
+    """The step after two others, if it has been laid already, after the very same ones; None if it has not.
+
+    Args:
+        laid: steps in order, without gaps.
+        before: as of `lay`.
+        stride: likewise.
+        stop: likewise.
+        lasting: single and double support [samples].
+    """
+    one, other = before
+    at = other.number - laid[0].number if laid else 0
+    if not 0 < at < len(laid) - 1:
+        return None
+    first, second, step = laid[at - 1 : at + 2]
+    same = one.nominal is first.nominal and other.nominal is second.nominal and other.path is second.path
+    told = other.ordinal, other.support, other.end, other.double, stride, stop, *lasting
+    then = second.ordinal, second.support, second.end, second.double, step.stride, step.stop, step.single, step.double
+    return step if same and told == then else None
+
+
 def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
     """By which a step may be moved on its face from where it now is to land, in the heading of its stance foot.
 

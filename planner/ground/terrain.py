@@ -116,7 +116,8 @@ class Terrain:
 
     def normals(self, points: Array) -> Array:
         """Unit normals of the faces that carry world points x, y, shape (k, 2) [m]; shape (k, 3) [-]."""
-        highest, normals = np.full(len(points), self.plane), np.tile([0.0, 0.0, 1.0], (len(points), 1))
+        highest, normals = np.full(len(points), self.plane), np.zeros((len(points), 3))
+        normals[:, 2] = 1.0
         for box in self.boxes:
             top, inside = box.top(points)
             carrying = (inside >= 0.0) & (top > highest)

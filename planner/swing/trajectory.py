@@ -26,7 +26,7 @@ _MOST_LEAD = 0.25
 """Share of a single support by which its swing ends before it at most, so that a short one still swings [-]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SwingTrajectory:
     """Motion of a swing foot; columns are x, y, z [m], yaw, pitch, roll [rad] in the world frame.
 

@@ -25,6 +25,9 @@ NOTICED = {
     "laws.qp._TOLERANCE": "tests/native/test_bounded_qp.py",
     "model.jerk.BLOCK_STARTS": "tests/planner/laws/test_tvmpc.py",
     "plan._COLUMNS": "tests/planner/test_sampling.py",
+    **dict.fromkeys(
+        ("plan_kernel.COLUMNS", "plan_kernel.ENDS", "plan_kernel.POINT"), "tests/native/test_plan_kernels.py"
+    ),
     "recovery.step_adjustment._NO_GAIN": "tests/planner/recovery/test_step_adjustment.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",
     "swing.leg_reach.PEAK": "tests/planner/swing/test_swing_limits.py",

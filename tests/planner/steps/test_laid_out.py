@@ -19,11 +19,11 @@ pytestmark = pytest.mark.unit
 WALK = GaitParameters(steps=12, step_length=0.28, initial_stand=0.1)
 
 
-def begun(stand, edges):
+def begun(stand, edges, gait=WALK):
     stairs = Stairs(0.1, 0.28, 4, Direction.UP, start=0.14, landing=1.0, beyond=2.0)
     terrain = stairs.build(Site(np.zeros(2), 0.0, 0.8)) if edges else flat()
     parameters = PlannerParameters(reach_length=0.8)
-    return Schedule.start(WALK, stand(), Ground(terrain, np.array([0.075, 0.05]), parameters))
+    return Schedule.start(gait, stand(), Ground(terrain, np.array([0.075, 0.05]), parameters))
 
 
 def told(step):
@@ -84,3 +84,8 @@ def test_what_comes_otherwise_than_laid_is_laid_anew(stand, laid):
     late = schedule.extended(400.0, now=30.0)
     assert laid[0] == 1
     assert late.step(1).lift_off > walk.step(1).lift_off
+
+
+def test_of_a_long_walk_on_bare_ground_two_minutes_are_laid(stand):
+    laid = begun(stand, False, replace(WALK, steps=200)).laid_out().laid
+    assert laid[-4].lift_off < 120.0 / 0.02 <= laid[-3].lift_off

@@ -7,9 +7,8 @@ import numpy as np
 from surefoot.native.library import Library
 from surefoot.planner.types import Array
 
-ENDS, COLUMNS, POINT = 34, 34, 40
-"""Numbers of the ends and of a point, and columns of the table of an interval, as the kernel lays them out; a point has
-these columns, pendulum ZMP, ZMP and DCM [-]."""
+COLUMNS, POINT = 34, 40
+"""Of the table of an interval, and numbers of a point: these columns, pendulum ZMP, ZMP and DCM [-]."""
 
 
 class PlanKernel:
@@ -20,7 +19,7 @@ class PlanKernel:
     """
 
     def __init__(self, kernels: Library) -> None:
-        self._ends, self._swing, self._points = np.zeros(ENDS), np.zeros((6, 6)), np.zeros((2, POINT))
+        self._ends, self._swing, self._points = np.zeros(COLUMNS), np.zeros((6, 6)), np.zeros((2, POINT))
         interval = kernels.fill(
             "PlanInterval",
             ends=self._ends,

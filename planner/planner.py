@@ -94,8 +94,7 @@ class WalkingPlanner:
         half_size = 0.5 * np.array([foot_length, foot_width])
         heights = height_profile or profile.height or SmoothHeight()
         self._preview = ReferencePreview(gait, heights, p, half_size)
-        schedule = Schedule.start(gait, feet, Ground(terrain, half_size, p))
-        schedule = schedule.laid_out() if terrain.has_edges else schedule
+        schedule = Schedule.start(gait, feet, Ground(terrain, half_size, p)).laid_out()
         legs = legs.adapting(p) if legs is not None and profile.catches else None
         self._execution = Execution(schedule, self._preview.reach + 1, legs)
         self._recovery = Recovery(self._execution, half_size)

@@ -149,7 +149,7 @@ class Sole(NamedTuple):
         return cls(place, sole_corners(place, half_size), sole_corners(place, margin * half_size))
 
 
-def _hull(corners: Array, *others: Array) -> Array:
+def hull_of(corners: Array, *others: Array) -> Array:
     """Convex hull of the corners of one sole or several, as `convex_hull` tells it."""
     if others:
         return convex_hull(np.concatenate((corners, *others)))
@@ -221,7 +221,7 @@ def present_support(
     if last is not None and [*map(id, soles)] == [*map(id, last.soles)]:
         outer, inner = last.outer, last.inner
     else:
-        outer, inner = _hull(*(sole.outer for sole in soles)), _hull(*(sole.inner for sole in soles))
+        outer, inner = hull_of(*(sole.outer for sole in soles)), hull_of(*(sole.inner for sole in soles))
     stay = not schedule.ground.terrain.footholds.follow
     return Support(
         key=key,

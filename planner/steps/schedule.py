@@ -31,6 +31,9 @@ _STOP_AHEAD = 4
 """Phases, with the present one, within which a stand is the end of the step that is being made [-]."""
 
 
+_LAID_OUT = 120.0
+"""Time of a walk on bare ground whose steps are laid before it begins; a minute of them takes some milliseconds [s]."""
+
 _OF_PHASES = ("phases", "phase_table", "_starts", "first_support", "supports", "yaws")
 """What of a schedule does not depend on where its steps land."""
 
@@ -216,12 +219,13 @@ class Schedule:
     # From a schedule to the next.
 
     def laid_out(self) -> "Schedule":
-        """The schedule that knows all steps of its source beforehand: to lay one over edges takes milliseconds.
+        """The schedule that knows the steps of its source beforehand: to lay one over edges takes milliseconds.
 
         Raises:
             ParameterError: a footstep is out of reach, or no swing clears the edges before it.
         """
-        return replace(self, laid=self.extended(math.inf).steps)
+        bare, t = not self.ground.terrain.has_edges, self.ground.parameters.sample_time
+        return replace(self, laid=self.extended(_LAID_OUT / t if bare else math.inf).steps)
 
     def extended(self, until: float, now: float = 0.0) -> "Schedule":
         """Steps are asked for until all is known up to an instant, and three steps more.
@@ -239,8 +243,7 @@ class Schedule:
         return schedule
 
     def _lift_offs_after(self, clock: float) -> int:
-        last = self.phases[-2 * _MORE_STEPS :]
-        return sum(phase.kind is PhaseKind.SINGLE and phase.start >= clock for phase in last)
+        return sum(p.kind is PhaseKind.SINGLE and p.start >= clock for p in self.phases[-2 * _MORE_STEPS :])
 
     def _asked(self, now: float) -> "Schedule | None":
         """The schedule with what comes next; None where nothing does."""
@@ -259,7 +262,8 @@ class Schedule:
         one, other = self.steps[-2:]
         step = None if inserted else known_step(self.laid, (one, other), stride, stop, self.durations)
         step = step or lay(stride, (one, other), self.gait, self.ground, stop, inserted)
-        step = replace(step, place=step.beside(self.shift, self.ground.terrain))
+        place = step.beside(self.shift, self.ground.terrain)
+        step = step.landing(place.position, place.normal)
         longer = self._with((*self.steps, step), False, self.shift)
         # The phases until the last step stay: of a walk that is laid out as a whole there are many.
         until = bisect_left(self.phases, other.number, key=attrgetter("step"))

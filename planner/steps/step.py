@@ -128,7 +128,8 @@ class Step:
         """
         place = self.nominal
         xy = place.position[:2] + terrain.footholds.shifted(shift, place.yaw, self.room)
-        return replace(place, position=np.append(xy, terrain.heights(xy[None])), normal=terrain.normals(xy[None])[0])
+        position = np.append(xy, terrain.heights(xy[None]))
+        return Footstep(place.foot, position, place.yaw, terrain.normals(xy[None])[0])
 
     def retimed(
         self, before: "Step", lasting: tuple[float, float], begun: float, now: float, parameters: PlannerParameters

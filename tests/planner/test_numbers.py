@@ -24,11 +24,10 @@ NOTICED = {
     "geometry._STRAIGHT": "tests/planner/test_polygon.py",
     "laws.qp._TOLERANCE": "tests/native/test_bounded_qp.py",
     "model.jerk.BLOCK_STARTS": "tests/planner/laws/test_tvmpc.py",
-    "plan._COLUMNS": "tests/planner/test_sampling.py",
-    **dict.fromkeys(
-        ("plan_kernel.COLUMNS", "plan_kernel.ENDS", "plan_kernel.POINT"), "tests/native/test_plan_kernels.py"
-    ),
+    "plan_kernel.COLUMNS": "tests/planner/test_sampling.py",
+    "plan_kernel.POINT": "tests/planner/test_sampling.py",
     "recovery.step_adjustment._NO_GAIN": "tests/planner/recovery/test_step_adjustment.py",
+    "steps.schedule._LAID_OUT": "tests/planner/steps/test_laid_out.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",
     "swing.leg_reach.PEAK": "tests/planner/swing/test_swing_limits.py",
     "swing.leg_reach._BRAKING": "tests/planner/swing/test_swing_limits.py",

@@ -7,6 +7,7 @@ robot stands until the next bout.
 
 import math
 from bisect import bisect_left, bisect_right
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from operator import attrgetter
@@ -14,6 +15,7 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.footsteps import start_footholds
@@ -219,13 +221,12 @@ class Schedule:
     # From a schedule to the next.
 
     def laid_out(self) -> "Schedule":
-        """The schedule that knows the steps of its source beforehand: to lay one over edges takes milliseconds.
-
-        Raises:
-            ParameterError: a footstep is out of reach, or no swing clears the edges before it.
-        """
-        bare, t = not self.ground.terrain.has_edges, self.ground.parameters.sample_time
-        return replace(self, laid=self.extended(_LAID_OUT / t if bare else math.inf).steps)
+        """The schedule that knows the steps of its source beforehand: to lay one over edges takes milliseconds."""
+        longer, bare, t = self, not self.ground.terrain.has_edges, self.ground.parameters.sample_time
+        with suppress(ParameterError):  # a step that cannot be laid is refused once it comes into sight
+            while longer.last.lift_off < (_LAID_OUT / t if bare else math.inf) and (more := longer._asked(0.0)):
+                longer = more
+        return replace(self, laid=longer.steps)
 
     def extended(self, until: float, now: float = 0.0) -> "Schedule":
         """Steps are asked for until all is known up to an instant, and three steps more.
@@ -265,7 +266,6 @@ class Schedule:
         place = step.beside(self.shift, self.ground.terrain)
         step = step.landing(place.position, place.normal)
         longer = self._with((*self.steps, step), False, self.shift)
-        # The phases until the last step stay: of a walk that is laid out as a whole there are many.
         until = bisect_left(self.phases, other.number, key=attrgetter("step"))
         vars(longer)["phases"] = self.phases[:until] + self._remembered(phases_of((other, step), False))
         return longer

@@ -7,6 +7,7 @@ page between `<!-- value: name -->` and `<!-- end -->`.
 """
 
 import inspect
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -31,6 +32,7 @@ from surefoot.scenarios.file.schema import (
     Scenario,
     VelocitySettings,
 )
+from surefoot.scenarios.file.sensing import SENSOR_KEYS, Sensing
 from surefoot.scenarios.file.units import unit_of
 from surefoot.scenarios.judge.metric import LITTLE, SHARE, Metric
 from surefoot.scenarios.judge.metrics import OWN
@@ -39,13 +41,21 @@ from surefoot.scenarios.log.writer import CHUNK_PERIOD_NS
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.sim.measurement import Measurement
+from surefoot.sim.sensor_errors import PRESETS, SensorErrors
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.tasks.task import Task
 from surefoot.wbc.types import RobotState, WbcReference
 
 FOLDER = Path(__file__).parent
 CHANNELS = (
-    *(channels.measurement, channels.truth, channels.point_truth, channels.estimate, channels.contact),
+    *(
+        channels.measurement,
+        channels.readings,
+        channels.truth,
+        channels.point_truth,
+        channels.estimate,
+        channels.contact,
+    ),
     *(
         channels.planner_state,
         channels.reference,
@@ -109,11 +119,35 @@ def tolerance(metric: Metric[Any]) -> str:
     return " + ".join(part for part in parts if part) or "none"
 
 
+def sensors_table() -> str:
+    """Every term of the sensors, in each preset."""
+    rows = ["| key | unit | " + " | ".join(f"`{name}`" for name in PRESETS) + " |", "|---|---|" + "---|" * len(PRESETS)]
+    for name in SENSOR_KEYS:
+        field = Sensing.model_fields[name]
+        said = [_of_preset(name, errors) for errors in PRESETS.values()]
+        if any(said):
+            rows.append(f"| `{name}` | {unit_of(field.annotation, field.metadata) or '-'} | {' | '.join(said)} |")
+    return "\n".join(rows)
+
+
+def _of_preset(name: str, errors: SensorErrors) -> str:
+    """What a preset has for a key, as it is read; empty where the key is no term of it."""
+    group, _, term = name.partition("_")
+    delivery = {"encoder": errors.joints, "imu": errors.imu, "wrench": errors.feet}.get(group)
+    if name == "wrench":
+        return "feet" if errors.wrench_sensors else "none"
+    value = getattr(errors, name, getattr(delivery, term, None))
+    if value is None or isinstance(value, bool):
+        return "" if value is None else str(value).lower()
+    return "none" if value == math.inf else f"{value:.3g}"
+
+
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "keys": ("scenarios.md", keys_table),
     "metrics": ("scenarios.md", metrics_table),
     "channels": ("log.md", channels_table),
     "robot-keys": ("robot-files.md", robot_keys_table),
+    "sensors": ("sensors.md", sensors_table),
 }
 
 

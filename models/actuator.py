@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 
 @dataclass(frozen=True, slots=True)
 class Motor:
@@ -22,7 +25,8 @@ class Motor:
 class Actuator:
     """A motor behind a loss-free gear; what the joint sees follows from the gear ratio.
 
-    The peak torque is taken as available at every speed; friction and torque ripple are not modelled.
+    The peak torque is taken as available at every speed unless `available_torque` is asked; friction and torque ripple
+    are no part of it.
 
     Attributes:
         motor: the motor.
@@ -46,3 +50,25 @@ class Actuator:
     def armature(self) -> float:
         """Rotor inertia reflected to the joint [kg m^2]."""
         return self.motor.rotor_inertia * self.gear_ratio**2
+
+
+def available_torque(
+    torque: NDArray[np.float64], speed: NDArray[np.float64], peak: NDArray[np.float64],
+    no_load_speed: NDArray[np.float64], knee: float,
+) -> NDArray[np.float64]:  # fmt: skip
+    """What motors at a bus voltage can give of a torque: driving, less the faster they turn; braking, their peak.
+
+    Up to the knee the drive current is the limit, beyond it the voltage that the turning motor leaves, which falls to
+    none at the no-load speed (e.g. Seok et al., "Actuator design for high force proprioceptive control in fast legged
+    locomotion", IROS 2012).
+
+    Args:
+        torque: wanted, shape (nj,) [N·m].
+        speed: of the joints, shape (nj,) [rad/s].
+        peak: torque at stall, shape (nj,) [N·m].
+        no_load_speed: at which no torque is left, shape (nj,) [rad/s].
+        knee: share of that speed up to which the peak is available, from 0 to less than 1 [-].
+    """
+    left = np.clip((1.0 - np.abs(speed) / no_load_speed) / (1.0 - knee), 0.0, 1.0)
+    most = np.where(torque * speed > 0.0, left, 1.0) * peak
+    return np.asarray(np.clip(torque, -most, most))

@@ -1,4 +1,4 @@
-"""Robots whose mass is not where, or not what, their own software believes; geometry, joints and motors stay."""
+"""Robots that are not what their own software believes: other masses, joints that lose torque; shapes stay."""
 
 import math
 from collections.abc import Iterator
@@ -86,6 +86,44 @@ def with_torso_com_moved(description: RobotDescription, offset: Array) -> RobotD
     root = ElementTree.fromstring(description.mjcf)
     inertial = _inertial(root, description, description.torso_body)
     inertial.set("pos", numbers(np.array([float(value) for value in inertial.attrib["pos"].split()]) + offset))
+    return replace(description, mjcf=_text(root))
+
+
+def with_torso_mass_scaled(description: RobotDescription, factor: float) -> RobotDescription:
+    """The robot with mass and moments of inertia of its torso's own body multiplied by a factor.
+
+    Raises:
+        RobotError: the torso has no inertial, or the factor is not a positive number.
+    """
+    if not 0.0 < factor < math.inf:
+        what = f"the mass of the torso of {description.name} shall be scaled by {factor}"
+        raise RobotError(("factor",), what, "it must be a positive number")
+    root = ElementTree.fromstring(description.mjcf)
+    inertial = _inertial(root, description, description.torso_body)
+    added = (factor - 1.0) * float(inertial.attrib["mass"])
+    _scale(inertial, factor)
+    return replace(description, mjcf=_text(root), mass=description.mass + added)
+
+
+def with_joint_losses(description: RobotDescription, damping: float, friction: float) -> RobotDescription:
+    """The robot whose joints are damped and rub.
+
+    Args:
+        description: the robot.
+        damping: viscous friction of every joint [N·m·s/rad].
+        friction: dry friction of every joint [N·m].
+
+    Raises:
+        RobotError: one of them is negative or not finite.
+    """
+    for name, value in (("damping", damping), ("friction", friction)):
+        if not 0.0 <= value < math.inf:
+            what = f"the joints of {description.name} shall have a {name} of {value}"
+            raise RobotError((name,), what, "it must be at least 0")
+    root = ElementTree.fromstring(description.mjcf)
+    for joint in (joint for joint in root.iter("joint") if joint.get("name") in description.joint_names):
+        joint.set("damping", repr(float(damping)))
+        joint.set("frictionloss", repr(float(friction)))
     return replace(description, mjcf=_text(root))
 
 

@@ -41,6 +41,7 @@ def scaled(description: RobotDescription, factor: float) -> RobotDescription:
                 values = element.attrib[attribute].split()
                 element.set(attribute, numbers(factor**power * float(value) for value in values))
     d = description
+    x, y, z = d.imu.position
     return replace(
         d,
         mjcf=ElementTree.tostring(root, encoding="unicode") + "\n",
@@ -53,4 +54,5 @@ def scaled(description: RobotDescription, factor: float) -> RobotDescription:
         leg_length=factor * d.leg_length,
         shank_spacing=factor * d.shank_spacing,
         com_height=factor * d.com_height,
+        imu=replace(d.imu, position=(factor * x, factor * y, factor * z)),
     )

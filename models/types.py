@@ -99,6 +99,21 @@ class JointRoles:
         return self.left_leg + self.right_leg
 
 
+@dataclass(frozen=True, slots=True)
+class ImuPlace:
+    """Where a robot carries its IMU; the default is the frame of the floating base itself.
+
+    Attributes:
+        body: that carries it, None for the floating base.
+        position: of its origin in the frame of that body [m].
+        quaternion: of its axes in the frame of that body, w x y z.
+    """
+
+    body: str | None = None
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    quaternion: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
+
+
 _OF_JOINTS = (
     "torque_limit",
     "velocity_limit",
@@ -134,7 +149,7 @@ class RobotDescription:
         sole_width: sole size along y [m].
         pelvis_body: the floating base.
         torso_body: body whose uprightness is controlled.
-        imu_site: site of the IMU; it coincides with the frame of the floating base.
+        imu_site: site in the frame of the floating base, in which gyro and accelerometer are measured exactly.
         hip_width: distance between the hip centres [m].
         leg_length: hip centre to sole with a straight leg [m].
         shank_spacing: lateral distance of the sole centres at which upright shanks keep a centimetre apart; soles may
@@ -144,6 +159,7 @@ class RobotDescription:
         com_height: nominal CoM height above the soles in walking [m].
         bodies: all body names.
         kept_apart: pairs of named contact shapes of different limbs that the controller keeps apart.
+        imu: where its own IMU is, whose readings an estimator gets.
     """
 
     name: str
@@ -169,12 +185,15 @@ class RobotDescription:
     com_height: float
     bodies: tuple[str, ...]
     kept_apart: tuple[tuple[str, str], ...]
+    imu: ImuPlace = ImuPlace()
 
     def __post_init__(self) -> None:
         """Refuse what contradicts itself."""
         self._check_joint_arrays()
         for field in ("pelvis_body", "torso_body"):
             self._check_names((field,), (getattr(self, field),), self.bodies, "body")
+        if self.imu.body is not None:
+            self._check_names(("imu", "body"), (self.imu.body,), self.bodies, "body")
         self._check_roles()
         if not 0.0 < self.shank_spacing < np.inf:
             what = f"shank_spacing of {self.name} is {self.shank_spacing} m"

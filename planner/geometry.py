@@ -6,8 +6,6 @@ the tilt; uphill, pitch is negative.
 """
 
 import math
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -28,8 +26,9 @@ def wrap_angle(angle: float) -> float:
 def seen_from(stance: Footstep, place: Footstep) -> Footstep:
     """A foothold in the frame of another one, that of its stance foot; its turn is not wrapped."""
     rotation, way = frame_rotation(stance.yaw), place.position - stance.position
-    position, normal = (np.append(vector[:2] @ rotation, vector[2]) for vector in (way, place.normal))
-    return replace(place, position=position, yaw=place.yaw - stance.yaw, normal=normal)
+    position, normal = np.array((way, place.normal))
+    position[:2], normal[:2] = way[:2] @ rotation, place.normal[:2] @ rotation
+    return Footstep(place.foot, position, place.yaw - stance.yaw, normal, place.step, place.touchdown_time)
 
 
 def sole_angles(normal: Array, yaw: float) -> tuple[float, float]:
@@ -194,12 +193,14 @@ def quintic(start: Array, end: Array, duration: float) -> Array:
     Returns:
         Coefficients of 1, t, ..., t^5, shape (6, k).
     """
-    if start.shape[1] == 1:  # in plain numbers, which are fast
+    if start.shape[1] == 1:
         return np.array(_quintic(start[:, 0].tolist(), end[:, 0].tolist(), duration))[:, None]
-    return np.array(_quintic(start, end, duration))
+    columns = zip(start.T.tolist(), end.T.tolist(), strict=True)
+    return np.array([*zip(*(_quintic(*ends, duration) for ends in columns), strict=True)])
 
 
-def _quintic(start: Any, end: Any, t: float) -> tuple[Any, ...]:
+def _quintic(start: list[float], end: list[float], t: float) -> tuple[float, ...]:
+    """The coefficients in plain numbers, which are fast."""
     (x, v, a), (y, w, b) = start, end
     gap = y - x - t * v - 0.5 * t * t * a
     speed, bend = t * (w - v - t * a), t * t * (b - a)
@@ -211,3 +212,13 @@ def shifted(coefficients: Array, time: float) -> Array:
     """The same polynomials with their local time starting at `time`."""
     powers = np.array([time**i for i in _EXPONENT])
     return np.asarray((_BINOMIAL * powers[_POWER]) @ coefficients)
+
+
+def yaw_rotations(yaw: Array) -> Array:
+    """Rotations about the vertical, shape (n, 3, 3).
+
+    Args:
+        yaw: shape (n,) [rad].
+    """
+    c, s, zero, one = np.cos(yaw), np.sin(yaw), np.zeros_like(yaw), np.ones_like(yaw)
+    return np.moveaxis(np.array(((c, -s, zero), (s, c, zero), (zero, zero, one))), -1, 0)

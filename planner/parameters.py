@@ -1,7 +1,7 @@
 """Parameters of the planner itself, apart from the gait."""
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from enum import Enum
 
 import numpy as np
@@ -33,6 +33,10 @@ class GroundSearch:
         hurry_after: time from the touchdown after which the foot hurries, infinite for never [s].
         hurry_speed: greatest downward speed then [m/s].
         hurry_acceleration: at which that is gained [m/s^2].
+        unsure_speed: how much faster the touchdown is for each metre by which the ground's height is unsure [1/s].
+        unsure_acceleration: likewise of the acceleration [1/s^2].
+        unsure_aim: how far below the ground a footstep is aimed, in standard deviations of its height [-].
+        most_unsure: deviation of the height beyond which nothing changes any more [m].
 
     Raises:
         ParameterError: a number is negative, an acceleration is zero, or one that must be finite is not.
@@ -44,6 +48,10 @@ class GroundSearch:
     hurry_after: float = quantity(math.inf, "s")
     hurry_speed: float = quantity(0.5, "m/s")
     hurry_acceleration: float = quantity(16.0, "m/s^2")
+    unsure_speed: float = quantity(40.0, "1/s")
+    unsure_acceleration: float = quantity(1500.0, "1/s^2")
+    unsure_aim: float = quantity(1.5, "-")
+    most_unsure: float = quantity(2e-3, "m")
 
     def __post_init__(self) -> None:
         for entry in fields(self):
@@ -54,6 +62,27 @@ class GroundSearch:
                 raise ParameterError(key, what, f"it must be {least}")
             if not math.isfinite(value) and entry.name != "hurry_after":
                 raise ParameterError(key, what, "it must be finite")
+
+    def unsure(self, deviation: float) -> tuple["GroundSearch", float]:
+        """The search for ground of unsure height, and how far below it the footstep is to be aimed [m].
+
+        A foot that is lower than it is believed waits for nothing; one that is higher waits the longer the more gently
+        it goes on, while the DCM does not wait.
+
+        Args:
+            deviation: standard deviation of the sole's height over the ground [m].
+        """
+        if deviation == 0.0:
+            return self, 0.0
+        least = min(deviation, self.most_unsure)
+        speed = self.touchdown_speed + self.unsure_speed * least
+        faster = replace(
+            self,
+            touchdown_speed=speed,
+            speed=max(self.speed, speed),
+            acceleration=self.acceleration + self.unsure_acceleration * least,
+        )
+        return faster, self.unsure_aim * least
 
     def motion(self, since: float) -> tuple[float, float, float]:
         """Way down [m], downward speed [m/s] and acceleration [m/s^2], `since` the touchdown [s]."""

@@ -19,7 +19,7 @@ class PlanKernel:
     """
 
     def __init__(self, kernels: Library) -> None:
-        self._ends, self._swing, self._points = np.zeros(34), np.zeros((6, 6)), np.zeros((2, POINT))
+        self._ends, self._swing, self._points = np.zeros(COLUMNS), np.zeros((6, 6)), np.zeros((2, POINT))
         interval = kernels.fill(
             "PlanInterval",
             ends=self._ends,

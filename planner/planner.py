@@ -94,7 +94,7 @@ class WalkingPlanner:
         half_size = 0.5 * np.array([foot_length, foot_width])
         heights = height_profile or profile.height or SmoothHeight()
         self._preview = ReferencePreview(gait, heights, p, half_size)
-        schedule = Schedule.start(gait, feet, Ground(terrain, half_size, p))
+        schedule = Schedule.start(gait, feet, Ground(terrain, half_size, p)).laid_out()
         legs = legs.adapting(p) if legs is not None and profile.catches else None
         self._execution = Execution(schedule, self._preview.reach + 1, legs)
         self._recovery = Recovery(self._execution, half_size)
@@ -181,11 +181,12 @@ class WalkingPlanner:
             support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         step = StepProblem.of(time, execution, feet, support)
-        balance = self._recovery.balance(step, local, support, window, self._plan)
-        adjusted = self._recovery.adjusted(step, local, window)
+        unsure = self._unsure(state, window)
+        balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
+        adjusted = self._recovery.adjusted(step, local, window, unsure)
         if adjusted is not None and adjusted.more and self._recovery.adds_steps(balance.planned):
             support, local, window = self._sight(state)
-            adjusted = self._recovery.adjusted(StepProblem.of(time, execution, feet, support), local, window)
+            adjusted = self._recovery.adjusted(StepProblem.of(time, execution, feet, support), local, window, unsure)
         left = execution.time_left
         if adjusted is not None and execution.end_in(adjusted.left, time):
             window = self._window(state, support, local)
@@ -201,6 +202,12 @@ class WalkingPlanner:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
         return self._plan
+
+    @staticmethod
+    def _unsure(state: CentroidalState, window: Window) -> float:
+        """Two standard deviations of the DCM [m]."""
+        com, velocity = state.deviation
+        return 2.0 * math.hypot(com, velocity / float(window.omega[0]))
 
     def _sight(self, state: CentroidalState) -> tuple[Support, Array, Window]:
         """What carries the robot now, its CoM in that plan frame, and the references from now on."""

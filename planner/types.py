@@ -131,12 +131,14 @@ class CentroidalState:
         com: CoM position, shape (3,) [m].
         com_velocity: CoM velocity, shape (3,) [m/s].
         lasting: force that goes on acting on it, per mass (`ExternalLoad.per_mass`); None for none.
+        deviation: standard deviations of the CoM's horizontal position and velocity, zero for the truth [m, m/s].
     """
 
     time: float
     com: Array
     com_velocity: Array
     lasting: ExternalLoad | None = None
+    deviation: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,11 +149,13 @@ class FeetState:
         position: sole centres in the world frame, shape (2, 3) [m], left first.
         yaw: sole headings, shape (2,) [rad].
         contact: which feet feel the ground, (left, right).
+        height_deviation: standard deviations of the soles' heights over the ground, zero for the truth [m].
     """
 
     position: Array
     yaw: Array
     contact: tuple[bool, bool]
+    height_deviation: tuple[float, float] = (0.0, 0.0)
 
 
 class SolverStatus(IntEnum):

@@ -32,7 +32,7 @@ def add_terrain(worldbody: ElementTree.Element, terrain: Terrain, size: Similari
         "condim": "3",
         "priority": "1",
         "group": "0",
-        "friction": numbers((terrain.friction, 0.0, 0.0)),
+        "friction": _friction(terrain.friction),
         "solref": f"{SETTLING * size.time!r} 1",
         "solimp": numbers((*IMPEDANCE, SINKING * size.length)),
     }
@@ -48,7 +48,13 @@ def add_terrain(worldbody: ElementTree.Element, terrain: Terrain, size: Similari
             "size": numbers(box.half_size),
             "material": "step",
         }
-        ElementTree.SubElement(worldbody, "geom", {**shape, **surface})
+        own = {} if box.friction is None else {"friction": _friction(box.friction)}
+        ElementTree.SubElement(worldbody, "geom", {**shape, **surface, **own})
+
+
+def _friction(coefficient: float) -> str:
+    """Of a geom that neither spins nor rolls with friction."""
+    return numbers((coefficient, 0.0, 0.0))
 
 
 def _axes(box: Box) -> list[float]:

@@ -12,6 +12,7 @@ from surefoot.forces import Push
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription, nearest
 from surefoot.planner.ground.terrain import Terrain
+from surefoot.sim.drives import Drives
 from surefoot.sim.errors import SimulationDiverged, WorldError
 from surefoot.sim.measurement import Array, Measurement
 from surefoot.sim.pushes import PushSchedule, physics_window
@@ -34,6 +35,7 @@ class World:
         physics_rate: physics steps per second [Hz].
         pushes: forces on bodies of the robot.
         size: of the robot, with which the ground's compliance goes.
+        drives: its motors; None for ones that give each torque at once.
 
     Raises:
         WorldError: a push names an unknown body or has a negative time, no duration or a force that is not finite.
@@ -53,6 +55,7 @@ class World:
         physics_rate: int,
         pushes: Sequence[Push] = (),
         size: Similarity = REFERENCE_SIZE,
+        drives: Drives | None = None,
     ) -> None:
         for index, push in enumerate(pushes):
             _check_push(push, description, ("pushes", index))
@@ -63,6 +66,7 @@ class World:
         self._mjcf = world_mjcf(description, terrain, 1.0 / physics_rate, size)
         self.model = copy.copy(_compiled(self._mjcf))
         self.data = mujoco.MjData(self.model)
+        self._drives = drives
         self._pushes = PushSchedule(pushes, [self.model.body(push.body).id for push in pushes], physics_rate)
         self._sensors = SensorReader(self.model, self.data, description)
         self._ctrl, self._qpos, self._qvel = self.data.ctrl, self.data.qpos, self.data.qvel
@@ -92,6 +96,8 @@ class World:
         self.tick = 0
         if torque is not None:
             self._ctrl[:] = torque
+        if self._drives is not None:
+            self._drives.rewind(self._ctrl)
         mujoco.mj_forward(self.model, self.data)
 
     def measure(self) -> Measurement:
@@ -127,13 +133,18 @@ class World:
             raise SimulationDiverged(self.time, "the commanded torque is not finite")
         np.copyto(self._last_qpos, self._qpos)
         np.copyto(self._last_qvel, self._qvel)
-        self._ctrl[:] = torque
+        if self._drives is None:
+            self._ctrl[:] = torque
+        else:
+            self._drives.tell(self.tick, torque)
         pushes, tick, end = self._pushes, self.tick, self.tick + steps
         pushes.mean[:] = 0.0
         while tick < end:
             if tick >= pushes.next_change:
                 pushes.step_over(self._xfrc)
             stop = min(end, pushes.next_change)
+            if self._drives is not None:
+                self._ctrl[:], stop = self._drives.torque(tick, self._qvel[6:]), tick + 1
             mujoco.mj_step(self.model, self.data, stop - tick)
             if pushes.active:
                 pushes.mean += (stop - tick) / steps * pushes.total

@@ -17,10 +17,12 @@ def convex_hull(points: Array) -> Array:
     Args:
         points: shape (n, 2), at least three that are not on a line.
     """
-    ordered = sorted({(x, y) for x, y in points.tolist()})
+    x, y = points.T.tolist()
+    ordered = sorted(set(zip(x, y, strict=True)))
     hull = [*_chain(ordered)[:-1], *_chain(ordered[::-1])[:-1]]
-    extent = float(np.ptp(points, axis=0).max())
-    flat = extent * (_FLAT * extent + _ROUNDING * float(np.abs(points).max()))
+    right, left, above, below = max(x), min(x), max(y), min(y)
+    extent = max(right - left, above - below)
+    flat = extent * (_FLAT * extent + _ROUNDING * max(abs(right), abs(left), abs(above), abs(below)))
     corner = 0
     while corner < len(hull):
         if _left_turn(hull[corner - 1], hull[corner], hull[(corner + 1) % len(hull)]) > flat:

@@ -16,8 +16,18 @@ class Stream(IntEnum):
     MASSES = 3
     TILES = 4
     HEIGHTS = 5
+    ENCODER = 6
+    JOINT_TORQUE = 7
+    GYRO = 8
+    ACCELEROMETER = 9
+    IMU = 10
+    WRENCH = 11
+    MOTOR = 12
 
 
-def generator(seed: int, stream: Stream | None = None) -> np.random.Generator:
-    """Draws the numbers of a stream; those of the seed itself where it is None."""
-    return np.random.default_rng(seed if stream is None else np.random.SeedSequence(seed, spawn_key=(stream,)))
+def generator(seed: int, stream: Stream | None = None, part: int | None = None) -> np.random.Generator:
+    """Draws the numbers of a stream, or of one of its parts; those of the seed itself where the stream is None."""
+    if stream is None:
+        return np.random.default_rng(seed)
+    key = (stream,) if part is None else (stream, part)
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))

@@ -49,8 +49,10 @@ class ContactSchedule:
         self._loading = [1.0, 1.0]
 
     def update(self, reference: WbcReference, sensing: FootSensing) -> ContactState:
-        """Contacts of this tick from the plan and the measured normal forces."""
-        felt = (self._feel(0, sensing.normal_force[0]), self._feel(1, sensing.normal_force[1]))
+        """Contacts of this tick from the plan, and from what an estimator decided or else the normal forces."""
+        felt = sensing.contact
+        if felt is None:
+            felt = (self._feel(0, sensing.normal_force[0]), self._feel(1, sensing.normal_force[1]))
         planned = reference.planned_contact
         for k in (0, 1):
             early = not planned[k] and reference.swing_progress >= self._parameters.early_progress

@@ -192,7 +192,7 @@ class WholeBodyController:
         """
         start = time.perf_counter()
         if sensing.wrench is not None:
-            self.terms.bear(self._observer.update(self.terms, sensing.wrench))
+            self.terms.bear(self._observer.update(self.terms, sensing.wrench, sensing.load_deviation))
             self.schedule.weight = self.terms.mass * GRAVITY
         contacts = self.schedule.update(reference, sensing)
         qp = self.build(self.terms, reference, contacts)

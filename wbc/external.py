@@ -41,6 +41,10 @@ walks leave 1.2 N and 1.2 N·m."""
 SUDDEN = (10.0, 20.0)
 """Likewise of what acts now; walking at 1 m/s leaves 8 N and 6 N·m."""
 
+LASTING, ACTING = (1.0, 2.0), (4.0, 7.0)
+"""Deviations of one span by which the limits of what lasts and of what acts now are wider where the state is estimated;
+a median of 13 spans has a third of that deviation, one of three two thirds [-]."""
+
 BOUND = (40.0, 12.0)
 """No more force and moment counts of what acts now and has not lasted: it may be a push, soon over [N, N·m]."""
 
@@ -95,6 +99,8 @@ class LoadObserver:
         self._bound, self._push = np.repeat(BOUND, _ROWS[:2]) * pull, size.times(PUSH, "N")
         self._kept, self._sudden = (tuple(limit * pull for limit in limits) for limits in (KEPT, SUDDEN))
         self._estimate = np.zeros(sum(_ROWS))
+        self._deviation = self._wide_for = (0.0, 0.0)
+        self._late = False
         self.load = NO_LOAD
         self._wrench = np.zeros((2, 6))
         self._add: Callable[[], None] | None = None
@@ -103,7 +109,9 @@ class LoadObserver:
 
     def _compile(self, compiled: CompiledTerms) -> None:
         """Bind the kernels that do what `_moving` and `_end_span` do."""
-        bind = compiled.kernels.bind
+        bind, self._filled = compiled.kernels.bind, np.zeros(1, dtype=np.int64)
+        self._limits = np.array(WEIGHT), np.array(self._kept), np.array(self._sudden)
+        share_limits, kept, sudden = self._limits
         self._add = bind("load_sums_add", terms=compiled.bound, wrench=self._wrench, felt=self._felt, com=self._com)
         span = compiled.kernels.fill(
             "LoadSpan",
@@ -115,9 +123,9 @@ class LoadObserver:
             latest_count=LATEST,
             most_share=MOST,
             least_press=LEAST_PRESS,
-            share_limits=np.array(WEIGHT),
-            kept=np.array(self._kept),
-            sudden=np.array(self._sudden),
+            share_limits=share_limits,
+            kept=kept,
+            sudden=sudden,
             bound=self._bound,
             push=np.array(self._push, dtype=np.float64),
             most_change=self._most,
@@ -125,18 +133,21 @@ class LoadObserver:
             com=self._com,
             momentum=np.zeros(6),
             spans=np.zeros((SPANS, sum(_ROWS))),
-            filled=np.zeros(1, dtype=np.int64),
+            filled=self._filled,
             estimate=self._estimate,
         )
         self._begin, self._end = (bind(name, span) for name in ("load_moving", "load_span_end"))
 
-    def update(self, terms: RobotTerms, wrench: Array) -> ExternalLoad:
+    def update(self, terms: RobotTerms, wrench: Array, deviation: tuple[float, float] = (0.0, 0.0)) -> ExternalLoad:
         """The load as it is now known; call it once per control tick.
 
         Args:
             terms: of the state now.
             wrench: of the soles, in their frames, shape (2, 6) [N, N·m].
+            deviation: of a force and a moment of one span by what state and wrenches are unsure of; limits are wider by
+                multiples of it, and nothing is found where it is infinite [N, N·m].
         """
+        self._deviation = deviation
         if self._add is not None:
             return self._update_compiled(wrench, self._add)
         if self._momentum is None:
@@ -159,9 +170,30 @@ class LoadObserver:
         add()
         if self._count == self._ticks:
             self._count = 0
-            if self._end():
+            if not self._known:
+                self._late = True
+                self._end(False)
+                self._filled[0] = 0
+                return self.load
+            if self._deviation != self._wide_for:
+                self._wide_for = self._deviation
+                for limits, now in zip(self._limits, self._limits_now(), strict=True):
+                    limits[:] = now
+            if self._end(not self._late or int(self._filled[0]) + 1 >= SPANS):
                 self._tell()
         return self.load
+
+    @property
+    def _known(self) -> bool:
+        """Whether anything is known: what comes before that says least, and must not count when the rest is known."""
+        return math.isfinite(sum(self._deviation))
+
+    def _limits_now(self) -> tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]:
+        """Limits of the share of the weight, of what lasts, and of what acts, as wide as what is not known asks."""
+        unsure, turning = self._deviation
+        wider = np.repeat([unsure, turning], _ROWS[:2])
+        share = _wider(WEIGHT, unsure / (self._mass * GRAVITY), LASTING)
+        return share, _wider(self._kept, wider, LASTING), _wider(self._sudden, wider, ACTING)
 
     def _moving(self, terms: RobotTerms) -> Array:
         """Momentum and moment of momentum about the origin, by the model's masses, shape (6,) [N·s, N·m·s]."""
@@ -182,18 +214,22 @@ class LoadObserver:
         span = [x, y, *(n - t for n, t in zip(moment, turning, strict=True)), scale - 1.0]
         if math.isfinite(sum(span)):
             self._spans = np.concatenate((self._spans[1 - SPANS :], [span]))
-            self._follow()
+            if not self._known:
+                self._spans, self._late = self._spans[:0], True
+            elif not self._late or len(self._spans) == SPANS:
+                self._follow()
 
     def _follow(self) -> None:
         """Let the load follow what lasts."""
+        weight_limits, kept_limits, sudden_limits = self._limits_now()
         lasting, latest = _median(self._spans), _median(self._spans[-LATEST:])
-        share = _ramp(np.array([min(max(float(lasting[-1]), -MOST), MOST)]), WEIGHT)
+        share = _ramp(np.array([min(max(float(lasting[-1]), -MOST), MOST)]), weight_limits)
         if len(self._spans) < SPANS:
             pull = np.zeros(len(lasting) - 1)
         else:
             kept = np.where(lasting * latest > 0.0, np.minimum(np.abs(lasting), np.abs(latest)), 0.0)
-            kept = _ramp(np.copysign(kept, latest)[:-1], self._kept)
-            sudden = np.clip(_ramp(latest[:-1], self._sudden), -self._bound, self._bound)
+            kept = _ramp(np.copysign(kept, latest)[:-1], kept_limits)
+            sudden = np.clip(_ramp(latest[:-1], sudden_limits), -self._bound, self._bound)
             none, push = self._push
             sudden = sudden * min(max((push - math.hypot(*latest[:2])) / (push - none), 0.0), 1.0)
             pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
@@ -207,6 +243,11 @@ class LoadObserver:
         if self._estimate.any():
             x, y, *moment, more = self._estimate.tolist()
             self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
+
+
+def _wider(limits: tuple[Any, ...], deviation: Any, times: tuple[float, float]) -> tuple[Any, ...]:
+    """Limits that are wider by so many deviations."""
+    return limits[0] + times[0] * deviation, limits[1] + times[1] * deviation
 
 
 def _ramp(values: Array, limits: tuple[Any, ...]) -> Array:

@@ -50,10 +50,15 @@ class FootSensing:
     Attributes:
         normal_force: force along each sole's normal, (left, right) [N].
         wrench: sole wrenches in the sole frames, shape (2, 6) [N, N·m]; without them no load is estimated.
+        contact: which soles the ground carries, (left, right); None where the normal forces shall tell.
+        load_deviation: standard deviations of the force and of the moment that momentum and wrenches give for a load,
+            zero for the truth, infinite where they give none [N, N·m].
     """
 
     normal_force: tuple[float, float]
     wrench: Array | None = None
+    contact: tuple[bool, bool] | None = None
+    load_deviation: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

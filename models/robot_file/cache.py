@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from surefoot.models.robot_file.document import MESH, Kind, content, signature
-from surefoot.models.types import JointRoles, RobotDescription, RobotError
+from surefoot.models.types import ImuPlace, JointRoles, RobotDescription, RobotError
 
 _ENGINES = ("pin", "coal", "mujoco", "numpy", "scipy", "fast-simplification")
 _KEPT = 64
@@ -93,17 +93,17 @@ def _plain(value: Any) -> Any:
 
 def _description(values: dict[str, Any]) -> RobotDescription:
     """Back from JSON: lists of numbers are arrays, other lists are tuples."""
-    roles = JointRoles(**{name: _tuples(value) for name, value in values.pop("roles").items()})
+    roles, imu = ({name: _tuples(value) for name, value in values.pop(group).items()} for group in ("roles", "imu"))
     found = {}
     for field in fields(RobotDescription):
-        if field.name == "roles":
+        if field.name in ("roles", "imu"):
             continue
         value = values[field.name]
         if field.type in ("Array", np.ndarray) or field.name.endswith(("_limit", "_lower", "_upper", "_positions")):
             value = np.array(value, dtype=np.float64)
             value.setflags(write=False)
         found[field.name] = _tuples(value)
-    return RobotDescription(roles=roles, **found)
+    return RobotDescription(roles=JointRoles(**roles), imu=ImuPlace(**imu), **found)
 
 
 def _tuples(value: Any) -> Any:

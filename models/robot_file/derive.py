@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.robot_file.imu import find_imu
 from surefoot.models.robot_file.legs import at, find_legs, rest, solved
 from surefoot.models.robot_file.meshes import decimated
 from surefoot.models.robot_file.reduced import Reduced, reduced
@@ -72,6 +73,7 @@ class _Deriver:
         self.hulls = find_hulls(reduced, self.legs, self.upper)
         self.sole = tuple(min(getattr(leg.sole, side) for leg in self.legs) for side in ("length", "width"))
         self.leg_length = self._leg_length()
+        self.imu, self.imu_line = find_imu(reduced, file, self.upper.torso)
 
     def derived(self) -> Derived:
         """The whole description."""
@@ -241,6 +243,7 @@ class _Deriver:
             com_height=com_height,
             bodies=self.reduced.bodies,
             kept_apart=kept_apart(self.reduced, self.file, self.hulls, self._meeting(excluded), self.legs),
+            imu=self.imu,
         )
 
     def _say(self, robot: RobotDescription, excluded: list[tuple[str, str]]) -> None:
@@ -273,6 +276,7 @@ class _Deriver:
         by = "as given" if "com_height" in given else f"with knees bent by {BEND} rad"
         lines.append(f"com_height: {robot.com_height:.3f} m, {by}")
         lines.append(f"shank_spacing: {robot.shank_spacing:.3f} m, from the contact shapes of the shanks")
+        lines.append(self.imu_line)
         if excluded:
             told = ", ".join(f"{one} and {other}" for one, other in excluded)
             lines.append(f"may overlap, joined or since they do in the posture: {told}")

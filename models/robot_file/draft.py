@@ -25,6 +25,7 @@ _FEWEST = 4
 _OPTIONAL = (
     "forward",
     "torso",
+    "imu",
     "com_height",
     "lock",
     "posture",
@@ -198,6 +199,7 @@ def _others(found: Explanation | None, centre: str) -> Iterator[str]:
         "srdf": "robot.srdf",
         "scale": "1.0",
         "torso": "LINK",
+        "imu": "LINK",
         "com_height": "0.8",
         "sole": f"{{length: 0.2, width: 0.1, centre: [{centre}]}}",
     }

@@ -178,6 +178,7 @@ class _Reader:
         for body in range(self._root, mj.nbody):
             if mj.body_rootid[body] == self._root:
                 self._add_body(body)
+        self._add_sites()
         source = Source(self._model, (), (), (), self._notes)
         self._add_limits()
         self._add_shapes(source)
@@ -204,6 +205,16 @@ class _Reader:
         frame = pin.Frame(name, joint, 0, offset, pin.FrameType.BODY)
         model.addFrame(frame)
         model.appendBodyToJoint(joint, self._inertia(body, name), offset)
+
+    def _add_sites(self) -> None:
+        """Sites as frames, since an IMU may be one."""
+        mj = self._mj
+        for site in range(mj.nsite):
+            name, body = mj.site(site).name, int(mj.site_bodyid[site])
+            if name and body in self._place and name not in self._links:
+                joint, offset = self._place[body]
+                place = offset * _placement(mj.site_pos[site], mj.site_quat[site])
+                self._model.addFrame(pin.Frame(name, joint, 0, place, pin.FrameType.OP_FRAME))
 
     def _name(self, body: int) -> str:
         return self._names[body]

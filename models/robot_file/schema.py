@@ -60,6 +60,7 @@ class RobotFile(_Group):
         default=None, description="axis of the base that points ahead"
     )
     torso: str | None = Field(default=None, description="link whose uprightness is controlled")
+    imu: str | None = Field(default=None, description="link or site of the IMU that says how the robot moves")
     lock: list[str] | dict[str, Finite] | None = Field(
         default=None, description="joints that are frozen, and where [rad]"
     )

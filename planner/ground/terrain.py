@@ -28,11 +28,13 @@ class Box:
         center: box centre in the world frame, shape (3,) [m].
         half_size: half extents along the box axes, shape (3,) [m].
         rotation: box-to-world rotation matrix, shape (3, 3).
+        friction: Coulomb coefficient of its surface; None for that of the terrain [-].
     """
 
     center: Array
     half_size: Array
     rotation: Array
+    friction: float | None = None
 
     def top(self, points: Array) -> tuple[Array, Array]:
         """The plane of the top face above or below world points.
@@ -114,7 +116,8 @@ class Terrain:
 
     def normals(self, points: Array) -> Array:
         """Unit normals of the faces that carry world points x, y, shape (k, 2) [m]; shape (k, 3) [-]."""
-        highest, normals = np.full(len(points), self.plane), np.tile([0.0, 0.0, 1.0], (len(points), 1))
+        highest, normals = np.full(len(points), self.plane), np.zeros((len(points), 3))
+        normals[:, 2] = 1.0
         for box in self.boxes:
             top, inside = box.top(points)
             carrying = (inside >= 0.0) & (top > highest)

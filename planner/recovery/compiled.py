@@ -176,11 +176,13 @@ class CompiledAdjustment:
             **{name: getattr(numbers, name) for name in names},
         )
 
-    def solve(self, com: Array, dcm: Array, window: Window, step: "StepProblem") -> tuple[float, Array, bool] | None:
+    def solve(
+        self, com: Array, dcm: Array, window: Window, step: "StepProblem", unsure: float
+    ) -> tuple[float, Array, bool] | None:
         """See `StepAdjustment.solve`: time left, box, and whether there is more to catch."""
         self._step.tell(com, dcm, float(window.omega[0]), step)
         self._outlook.tell(window)
-        if not self._run():
+        if not self._run(unsure):
             return None
         left, *box, more = self._result.tolist()
         return left, np.array(box).reshape(2, 2), bool(more)

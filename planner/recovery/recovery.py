@@ -78,7 +78,13 @@ class Recovery:
         return False
 
     def balance(
-        self, step: StepProblem | None, local: Array, support: Support, window: Window, last: WalkPlan | None
+        self,
+        step: StepProblem | None,
+        local: Array,
+        support: Support,
+        window: Window,
+        last: WalkPlan | None,
+        unsure: float = 0.0,
     ) -> Balance:
         """How far the DCM is inside what is captured, and what the last plan has made of the landing to come.
 
@@ -88,6 +94,7 @@ class Recovery:
             support: what carries the robot now, with the plan frame.
             window: references.
             last: the plan before; None for the first.
+            unsure: how far the DCM may be from where it is estimated, by which both margins are less [m].
         """
         execution, p, dcm = self._execution, self._parameters, _dcm(local, window)
         planned = movable = self._planned.margin(dcm, window)
@@ -104,16 +111,18 @@ class Recovery:
         # Steps that a law moves of its own accord may save more than the margin says.
         if self._movable is not None or not execution.adapts:
             outside = outside + 1 if movable < -p.recovery.fall_margin else 0
-        return Balance(planned, movable, shift, delay, outside)
+        return Balance(planned - unsure, movable - unsure, shift, delay, outside)
 
-    def adjusted(self, step: StepProblem | None, local: Array, window: Window) -> StepBounds | None:
-        """What is made of the next step where the CoP alone does not hold the body."""
+    def adjusted(
+        self, step: StepProblem | None, local: Array, window: Window, unsure: float = 0.0
+    ) -> StepBounds | None:
+        """What is made of the next step where the CoP alone does not hold the body, as far as that is sure [m]."""
         execution = self._execution
         if self.adjustment is None or step is None or not execution.free[0]:
             return None
         if execution.phase.swing_foot is not None and execution.swing is None:
             return None
-        adjusted = self.adjustment.solve(local[:, 0], _dcm(local, window), window, step)
+        adjusted = self.adjustment.solve(local[:, 0], _dcm(local, window), window, step, unsure)
         execution.adapted |= adjusted is not None
         return adjusted
 

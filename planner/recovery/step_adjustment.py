@@ -1,7 +1,8 @@
 """Step adjustment: when and where the next step lands so that a pushed body is captured, as one optimisation.
 
-Variables: T_d, T_s, times left of double and single support [s]; c, distance of the CoP from its nominal way [m];
-p, place of the next footstep from its stance foot [m]; s, shift of the footstep after it, forward and sideways [m].
+Variables: T_d, T_s, times left of double and single support [s]; δ, distance of the CoP from its nominal way [m];
+p, place of the next footstep from its stance foot [m]; s, DCM that is left when the footstep after it lands, by which
+that one is shifted, a distance forward and one sideways, neither negative [m]; σ, s as it is priced [m].
 
 Minimise
 
@@ -10,20 +11,21 @@ Minimise
 
 with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, u, v of three constraints, subject to
 
-- dcm: ξ' = ω (ξ - CoP) from the measured ξ until the landing; p moves the DCM that stays bounded there by g (p - p̄);
-- cop: |c| ≤ cop_share of the ZMP box, and of what both feet have beyond it in double support;
-- reach: p in one of the boxes of `LegReach.allowed`, and within `radius` of its hip then; the other hip is out of
-  reach of the stance foot by r;
-- swing: p where the foot can be swung to until then (`LegReach.edges`), but for u, on a way around the stance leg that
-  is too long by v;
-- second: on each axis s = e^{ωT} g |p* - p| less what the CoP holds until then, where p* leaves nothing;
-- cross: σ is s, with its sideways part times cross_factor where that step would have to cross;
-- times: T_d = T̄_d or that and a member of time_changes, not below least_double, and T_s likewise, not below
-  least_single, nor below what body and foot need to come to the height of the footstep.
+- dcm: ξ' = ω (ξ - CoP) from the measured ξ until the landing, with ω constant; a step at p adds g (p - p̄) to the DCM
+  that is to stay bounded from there on;
+- cop: |δ| ≤ cop_share of the ZMP box, which in double support is that of both feet;
+- reach: p in one of the boxes of `LegReach.allowed`, and within `radius` of its hip then; r is what the other hip is
+  farther than `radius` from the stance foot;
+- swing: p where the foot can be swung to until then (`LegReach.edges`), but for u; v is what it lacks of a way round
+  the stance leg (`LegReach.shortfall`);
+- second: on each axis s = e^{ωT} g |p* - p| less what the CoP holds until then, where p* leaves nothing, or 0;
+- cross: σ is s, with its sideways part times cross_factor where that step would have to cross, whether it may or not;
+- times: T_d = T̄_d or that and a member of time_changes, and T_s likewise, each with each. What is left of a support is
+  not shortened below least_double or least_single, nor below what body and foot need to come to the footstep's height.
 
 Solver: for given times p* follows in closed form, since the CoP does what it can; p is p* brought into the limits, the
 boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken.
-docs/recovery.md says more of it.
+docs/recovery.md has every formula.
 """
 
 from dataclasses import dataclass, replace
@@ -127,6 +129,8 @@ def _landing_place(step: Step, stance: Step, parallel: float) -> tuple[Footstep,
 class StepBounds:
     """The solution for the next step: a time, and a set of places, of which the law of motion takes one.
 
+    `Recovery.bounds` makes bounds of shifts of it, which the `StepContext` of a law carries.
+
     Attributes:
         left: time until the present phase is to end [s].
         box: lower and upper corner of where it may land from its stance foot, shape (2, 2) [m].
@@ -154,7 +158,9 @@ class StepAdjustment:
         self._changes, kernels = np.array(parameters.recovery.time_changes), library()
         self._compiled = None if kernels is None else CompiledAdjustment(kernels, legs, parameters, outlook)
 
-    def solve(self, com: Array, dcm: Array, window: Window, step: StepProblem) -> StepBounds | None:
+    def solve(
+        self, com: Array, dcm: Array, window: Window, step: StepProblem, unsure: float = 0.0
+    ) -> StepBounds | None:
         """The solution; None where nothing has to be adjusted, or the step has no place to land.
 
         Args:
@@ -162,10 +168,11 @@ class StepAdjustment:
             dcm: now, likewise.
             window: references.
             step: as scheduled.
+            unsure: error of the DCM that is no error, since it is not known better [m].
         """
         t, numbers, count = self._sample_time, self._numbers, len(window.stiffness)
         if self._compiled is not None and count == self._compiled.count:
-            found = self._compiled.solve(com, dcm, window, step)
+            found = self._compiled.solve(com, dcm, window, step, unsure)
             return None if found is None else StepBounds(*found)
         lift = min(round(step.double / t), count - 3)
         land = min(max(round((step.double + step.single) / t), lift + 1), count - 2)
@@ -182,7 +189,7 @@ class StepAdjustment:
         fade = float(decays(window.stiffness[: land + 1], window.omega[: land + 1], t)[-1])
         own = np.minimum(box, self._authority)
         missed = np.where(own < box, fade * numbers.unheld_share * box, fade * numbers.tolerance)
-        fine = bool((np.abs(dcm - bounded[0, :2]) <= (1.0 - fade) * own + more + missed).all())
+        fine = bool((np.abs(dcm - bounded[0, :2]) <= (1.0 - fade) * own + more + missed + unsure).all())
         if fine and not step.adapted:
             return None
         times, held = self._times(step, fine), numbers.cop_share * own

@@ -31,7 +31,7 @@ from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.steps.step import Step, unit_swing
+from surefoot.planner.steps.step import unit_swing
 from surefoot.planner.swing.heel_off import RollSpan, bump
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
@@ -306,7 +306,7 @@ class _CompiledOffset:
             row, single = schedule.index(phase.leaves - 1), phase.kind is PhaseKind.SINGLE
             if single:
                 swing, late = _swing(phase, schedule, gone)
-                told[9:] = _told(swing) if late else _usually_told(schedule.step(phase.step))
+                told[9:] = _told(swing)
             rows = row - 1 if row else last, row, min(row + 1, last)
             heads.append((*rows, steps[row].place.foot is Foot.RIGHT, single, late, *(phase.roll or _LEVEL)))
         phases[:, :9] = heads
@@ -321,10 +321,6 @@ class _CompiledOffset:
 
 
 @lru_cache(maxsize=16)
-def _usually_told(step: Step) -> Array:
-    return _told(step.swing)
-
-
 def _told(swing: SwingTrajectory) -> Array:
     """The swing of a step as the kernel takes it, shape (26,)."""
     end, past = swing.target, swing.search.motion(-TOUCHING)[0]

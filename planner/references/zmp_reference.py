@@ -130,6 +130,33 @@ class SupportKey(NamedTuple):
     free: tuple[bool, bool]
 
 
+class Sole(NamedTuple):
+    """Corners of a foot that stands, anticlockwise, shape (4, 2) each [m].
+
+    Attributes:
+        place: where it stands.
+        outer: those of the sole.
+        inner: those of the sole shrunk to the ZMP margin.
+    """
+
+    place: Footstep
+    outer: Array
+    inner: Array
+
+    @classmethod
+    def of(cls, place: Footstep, half_size: Array, margin: float) -> "Sole":
+        """That of a foot, arguments as of `present_support`."""
+        return cls(place, sole_corners(place, half_size), sole_corners(place, margin * half_size))
+
+
+def hull_of(corners: Array, *others: Array) -> Array:
+    """Convex hull of the corners of one sole or several, as `convex_hull` tells it."""
+    if others:
+        return convex_hull(np.concatenate((corners, *others)))
+    first = corners.tolist()
+    return np.roll(corners, -first.index(min(first)), axis=0)
+
+
 @dataclass(frozen=True, slots=True)
 class Support:
     """The present support and the plan frame on it.
@@ -144,7 +171,7 @@ class Support:
         outer: support polygon of the planned soles, shape (v, 2) [m].
         inner: support polygon of the soles shrunk to the ZMP margin, shape (v, 2) [m].
         footholds: where the left and the right foot stand, or stood last.
-        standing: those on which the robot stands.
+        soles: those on which the robot stands.
     """
 
     key: SupportKey
@@ -156,7 +183,7 @@ class Support:
     outer: Array
     inner: Array
     footholds: tuple[Footstep, Footstep]
-    standing: tuple[Footstep, ...]
+    soles: tuple[Sole, ...]
 
 
 def load_left(samples: PhaseSamples, support: Support) -> Array:
@@ -189,13 +216,12 @@ def present_support(
         return last
     latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
     standing = (latest,) if phase.kind is PhaseKind.SINGLE else (latest, before)
-    if last is not None and [*map(id, last.standing)] == [*map(id, standing)]:
+    known = {} if last is None else {id(sole.place): sole for sole in last.soles}
+    soles = tuple(known.get(id(place)) or Sole.of(place, half_size, margin) for place in standing)
+    if last is not None and [*map(id, soles)] == [*map(id, last.soles)]:
         outer, inner = last.outer, last.inner
     else:
-        outer, inner = (
-            convex_hull(np.concatenate([sole_corners(foot, scale * half_size) for foot in standing]))
-            for scale in (1.0, margin)
-        )
+        outer, inner = hull_of(*(sole.outer for sole in soles)), hull_of(*(sole.inner for sole in soles))
     stay = not schedule.ground.terrain.footholds.follow
     return Support(
         key=key,
@@ -207,5 +233,5 @@ def present_support(
         outer=outer,
         inner=inner,
         footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),
-        standing=standing,
+        soles=soles,
     )

@@ -111,7 +111,7 @@ class Execution:
     @property
     def aim(self) -> Array | None:
         """Where a swing goes that deviates from its step, shape (3,) [m]; None where none does."""
-        return None if self.swing is None or not (self.adapted or self.swing.bent) else self.swing.target[:3]
+        return None if self.swing is None or not (self.adapted or self.swing.bent) else self.swing.footstep
 
     @property
     def aimed(self) -> Schedule:
@@ -203,7 +203,7 @@ class Execution:
         if self.swing is None or self.fixed:
             return
         if self.swing.touchdown_time - time <= self._parameters.freeze_time + CLOCK_ROUNDING:
-            self.fix(self.swing.target[:3])
+            self.fix(self.swing.footstep)
 
     def _land(self, position: Array) -> None:
         self.fix(position)
@@ -252,11 +252,14 @@ class Execution:
             yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
             pose = sole_pose(feet.position[foot], yaw, leaving.normal)
             course = self.schedule.step(self.phase.step).course
-            self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters)
-        elif not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
-            # Over edges the foot keeps to the times in which its course clears them.
-            gliding = self.adapted and self._wide
-            self.swing = self.swing.retargeted(time, target, gliding, LEAST_GLIDE * self._size.time)
+            unsure = feet.height_deviation[foot]
+            self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters, unsure)
+        else:
+            target[2] -= self.swing.aim
+            if not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
+                # Over edges the foot keeps to the times in which its course clears them.
+                gliding = self.adapted and self._wide
+                self.swing = self.swing.retargeted(time, target, gliding, LEAST_GLIDE * self._size.time)
         if self.adapted and self.swing.search.hurry_after > 0.0:
             # While a foot that is to catch the body searches for the ground the DCM goes on away from it.
             self.swing = replace(self.swing, search=replace(self.swing.search, hurry_after=0.0))

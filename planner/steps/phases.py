@@ -110,11 +110,11 @@ class PhaseTable:
     @classmethod
     def of(cls, phases: tuple[Phase, ...]) -> "PhaseTable":
         """That of some phases."""
-        kind, support = (np.array([getattr(p, name) for p in phases]) for name in ("kind", "support"))
-        spans = np.array([(p.start, p.samples, p.rest) for p in phases], dtype=np.float64)
-        contacts = np.array([(p.stance is not Foot.RIGHT, p.stance is not Foot.LEFT) for p in phases])
-        start, length, rest = np.ascontiguousarray(spans.T)
-        return cls(phases, kind, start, length, rest, support, contacts)
+        # Of plain numbers: numpy is slow to make arrays of an enumeration.
+        whole = [(int(p.kind), p.support, p.stance is not Foot.RIGHT, p.stance is not Foot.LEFT) for p in phases]
+        kind, support, left, right = np.array(whole, dtype=np.intp).T.copy()
+        start, length, rest = np.array([(p.start, p.samples, p.rest) for p in phases], dtype=np.float64).T.copy()
+        return cls(phases, kind, start, length, rest, support, np.stack((left, right), axis=1) != 0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,20 +5,24 @@ them, then single and double supports in turn. The last double support brings th
 robot stands until the next bout.
 """
 
-from bisect import bisect_right
+import math
+from bisect import bisect_left, bisect_right
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry import wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.footsteps import start_footholds
 from surefoot.planner.steps.gait import GaitParameters, in_samples
 from surefoot.planner.steps.phases import Phase, PhaseSamples, PhaseTable, phases_of
 from surefoot.planner.steps.source import GaitSource, StepSource
-from surefoot.planner.steps.step import Step, Stop, durations, lay, start_step
+from surefoot.planner.steps.step import Step, Stop, durations, known_step, lay, start_step
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import Array, FeetState, PhaseKind, Twist
 
@@ -27,6 +31,13 @@ _MORE_STEPS = 3
 
 _STOP_AHEAD = 4
 """Phases, with the present one, within which a stand is the end of the step that is being made [-]."""
+
+
+_LAID_OUT = 120.0
+"""Time of a walk on bare ground whose steps are laid before it begins; a minute of them takes some milliseconds [s]."""
+
+_OF_PHASES = ("phases", "phase_table", "_starts", "first_support", "supports", "yaws")
+"""What of a schedule does not depend on where its steps land."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +54,7 @@ class Schedule:
         stands: whether the robot stands after the last one, as far as is known for ever.
         shift: where steps that come into sight lie from their nominal places, shape (2,) [m].
         begin: phases that were over by then are forgotten [samples].
+        laid: steps of the walk as they are nominally laid, of which those that come into sight are taken.
     """
 
     gait: GaitParameters
@@ -52,6 +64,7 @@ class Schedule:
     stands: bool
     shift: Array = field(compare=False)
     begin: float
+    laid: tuple[Step, ...] = field(default=(), compare=False)
 
     @classmethod
     def start(
@@ -76,7 +89,10 @@ class Schedule:
     @cached_property
     def phases(self) -> tuple[Phase, ...]:
         """The phases in sight in order, without gaps."""
-        return tuple(p for p in phases_of(self.steps, self.stands) if p.end > self.begin + CLOCK_ROUNDING)
+        return self._remembered(phases_of(self.steps, self.stands))
+
+    def _remembered(self, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
+        return tuple(phase for phase in phases if phase.end > self.begin + CLOCK_ROUNDING)
 
     @cached_property
     def phase_table(self) -> PhaseTable:
@@ -204,6 +220,14 @@ class Schedule:
 
     # From a schedule to the next.
 
+    def laid_out(self) -> "Schedule":
+        """The schedule that knows the steps of its source beforehand: to lay one over edges takes milliseconds."""
+        longer, bare, t = self, not self.ground.terrain.has_edges, self.ground.parameters.sample_time
+        with suppress(ParameterError):  # a step that cannot be laid is refused once it comes into sight
+            while longer.last.lift_off < (_LAID_OUT / t if bare else math.inf) and (more := longer._asked(0.0)):
+                longer = more
+        return replace(self, laid=longer.steps)
+
     def extended(self, until: float, now: float = 0.0) -> "Schedule":
         """Steps are asked for until all is known up to an instant, and three steps more.
 
@@ -220,9 +244,7 @@ class Schedule:
         return schedule
 
     def _lift_offs_after(self, clock: float) -> int:
-        # Of the last steps alone, since a walk may be laid out as a whole.
-        phases = phases_of(self.steps[-_MORE_STEPS - 1 :], self.stands)[-2 * _MORE_STEPS :]
-        return sum(phase.kind is PhaseKind.SINGLE and phase.start >= clock for phase in phases)
+        return sum(p.kind is PhaseKind.SINGLE and p.start >= clock for p in self.phases[-2 * _MORE_STEPS :])
 
     def _asked(self, now: float) -> "Schedule | None":
         """The schedule with what comes next; None where nothing does."""
@@ -239,9 +261,17 @@ class Schedule:
     def followed(self, stride: Twist, stop: Stop | None, inserted: bool = False) -> "Schedule":
         """The schedule with one more step."""
         one, other = self.steps[-2:]
-        step = lay(stride, (one, other), self.gait, self.ground, stop, inserted)
-        step = replace(step, place=step.beside(self.shift, self.ground.terrain))
-        return replace(self, steps=(*self.steps, step), stands=False)
+        step = None if inserted else known_step(self.laid, (one, other), stride, stop, self.durations)
+        step = step or lay(stride, (one, other), self.gait, self.ground, stop, inserted)
+        place = step.beside(self.shift, self.ground.terrain)
+        step = step.landing(place.position, place.normal)
+        longer = self._with((*self.steps, step), False, self.shift)
+        until = bisect_left(self.phases, other.number, key=attrgetter("step"))
+        vars(longer)["phases"] = self.phases[:until] + self._remembered(phases_of((other, step), False))
+        return longer
+
+    def _with(self, steps: tuple[Step, ...], stands: bool, shift: Array) -> "Schedule":
+        return Schedule(self.gait, self.ground, self.source, steps, stands, shift, self.begin, self.laid)
 
     def until(self, number: int, stands: bool) -> "Schedule":
         """The schedule without the steps after one, with which the robot then stands or not."""
@@ -253,7 +283,9 @@ class Schedule:
         first = next(phase for phase in self.phases if phase.end > begin + CLOCK_ROUNDING)
         if first is self.phases[0]:
             return self
-        return replace(self, steps=self.steps[max(self.index(first.step - 3), 0) :], begin=begin)
+        rest = replace(self, steps=self.steps[max(self.index(first.step - 3), 0) :], begin=begin)
+        vars(rest)["phases"] = self.phases[self.phases.index(first) :]
+        return rest
 
     def reordered(self, now: float, source: StepSource | None = None) -> "Schedule":
         """All steps but the one being swung and the one to which the weight is being shifted are asked for anew.
@@ -302,11 +334,17 @@ class Schedule:
         step, position = self.steps[at], np.array(position)
         if not terrain.footholds.follow:
             moved = step.landing(position, step.place.normal)
-            return replace(self, steps=(*self.steps[:at], moved, *self.steps[at + 1 :]))
+            return self._placed((*self.steps[:at], moved, *self.steps[at + 1 :]), self.shift)
         way, places = position[:2] - step.place.position[:2], self.positions[at:].copy()
         places[0] = position
         places[1:, :2] += way
         places[1:, 2] = terrain.heights(places[1:, :2])
         landings = zip(self.steps[at:], places, terrain.normals(places[:, :2]), strict=True)
         later = (step.landing(place, normal) for step, place, normal in landings)
-        return replace(self, steps=(*self.steps[:at], *later), shift=self.shift + way)
+        return self._placed((*self.steps[:at], *later), self.shift + way)
+
+    def _placed(self, steps: tuple[Step, ...], shift: Array) -> "Schedule":
+        """The schedule with steps that differ in their places alone, of which the same phases follow."""
+        placed = self._with(steps, self.stands, shift)
+        vars(placed).update({name: vars(self)[name] for name in _OF_PHASES if name in vars(self)})
+        return placed

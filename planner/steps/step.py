@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from operator import attrgetter
 
 import numpy as np
 
@@ -114,7 +115,9 @@ class Step:
 
     def landing(self, position: Array, normal: Array) -> "Step":
         """The step that lands elsewhere, positions and normals of shape (3,) [m, -]."""
-        return replace(self, place=replace(self.place, position=position, normal=normal))
+        values = [*_values(self)]
+        values[_PLACE] = Footstep(self.place.foot, position, self.place.yaw, normal)
+        return Step(*values)
 
     def beside(self, shift: Array, terrain: Terrain) -> Footstep:
         """The footstep so far from its nominal place as its face goes.
@@ -125,7 +128,8 @@ class Step:
         """
         place = self.nominal
         xy = place.position[:2] + terrain.footholds.shifted(shift, place.yaw, self.room)
-        return replace(place, position=np.append(xy, terrain.heights(xy[None])), normal=terrain.normals(xy[None])[0])
+        position = np.append(xy, terrain.heights(xy[None]))
+        return Footstep(place.foot, position, place.yaw, terrain.normals(xy[None])[0])
 
     def retimed(
         self, before: "Step", lasting: tuple[float, float], begun: float, now: float, parameters: PlannerParameters
@@ -151,6 +155,12 @@ class Step:
             single = max(single, (roll.end - lift_off) / LEVEL_AGAIN)
         swing = unit_swing(single, self.climb, self.course, parameters)
         return replace(self, stop=stop, lift_off=lift_off, single=single, double=double, roll=roll, swing=swing)
+
+
+_values = attrgetter(*Step.__slots__)
+"""What a step is made of; `dataclasses.replace` would take three times as long."""
+
+_PLACE = Step.__slots__.index("place")
 
 
 def durations(gait: GaitParameters, sample_time: float) -> tuple[float, float]:
@@ -211,7 +221,8 @@ def lay(
     course = swing_course(number, start, place, single, gait.swing_height, ground)
     to, off, other = (float(one.position[2]) for one in (place, start, stance))
     climb, lift = round(to - off, _MEASURED), round(min(to, other) - min(other, off), _MEASURED)
-    swing = unit_swing(single, climb, course, parameters)
+    alike = [one.swing for one in before if (one.single, one.climb, one.course) == (single, climb, course)]
+    swing = alike[0] if alike else unit_swing(single, climb, course, parameters)
     way = math.dist(xy, start.position[:2])
     lift_off, half_length = lift_off_after(last, stop), float(ground.half_size[0])
     heel_off = gait.heel_off != 0.0 and rolls(start, stance, half_length)
@@ -238,6 +249,29 @@ def lay(
     )
     check_reach(number, seen_from(stance, place), parameters)
     return step
+
+
+def known_step(
+    laid: tuple[Step, ...], before: tuple[Step, Step], stride: Twist, stop: Stop | None, lasting: tuple[float, float]
+) -> Step | None:
+    """The step after two others, if it has been laid already, after the very same ones; None if it has not.
+
+    Args:
+        laid: steps in order, without gaps.
+        before: as of `lay`.
+        stride: likewise.
+        stop: likewise.
+        lasting: single and double support [samples].
+    """
+    one, other = before
+    at = other.number - laid[0].number if laid else 0
+    if not 0 < at < len(laid) - 1:
+        return None
+    first, second, step = laid[at - 1 : at + 2]
+    same = one.nominal is first.nominal and other.nominal is second.nominal and other.path is second.path
+    told = other.ordinal, other.support, other.end, other.double, stride, stop, *lasting
+    then = second.ordinal, second.support, second.end, second.double, step.stride, step.stop, step.single, step.double
+    return step if same and told == then else None
 
 
 def room_left(step: Step, stance: Footstep, parallel: float) -> Array:

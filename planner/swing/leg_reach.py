@@ -23,14 +23,15 @@ class LegReach:
     """Where legs let a foot land that catches the body, and how hard they swing it there.
 
     The frame is the stance foot's: x ahead, y to the left. Around it lie boxes that keep the soles apart; a circle
-    around the hip above it is what the leg spans.
+    around the hip above it is what the leg spans. Places are those of the soles' centres; so `clear` is the length of a
+    sole more than the gap of that name in the planner's parameters.
 
     Attributes:
         radius: how far from under its hip a sole reaches at the CoM height of the gait [m].
         hip_width: distance between the hips [m].
-        near: least distance beside its stance foot at which a foot clears it [m].
+        near: least distance beside its stance foot at which a foot clears it, centre to centre [m].
         across: how far beyond its stance foot a foot may land that is clear of it; None where legs must not cross [m].
-        clear: distance ahead of or behind the stance foot from which on it is [m].
+        clear: distance ahead of or behind the stance foot from which on it is, likewise [m].
         acceleration: of a swinging sole that the hips' torques allow, forward and sideways [m/s^2].
         sole: length and width of the soles; those of points need no more room where they are turned [m].
         height: of the hips over the soles as the robot stands [m].

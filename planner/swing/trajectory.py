@@ -26,7 +26,7 @@ _MOST_LEAD = 0.25
 """Share of a single support by which its swing ends before it at most, so that a short one still swings [-]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SwingTrajectory:
     """Motion of a swing foot; columns are x, y, z [m], yaw, pitch, roll [rad] in the world frame.
 
@@ -44,6 +44,7 @@ class SwingTrajectory:
         target: touchdown position and angles, shape (6,).
         clearance: height of the apex above the higher of lift-off and touchdown [m].
         search: how it goes on after the touchdown time, if it feels no ground.
+        aim: how far the target lies below the footstep, where the ground's height is unsure [m].
         level: coefficients of all but z from `start_time`, shape (6, 5).
         rise_start: local time zero of the rise [s].
         rise: coefficients of z until the apex, shape (6, 1).
@@ -68,6 +69,14 @@ class SwingTrajectory:
     fall: Array
     bend_time: float = math.inf
     onward: Array = field(default_factory=lambda: np.zeros((6, len(_GLIDING))))
+    aim: float = 0.0
+
+    @property
+    def footstep(self) -> Array:
+        """Where the foot is to land, its target without what it is aimed below that, shape (3,) [m]."""
+        place = self.target[:3].copy()
+        place[2] += self.aim
+        return place
 
     @property
     def bent(self) -> bool:
@@ -158,7 +167,9 @@ class SwingTrajectory:
         moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target), bend_time=math.inf)
         if target[2] == self.target[2]:
             return moved
-        return moved._with_height(time, state[:, 2:3], max(float(state[0, 2]), float(target[2])) + self.clearance)
+        return moved._with_height(
+            time, state[:, 2:3], max(float(state[0, 2]), float(target[2]) + self.aim) + self.clearance
+        )
 
     def around(self, corner: Array, grid: float) -> "SwingTrajectory":
         """The trajectory that passes a corner on its way to the same target at the same time, with the least jerk.
@@ -251,24 +262,29 @@ class SwingCourse:
 def start_swing(
     foot: Foot,
     pose: Array,
-    target: Array,
+    footstep: Array,
     start: float,
     samples: float,
     course: SwingCourse,
     parameters: PlannerParameters,
+    deviation: float = 0.0,
 ) -> SwingTrajectory:
     """Swing from rest, which ends some time before the single support does.
 
     Args:
         foot: the foot that swings.
         pose: lift-off position and angles, shape (6,).
-        target: touchdown position and angles, shape (6,).
+        footstep: touchdown position and angles, shape (6,).
         start: when its single support begins [s].
         samples: how long that lasts [samples].
         course: of the swing; its instants are on a grid of samples.
         parameters: of the planner.
+        deviation: standard deviation of the sole's height over the ground [m].
     """
     t, rest = parameters.sample_time, np.zeros((3, 6))
+    search, aim = parameters.search.unsure(deviation)
+    target = np.array(footstep)
+    target[2] -= aim
     rest[0] = pose
     touchdown = start + samples * t - min(parameters.touchdown_lead, _MOST_LEAD * samples * t)
     glide_start, apex, glide_end = (
@@ -281,16 +297,17 @@ def start_swing(
         glide_end=glide_end,
         apex_time=apex,
         touchdown_time=touchdown,
-        target=np.array(target),
+        target=target,
         clearance=course.height,
-        search=parameters.search,
+        search=search,
         level=_to_rest(rest[:, _GLIDING], target[_GLIDING], glide_end - glide_start),
         rise_start=start,
         rise=np.zeros((6, 1)),
         fall_start=apex,
         fall=np.zeros((6, 1)),
+        aim=aim,
     )
-    return trajectory._with_height(start, rest[:, 2:3], max(float(pose[2]), float(target[2])) + course.height)
+    return trajectory._with_height(start, rest[:, 2:3], max(float(pose[2]), float(footstep[2])) + course.height)
 
 
 def detour(time: float, duration: float) -> tuple[Array, Array]:

@@ -19,7 +19,13 @@ TERRAIN_KINDS: Declared[Any] = Declared(
 )
 """Of ``terrain.kind``; what builds the ground, `surefoot.scenarios.setup.terrain` brings."""
 
-SOURCES: Declared[Any] = Declared("surefoot.estimators", {"truth": "No estimation: the true state. The default"})
+SOURCES: Declared[Any] = Declared(
+    "surefoot.estimators",
+    {
+        "truth": "No estimation: the true state. The default",
+        "ekf": "An invariant Kalman filter of IMU, encoders and feet",
+    },
+)
 """Of ``sensing.source``; what estimates the state, `surefoot.scenarios.run.sensing` brings."""
 
 DEFAULTS = {"terrain": "flat", "planner": "default", "sensing": "truth", "robot": "humanoid100"}

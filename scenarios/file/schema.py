@@ -14,6 +14,7 @@ from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
 from surefoot.scenarios.file.names import OneOf
 from surefoot.scenarios.file.registries import DEFAULTS, TERRAIN_KINDS
+from surefoot.scenarios.file.sensing import MotorSettings, Sensing
 from surefoot.scenarios.file.units import METRE, RADIAN, SECOND, Unit
 
 LONGEST_RUN = 86_400.0
@@ -23,6 +24,7 @@ NonNegative = Annotated[float, Field(ge=0, le=1e9)]
 Positive = Annotated[float, Field(gt=0, le=1e9)]
 FootSize = Annotated[float, Field(ge=0.01, le=0.5), METRE]
 Angle = Annotated[float, Field(ge=-6.3, le=6.3), RADIAN]
+Tilt = Annotated[float, Field(ge=-0.1, le=0.1), RADIAN]
 Place = Annotated[float, Field(ge=-1e6, le=1e6), METRE]
 Length = Annotated[float, Field(ge=-1e3, le=1e3), METRE]
 Size = Annotated[float, Field(gt=0, le=1e3), METRE]
@@ -204,24 +206,6 @@ class PlannerSettings(Group):
     recovery: RecoverySettings | None = key(None, "numbers of its recovery from pushes, null: as they are")
 
 
-class Sensing(Group):
-    """What planner and controller know of the robot; noises are standard deviations."""
-
-    source: Annotated[str, OneOf("sensing", "source")] = key(
-        DEFAULTS["sensing"], "estimator of the state that controller and planner are given"
-    )
-    zmp_noise: Height = key(0.0, "of the ZMP that the planner measures")
-    com_noise: Height = key(0.0, "of the CoM that the planner measures; of its velocity 5 / s times as much")
-    encoder_noise: Annotated[NonNegative, RADIAN] = key(0.0, "of the joint encoders")
-    gyro_noise: Annotated[NonNegative, Unit("rad/s")] = key(0.0, "of the gyroscope")
-    accelerometer_noise: Annotated[NonNegative, Unit("m/s^2")] = key(0.0, "of the accelerometer")
-    wrench_noise: Annotated[NonNegative, Unit("N")] = key(0.0, "of the foot force sensors")
-    latency: Instant = key(0.0, "age of the measurement")
-    force_estimate: bool = key(
-        True, "a lasting external force and the true weight are estimated from what the feet feel, and counted with"
-    )
-
-
 class Start(Group):
     """Where the robot starts; noises are half ranges drawn from the seed."""
 
@@ -240,6 +224,7 @@ class GroundError(Group):
     length: Annotated[float, Field(gt=0, le=100), METRE] = Field(description="forward")
     width: Annotated[float, Field(gt=0, le=100), METRE] = key(2.0, "sideways")
     height: Annotated[float, Field(gt=0, le=1), METRE] = Field(description="of its top over the ground at the start")
+    friction: Annotated[float, Field(ge=0, le=10)] | None = key(None, "Coulomb coefficient, null: the ground's [-]")
 
 
 class PayloadError(Group):
@@ -257,6 +242,9 @@ class BeliefErrors(Group):
     link_mass_noise: Annotated[float, Field(ge=0, le=0.5)] | None = key(
         None, "half range of the relative error of the mass of every body, each drawn from the seed, null: 0 [-]"
     )
+    torso_mass: Annotated[float, Field(ge=0.5, le=2.0)] | None = key(
+        None, "believed over true mass of the torso's own body, null: 1 [-]"
+    )
     torso_com: Annotated[tuple[Offset, Offset, Offset], BeforeValidator(as_tuple)] | None = key(
         None, "error of the centre of mass of the torso's own body, in its frame, null: none"
     )
@@ -266,6 +254,8 @@ class BeliefErrors(Group):
     ground_noise: Annotated[float, Field(ge=0, le=0.05), METRE] | None = key(
         None, "half range by which level ground is truly higher or lower, tile by tile from the seed, null: 0"
     )
+    ground_pitch: Tilt | None = key(None, "angle by which level ground truly rises ahead of the start, null: 0")
+    ground_roll: Tilt | None = key(None, "angle by which it truly rises to the left there, null: 0")
 
 
 class PushSettings(Group):
@@ -334,6 +324,7 @@ class Scenario(Group):
     sensing: Sensing = key(Sensing(), "the sensors")
     start: Start = key(Start(), "the start pose")
     errors: BeliefErrors = key(BeliefErrors(), "the planner's belief minus the truth")
+    motors: MotorSettings | None = key(None, "what motors do beside what is commanded, null: nothing")
     wbc: ControllerSettings | None = key(None, "the whole-body controller, null: as it is")
     pendulum: PendulumSettings = key(PendulumSettings(), "the plant of fidelity pendulum")
     pushes: Many[PushSettings] = key((), "disturbances")

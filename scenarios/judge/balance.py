@@ -3,8 +3,9 @@
 import numpy as np
 
 from surefoot.scenarios.judge.body import feet_lean
-from surefoot.scenarios.judge.digest import Array, Mask, Reads, Rows, RunView
+from surefoot.scenarios.judge.digest import SENSED, Array, Mask, Reads, Rows, RunView
 from surefoot.scenarios.judge.metric import MM, OF_HALF_THE_FOOT, OF_THE_TIME, SHARE, metric, reduction
+from surefoot.scenarios.judge.placed import to_truth
 
 MARGIN = 0.9
 """Share of each foot that the planned ZMP may use, the paper's margin."""
@@ -24,7 +25,7 @@ def zmp_depth(run: RunView) -> Array:
     the edge's normal; exact for parallel feet, and on the safe side for others. Negative outside, NaN in flight.
     """
     zmp = run.field("/contact", "zmp")[:, None, :2]
-    vertices = run.field("/reference", "support")
+    vertices = to_truth(run, run.field("/reference", "support"))
     edges = np.roll(vertices, -1, axis=1) - vertices
     lengths = np.linalg.norm(edges, axis=2)
     normals = np.stack([-edges[..., 1], edges[..., 0]], axis=2) / np.where(lengths > 0, lengths, 1.0)[..., None]
@@ -83,13 +84,13 @@ def cop_ratio_max(run: RunView) -> float | None:
 @metric(unit="m", shown=MM, size=2, reads=_ZMP_READS, least=0.0)
 def zmp_error_rms(run: RunView) -> list[float] | None:
     """Measured ZMP minus the ZMP reference that the footsteps define, RMS, x and y [m]."""
-    return rms(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
+    return rms(run.field("/contact", "zmp")[:, :2] - to_truth(run, run.field("/reference", "zmp_reference")))
 
 
 @metric(unit="m", shown=MM, size=2, reads=_ZMP_READS, least=0.0)
 def zmp_error_max(run: RunView) -> list[float] | None:
     """Measured ZMP minus the ZMP reference that the footsteps define, largest in size, x and y [m]."""
-    error = np.abs(run.field("/contact", "zmp")[:, :2] - run.field("/reference", "zmp_reference"))
+    error = np.abs(run.field("/contact", "zmp")[:, :2] - to_truth(run, run.field("/reference", "zmp_reference")))
     error = error[np.isfinite(error).all(axis=1)]
     return [float(value) for value in error.max(axis=0)] if len(error) else None
 
@@ -108,7 +109,7 @@ def predicted(run: RunView) -> Array:
 def com_error_rms(run: RunView) -> list[float] | None:
     """True CoM minus what the plan of 0.2 s earlier predicted for this instant, RMS, x, y and z [m]."""
     rows, prediction = _predictions(run)
-    return rms(run.log["/truth"].field("com")[rows] - prediction[:, :3])
+    return rms(run.log["/truth"].field("com")[rows] - to_truth(run, prediction[:, :3], rows))
 
 
 @metric(
@@ -123,9 +124,12 @@ def dcm_error_rms(run: RunView) -> list[float] | None:
     """True DCM minus what the plan of 0.2 s earlier predicted, both by the predicted frequency, RMS, x and y [m]."""
     rows, prediction = _predictions(run)
     truth = run.log["/truth"]
-    position = truth.field("com")[rows, :2] - prediction[:, :2]
-    velocity = truth.field("com_velocity")[rows, :2] - prediction[:, 3:5]
-    return rms(position + velocity / prediction[:, 5:])
+    omega = prediction[:, 5:]
+    position, velocity = truth.field("com")[rows, :2], truth.field("com_velocity")[rows, :2]
+    if not run.has(SENSED):
+        return rms(position - prediction[:, :2] + (velocity - prediction[:, 3:5]) / omega)
+    predicted_dcm = to_truth(run, prediction[:, :2] + prediction[:, 3:5] / omega, rows)
+    return rms(position + velocity / omega - predicted_dcm)
 
 
 @metric(unit="m", shown=MM, reads={"/plan": ("capture_margin",)})

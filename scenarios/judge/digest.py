@@ -23,8 +23,11 @@ Reads = Mapping[str, tuple[str, ...]]
 CONTROL_TOPICS = ("/measurement", "/truth", "/estimate", "/contact", "/reference", "/wbc", "/torque", "/timing")
 """Topics with a message in every control tick."""
 
+SENSED = "/estimation"
+"""Likewise of runs whose estimator senses."""
+
 HELD: Reads = {
-    **dict.fromkeys((*CONTROL_TOPICS, "/planner_state", "/plan", "/footstep"), ()),
+    **dict.fromkeys((*CONTROL_TOPICS, SENSED, "/planner_state", "/plan", "/footstep"), ()),
     "/truth": ("left_sole", "right_sole"),
     "/reference": ("phase",),
 }
@@ -209,7 +212,8 @@ def _in_step(windows: Iterable[dict[str, "ChannelData"]]) -> Iterator[dict[str, 
     rest: dict[str, ChannelData] = {}
     for channels in windows:
         joined = {topic: rest[topic].joined(channel) if rest else channel for topic, channel in channels.items()}
-        clocks = [joined[topic].time_ns for topic in CONTROL_TOPICS if topic in joined and len(joined[topic])]
+        control = (topic for topic in (*CONTROL_TOPICS, SENSED) if topic in joined)
+        clocks = [joined[topic].time_ns for topic in control if len(joined[topic])]
         ends = [int(times[-1]) for times in clocks]
         # No sound channel lags by more than a tick; one that does must not hold up all others.
         last = max(min(ends), max(ends) - LAG_NS) if ends else np.iinfo(np.int64).max - 1
@@ -267,7 +271,8 @@ class RunView:
     @cached_property
     def ticks(self) -> int:
         """Number of common control ticks."""
-        return min((len(self.log[topic]) for topic in CONTROL_TOPICS if self.has(topic)), default=0)
+        control = (*CONTROL_TOPICS, SENSED)
+        return min((len(self.log[topic]) for topic in control if self.has(topic)), default=0)
 
     @cached_property
     def time(self) -> Array:

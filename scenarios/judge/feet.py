@@ -8,8 +8,9 @@ from surefoot.planner.geometry import corners, headings, rotations, sole_corners
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.types import GRAVITY, Foot, Footstep
 from surefoot.scenarios.judge.body import feet_lean
-from surefoot.scenarios.judge.digest import Array, Mask, Reads, Rows, RunView
+from surefoot.scenarios.judge.digest import SENSED, Array, Mask, Reads, Rows, RunView
 from surefoot.scenarios.judge.metric import DEG, MM, metric
+from surefoot.scenarios.judge.placed import to_truth
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
 from surefoot.wbc.leaning import line_centre
 
@@ -38,7 +39,12 @@ def landed(run: RunView) -> Array:
 @metric(unit="m", shown=MM, reads={"/truth": (), "/footstep": ("planned", "foot")}, body=True, least=0.0)
 def footstep_error_max(run: RunView) -> float | None:
     """Largest distance of a sole at touchdown from its footstep as last planned before it [m]."""
-    return float(np.linalg.norm((landed(run) - run.log["/footstep"].field("planned"))[:, :3], axis=1).max())
+    steps = run.log["/footstep"]
+    planned = steps.field("planned")[:, :3]
+    if run.has(SENSED):
+        rows = np.minimum(run.rows_at("/truth", steps.time_ns)[0], run.ticks - 1)
+        planned = to_truth(run, planned, rows, np.asarray(steps.field("foot")) == 0)
+    return float(np.linalg.norm(landed(run)[:, :3] - planned, axis=1).max())
 
 
 @metric(unit="m", shown=MM, reads={"/truth": (), "/footstep": ("foot",)}, tolerance=(0.001, 0.0))

@@ -7,8 +7,8 @@ from typing import Any, Literal
 import numpy as np
 
 from surefoot.planner.types import GRAVITY
-from surefoot.scenarios.judge import balance, effort, feet, walking
-from surefoot.scenarios.judge.digest import Array, Digest, Reads, RunView
+from surefoot.scenarios.judge import balance, effort, feet, sensed, walking
+from surefoot.scenarios.judge.digest import SENSED, Array, Digest, Reads, RunView
 from surefoot.scenarios.judge.metric import Reduction
 
 
@@ -143,6 +143,8 @@ PAST_STOP = 0.001
 """How far a soft simulated stop may give way before it is told [rad]."""
 DRIFT = 0.01
 """Error of the estimated CoM that deserves a look [m]."""
+SURE = 4.0
+"""Mean square of errors over deviations that deserves a look [-]."""
 OVERRUNS = 0.01
 """Share of ticks that may take longer than their period [-]."""
 _PARTS = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log")
@@ -193,7 +195,11 @@ def _joint(run: RunView, largest: Reduction) -> tuple[int, str, float]:
 
 def estimator_drift(run: RunView) -> Finding:
     """Largest distance of the estimated from the true CoM [m]."""
-    error = np.linalg.norm(run.field("/estimate", "com") - run.field("/truth", "com"), axis=1)
+    if run.has(SENSED):
+        # Where the robot is in the world no sensor tells.
+        error = np.linalg.norm(run.field(SENSED, "com_error"), axis=1)
+    else:
+        error = np.linalg.norm(run.field("/estimate", "com") - run.field("/truth", "com"), axis=1)
     worst = int(np.nanargmax(error))
     quarter = max(len(error) // 4, 1)
     grows = np.nanmean(error[-quarter:]) > 2 * np.nanmean(error[:quarter])
@@ -210,6 +216,19 @@ def estimator_drift(run: RunView) -> Finding:
         float(error[worst]),
         cause,
     )
+
+
+def estimator_confidence(run: RunView) -> Finding:
+    """Mean square of the errors of an estimator that senses over the deviations that it tells [-]."""
+    found = sensed.estimation_nees(run)
+    if found is None:
+        return judged("estimator_confidence", False, None, None, "")
+    part = max(found, key=lambda name: found[name])
+    cause = (
+        f"errors of the estimated {part.replace('_', ' ')} are {found[part] ** 0.5:.1f} times what the estimator takes "
+        "them for: the sensors are worse than it is told, a foot slips, or the ground is not where it is believed"
+    )
+    return judged("estimator_confidence", found[part] > SURE, None, found[part], cause)
 
 
 def controller_fallbacks(run: RunView) -> Finding:
@@ -282,6 +301,7 @@ _CHECKS: tuple[tuple[tuple[str, ...], Callable[[RunView], Finding]], ...] = (
     (("/measurement", "/contact", "/reference"), joint_stops),
     (("/measurement", "/contact", "/reference"), joint_speeds),
     (("/truth", "/estimate"), estimator_drift),
+    ((SENSED,), estimator_confidence),
     (("/wbc",), controller_fallbacks),
     (("/plan",), planner_fallbacks),
     (("/timing",), overrun_ticks),
@@ -292,6 +312,7 @@ READS: Reads = {
     "/measurement": ("external_force",),
     "/truth": ("com", "com_velocity", "external_force"),  # the force is of the pendulum
     "/estimate": ("com",),
+    SENSED: ("com_error",),
     "/contact": ("normal_force", "planned", "active", "felt"),
     "/reference": ("stance", "phase_duration"),
     "/wbc": ("fallback",),

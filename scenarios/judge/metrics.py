@@ -13,9 +13,10 @@ from surefoot.errors import PartError
 from surefoot.guard import Guard, MisfitError, shown
 from surefoot.plugins import Declared, PluginError
 from surefoot.scenarios.errors import LogError, Problem, nearest
-from surefoot.scenarios.judge import balance, computing, effort, feet, health, names, walking
+from surefoot.scenarios.judge import balance, computing, effort, feet, health, names, sensed, walking
 from surefoot.scenarios.judge.digest import Digest, Reads, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
+from surefoot.scenarios.judge.placed import PLACED
 
 if TYPE_CHECKING:
     from surefoot.scenarios.log import Log
@@ -35,7 +36,7 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
     return found
 
 
-OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, computing)
+OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, computing, sensed)
 """Ours, in the order in which they are shown."""
 
 METRICS: Declared[Metric[Any]] = names.METRICS.filled(Metric, OWN, lambda metric: metric.meaning)
@@ -198,7 +199,7 @@ def digest(log: "Log") -> Digest:
                         failed.add(reduction)  # its metric will say so, computing it anew
         return found
 
-    reads: list[Reads] = [health.READS, *(metric.reads for metric in metrics)]
+    reads: list[Reads] = [health.READS, PLACED, *(metric.reads for metric in metrics)]
     gathered = Digest(log, reads, reduce)
     for reduction in failed:
         gathered.reduced.forget(reduction)

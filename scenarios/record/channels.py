@@ -58,6 +58,27 @@ def measurement(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/measurement", "Measurement", fields, measurement.__doc__ or "")
 
 
+def readings(n: Sizes) -> ChannelSpec:
+    """What sensors say to an estimator, every control tick; only in a run whose estimator reads them."""
+    fields = (
+        _real("joint_position", n.nj, "rad", "", "encoders"),
+        _real("joint_velocity", n.nj, "rad/s", "", "encoders; NaN of those that say none"),
+        _real("joint_torque", n.nj, "N m", "", "motors"),
+        _real("angular_velocity", 3, "rad/s", "own imu", "gyroscope, at the instant"),
+        _real("mean_angular_velocity", 3, "rad/s", "own imu", "gyroscope, mean over the tick that ended then"),
+        _real("specific_force", 3, "m/s^2", "own imu", "accelerometer, mean over the tick that ended then"),
+        _real("wrench_left", 6, "N, N m", "left sole", "at the sole centre; NaN without sensors"),
+        _real("wrench_right", 6, "N, N m", "right sole", "at the sole centre; NaN without sensors"),
+        _scalar("joint_age", "s", "of what encoders and motors say"),
+        _scalar("imu_age", "s", "of what the IMU says"),
+        _scalar("wrench_age", "s", "of what the feet say; NaN without sensors"),
+        _int("joint_fresh", "1: it has come since the tick before"),
+        _int("imu_fresh", "1: it has come since the tick before"),
+        _int("wrench_fresh", "1: it has come since the tick before"),
+    )
+    return ChannelSpec("/readings", "Readings", fields, readings.__doc__ or "")
+
+
 def truth(n: Sizes) -> ChannelSpec:
     """The simulator's state, every control tick."""
     fields = (
@@ -100,6 +121,34 @@ def estimate(_: Sizes) -> ChannelSpec:
         _scalar("mass", "kg", "of the robot with all that it carries"),
     )
     return ChannelSpec("/estimate", "Estimate", fields, estimate.__doc__ or "")
+
+
+def estimation() -> ChannelSpec:
+    """What an estimator of the sensors knows, how sure it is and by what it is wrong, every control tick.
+
+    Errors are estimate minus truth, seen from the foot that carries more and turned to the true heading.
+    """
+    fields = (
+        _real("base_pose", 7, "m, -", "world", "estimated pose of the base"),
+        _real("left_sole", 7, "m, -", "world", "estimated pose of the sole centre"),
+        _real("right_sole", 7, "m, -", "world", "estimated pose of the sole centre"),
+        _real("wrench_left", 6, "N, N m", "left sole", "estimated contact wrench"),
+        _real("wrench_right", 6, "N, N m", "right sole", "estimated contact wrench"),
+        _int("contact", "1: the estimator says that the ground carries it: left, right", 2),
+        _real("com_deviation", 3, "m", "world", "standard deviation of the CoM from the stance foot"),
+        _real("com_velocity_deviation", 3, "m/s", "world", "standard deviation of its velocity"),
+        _real("tilt_deviation", 2, "rad", "world", "standard deviation of the base's roll and pitch"),
+        _real("sole_height_deviation", 2, "m", "world", "standard deviation of the soles' heights: left, right"),
+        _scalar("force_deviation", "N", "standard deviation of an external force"),
+        _scalar("moment_deviation", "N m", "standard deviation of its moment about the CoM"),
+        _real("com_error", 3, "m", "world", "CoM from the stance foot"),
+        _real("com_velocity_error", 3, "m/s", "world", "CoM velocity"),
+        _real("tilt_error", 2, "rad", "world", "roll and pitch of the base"),
+        _real("sole_height_error", 2, "m", "world", "heights of the soles: left, right"),
+        _scalar("yaw_error", "rad", "heading of the base"),
+        _real("place_error", 3, "m", "world", "stance foot in the world"),
+    )
+    return ChannelSpec("/estimation", "Estimation", fields, (estimation.__doc__ or "").split("\n")[0])
 
 
 def planner_state(_: Sizes) -> ChannelSpec:

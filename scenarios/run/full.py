@@ -18,16 +18,19 @@ from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.planning import FaultSchedule, RunFault
 from surefoot.scenarios.run.reference import ReferenceMaker
-from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator
+from surefoot.scenarios.run.sensed import Senses, foot_sensing, unsure
+from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator, SensorEstimator
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look
 from surefoot.scenarios.setup.feasible import made_ready
-from surefoot.scenarios.setup.parts import ESTIMATE, TASK, guarded
+from surefoot.scenarios.setup.hardware import refuse_unread
+from surefoot.scenarios.setup.parts import TASK, guarded
 from surefoot.scenarios.setup.stance import (
     Body,
     body_of,
@@ -37,6 +40,7 @@ from surefoot.scenarios.setup.stance import (
     pressed,
 )
 from surefoot.scenarios.setup.walk import Walk
+from surefoot.sim.drives import IDEAL, Drives
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.world import World
@@ -46,7 +50,7 @@ from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.statics import LEVER, standing_torque
 from surefoot.wbc.tasks import TASKS, Task, TaskFactory
-from surefoot.wbc.types import FootSensing, RobotState, WbcReport
+from surefoot.wbc.types import RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
 Array = NDArray[np.float64]
@@ -63,7 +67,7 @@ class Parts:
     """
 
     controller: Callable[..., WholeBodyController] = WholeBodyController
-    estimator: Callable[[Walk], Estimator] | None = None
+    estimator: Callable[[Walk], Estimator | SensorEstimator] | None = None
     tasks: tuple[TaskFactory, ...] = ()
 
     @classmethod
@@ -96,7 +100,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     body = body_of(walk.robot)
     posture, leg = made_ready(walk, body)
     q = pressed(disturbed(posture, walk, body), walk.size.length)
-    world = World(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, walk.pushes, walk.size)
+    world = World(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, walk.pushes, walk.size, _drives(walk))
     torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length)
     world.reset(q, torque=torque)
     controller = _controller(walk, body, posture, parts)
@@ -106,10 +110,11 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
         nj=layout.joints, nq=len(q), nv=layout.nv, horizon=planner.parameters.horizon, tasks=controller.task_layout
     )
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
-    estimator = _estimator(walk, parts)
+    senses = _senses(walk, world, parts)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    walker = SimulatedRobot(walk, world, controller, estimator, body.limits, body_recorder, view)
+    sensed = EstimationRecorder(writer, sizes) if senses.suite is not None else None
+    walker = SimulatedRobot(walk, world, controller, senses, body.limits, body_recorder, view, sensed)
     return ClosedLoop.of(walk, walker, planner, recorder)
 
 
@@ -120,10 +125,11 @@ class SimulatedRobot:
         walk: what is run.
         world: reset to the start.
         controller: of the robot.
-        estimator: gives the state that the controller gets.
+        senses: give the state that the controller gets.
         limits: of the joints.
         recorder: of its channels.
         view: of what MCAP viewers show.
+        sensed: record what sensors say and what is made of it; None for an estimator that senses nothing.
 
     Attributes:
         world: the simulated world.
@@ -138,16 +144,17 @@ class SimulatedRobot:
         walk: Walk,
         world: World,
         controller: WholeBodyController,
-        estimator: Estimator,
+        senses: Senses,
         limits: JointLimits,
         recorder: Recorder,
         view: BodyView,
+        sensed: EstimationRecorder | None = None,
     ) -> None:
-        self.world, self.controller, self._estimate = world, controller, estimator.estimate
-        self._recorder, self._view = recorder, view
+        self.world, self.controller, self._senses = world, controller, senses
+        self._recorder, self._view, self._sensed = recorder, view, sensed
         self._references = ReferenceMaker()
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
-        known = estimator.is_truth and walk.true_robot is walk.robot
+        known = senses.is_truth and walk.true_robot is walk.robot
         self._own_truth = None if known else RobotTerms(pinocchio_model(walk.true_robot), frames_of(walk.robot))
         self._faults = FaultSchedule(walk.faults, walk.rates.control)
         self._rate = walk.rates.control
@@ -165,7 +172,9 @@ class SimulatedRobot:
     def sense(self, tick: int, now: float) -> None:
         """See `Walker`."""
         self.measurement = measurement = self.world.measure()
-        state = self._estimate(measurement)
+        self._estimate = estimate = self._senses(measurement, tick)
+        self._wrench = measurement.wrench if estimate.wrench is None else estimate.wrench
+        state = estimate.state
         if self._faults.active("state_nan", tick):
             state = RobotState(np.full_like(state.q, np.nan), state.v)
         if not math.isfinite(np.dot(state.q, state.q) + np.dot(state.v, state.v)):
@@ -178,7 +187,7 @@ class SimulatedRobot:
 
     def measured(self, now: float) -> tuple[CentroidalState, Array, FeetState]:
         """See `Walker`."""
-        terms, wrench = self._terms, self.measurement.wrench
+        terms, wrench = self._terms, self._wrench
         R = terms.sole_rotation
         if terms.compiled is not None and terms.leaning is None:
             soles, yaw, zmp = terms.compiled.feet(wrench, self._toe)
@@ -186,7 +195,10 @@ class SimulatedRobot:
             soles, yaw = terms.level_soles(self._toe), np.arctan2(R[:, 1, 0], R[:, 0, 0])
             zmp = np.array(measured_zmp(wrench, terms.sole_position, R))
         state = CentroidalState(now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
-        return state, zmp[:2], FeetState(soles, yaw, self._landed)
+        feet = FeetState(soles, yaw, self._landed)
+        if self._estimate.deviation is not None:
+            state, feet = unsure(self._estimate.deviation, state, feet)
+        return state, zmp[:2], feet
 
     def _lasting(self) -> ExternalLoad | None:
         """The load that the controller counted with a tick ago, per mass."""
@@ -195,11 +207,10 @@ class SimulatedRobot:
 
     def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
         """See `Walker`."""
-        wrench = self.measurement.wrench
         self._reference = self._references.reference(plan, sample)
-        forces = float(wrench[0, 2]), float(wrench[1, 2])
-        sensing = FootSensing(forces, wrench if self._estimates else None)
+        sensing = foot_sensing(self._estimate, self._wrench, self._estimates)
         report = self.controller.update(self._reference, sensing, self._faults.active("qp_failure", tick))
+        self._senses.told(self._reference, report)
         self._landed, self._load = report.active, report.load
         # Who falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
         torque = self._giving_way.torque(self.state.q[7:], self.state.v[6:]) if plan.status.falling else report.torque
@@ -209,7 +220,11 @@ class SimulatedRobot:
 
     def record(self, now_ns: int, sample: PlanSample) -> None:
         """See `Walker`."""
-        self._recorder.tick(now_ns, self.measurement, self._truth, self._terms, sample, self.report, self._torque)
+        truth, terms = self._truth, self._terms
+        self._recorder.tick(now_ns, self.measurement, truth, terms, sample, self.report, self._torque)
+        if self._sensed is not None:
+            forces = self.measurement.wrench[:, 2]
+            self._sensed.tick(now_ns, self._senses.readings, self._estimate, self._wrench, terms, truth, forces)
 
     def fallen(self, sample: PlanSample) -> bool:
         """See `Walker`."""
@@ -243,14 +258,22 @@ class SimulatedRobot:
         self.world.push(push)
 
 
-def _estimator(walk: Walk, parts: Parts) -> Estimator:
+def _drives(walk: Walk) -> Drives | None:
+    """The motors of a walk, if they do anything but what is commanded."""
+    errors = walk.hardware.drives
+    return None if errors == IDEAL else Drives(walk.robot, errors, walk.rates.physics, walk.seed)
+
+
+def _senses(walk: Walk, world: World, parts: Parts) -> Senses:
     """The estimator that a program hands over, else that which the scenario names."""
     source = walk.sensing.source
     make = parts.estimator or ESTIMATORS[source]
     guard = ESTIMATORS.guard(source) if parts.estimator is None else Guard.of_program("estimator", make)
     with guard.making:
-        made: Estimator = guarded(make(walk), guard, ESTIMATE)
-        return made
+        senses = Senses(make(walk, **(walk.sensing.options or {})), guard, world, walk)
+    if senses.suite is None:
+        refuse_unread(walk.sensing)
+    return senses
 
 
 def _tasks(walk: Walk, body: Body, parts: Parts) -> Iterator[Task]:

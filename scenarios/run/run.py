@@ -1,5 +1,6 @@
 """Runs a scenario: the log is written while the loop goes on, and the verdict is then computed from the log file."""
 
+import gc
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -184,6 +185,10 @@ def _libraries(_modules: int) -> ThreadpoolController:
     return ThreadpoolController()
 
 
+_YOUNG = 1
+"""Generation up to which Python's objects are young: old are those of modules, which take far longer."""
+
+
 def closed_loop(walk: Walk, writer: LogWriter, parts: "Parts | None" = None) -> ClosedLoop:
     """The closed loop of a walk's fidelity at its start; what it needs is imported only then.
 
@@ -196,7 +201,10 @@ def closed_loop(walk: Walk, writer: LogWriter, parts: "Parts | None" = None) -> 
         SetupError: a part refuses the walk.
     """
     with refusing():
-        return _LOOPS[walk.fidelity](walk, writer, parts)
+        loop = _LOOPS[walk.fidelity](walk, writer, parts)
+    # What was made for it is looked through for garbage here: in a tick that would take a millisecond.
+    gc.collect(_YOUNG)
+    return loop
 
 
 def _full(walk: Walk, writer: LogWriter, parts: "Parts | None") -> ClosedLoop:

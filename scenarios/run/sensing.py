@@ -11,12 +11,15 @@ from surefoot.planner.model.filter import ZMP_ONLY, CentroidalFilter, FilterNois
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import GRAVITY, CentroidalState
 from surefoot.plugins import Registry
+from surefoot.readings import Readings
 from surefoot.scenarios.file.registries import SOURCES
-from surefoot.scenarios.file.schema import Sensing
+from surefoot.scenarios.file.sensing import Sensing
 from surefoot.scenarios.record.walk import PlannerState
+from surefoot.scenarios.run.sensed import sensed_state
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
 from surefoot.similarity import REFERENCE_SIZE, Similarity
+from surefoot.wbc.estimation.estimate import Estimate
 from surefoot.wbc.types import RobotState
 
 
@@ -56,10 +59,26 @@ class TrueState:
         return RobotState(measurement.q, measurement.v)
 
 
-EstimatorMaker = Callable[[Walk], Estimator]
+class SensorEstimator(Protocol):
+    """A state estimator that sees nothing but what sensors say, asked once per control tick, from tick 0 on.
 
-ESTIMATORS: Registry[EstimatorMaker] = SOURCES.filled(None, {"truth": TrueState})
-"""What makes an estimator of a walk, by the value of ``sensing.source``."""
+    It may have a method ``told``, which is given what the controller has decided after each tick, as a
+    `surefoot.wbc.estimation.estimate.Planned`.
+    """
+
+    def sense(self, readings: Readings) -> Estimate:
+        """The state now, and what else the estimator knows.
+
+        Args:
+            readings: of this tick.
+        """
+        ...
+
+
+EstimatorMaker = Callable[..., Estimator | SensorEstimator]
+
+ESTIMATORS: Registry[EstimatorMaker] = SOURCES.filled(None, {"truth": TrueState, "ekf": sensed_state})
+"""What makes an estimator of a walk and of ``sensing.options`` by name, by the value of ``sensing.source``."""
 
 
 Array = NDArray[np.float64]

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 from surefoot.errors import ParameterError, at_least, at_most
 from surefoot.models.facts import RobotFacts, longest_step
@@ -17,14 +16,14 @@ from surefoot.planner.swing.step_region import StepRegion, check_reach, soles_ap
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.planner.types import Footstep, Twist
 from surefoot.plugins import PluginError
-from surefoot.scenarios.errors import Key, Problem, dotted, nearest
+from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.group import controller_faults
 from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.file.units import meant
-from surefoot.scenarios.setup.criteria import AVAILABLE
 from surefoot.scenarios.setup.events import cut_off, idle_commands, never_act, slight, told_problems
 from surefoot.scenarios.setup.formulation import LONGEST_REACH
 from surefoot.scenarios.setup.gait import commanded, step_region, twist_of, uncommanded
+from surefoot.scenarios.setup.hardware import hardware_problems
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot import Robots, is_known
 from surefoot.scenarios.setup.terrain.ground import uneven_problems
@@ -57,7 +56,8 @@ def check(walk: Walk, robots: Robots) -> list[Problem]:
         *_controller(walk),
         *_walk_problems(walk),
         *_robot(walk, robots),
-        *_unavailable(walk),
+        *hardware_problems(walk.sensing, walk.keys.motors, walk.rates.physics),
+        *(() if walk.walker.has_body else _without_body(walk)),
     ]
 
 
@@ -167,19 +167,6 @@ def _reach(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:
         what = f"gait.step_length {gait.step_length} m is out of reach at com_height {gait.com_height} m"
         right = f"use at most {at_most(longest)} m, or lower gait.com_height{meant(gait.step_length, 'm', longest)}"
         yield Problem(("gait", "step_length"), what, right)
-
-
-def _unavailable(walk: Walk) -> list[Problem]:
-    """List values that the contract allows and this version has not got."""
-    found = []
-    for key, values in AVAILABLE.items():
-        value: Any = walk.keys
-        for part in key:
-            value = getattr(value, str(part))
-        if value not in values:
-            what = f"{dotted(key)} {value!r} is not available in this version"
-            found.append(Problem(key, what, f"available: {', '.join(str(v) for v in values)}"))
-    return found if walk.walker.has_body else [*found, *_without_body(walk)]
 
 
 def _without_body(walk: Walk) -> Iterator[Problem]:

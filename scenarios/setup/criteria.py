@@ -7,22 +7,14 @@ from collections.abc import Iterator, Mapping
 from itertools import islice
 from typing import Any
 
-from surefoot.scenarios.errors import Key, Problem, nearest
+from surefoot.scenarios.errors import Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.names import usable
-from surefoot.scenarios.file.schema import Scenario, Sensing, TerrainSettings, model_of
+from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
 from surefoot.scenarios.judge.metric import TRUTH, Metric
 from surefoot.scenarios.judge.metrics import METRICS, known
 from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.terrain import KINDS
-
-_SENSED = ("source", "zmp_noise", "com_noise", "force_estimate")
-"""What acts; the noises of the sensors that the whole-body controller's state would come from do not yet."""
-
-AVAILABLE: dict[Key, tuple[Any, ...]] = {
-    ("sensing", name): (field.default,) for name, field in Sensing.model_fields.items() if name not in _SENSED
-}
-"""Values of the format's keys that this version has; of other keys it has all."""
 
 
 def criteria_problems(criteria: Mapping[str, Bound], fidelity: str) -> list[Problem]:
@@ -122,12 +114,13 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 DESCRIPTION = (
     "A walk to simulate and the criteria it must meet. Bare numbers are in SI units and radians; where a key "
-    "has a unit, a string such as '25 cm' may be given instead. `surefoot run` also refuses what a JSON Schema "
-    "cannot tell: a number with a unit that is out of the range of its key; numbers under wbc that the "
-    "controller refuses; rates that do not divide; pushes without a begin or with two, both by force and by "
-    "impulse, in a step that is not walked, or on a body that the robot has not got; gaits and grounds that the "
-    "legs cannot reach or stand on; criteria with min above max, that any run meets, or that the fidelity cannot "
-    "measure; keys given twice; more than 20 levels or half a megabyte."
+    "has a unit, a string such as '25 cm' may be given instead. `surefoot run` also refuses what a JSON Schema"
+    " cannot tell: a number with a unit that is out of the range of its key; numbers under wbc that the "
+    "controller refuses; terms of sensors beside the true state; rates that do not divide; pushes without a "
+    "begin or with two, both by force and by impulse, in a step that is not walked, or on a body that the "
+    "robot has not got; gaits and grounds that the legs cannot reach or stand on; criteria with min above max,"
+    " that any run meets, or that the fidelity cannot measure; keys given twice; more than 20 levels or half a"
+    " megabyte."
 )
 
 
@@ -138,8 +131,6 @@ def published() -> dict[str, Any]:
     files = {"type": "string", "pattern": r"\.ya?ml$"}
     keys["robot"] = {**keys["robot"], "anyOf": [{"enum": list(Robots().names())}, files]}
     keys["robot"].pop("type")
-    for key, values in AVAILABLE.items():
-        _narrow(schema, key, list(values))
     ground = schema["$defs"]["TerrainSettings"]
     for kind in usable(KINDS):
         model = model_of(TerrainSettings, {"kind": kind})
@@ -152,18 +143,6 @@ def published() -> dict[str, Any]:
     keys["criteria"] |= {"properties": bounds, "additionalProperties": False}
     schema["$defs"].pop("Bound")
     return schema
-
-
-def _narrow(schema: dict[str, Any], key: Key, values: list[Any]) -> None:
-    """Leave only some values of a key: of the others the format knows, and this version not."""
-    *groups, name = map(str, key)
-    properties = schema["properties"]
-    for group in groups:
-        properties = schema["$defs"][properties[group]["$ref"].rpartition("/")[2]]["properties"]
-    described = {
-        part: properties[name][part] for part in ("default", "description", "unit") if part in properties[name]
-    }
-    properties[name] = {"enum": values, **described}
 
 
 def _criterion(name: str, metric: Metric[Any]) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from surefoot.planner.steps.source import AWAY
 from surefoot.planner.types import Twist
 from surefoot.scenarios.errors import Key, Problem
 from surefoot.scenarios.file.schema import CommandSettings, Fault, PushSettings, Rates, VelocitySettings
+from surefoot.scenarios.file.sensing import MOTOR_SIZES, SENSOR_SIZES
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.record.provenance import Event
 from surefoot.scenarios.setup.gait import command_of, gait_of, push_time, twist_of, uncommanded, velocities_of
@@ -177,9 +178,9 @@ _SIZES = (
     ("robot_options", ("payload_mass",)),
     ("terrain", ("riser", "height_noise", "angle")),
     ("gait", ("apex_single", "apex_double", "heel_off")),
-    ("sensing", ("zmp_noise", "com_noise")),
+    ("sensing", ("zmp_noise", "com_noise", *SENSOR_SIZES)),
     ("start", ("position_noise", "angle_noise")),
-    ("errors", ("com_height", "link_mass_noise", "friction", "ground_noise")),
+    ("errors", ("com_height", "link_mass_noise", "friction", "ground_noise", "ground_pitch", "ground_roll")),
 )
 """Keys of a size that is either 0 or meant to act; a place or a direction may be any number."""
 
@@ -193,10 +194,13 @@ def slight(walk: Walk) -> Iterator[Problem]:
     sizes += [(("errors", "torso_com"), math.hypot(*(errors.torso_com or (0.0,))))]
     sizes += [(("errors", "payload", "mass"), errors.payload.mass)] if errors.payload is not None else []
     sizes += [(("errors", "ground", index, "height"), box.height) for index, box in enumerate(errors.ground or ())]
+    sizes += [(("motors", name), getattr(keys.motors, name) or 0.0) for name in MOTOR_SIZES if keys.motors is not None]
     for key, size in sizes:
         if size and abs(size) < LEAST:
             what = f"{'.'.join(map(str, key))} {size:g} is too small to change anything"
-            yield Problem(key, what, f"use {'0, or ' if key[-1] != 'height' else ''}at least {LEAST:g}")
+            yield Problem(
+                key, what, f"use {'' if key[-1] == 'height' or key[0] == 'motors' else '0, or '}at least {LEAST:g}"
+            )
 
 
 def idle_commands(walk: Walk) -> Iterator[Problem]:

@@ -6,6 +6,7 @@ from surefoot.errors import ParameterError
 from surefoot.planner.references.com_height import Rise
 from surefoot.scenarios.errors import Key, Problem
 from surefoot.scenarios.file.schema import PendulumSettings
+from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
 _NAMES: dict[Key, Key] = {
     ("gait", "apex_ss"): ("gait", "apex_single"),
@@ -54,6 +55,9 @@ _NO_CONTACT = (
     ("errors", "torso_com"),
     ("errors", "ground"),
     ("errors", "ground_noise"),
+    ("errors", "ground_pitch"),
+    ("errors", "ground_roll"),
+    *(("sensing", name) for name in SENSOR_KEYS),
 )
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
 

@@ -3,6 +3,7 @@
 import copy
 import json
 import os
+import re
 from collections.abc import Mapping
 from contextlib import suppress
 from io import BytesIO
@@ -55,6 +56,10 @@ def is_log(reference: str) -> bool:
         return False
 
 
+_UNSAID = re.compile(r"(?m)^  (?:encoder_noise|gyro_noise|accelerometer_noise|wrench_noise|latency): 0\.0\n")
+"""Lines of the group `sensing` in logs of versions without presets, of which none had any other value."""
+
+
 def attached_scenario(path: str) -> tuple[str, str]:
     """Text of the scenario that a log carries, and what to call it in messages.
 
@@ -63,10 +68,8 @@ def attached_scenario(path: str) -> tuple[str, str]:
     """
     try:
         log = read(path)
-        text = _as_run(
-            decoded(BytesIO(log.attachments[provenance.SCENARIO_FILE]), f"{path}/{provenance.SCENARIO_FILE}"),
-            log.metadata,
-        )
+        text = decoded(BytesIO(log.attachments[provenance.SCENARIO_FILE]), f"{path}/{provenance.SCENARIO_FILE}")
+        text = _as_run(text if "\n  preset:" in text else _UNSAID.sub("", text), log.metadata)
     except LogError as error:
         raise ScenarioError([str(error)]) from None
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError):

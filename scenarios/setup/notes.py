@@ -56,8 +56,9 @@ def _without_effect(walk: Walk) -> Iterator[str]:
         yield from (f"{key} has no effect on a {walker.thing}" for key in _given(walk, group, (name,)))
     if walker.has_body:
         return
-    if keys.wbc is not None:
-        yield "wbc has no effect on a pendulum"
+    for group in ("motors", "wbc"):
+        if getattr(keys, group) is not None:
+            yield f"{group} has no effect on a pendulum"
     if keys.rates.physics not in (Rates().physics, clock(Rates(), walk.size.time).physics):
         yield "rates.physics has no effect on a pendulum"
 

@@ -12,8 +12,10 @@ from surefoot.planner.laws.law import Motion, MotionPlanner, MotionProblem
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import Array
+from surefoot.wbc.estimation.estimate import Estimate
 
 if TYPE_CHECKING:
+    from surefoot.readings import Readings
     from surefoot.sim.measurement import Measurement
     from surefoot.wbc.types import RobotState
 
@@ -78,6 +80,30 @@ def _state(answer: "RobotState", measurement: "Measurement") -> "RobotState":
     return answer
 
 
+def _estimate(answer: Estimate, readings: "Readings") -> Estimate:
+    """What an estimator gives that senses."""
+    taken_for(Estimate)(answer)
+    joints = len(readings.joint_position.values)
+    fit(answer.state.q, (7 + joints,), "q", finite=False)
+    fit(answer.state.v, (6 + joints,), "v", finite=False)
+    if answer.wrench is not None:
+        fit(answer.wrench, (2, 6), "wrench")
+    if answer.contact is not None:
+        fit(answer.contact, (2,), "contact")
+    if answer.deviation is not None:
+        for name, shape in _DEVIATED.items():
+            fit(getattr(answer.deviation, name), shape, f"deviation.{name}", finite=False)
+    return answer
+
+
+_DEVIATED: dict[str, Shape] = {
+    **dict.fromkeys(("com", "com_velocity"), (3,)),
+    **dict.fromkeys(("tilt", "sole_height"), (2,)),
+    **dict.fromkeys(("force", "moment"), ()),
+}
+"""Fields of a deviation, and the shape of each."""
+
+
 def _wanted(answer: Iterable[float], terms: Any, reference: Any, scale: Array, rows: Array) -> Any:
     """What a task gives, and has written into its rows."""
     wanted = [float(one) for one in answer]
@@ -87,7 +113,7 @@ def _wanted(answer: Iterable[float], terms: Any, reference: Any, scale: Array, r
     return wanted
 
 
-ESTIMATE = {"estimate": _state}
+ESTIMATE: dict[str, Callable[..., Any]] = {"estimate": _state, "sense": _estimate}
 TASK = {"write": _wanted}
 """By the methods of an estimator and of a task, what is taken for their answers."""
 

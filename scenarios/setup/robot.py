@@ -12,6 +12,7 @@ from surefoot.models.facts import RobotFacts, facts_of, similar_com_height, simi
 from surefoot.models.names import ROBOTS, is_file
 from surefoot.scenarios.errors import Key
 from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings
+from surefoot.scenarios.file.sensing import MotorSettings
 from surefoot.streams import Stream, generator
 
 if TYPE_CHECKING:
@@ -57,8 +58,10 @@ def describe(name: str, options: RobotSettings) -> "RobotDescription":
     return describe_robot(name, RobotOptions(**options.model_dump()))
 
 
-def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "RobotDescription":
-    """The robot as it is; itself when nothing about its mass is believed wrongly.
+def true_robot(
+    errors: BeliefErrors, motors: MotorSettings | None, robot: "RobotDescription", seed: int
+) -> "RobotDescription":
+    """The robot as it is; itself when nothing about its mass is believed wrongly, and its joints lose no torque.
 
     What it carries unbeknown comes last, so that it is as heavy as was said, at the true CoM of its body.
     """
@@ -71,12 +74,16 @@ def true_robot(errors: BeliefErrors, robot: "RobotDescription", seed: int) -> "R
         robot = replace(
             belief.with_mass_scaled(robot, 1.0 / errors.mass_scale), mass=float(robot.mass) / errors.mass_scale
         )
+    if errors.torso_mass not in (None, 1.0):
+        robot = belief.with_torso_mass_scaled(robot, 1.0 / errors.torso_mass)
     if any(errors.torso_com or ()):
         robot = belief.with_torso_com_moved(robot, -np.array(errors.torso_com))
     if errors.link_mass_noise:
         robot = belief.with_masses_scattered(robot, errors.link_mass_noise, generator(seed, Stream.MASSES))
     if errors.payload is not None and errors.payload.mass > 0.0:
         robot = belief.with_load(robot, errors.payload.mass, errors.payload.body)
+    if motors is not None and (motors.damping or motors.friction_loss):
+        robot = belief.with_joint_losses(robot, motors.damping or 0.0, motors.friction_loss or 0.0)
     return robot
 
 

@@ -23,7 +23,8 @@ from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import FeetState, Twist
 from surefoot.scenarios.file.group import controller_parameters
-from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Sensing, Start
+from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Start
+from surefoot.scenarios.file.sensing import Sensing
 from surefoot.scenarios.setup.formulation import Formulation, cop_room, leg_reach, lowered, region_of
 from surefoot.scenarios.setup.gait import (
     FINAL_STAND,
@@ -36,11 +37,12 @@ from surefoot.scenarios.setup.gait import (
     told_until,
     waypoints_of,
 )
+from surefoot.scenarios.setup.hardware import Hardware
 from surefoot.scenarios.setup.keys import FIDELITIES, Fidelity
 from surefoot.scenarios.setup.parts import guarded_law
 from surefoot.scenarios.setup.robot import describe, true_robot
 from surefoot.scenarios.setup.terrain import kind_of
-from surefoot.scenarios.setup.terrain.ground import Ground, tiles_of
+from surefoot.scenarios.setup.terrain.ground import Ground, tiles_of, tilt_of
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters
 
@@ -73,7 +75,7 @@ class Walk:
         seed: of everything random.
         rates: of the clock.
         start: where the walk starts, with its noises.
-        sensing: noises of what is measured.
+        sensing: what planner and controller know of the robot.
         faults: injected.
         pendulum: the plant of fidelity pendulum.
     """
@@ -185,6 +187,7 @@ class Walk:
             standing_height=self.standing_height,
             tiles=tiles_of(keys, self.size) if self.walker.has_body else None,
             hidden=keys.errors.ground or (),
+            tilt=tilt_of(keys, self.size) if self.walker.has_body else None,
         )
 
     @property
@@ -269,7 +272,7 @@ class Walk:
 
     @cached_property
     def _truth(self) -> "RobotDescription":
-        return true_robot(self.keys.errors, self.robot, self.seed)
+        return true_robot(self.keys.errors, self.keys.motors, self.robot, self.seed)
 
     @property
     def true_robot(self) -> "RobotDescription":
@@ -303,6 +306,11 @@ class Walk:
     def controller(self) -> WbcParameters:
         """Weights and gains of the whole-body controller."""
         return controller_parameters(self.keys.wbc, self.size)
+
+    @cached_property
+    def hardware(self) -> Hardware:
+        """What sensors and motors do that nobody is told of."""
+        return Hardware.of(self.sensing, self.keys.motors, self.size)
 
     @property
     def tasks(self) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ WALL_CLOCK = ("/process", "/timing")
 """Topics that differ between any two runs."""
 
 _CHAIN = (
-    *("/truth", "/measurement", "/contact", "/estimate", "/planner_state"),
+    *("/truth", "/measurement", "/readings", "/contact", "/estimate", "/planner_state"),
     *("/plan", "/footsteps", "/reference", "/wbc", "/torque"),
 )
 """The way through a tick: of channels that part at the same time, the first is nearest to the cause."""

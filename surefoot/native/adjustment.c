@@ -234,7 +234,7 @@ static void nominal_dcm(const Outlook *ahead, int64_t lift, int64_t lands, doubl
 }
 
 /* Counterpart of `planner.recovery.step_adjustment.StepAdjustment.solve`; 0 where that is None. */
-int64_t adjustment_solve(const Adjustment *program) {
+int64_t adjustment_solve(const Adjustment *program, double unsure) {
     const Landing *step = program->step;
     const Outlook *ahead = program->ahead;
     const double t = ahead->sample_time, left = rint(step->double_left / t);
@@ -255,7 +255,7 @@ int64_t adjustment_solve(const Adjustment *program) {
         bounded.landed[i] = there[i];
         bounded.more[i] = now[3 + i];
         bounded.held[i] = program->cop_share * own;
-        fine &= fabs(step->dcm[i] - now[i]) <= (1.0 - fade) * own + bounded.more[i] + missed;
+        fine &= fabs(step->dcm[i] - now[i]) <= (1.0 - fade) * own + bounded.more[i] + missed + unsure;
     }
     if (fine && step->adapted == 0.0) return 0;
     return cheapest(program, &bounded, fine);

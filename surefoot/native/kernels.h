@@ -430,7 +430,7 @@ typedef struct {
 } LoadSpan;
 
 void load_moving(const LoadSpan *span);
-int64_t load_span_end(const LoadSpan *span);
+int64_t load_span_end(const LoadSpan *span, int64_t follows);
 
 /* What the planner is told of the feet: counterpart of `RobotTerms.level_soles` and `wbc.zmp.measured_zmp`. */
 typedef struct {
@@ -852,6 +852,6 @@ typedef struct {
     double *result;
 } Adjustment;
 
-int64_t adjustment_solve(const Adjustment *program);
+int64_t adjustment_solve(const Adjustment *program, double unsure);
 
 #endif

@@ -59,8 +59,8 @@ static void follow(const LoadSpan *span) {
     }
 }
 
-/* Holds the forces of a span against its change of momentum; returns whether that told something. */
-int64_t load_span_end(const LoadSpan *span) {
+/* Holds the forces of a span against its change of momentum, and has the load follow; says whether it did. */
+int64_t load_span_end(const LoadSpan *span, int64_t follows) {
     double felt[6], com[3], now[6], change[6], turning[3], found[NUMBERS];
     moving(span, now);
     for (int i = 0; i < 6; i++) {
@@ -89,8 +89,8 @@ int64_t load_span_end(const LoadSpan *span) {
     else
         span->filled[0]++;
     memcpy(span->spans + NUMBERS * (span->filled[0] - 1), found, sizeof found);
-    follow(span);
-    return 1;
+    if (follows) follow(span);
+    return follows;
 }
 
 /* Where the soles' centres would be if each foot turned level about its toe edge, their yaws, and the ZMP. */

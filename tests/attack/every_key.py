@@ -10,10 +10,14 @@ from pydantic import BaseModel
 from surefoot.planner.parameters import RecoveryParameters
 from surefoot.scenarios.file.group import Group, controller_parameters
 from surefoot.scenarios.file.schema import PlannerSettings, Scenario
+from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
-NOT_YET = {f"sensing.{name}" for name in ("encoder_noise", "gyro_noise", "accelerometer_noise", "wrench_noise")}
-NOT_YET |= {"sensing.latency"}
-"""Keys of which this version has only the default."""
+NOT_YET = {"sensing.options"}
+"""Keys whose values are what an estimator takes."""
+
+_SENSORS = {"preset": "cheap", "wrench": "feet", "encoder_velocity": True, "encoder_bits": 16, "latency": 0.002}
+SENSORS = {name: _SENSORS.get(name, 10.0 if name.endswith("_range") else 1e-3) for name in SENSOR_KEYS}
+"""Every key of the sensors."""
 
 TEXTS = {
     "options": """
@@ -61,10 +65,15 @@ TEXTS = {
     "errors": """
         duration: 0.06
         errors: {com_height: 0.01, mass_scale: 1.02, link_mass_noise: 0.02, torso_com: [0.01, 0, 0],
-                 payload: {mass: 1, body: torso}, friction: 0.1, ground_noise: 0.005,
-                 ground: [{x: 0.6, y: 0.05, length: 0.2, width: 1, height: 0.01}]}
+                 payload: {mass: 1, body: torso}, friction: 0.1, ground_noise: 0.005, torso_mass: 1.02,
+                 ground: [{x: 0.6, y: 0.05, length: 0.2, width: 1, height: 0.01, friction: 0.5}]}
+        motors: {damping: 0.5, friction_loss: 0.2, delay: 0.002, noise: 0.1, torque_speed: 0.6}
         pushes: [{time: 0.02, duration: 0.02, force: [10, 0, 0], body: pelvis, live: true}]
         faults: [{kind: qp_failure, time: 0.04, duration: 0.01}]
+        """,
+    "tilted": """
+        duration: 0.06
+        errors: {ground_pitch: 0.01, ground_roll: 0.01}
         """,
     "commands": """
         duration: 0.3
@@ -135,6 +144,7 @@ RECOVERY = _of_controller(RecoveryParameters(), next(_groups(PlannerSettings.mod
 
 SCENARIOS: dict[str, dict[str, Any]] = {
     **{name: yaml.safe_load(text) for name, text in TEXTS.items()},
+    "sensors": {"duration": 0.06, "sensing": {"source": "ekf", **SENSORS}},
     "wbc": {"duration": 0.06, "wbc": WBC},
     "recovery": {"duration": 0.06, "fidelity": "pendulum", "planner": {"recovery": RECOVERY}},
     **{f"wbc-{name}": {"duration": 0.06, "wbc": {name: value}} for name, value in WBC.items()},

@@ -119,6 +119,15 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "errors.ground": ([{"x": 0.3, "length": 0.2, "height": 0.004}], [{"x": 50, "length": 0.2, "height": 0.004}]),
     "errors.ground.0.y": (0.05, 20.0),
     "errors.ground_noise": (0.003, 1e-300, 0.0),
+    "errors.torso_mass": (1.2, 1.0),
+    "errors.ground_pitch": (0.02, 1e-300, 0.0),
+    "errors.ground_roll": (0.02, 1e-300, 0.0),
+    "errors.ground.0.friction": (0.5,),
+    "motors.damping": (2.0,),
+    "motors.friction_loss": (1.0,),
+    "motors.delay": (0.002,),
+    "motors.noise": (1.0,),
+    "motors.torque_speed": (0.05,),
     "errors.payload": ({"mass": 2.0}, {"mass": 0.0}, {"mass": 1e-300}),
     "errors.payload.body": ("pelvis",),
     "wbc.tasks": ([],),
@@ -175,7 +184,7 @@ def value_of(scenario: Scenario, key: str) -> Any:
     """
     value: Any = scenario
     for part in key.split("."):
-        if value is None and key.startswith("wbc."):
+        if value is None and key.startswith(("wbc.", "motors.")):
             return None
         if value is None:
             raise LookupError(key)

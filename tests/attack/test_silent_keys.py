@@ -20,6 +20,7 @@ WITHOUT_OCCASION = {
     "terrain.friction": "a bound of the contact forces, which they may stay within",
     "wbc.friction": "likewise, as it is believed",
     "errors.friction": "likewise",
+    "motors.torque_speed": "a bound of the torques, which they may stay within",
     "wbc.second_solver": "acts when the first one fails",
     "wbc.weights.swing": "acts on a foot that swings",
     **dict.fromkeys(
@@ -39,7 +40,10 @@ WITHOUT_OCCASION = {
 
 NOTHING = {
     **dict.fromkeys(("gait.lateral_step", "gait.turn", "start.x", "start.y", "start.yaw"), 1e-300),
-    **dict.fromkeys(("errors.link_mass_noise", "errors.ground_noise"), 0.0),
+    **dict.fromkeys(
+        ("errors.link_mass_noise", "errors.ground_noise", "errors.ground_pitch", "errors.ground_roll"), 0.0
+    ),
+    "errors.torso_mass": 1.0,
     "errors.torso_com": [0, 0, 0],
     "wbc.tasks": [],
 }

@@ -1,6 +1,7 @@
+import numpy as np
 import pytest
 
-from surefoot.models.actuator import Actuator, Motor
+from surefoot.models.actuator import Actuator, Motor, available_torque
 
 pytestmark = pytest.mark.unit
 
@@ -17,3 +18,13 @@ def test_armature_keeps_the_rotor_energy() -> None:
     joint_speed = 3.0
     rotor_energy = 0.5 * actuator.motor.rotor_inertia * (joint_speed * actuator.gear_ratio) ** 2
     assert 0.5 * actuator.armature * joint_speed**2 == pytest.approx(rotor_energy)
+
+
+def test_a_turning_motor_has_less_torque_to_drive_with_and_all_of_it_to_brake() -> None:
+    peak, free = np.full(5, 10.0), np.full(5, 4.0)
+    speed = np.array([0.0, 2.0, 3.0, 4.0, 5.0])
+    driving = available_torque(np.full(5, 50.0), speed, peak, free, 0.5)
+    np.testing.assert_allclose(driving, [10.0, 10.0, 5.0, 0.0, 0.0])
+    np.testing.assert_allclose(available_torque(np.full(5, -50.0), speed, peak, free, 0.5), -10.0)
+    np.testing.assert_allclose(available_torque(np.full(5, -50.0), -speed, peak, free, 0.5), -driving)
+    np.testing.assert_allclose(available_torque(np.full(5, 1.0), speed, peak, free, 0.0), [1.0, 1.0, 1.0, 0.0, 0.0])

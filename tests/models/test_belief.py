@@ -7,10 +7,12 @@ import pytest
 
 from surefoot.models.belief import (
     with_com_raised,
+    with_joint_losses,
     with_load,
     with_mass_scaled,
     with_masses_scattered,
     with_torso_com_moved,
+    with_torso_mass_scaled,
 )
 from surefoot.models.consistency import EnginePair
 from surefoot.models.pinocchio import pinocchio_model
@@ -135,3 +137,39 @@ def test_impossible_changes_are_refused(change, values):
 def test_a_load_on_no_body_is_refused_with_the_nearest_one():
     with pytest.raises(RobotError, match="'torzo' is no body of humanoid100; did you mean 'torso'"):
         with_load(ROBOT, 1.0, "torzo")
+
+
+def test_a_heavier_torso_is_in_both_engines_and_nothing_else_is():
+    _, _, before = standing(ROBOT)
+    heavy = with_torso_mass_scaled(ROBOT, 1.5)
+    com, believed, after = standing(heavy)
+    np.testing.assert_allclose(com, believed, atol=1e-12)
+    torso = before.body(ROBOT.torso_body).id
+    assert after.body_mass[torso] == pytest.approx(1.5 * before.body_mass[torso])
+    np.testing.assert_allclose(after.body_inertia[torso], 1.5 * before.body_inertia[torso])
+    others = np.arange(before.nbody) != torso
+    np.testing.assert_array_equal(after.body_mass[others], before.body_mass[others])
+    assert heavy.mass == pytest.approx(after.body_mass.sum())
+
+
+def test_losses_are_of_every_joint_and_change_no_dynamics_of_the_engines():
+    lossy = with_joint_losses(ROBOT, 2.0, 0.5)
+    model = mujoco.MjModel.from_xml_string(lossy.mjcf)
+    np.testing.assert_array_equal(model.dof_damping[6:], 2.0)
+    np.testing.assert_array_equal(model.dof_frictionloss[6:], 0.5)
+    assert not model.dof_damping[:6].any()
+    assert not model.dof_frictionloss[:6].any()
+    one, other, q = (
+        pinocchio_model(ROBOT),
+        pinocchio_model(lossy),
+        np.r_[np.zeros(6), 1.0, ROBOT.nominal_joint_positions],
+    )
+    np.testing.assert_array_equal(pin.crba(one, one.createData(), q), pin.crba(other, other.createData(), q))
+
+
+@pytest.mark.parametrize(
+    "make", [lambda: with_torso_mass_scaled(ROBOT, 0.0), lambda: with_joint_losses(ROBOT, -1.0, 0.0)]
+)
+def test_no_robot_has_such_torsos_or_joints(make):
+    with pytest.raises(RobotError):
+        make()

@@ -10,6 +10,12 @@ WALKS = {
     "pushed": ("walk", 1.2, PUSH, {"one foot", "force", "weight"}),
     "stairs": ("stairs-up", 3.0, {}, {"one foot", "ankle at its stop"}),
     "fast": ("walk-fast", 2.2, {}, {"rolling", "held by inequalities"}),
+    "sensed": (
+        "walk",
+        3.4,
+        {"gait.initial_stand": 0.2, "sensing.source": "ekf", "sensing.preset": "good", **PUSH},
+        {"one foot", "weight"},
+    ),
     "g1": ("walk", 1.6, {"robot": "g1"}, {"one foot"}),
     "talos": ("walk", 1.6, {"robot": "talos"}, {"one foot", "limbs near"}),
 }

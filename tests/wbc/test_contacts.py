@@ -87,3 +87,10 @@ def test_load_grows_after_touchdown_and_fades_before_lift_off(schedule):
     assert loading[-1] == 3 * WEIGHT
     assert np.abs(np.diff(loading)).max() < 0.2 * WEIGHT
     assert unloading[-1] < 0.03 * WEIGHT
+
+
+def test_contacts_that_an_estimator_decided_are_taken_whatever_the_forces_say(schedule):
+    schedule.update(swinging(0.0), FootSensing((900.0, 0.0), contact=(True, False)))
+    assert schedule.update(swinging(0.9), FootSensing((900.0, 300.0), contact=(True, False))).felt == (True, False)
+    state = schedule.update(swinging(0.9), FootSensing((900.0, 0.0), contact=(True, True)))
+    assert state.felt == (True, True) and state.active == (True, True)

@@ -18,7 +18,7 @@ FORCE, MOMENT = np.array([-30.0, 20.0, 0.0]), np.array([-9.0, -12.0, 5.0])
 LOAD = ExternalLoad(FORCE, MOMENT, 1.15)
 
 
-def observed(scale=1.0, pull=lambda time: np.zeros(3), duration=1.0, fault=None):
+def observed(scale=1.0, pull=lambda time: np.zeros(3), duration=1.0, fault=None, unsure=None):
     """Loads at every tick of a body, far from the origin, that its feet shake and that is pulled 0.8 m over its CoM."""
     rng, observer, loads = np.random.default_rng(5), LoadObserver(MASS, PERIOD), []
     mass, weight = scale * MASS, np.array([0.0, 0.0, -scale * MASS * GRAVITY])
@@ -40,7 +40,8 @@ def observed(scale=1.0, pull=lambda time: np.zeros(3), duration=1.0, fault=None)
             com=com, com_velocity=momentum / mass, angular_momentum=turning, sole_wrench_map=wrench_map
         )
         wrench = np.concatenate((felt, np.zeros(6))).reshape(2, 6)
-        loads.append(observer.update(terms, wrench if fault is None else fault(tick, wrench)))
+        deviation = () if unsure is None else (unsure(tick * PERIOD),)
+        loads.append(observer.update(terms, wrench if fault is None else fault(tick, wrench), *deviation))
     return loads
 
 
@@ -104,6 +105,35 @@ def test_readings_that_are_no_numbers_and_flight_tell_nothing():
     assert observed(pull=pull, fault=broken)[-1].force[0] == pytest.approx(40.0, abs=0.1)
     flying = observed(1.0, fault=lambda tick, wrench: 0.0 * wrench)
     assert {load.mass_scale for load in flying} == {1.0}
+
+
+def test_limits_widen_with_how_unsure_state_and_wrenches_are():
+    """What counts wholly where all is known counts not at all where it may be noise, and what is greater does."""
+
+    def lasting(force, deviation):
+        loads = observed(
+            pull=lambda time: np.array([force, 0.0, 0.0]), unsure=None if deviation is None else lambda _: deviation
+        )
+        return loads[-1].force[0]
+
+    assert lasting(15.0, None) == lasting(15.0, (0.0, 0.0)) == pytest.approx(15.0, abs=0.1)
+    assert lasting(15.0, (12.0, 1.0)) == 0.0
+    assert 0.0 < lasting(22.0, (12.0, 1.0)) < 22.0
+    assert lasting(40.0, (12.0, 1.0)) == pytest.approx(40.0, abs=0.1)
+
+
+def test_nothing_is_found_before_the_wrenches_are_known():
+    """Then what lasts is found after as many spans as ever, and the first ones have no say."""
+    start = 0.5
+    loads = observed(
+        1.1,
+        pull=lambda time: np.array([60.0, 0.0, 0.0]),
+        unsure=lambda time: (np.inf, np.inf) if time < start else (1.0, 1.0),
+        fault=lambda tick, wrench: wrench if tick * PERIOD >= start else 3.0 * wrench,
+    )
+    known = round((start + 0.24) / PERIOD)
+    assert all(load is NO_LOAD for load in loads[:known])
+    assert loads[-1].force[0] == pytest.approx(60.0, abs=0.1) and loads[-1].mass_scale == pytest.approx(1.1)
 
 
 def scaled(model, factor):

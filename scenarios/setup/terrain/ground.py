@@ -12,6 +12,7 @@ from surefoot.models.facts import RobotFacts
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.ground.tiles import TILE, Tiles
+from surefoot.planner.ground.tilt import FAR, Tilt
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import Array, FeetState, Footstep
@@ -39,9 +40,19 @@ LONG_FOOT = 0.3
 
 def tiles_of(keys: Scenario, size: Similarity) -> Tiles | None:
     """What lies in truth where a robot of a size believes in level ground; None when it is level."""
-    noise, length = keys.errors.ground_noise, size.length
-    room = 0.5 * max(keys.robot_options.foot_length or 0.0, LONG_FOOT * length) + keys.start.position_noise
-    return Tiles(noise, keys.seed, room, TILE * length) if noise else None
+    noise = keys.errors.ground_noise
+    return Tiles(noise, keys.seed, _level_room(keys, size), TILE * size.length) if noise else None
+
+
+def tilt_of(keys: Scenario, size: Similarity) -> Tilt | None:
+    """How ground is truly tilted where a robot of a size believes in level ground; None when it is not."""
+    pitch, roll = keys.errors.ground_pitch or 0.0, keys.errors.ground_roll or 0.0
+    return Tilt(pitch, roll, _level_room(keys, size), FAR * size.length) if pitch or roll else None
+
+
+def _level_room(keys: Scenario, size: Similarity) -> float:
+    """How far ground stays level beyond the centres of the feet at the start, which is known [m]."""
+    return 0.5 * max(keys.robot_options.foot_length or 0.0, LONG_FOOT * size.length) + keys.start.position_noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +71,7 @@ class Ground:
         standing_height: CoM over the soles at which the walk begins [m].
         tiles: what lies in truth where level ground is believed in; None when it is level.
         hidden: boxes that are there and that nobody believes in.
+        tilt: of the true ground where level ground is believed in; None when it is level.
     """
 
     kind: "TerrainKind"
@@ -73,6 +85,7 @@ class Ground:
     standing_height: float
     tiles: Tiles | None
     hidden: tuple[GroundError, ...]
+    tilt: Tilt | None = None
 
     @property
     def commanded(self) -> bool:
@@ -155,8 +168,9 @@ class Ground:
         Where the robot starts is known.
         """
         terrain, noise = self.terrain, self.keys.height_noise
-        if self.tiles is not None:
-            terrain = self.tiles.build(self.site)
+        other = self.tiles or self.tilt
+        if other is not None:
+            terrain = other.build(self.site)
         elif noise != 0.0:
             errors = generator(self.seed, Stream.HEIGHTS).uniform(-noise, noise, len(terrain.boxes))
             boxes = (
@@ -180,6 +194,9 @@ class Ground:
         if self.tiles is not None:
             other = (number for number, box in enumerate(true[:first]) if _top(box) != self.start_height)
             return {"errors.ground_noise": tuple(other), **found}
+        if self.tilt is not None:
+            given = {"errors.ground_pitch": self.tilt.pitch, "errors.ground_roll": self.tilt.roll}
+            return {name: (1, 2) for name, angle in given.items() if angle}
         if not self.keys.height_noise:
             return found
         pairs = enumerate(zip(true[:first], self.terrain.boxes, strict=True))
@@ -191,7 +208,7 @@ class Ground:
         rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         base = self.start_height
         center = rotation @ (error.x, error.y, 0.0) + (*self.origin, base + 0.5 * error.height)
-        return Box(center, 0.5 * np.array([error.length, error.width, error.height]), rotation)
+        return Box(center, 0.5 * np.array([error.length, error.width, error.height]), rotation, error.friction)
 
 
 def _top(box: Box) -> float:
@@ -263,7 +280,8 @@ def unreached(ground: Ground, what: str) -> Iterator[Problem]:
 
 
 def uneven_problems(ground: Ground) -> Iterator[Problem]:
-    """List errors.ground_noise where ground is not level, or under too many steps."""
+    """List errors.ground_noise where ground is not level, or under too many steps, and ground that is tilted beside."""
+    yield from _tilt_problems(ground)
     key, kind, steps = ("errors", "ground_noise"), ground.keys.kind, ground.gait.steps
     if ground.tiles is None:
         return
@@ -275,3 +293,14 @@ def uneven_problems(ground: Ground) -> Iterator[Problem]:
     elif steps > MOST_TILES or len(ground.tiles.cells(ground.site)) > MOST_TILES:
         what = f"errors.ground_noise under {steps} steps needs more than {MOST_TILES} tiles"
         yield Problem(key, what, "take fewer steps, or leave it out")
+
+
+def _tilt_problems(ground: Ground) -> Iterator[Problem]:
+    if ground.tilt is None:
+        return
+    name = "ground_pitch" if ground.tilt.pitch else "ground_roll"
+    if ground.keys.kind != "flat":
+        yield Problem(("errors", name), f"errors.{name} on terrain.kind {ground.keys.kind}", "use kind flat")
+    for other, there in (("ground_noise", ground.tiles is not None), ("ground", bool(ground.hidden))):
+        if there:
+            yield Problem(("errors", name), f"errors.{name} beside errors.{other}", "give one of them")

@@ -2,15 +2,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from surefoot.planner.geometry import frame_rotation, signed_distance, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.references.zmp_reference import present_support, support_table, zmp_reference
+from surefoot.planner.references.zmp_reference import hull_of, present_support, support_table, zmp_reference
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
+from surefoot.planner.types import Foot, Footstep
 from surefoot.polygon import convex_hull
 
 pytestmark = pytest.mark.unit
@@ -107,3 +110,11 @@ def test_moving_box_lies_in_the_support_polygon(setup, turn):
         corners = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]]) * reference.half_size[k]
         for corner in corners @ frame_rotation(steps.yaws[1]).T:
             assert signed_distance(hull, world[k] + corner) >= -1e-9
+
+
+@given(yaw=st.floats(-4.0, 4.0), tilt=st.floats(-0.3, 0.3), across=st.floats(-0.3, 0.3))
+def test_hull_of_a_sole_is_its_corners_from_the_leftmost_one_on(yaw, tilt, across):
+    normal = np.array([np.sin(tilt), np.sin(across), 1.0])
+    place = Footstep(Foot.LEFT, np.array([3.0, -2.0, 0.1]), yaw, normal / np.linalg.norm(normal))
+    corners = sole_corners(place, np.array([0.11, 0.055]))
+    np.testing.assert_array_equal(hull_of(corners), convex_hull(corners))

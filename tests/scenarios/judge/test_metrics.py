@@ -23,7 +23,9 @@ NAMES = (
     "joint_limit_margin_min joint_speed_ratio_max knee_angle_mean cost_of_transport speed_mean "
     "path_length displacement heading_change com_height_range estimation_error_rms planner_infeasible_fraction "
     "dcm_estimation_error_rms planner_time wbc_time controller_time deadlines_missed "
-    "real_time_factor memory_growth qp_failures wbc_fallbacks log_bytes"
+    "real_time_factor memory_growth qp_failures wbc_fallbacks log_bytes "
+    "com_estimation_error_rms velocity_estimation_error_rms tilt_estimation_error_rms "
+    "estimation_drift estimation_yaw estimation_nees contact_estimation_error"
 )
 
 
@@ -46,6 +48,7 @@ def test_all_names_of_the_contract_are_there(metrics, motion):
         "waypoints_missed",
         "stair_edge_margin_min",
         "memory_growth",
+        *NAMES.split()[-7:],
     ]
     assert all(OWN[name].fits(value) for name, value in found.items())
 

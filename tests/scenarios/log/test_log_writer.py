@@ -23,7 +23,15 @@ pytestmark = pytest.mark.unit
 
 SIZES = channels.Sizes(nj=21, nq=28, nv=27, horizon=50)
 ALL = (
-    *(channels.measurement, channels.truth, channels.estimate, channels.contact, channels.reference, channels.plan),
+    *(
+        channels.measurement,
+        channels.readings,
+        channels.truth,
+        channels.estimate,
+        channels.contact,
+        channels.reference,
+        channels.plan,
+    ),
     *(channels.footsteps, channels.footstep, channels.wbc, channels.torque, channels.timing),
 )
 SPEC = ChannelSpec("/x", "X", (FieldSpec("a"), FieldSpec("b", (3,)), FieldSpec("n", kind="int")))

@@ -22,7 +22,10 @@ def walk(*settings):
 
 @pytest.mark.parametrize(
     "nothing",
-    ["errors.link_mass_noise=0", "errors.torso_com=[0, 0, 0]", "errors.payload={mass: 0, body: pelvis}", "wbc={}"],
+    [
+        *("errors.link_mass_noise=0", "errors.torso_com=[0, 0, 0]", "errors.payload={mass: 0, body: pelvis}", "wbc={}"),
+        *("errors.torso_mass=1", "motors={}", "motors={delay: 0.002}"),
+    ],
 )
 def test_no_error_leaves_the_robot_that_is_believed_in(nothing):
     found = walk(nothing)
@@ -100,3 +103,10 @@ def test_a_controller_counts_on_the_friction_that_it_is_given_whatever_the_groun
     assert relative.friction == pytest.approx(0.8)
     with pytest.raises(ScenarioError, match=r"a believed friction beside errors\.friction; give one of them"):
         walk("wbc.friction=0.7", "errors.friction=0.1")
+
+
+def test_the_torso_is_believed_to_be_heavier_by_the_factor():
+    """Belief over truth, of its own body alone."""
+    plain, found = walk(), walk("errors.torso_mass=1.25")
+    torso = float(plain.robot.mjcf.split('<body name="torso"')[1].split('mass="')[1].split('"')[0])
+    assert plain.true_mass - found.true_mass == pytest.approx(torso * (1.0 - 1.0 / 1.25))

@@ -38,7 +38,9 @@ def test_bounds_are_shown_in_the_unit_of_the_value():
 
 
 def test_lengths_are_in_millimetres():
-    assert all(shown_unit(name) == "mm" for name in OWN if name.endswith("error_rms") or name.startswith("foot"))
+    lengths = [name for name, one in OWN.items() if one.unit == "m" and name.startswith(("foot", "zmp", "com"))]
+    assert lengths
+    assert {shown_unit(name) for name in lengths} == {"mm"}
 
 
 @pytest.mark.parametrize("place", [{}, {"COLUMNS": "80"}, {"FORCE_COLOR": "1", "TERM": "dumb"}])

@@ -1,0 +1,92 @@
+"""Metrics of an estimator that senses: by what it is wrong, and whether it knows that.
+
+Where a robot is in the world and where it looks no sensor tells. So errors are those from the stance foot, turned to
+the true heading, as the log has them.
+"""
+
+import numpy as np
+
+from surefoot.planner.types import GRAVITY
+from surefoot.scenarios.judge.balance import rms
+from surefoot.scenarios.judge.digest import Array, RunView
+from surefoot.scenarios.judge.metric import DEG, MM, OF_THE_TIME, metric
+
+SETTLED = 0.5
+"""Time after which an estimate is judged: what it starts with is told by the encoders alone [s]."""
+
+_TOPIC = "/estimation"
+_PARTS = ("com", "com_velocity", "tilt", "sole_height")
+
+
+@metric(unit="m", shown=MM, size=3, reads={_TOPIC: ("com_error",)}, body=True, least=0.0)
+def com_estimation_error_rms(run: RunView) -> list[float] | None:
+    """Estimated minus true CoM, each from the stance foot, RMS, x, y and z [m]."""
+    return rms(_settled(run, "com_error"))
+
+
+@metric(unit="m/s", size=3, reads={_TOPIC: ("com_velocity_error",)}, body=True, least=0.0)
+def velocity_estimation_error_rms(run: RunView) -> list[float] | None:
+    """Estimated minus true CoM velocity, RMS, x, y and z [m/s]."""
+    return rms(_settled(run, "com_velocity_error"))
+
+
+@metric(unit="rad", shown=DEG, reads={_TOPIC: ("tilt_error",)}, body=True, least=0.0)
+def tilt_estimation_error_rms(run: RunView) -> float | None:
+    """Angle by which the estimated base is tilted against the true one, RMS [rad]."""
+    found = rms(np.linalg.norm(_settled(run, "tilt_error"), axis=1)[:, None])
+    return found[0] if found else None
+
+
+@metric(shown=(1e2, "% of the way"), reads={_TOPIC: ("place_error",), "/truth": ("com",)}, body=True, least=0.0)
+def estimation_drift(run: RunView) -> float | None:
+    """How far the stance foot is estimated from where it is in the end, over the way of the CoM [-]."""
+    com = run.field("/truth", "com")[:, :2]
+    way = float(np.linalg.norm(np.diff(com, axis=0), axis=1).sum())
+    # Of a robot that stands or steps on the spot a share of its way says nothing.
+    if way < LEAST_WAY * run.constants.similarity.length:
+        return None
+    return float(np.linalg.norm(run.field(_TOPIC, "place_error")[-1, :2])) / way
+
+
+LEAST_WAY = 0.5
+"""Shortest way of the CoM of which a drift is a share [m]."""
+
+
+@metric(unit="rad", shown=DEG, reads={_TOPIC: ("yaw_error",)}, body=True, least=0.0)
+def estimation_yaw(run: RunView) -> float | None:
+    """By how much the estimated heading of the base is off in the end [rad]."""
+    return abs(float(run.field(_TOPIC, "yaw_error")[-1]))
+
+
+_NEES_READS = {_TOPIC: tuple(f"{name}_{kind}" for name in _PARTS for kind in ("error", "deviation"))}
+
+
+@metric(parts=_PARTS, reads=_NEES_READS, body=True, least=0.0)
+def estimation_nees(run: RunView) -> dict[str, float] | None:
+    """Mean square of errors over deviations, each number alone: 1 of an estimator that knows how wrong it is [-]."""
+    found = {}
+    for name in _PARTS:
+        error, deviation = _settled(run, f"{name}_error"), _settled(run, f"{name}_deviation")
+        sound = np.isfinite(error).all(axis=1) & (deviation > 0.0).all(axis=1)
+        if not sound.any():
+            return None
+        found[name] = float(np.mean((error[sound] / deviation[sound]) ** 2))
+    return found
+
+
+@metric(shown=OF_THE_TIME, reads={_TOPIC: ("contact",), "/contact": ("normal_force",)}, body=True, least=0.0, most=1.0)
+def contact_estimation_error(run: RunView) -> float:
+    """Share of ticks with a foot that is said to stand and carries nothing, or that carries and is not said to [-]."""
+    force, said = run.field("/contact", "normal_force"), run.field(_TOPIC, "contact") != 0
+    weight = run.constants.mass * GRAVITY
+    wrong = (said & (force <= 0.0)) | (~said & (force > CARRYING * weight))
+    return float(np.mean(wrong.any(axis=1)))
+
+
+CARRYING = 0.05
+"""Share of the weight that a foot carries without doubt [-]."""
+
+
+def _settled(run: RunView, name: str) -> Array:
+    values = run.field(_TOPIC, name)
+    return values[run.time >= SETTLED * run.constants.similarity.time]

@@ -1,0 +1,35 @@
+"""Writes what the sensors have said to an estimator into the log."""
+
+import numpy as np
+
+from surefoot.readings import Readings
+from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.log.rows import RowLayout
+from surefoot.scenarios.record import channels
+from surefoot.scenarios.record.channels import Sizes
+
+_IMU = ("angular_velocity", "mean_angular_velocity", "specific_force")
+_VECTORS = ("joint_position", "joint_velocity", "joint_torque", *_IMU, "wrench_left", "wrench_right")
+_NUMBERS = ("joint_age", "imu_age", "wrench_age", "joint_fresh", "imu_fresh", "wrench_fresh")
+
+
+class ReadingsRecorder:
+    """The channel of the readings, one message per control tick; only of a run whose estimator reads any."""
+
+    def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
+        """Open the channel."""
+        channel = writer.channel(channels.readings(sizes))
+        self._row = writer.rows(RowLayout(((channel, _VECTORS),), ((channel, _NUMBERS),)))
+        self._no_velocity, self._no_wrench = np.full(sizes.nj, np.nan), np.full(12, np.nan)
+
+    def tick(self, time_ns: int, readings: Readings) -> None:
+        """The readings of a control tick [ns]; what no sensor says is NaN."""
+        r, feet, speeds = readings, readings.wrench, readings.joint_velocity
+        joint, imu = r.joint_position, r.specific_force
+        age, fresh = (np.nan, False) if feet is None else (feet.age, feet.fresh)
+        numbers = (joint.age, imu.age, age, joint.fresh, imu.fresh, fresh)
+        self._row.append(
+            time_ns, numbers, joint.values, self._no_velocity if speeds is None else speeds.values,
+            r.joint_torque.values, *(getattr(r, name).values for name in _IMU),
+            self._no_wrench if feet is None else feet.values.ravel(),
+        )  # fmt: skip

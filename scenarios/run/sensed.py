@@ -1,0 +1,181 @@
+"""The estimator of a scenario's sensors: what it counts on of them, and how it is asked, told and recorded."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from surefoot.errors import ParameterError
+from surefoot.guard import Guard, MisfitError
+from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.types import RobotDescription
+from surefoot.planner.types import CentroidalState, FeetState
+from surefoot.readings import Readings
+from surefoot.scenarios.setup.parts import ESTIMATE, guarded
+from surefoot.scenarios.setup.walk import Walk
+from surefoot.sim.measurement import Measurement
+from surefoot.sim.readings import SensorSuite
+from surefoot.sim.sensor_errors import SensorErrors
+from surefoot.sim.world import World
+from surefoot.similarity import GRAVITY
+from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
+from surefoot.wbc.estimation.estimator import Footing, SensedState
+from surefoot.wbc.estimation.kinematics import ImuMount
+from surefoot.wbc.estimation.parameters import ContactDetection, EstimatorParameters, GroundNoise, SensorNoise
+from surefoot.wbc.estimation.rotations import from_quaternion
+from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
+
+_OPTIONS = ("sensing", "options")
+
+SWAY, SWAY_TIME = (0.3, 1.0), 0.1
+"""Angular velocity and acceleration of a walking pelvis, RMS, and how long they keep their sign [rad/s, m/s^2, s]."""
+
+
+def sensed_state(walk: Walk, **options: Any) -> SensedState:
+    """An invariant Kalman filter of IMU, encoders and feet.
+
+    It knows of a walk's sensors no more than their data sheets say.
+
+    Args:
+        walk: what is run.
+        options: fields of `EstimatorParameters`, groups as mappings.
+
+    Raises:
+        ParameterError: there is no such option, or its value is out of range.
+    """
+    robot, ground, size = walk.robot, walk.ground, walk.size
+    period, stance = 1.0 / walk.rates.control, ground.stance
+    usual = EstimatorParameters(
+        sensor_noise(walk.hardware.sensors, period), size.scaled(GroundNoise()), size.scaled(ContactDetection())
+    )
+
+    def at(x: float, y: float) -> tuple[float, Array]:
+        return float(ground.terrain.height(x, y)), np.asarray(ground.terrain.normal(x, y))
+
+    half_size = 0.5 * robot.sole_length, 0.5 * robot.sole_width
+    footing = Footing(stance.position.copy(), np.array(stance.yaw), half_size, at)
+    parameters = _with(usual, options, _OPTIONS)
+    return SensedState(pinocchio_model(robot), robot.sole_sites, imu_mount(robot), footing, period, parameters)
+
+
+def imu_mount(robot: RobotDescription) -> ImuMount:
+    """Where a robot's IMU is, in the estimator's terms."""
+    place = robot.imu
+    turned = from_quaternion(place.quaternion)
+    return ImuMount(place.body, place.position, tuple(map(tuple, turned.tolist())))
+
+
+def sensor_noise(errors: SensorErrors, period: float) -> SensorNoise:
+    """What an estimator counts on of sensors with these errors.
+
+    Args:
+        errors: of the sensors.
+        period: control period [s].
+    """
+    rounding = math.tau / 2**errors.encoder_bits / math.sqrt(12.0) if errors.encoder_bits else 0.0
+    root = math.sqrt(period)
+    # An IMU that is mounted wrongly takes turns and accelerations for ones about other axes.
+    turning, pushing = (errors.imu_misalignment * size * math.sqrt(SWAY_TIME) for size in SWAY)
+    return SensorNoise(
+        gyro_density=math.hypot(errors.gyro_density, errors.gyro_noise * root, turning),
+        gyro_bias=errors.gyro_bias,
+        gyro_walk=errors.gyro_walk,
+        accelerometer_density=math.hypot(errors.accelerometer_density, errors.accelerometer_noise * root, pushing),
+        # Likewise a share of gravity for an acceleration.
+        accelerometer_bias=math.hypot(errors.accelerometer_bias, GRAVITY * errors.imu_misalignment),
+        accelerometer_walk=errors.accelerometer_walk,
+        encoder=math.hypot(errors.encoder_noise, rounding),
+        encoder_offset=errors.encoder_offset,
+        joint_torque=errors.joint_torque_noise,
+        wrench_force=errors.wrench_noise,
+        wrench_moment=errors.moment_noise,
+        wrench_bias=errors.wrench_bias,
+    )
+
+
+def _with(parameters: Any, options: Mapping[str, Any], key: tuple[str, ...]) -> Any:
+    """A dataclass with some of its fields replaced, those that are groups by mappings of theirs."""
+    named = {entry.name: getattr(parameters, entry.name) for entry in fields(parameters)}
+    changed = {}
+    for name, value in options.items():
+        at = (*key, name)
+        if name not in named:
+            raise ParameterError(at, f"unknown option '{name}'", f"choose from {', '.join(named)}")
+        group = named[name]
+        if is_dataclass(group) and not isinstance(value, Mapping):
+            raise ParameterError(at, f"{name} is {value!r}", "give its numbers by name")
+        changed[name] = _with(group, value, at) if is_dataclass(group) else value
+    try:
+        return replace(parameters, **changed)
+    except ParameterError as error:
+        raise ParameterError((*key, error.key[-1]), error.what, error.right) from None
+
+
+class Senses:
+    """An estimator of either kind, asked the same way: one that is given the measurement, or one that senses.
+
+    Args:
+        estimator: made of the walk, not yet behind its guard.
+        guard: of its package.
+        world: whose sensors are read.
+        walk: what is run.
+
+    Attributes:
+        is_truth: whether it hands on the true state.
+        suite: sensors that it reads; None where it is given the measurement.
+        readings: the last that it was given; there are none of one that is given the measurement.
+
+    Raises:
+        MisfitError: it is of neither kind.
+    """
+
+    def __init__(self, estimator: Any, guard: Guard, world: World, walk: Walk) -> None:
+        senses, told = callable(getattr(estimator, "sense", None)), callable(getattr(estimator, "told", None))
+        if not senses and not callable(getattr(estimator, "estimate", None)):
+            raise MisfitError("has neither a method sense nor a method estimate")
+        part = guarded(estimator, guard, ESTIMATE)
+        self.is_truth = not senses and bool(part.is_truth)
+        self.suite: SensorSuite | None = None
+        self.readings: Readings
+        if senses:
+            self.suite = SensorSuite(world, walk.hardware.sensors, walk.rates.control, walk.seed)
+            self._sense = part.sense
+        else:
+            self._estimate = part.estimate
+        self._told: Callable[[Planned], None] | None = part.told if senses and told else None
+
+    def __call__(self, measurement: Measurement, tick: int) -> Estimate:
+        """The estimate of a tick."""
+        if self.suite is None:
+            return Estimate(self._estimate(measurement))
+        self.readings = readings = self.suite.read(measurement, tick)
+        estimate: Estimate = self._sense(readings)
+        return estimate
+
+    def told(self, reference: WbcReference, report: WbcReport) -> None:
+        """Tell the estimator what was decided, if it wants to know."""
+        if self._told is not None:
+            self._told(Planned(report.acceleration.copy(), report.torque.copy(), report.active, reference.rolling_foot))
+
+
+def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool) -> FootSensing:
+    """What the feet feel.
+
+    Args:
+        estimate: of this tick.
+        wrench: of the soles, shape (2, 6) [N, N·m].
+        wanted: whether a lasting force is to be found.
+    """
+    forces, sure = (float(wrench[0, 2]), float(wrench[1, 2])), estimate.deviation
+    if sure is None:
+        return FootSensing(forces, wrench if wanted else None, estimate.contact)
+    return FootSensing(forces, wrench if wanted else None, estimate.contact, (sure.force, sure.moment))
+
+
+def unsure(deviation: Deviation, state: CentroidalState, feet: FeetState) -> tuple[CentroidalState, FeetState]:
+    """State and feet with how sure they are."""
+    left, right = deviation.sole_height.tolist()
+    com, velocity = float(np.hypot(*deviation.com[:2])), float(np.hypot(*deviation.com_velocity[:2]))
+    return replace(state, deviation=(com, velocity)), replace(feet, height_deviation=(left, right))

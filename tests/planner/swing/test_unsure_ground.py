@@ -1,0 +1,49 @@
+"""A swing to ground whose height is not known well: aimed below it, and faster down."""
+
+import numpy as np
+import pytest
+
+from surefoot.planner.parameters import GroundSearch, PlannerParameters
+from surefoot.planner.swing.trajectory import SwingCourse, start_swing
+from surefoot.planner.types import Foot
+
+pytestmark = pytest.mark.unit
+
+POSE, PLACE = np.array([1.0, 0.1, 0.0, 0.0, 0.0, 0.0]), np.array([1.4, 0.15, 0.0, 0.2, 0.0, 0.0])
+COURSE = SwingCourse(0.5, 0.0, 1.0, 0.05)
+
+
+def swing(deviation, height=0.0):
+    place = PLACE + np.array([0.0, 0.0, height, 0.0, 0.0, 0.0])
+    return start_swing(Foot.LEFT, POSE, place, 2.0, 40, COURSE, PlannerParameters(), deviation), place
+
+
+def test_where_the_height_is_known_nothing_changes():
+    usual = GroundSearch()
+    assert usual.unsure(0.0) == (usual, 0.0)
+    trajectory, place = swing(0.0)
+    np.testing.assert_array_equal(trajectory.target, place)
+    assert trajectory.search == usual and trajectory.aim == 0.0
+
+
+def test_the_search_is_the_faster_the_less_sure_the_height_is_up_to_a_bound():
+    usual = GroundSearch()
+    found = [usual.unsure(deviation) for deviation in (2e-4, 1e-3, 1.0)]
+    speeds, aims = [search.touchdown_speed for search, _ in found], [aim for _, aim in found]
+    assert usual.touchdown_speed < speeds[0] < speeds[1] < speeds[2] < 0.1
+    assert 0.0 < aims[0] < aims[1] < aims[2] < 0.004
+    assert usual.unsure(1e-3)[0].touchdown_speed == pytest.approx(0.05, abs=0.005)
+    assert usual.unsure(1e-3)[0].acceleration == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.1, -0.1])
+def test_a_footstep_is_aimed_below_the_ground_and_stays_where_it_is_planned(height):
+    sure, place = swing(0.0, height)
+    trajectory, _ = swing(1e-3, height)
+    np.testing.assert_allclose(trajectory.footstep, place[:3], atol=1e-12)
+    assert trajectory.target[2] == pytest.approx(place[2] - trajectory.aim) and trajectory.aim > 0.0
+    # It comes no less high.
+    top = max(trajectory.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.75, 401))
+    assert top == pytest.approx(max(sure.evaluate(t)[0, 2] for t in np.linspace(2.0, 2.75, 401)), abs=1e-7)
+    moved = trajectory.retargeted(2.2, trajectory.target + np.array([0.05, 0.0, 0.02, 0.0, 0.0, 0.0]))
+    np.testing.assert_allclose(moved.footstep, place[:3] + np.array([0.05, 0.0, 0.02]), atol=1e-12)

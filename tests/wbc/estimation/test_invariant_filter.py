@@ -1,0 +1,249 @@
+"""Laws of the invariant filter: its error dynamics, what it cannot observe, and whether it knows how wrong it is."""
+
+from copy import deepcopy
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from surefoot.wbc.estimation.invariant_filter import (
+    FIXED,
+    FOOT,
+    FORCE,
+    GYRO,
+    OFFSETS,
+    POSITION,
+    SOLE,
+    TURN,
+    VELOCITY,
+    InvariantFilter,
+    Stand,
+)
+from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
+from surefoot.wbc.estimation.rotations import exponential, from_quaternion, hat, logarithm, quaternion
+
+pytestmark = pytest.mark.unit
+
+PERIOD, JOINTS = 0.002, 4
+NOISE = SensorNoise(accelerometer_density=5e-3, encoder=1e-4, encoder_offset=1e-3)
+GROUND = GroundNoise(creep=5e-4, rocking=5e-4, model=0.0, light=1.0, landing=5e-4, landing_turn=5e-4)
+
+
+def somewhere(rng):
+    """A state of the filter far from the origin."""
+    rotations = [exponential(rng.normal(size=3)) for _ in range(3)]
+    return Stand(
+        rotations[0], rng.normal(scale=3.0, size=(4, 3)), np.stack(rotations[1:]), *rng.normal(size=(2, 3)),
+        rng.normal(size=JOINTS),
+    )  # fmt: skip
+
+
+def error(true, believed):
+    """The error of the right, in the order of the filter."""
+    E = true.R @ believed.R.T
+    columns = true.columns - believed.columns @ E.T
+    turns = [logarithm(true.Z[k] @ believed.Z[k].T) for k in (0, 1)]
+    rest = true.gyro_bias - believed.gyro_bias, true.force_bias - believed.force_bias, true.offsets - believed.offsets
+    return np.concatenate((logarithm(E), columns.ravel(), *turns, *rest))
+
+
+def propagated(stand, rate, force):
+    """The state after a period."""
+    filter_ = InvariantFilter(deepcopy(stand), NOISE, GROUND, PERIOD)
+    filter_.propagate(rate, force, PERIOD)
+    return filter_.stand
+
+
+def test_rotations_are_those_of_pinocchio():
+    rng = np.random.default_rng(1)
+    for size in (1e-12, 1e-3, 1.0, 3.0):
+        vector = size * rng.normal(size=3) / 2.0
+        R = exponential(vector)
+        np.testing.assert_allclose(R, pin.exp3(vector), atol=1e-14)
+        np.testing.assert_allclose(logarithm(R), pin.log3(R), atol=1e-9)
+        xyzw = np.array(quaternion(R))
+        np.testing.assert_allclose(from_quaternion((xyzw[3], *xyzw[:3])), R, atol=1e-14)
+        np.testing.assert_allclose(hat(vector) @ [1.0, 2.0, 3.0], np.cross(vector, [1.0, 2.0, 3.0]))
+    for turned in (np.diag([1.0, -1.0, -1.0]), np.diag([-1.0, 1.0, -1.0]), np.diag([-1.0, -1.0, 1.0])):
+        xyzw = np.array(quaternion(turned))
+        np.testing.assert_allclose(from_quaternion((xyzw[3], *xyzw[:3])), turned, atol=1e-14)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_errors_go_on_as_the_transition_says_whatever_the_state(seed):
+    """Group-affine: but for the columns of the biases the transition of a small error knows no state."""
+    rng = np.random.default_rng(seed)
+    stand, rate, force = somewhere(rng), rng.normal(size=3), 10.0 * rng.normal(size=3)
+    filter_ = InvariantFilter(deepcopy(stand), NOISE, GROUND, PERIOD)
+    F, _ = filter_.transition(PERIOD)
+    other, _ = InvariantFilter(somewhere(rng), NOISE, GROUND, PERIOD).transition(PERIOD)
+    np.testing.assert_array_equal(F[:, :21], other[:, :21])
+    assert np.abs(F[:, GYRO] - other[:, GYRO]).max() > 1e-4
+    before = propagated(stand, rate, force)
+    for column in range(FIXED + JOINTS):
+        x = np.zeros(FIXED + JOINTS)
+        x[column] = 1e-6
+        moved = deepcopy(stand)
+        moved.move(x)
+        after = error(propagated(moved, rate, force), before) / 1e-6
+        # Within a period the rotation turns by what the biases' columns leave out.
+        within = 2.0 * PERIOD**2 * (np.linalg.norm(force) + 10.0) + 1e-4 * PERIOD * np.abs(stand.columns).max()
+        np.testing.assert_allclose(after, F[:, column], atol=within + 2e-5)
+
+
+def test_no_reading_tells_the_heading_or_the_place():
+    """What is added to the covariance along these is there afterwards, which a tilt that is added is not."""
+    rng = np.random.default_rng(3)
+    J = rng.normal(size=(2, 6, JOINTS))
+
+    def weighed(direction):
+        filter_ = InvariantFilter(somewhere(np.random.default_rng(3)), NOISE, GROUND, PERIOD)
+        base = np.diag(np.full(FIXED + JOINTS, 1e-6))
+        filter_.P = base + np.outer(direction, direction)
+        filter_.weigh(J)
+        return filter_.P, filter_._gain
+
+    everything = np.zeros(FIXED + JOINTS)
+    without, gain = weighed(everything)
+    for axis in range(4):
+        direction = everything.copy()
+        if axis < 3:
+            for where in (POSITION, *FOOT):
+                direction[where.start + axis] = 0.1
+        else:
+            for where in (TURN, *SOLE):
+                direction[where.stop - 1] = 0.1
+        found, changed = weighed(direction)
+        np.testing.assert_allclose(found, without + np.outer(direction, direction), atol=1e-9)
+        np.testing.assert_allclose(changed, gain, atol=1e-6)
+    tilted = everything.copy()
+    tilted[TURN.start] = 0.1
+    found, _ = weighed(tilted)
+    assert found[0, 0] < 0.1 * 0.1**2
+
+
+def squares(sensors, seeds=8, duration=2.0):
+    """Mean square of errors over deviations of velocity, tilt and place from the stance foot, of synthetic steps."""
+    found = []
+    for seed in range(seeds):
+        rng = np.random.default_rng(seed)
+        found.append(_walked(rng, sensors, duration))
+    return np.mean(found, axis=0)
+
+
+def _walked(rng, sensors, duration):
+    root = 1.0 / np.sqrt(PERIOD)
+    bias, pull = NOISE.gyro_bias * rng.normal(size=3), NOISE.accelerometer_bias * rng.normal(size=3)
+    offsets = NOISE.encoder_offset * rng.normal(size=JOINTS)
+    R, p, v = np.eye(3), np.array([0.0, 0.0, 1.0]), np.zeros(3)
+    feet, soles = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.stack((np.eye(3), np.eye(3)))
+    shape = rng.normal(size=(3, 2, 6, JOINTS))
+    # At first the feet are told by offsets that the filter does not know of.
+    stand = Stand(R, np.vstack((v, p, feet)), soles, np.zeros(3), np.zeros(3), np.zeros(JOINTS))
+    filter_ = InvariantFilter(deepcopy(stand), sensors, GROUND, PERIOD)
+
+    def seen(time):
+        J = 0.3 * (shape[0] + np.sin(2.0 * time) * shape[1] + np.cos(3.0 * time) * shape[2])
+        off = offsets - filter_.stand.offsets
+        noise = NOISE.encoder * rng.normal(size=JOINTS)
+        y = np.array([R.T @ (feet[k] - p) + J[k, :3] @ (off + noise) for k in (0, 1)])
+        Y = np.array([exponential(J[k, 3:] @ (off + noise)) @ R.T @ soles[k] for k in (0, 1)])
+        return y, Y, J
+
+    y, Y, J = seen(0.0)
+    normals = np.tile([0.0, 0.0, 1.0], (2, 1))
+    filter_.begin(y, Y, J, normals, 0.1)
+    found, standing = [], [True, True]
+    for tick in range(1, round(duration / PERIOD)):
+        time = tick * PERIOD
+        rate = 0.3 * np.array([np.sin(3.0 * time), np.cos(2.0 * time), np.sin(time)])
+        acceleration = np.array([np.sin(2.0 * time), np.cos(3.0 * time), 0.5 * np.sin(5.0 * time)])
+        half = exponential(0.5 * PERIOD * rate)
+        force = (R @ half).T @ (acceleration + np.array([0.0, 0.0, 9.81]))
+        p, v, R = p + PERIOD * v + 0.5 * PERIOD**2 * acceleration, v + PERIOD * acceleration, R @ half @ half
+        filter_.propagate(
+            rate + bias + NOISE.gyro_density * root * rng.normal(size=3),
+            force + pull + NOISE.accelerometer_density * root * rng.normal(size=3),
+            PERIOD,
+        )
+        for k in (0, 1):
+            if standing[k]:
+                feet[k] += GROUND.creep * np.sqrt(PERIOD) * rng.normal(size=3)
+                soles[k] = exponential(GROUND.rocking * np.sqrt(PERIOD) * rng.normal(size=3)) @ soles[k]
+        y, Y, J = seen(time)
+        swing = (tick // 150) % 2 if tick % 150 < 110 else -1
+        changed = [k != swing for k in (0, 1)] != standing
+        if changed or tick % 5 == 0:
+            filter_.spread((0.5, 0.5))
+            for k in (0, 1):
+                if k == swing and standing[k]:
+                    filter_.lift(k)
+                    feet[k] += [0.1, 0.0, 0.0]
+                if k != swing and not standing[k]:
+                    y, Y, J = seen(time)
+                    place, turn = GROUND.landing, GROUND.landing_turn
+                    filter_.land(k, y[k], Y[k], J[k], None, place, turn)
+                    feet[k] += place * rng.normal(size=3)
+                    soles[k] = exponential(turn * rng.normal(size=3)) @ soles[k]
+            standing = [k != swing for k in (0, 1)]
+            y, Y, J = seen(time)
+            filter_.weigh(J)
+        filter_.correct(y, Y)
+        if tick % 100 == 0 and time > 0.5:
+            s = filter_.stand
+            E = R @ s.R.T
+            x = np.concatenate((logarithm(E)[:2], v - E @ s.v))
+            P = filter_.P[np.ix_([0, 1, 3, 4, 5], [0, 1, 3, 4, 5])]
+            found.append((x @ np.linalg.solve(P, x) / 5.0, x[2:] @ np.linalg.solve(P[2:, 2:], x[2:]) / 3.0))
+    return np.mean(found, axis=0)
+
+
+def test_errors_are_as_large_as_the_filter_says():
+    """From both sides; a filter that is told too little is far too sure, one that is told too much not sure enough."""
+    both = squares(NOISE)
+    assert (both > 0.5).all() and (both < 2.0).all(), both
+    sure = squares(replace(NOISE, accelerometer_density=2e-4, encoder=1e-5, encoder_offset=1e-5), seeds=2)
+    assert (sure > 4.0).all(), sure
+    timid = squares(replace(NOISE, accelerometer_density=5e-2, encoder=1e-3), seeds=2)
+    assert timid[1] < 0.3, timid
+
+
+def test_encoder_zeros_are_found_as_far_as_steps_tell_them():
+    """Their deviation shrinks, and the offsets come nearer."""
+    rng = np.random.default_rng(2)
+    filter_ = InvariantFilter(somewhere(rng), NOISE, GROUND, PERIOD)
+    before = np.diag(filter_.P)[OFFSETS].copy()
+    J = rng.normal(size=(2, 6, JOINTS))
+    for k in (0, 1):
+        filter_.land(k, rng.normal(size=3), np.eye(3), J[k], None, 1e-4, 1e-4)
+    filter_.weigh(rng.normal(size=(2, 6, JOINTS)))
+    assert (np.diag(filter_.P)[OFFSETS] < 0.5 * before).all()
+
+
+def test_of_two_feet_that_slipped_is_named():
+    """A foot that is 2 cm away from where it stood is told from one that is not; noise alone is none."""
+    for foot in (0, 1):
+        rng = np.random.default_rng(4)
+        filter_ = InvariantFilter(somewhere(rng), NOISE, GROUND, PERIOD)
+        s, J = filter_.stand, 0.1 * rng.normal(size=(2, 6, JOINTS))
+        y = np.array([s.R.T @ (s.d[k] - s.p) for k in (0, 1)])
+        Y = np.array([s.R.T @ s.Z[k] for k in (0, 1)])
+        for k in (0, 1):
+            filter_.land(k, y[k], Y[k], J[k], None, 1e-4, 1e-4)
+        filter_.weigh(J)
+        assert filter_.correct(y + 1e-5 * rng.normal(size=(2, 3)), Y) is None
+        y[foot, 0] += 0.02
+        assert filter_.correct(y, Y) == foot
+
+
+def test_a_height_that_is_known_moves_the_robot_there():
+    rng = np.random.default_rng(6)
+    filter_ = InvariantFilter(somewhere(rng), NOISE, GROUND, PERIOD)
+    filter_.P[POSITION, POSITION] += 1e-4 * np.eye(3)
+    y = np.array([0.1, 0.2, -0.9])
+    s = filter_.stand
+    height = float((s.p + s.R @ y)[2]) - 0.01
+    filter_.land(0, y, np.eye(3), np.zeros((6, JOINTS)), (height, 1e-4), 1e-5, 1e-5)
+    assert filter_.stand.d[0, 2] == pytest.approx(height, abs=2e-4)
+    assert filter_.P[VELOCITY, VELOCITY].max() > 0.0 and filter_.P[FORCE, FORCE].max() > 0.0

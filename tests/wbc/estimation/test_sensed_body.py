@@ -1,0 +1,93 @@
+"""Kinematics from an IMU that may sit anywhere."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
+from surefoot.wbc.estimation.rotations import exponential
+
+pytestmark = pytest.mark.unit
+
+TURNED = tuple(map(tuple, exponential(np.array([0.3, -0.2, 0.9])).tolist()))
+MOUNTS = [ImuMount(), ImuMount(None, (0.05, 0.01, -0.08), TURNED), ImuMount("torso", (0.02, 0.03, 0.2), TURNED)]
+
+
+def moving(robot, seed=1):
+    rng = np.random.default_rng(seed)
+    q = pin.integrate(robot.model, robot.standing, 0.3 * rng.normal(size=robot.nv))
+    return q, rng.normal(size=robot.nv)
+
+
+def imu(robot, mount, q, v):
+    """Pose and velocity of an IMU in the world, by Pinocchio."""
+    model, data = robot.model, robot.model.createData()
+    pin.forwardKinematics(model, data, q, v)
+    joint, placement = 1, pin.SE3(np.array(mount.rotation), np.array(mount.position))
+    if mount.body:
+        frame = model.frames[model.getFrameId(mount.body)]
+        joint, placement = frame.parentJoint, frame.placement * placement
+    return data.oMi[joint] * placement, placement.actInv(data.v[joint])
+
+
+@pytest.mark.parametrize("mount", MOUNTS)
+def test_the_base_follows_from_the_imu(robot, mount):
+    q, v = moving(robot)
+    pose, motion = imu(robot, mount, q, v)
+    body = SensedBody(robot.model, robot.frames.soles, mount)
+    body.update(q[7:])
+    R, p, velocity = body.base(
+        pose.rotation, pose.translation, pose.rotation @ motion.linear, motion.angular, q[7:], v[6:]
+    )
+    base = pin.XYZQUATToSE3(q[:7])
+    np.testing.assert_allclose(R, base.rotation, atol=1e-12)
+    np.testing.assert_allclose(p, base.translation, atol=1e-12)
+    np.testing.assert_allclose(velocity, v[:6], atol=1e-12)
+
+
+@pytest.mark.parametrize("mount", MOUNTS)
+def test_soles_and_their_jacobians_are_those_of_finite_differences(robot, mount):
+    q, _ = moving(robot)
+    body, step = SensedBody(robot.model, robot.frames.soles, mount), 1e-6
+    body.update(q[7:])
+    J, position, rotation = body.offset_jacobians(), body.position.copy(), body.rotation.copy()
+    legs = 12
+    assert len(body.chain) == legs + (mount.body is not None) * (len(body.chain) - legs)
+    for column, joint in enumerate(body.chain):
+        moved = q[7:].copy()
+        moved[joint] += step
+        body.update(moved)
+        for k in (0, 1):
+            np.testing.assert_allclose((body.position[k] - position[k]) / step, J[k, :3, column], atol=2e-6)
+            turn = pin.log3(body.rotation[k] @ rotation[k].T) / step
+            np.testing.assert_allclose(turn, J[k, 3:, column], atol=2e-6)
+    # Joints that are not in the chain move no sole against the IMU.
+    others = np.setdiff1d(np.arange(robot.nv - 6), body.chain)
+    moved = q[7:].copy()
+    moved[others] += 0.1
+    body.update(moved)
+    np.testing.assert_allclose(body.position, position, atol=1e-12)
+
+
+def test_the_com_from_a_sole_is_that_of_finite_differences(robot):
+    q, _ = moving(robot)
+    mount = MOUNTS[2]
+    body, step = SensedBody(robot.model, robot.frames.soles, mount), 1e-6
+
+    def placed(joints):
+        body.update(joints)
+        body.offset_jacobians()
+        return body.com_jacobians(1)
+
+    lever, by_joints, _ = placed(q[7:])
+    model, data = robot.model, robot.model.createData()
+    pose, _ = imu(robot, mount, q, np.zeros(robot.nv))
+    com = pin.centerOfMass(model, data, q)
+    sole = pin.updateFramePlacement(model, data, model.getFrameId(robot.frames.soles[1])).translation
+    np.testing.assert_allclose(pose.rotation @ lever, com - sole, atol=1e-9)
+    assert by_joints.shape == (3, robot.nv - 6) and step > 0.0
+
+
+def test_a_frame_that_is_not_there_is_refused(robot):
+    with pytest.raises(ValueError, match="no frame 'elbow'"):
+        SensedBody(robot.model, robot.frames.soles, ImuMount("elbow"))

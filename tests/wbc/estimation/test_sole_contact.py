@@ -1,0 +1,110 @@
+"""When the ground carries a sole, by wrenches with noise and bias."""
+
+import numpy as np
+import pytest
+
+from surefoot.readings import Reading
+from surefoot.wbc.estimation.contact import SoleContact
+from surefoot.wbc.estimation.parameters import ContactDetection, SensorNoise
+
+pytestmark = pytest.mark.unit
+
+PERIOD, WEIGHT, HALF = 0.002, 981.0, (0.1, 0.05)
+GOOD, POOR = SensorNoise(), SensorNoise(wrench_force=20.0, wrench_bias=20.0, wrench_moment=0.5)
+
+
+class Feet:
+    """Two feet whose sensors have noise and a bias."""
+
+    def __init__(self, sensors=GOOD, seed=1, bias=None):
+        self.rng, self.sensors = np.random.default_rng(seed), sensors
+        self.bias = sensors.wrench_bias * self.rng.normal(size=(2, 6)) if bias is None else bias
+        self.contact = SoleContact(ContactDetection(), sensors, WEIGHT, HALF, PERIOD)
+        self.update(0.5, 0.5)
+
+    def update(self, left, right, above=(0.0, 0.0), rolling=-1, cop=0.0, ticks=1):
+        """Load the feet with shares of the weight; says after how many ticks the left one was felt."""
+        felt = None
+        for tick in range(ticks):
+            wrench = np.zeros((2, 6))
+            wrench[:, 2] = WEIGHT * left, WEIGHT * right
+            wrench[0, 4] = -cop * HALF[0] * wrench[0, 2]
+            noise = np.repeat([self.sensors.wrench_force, self.sensors.wrench_moment], 3)
+            said = wrench + self.bias + noise * self.rng.normal(size=(2, 6))
+            self.contact.update(Reading(said, 0.0, True), [k != rolling for k in (0, 1)], above)
+            if felt is None and self.contact.felt[0]:
+                felt = tick + 1
+        return felt
+
+
+@pytest.mark.parametrize("sensors", [GOOD, POOR])
+def test_a_swing_tares_the_sensor_and_feels_nothing(sensors):
+    feet = Feet(sensors)
+    feet.update(0.0, 1.0, ticks=40)
+    assert feet.update(0.0, 1.0, above=(0.05, 0.0), ticks=30000) is None or sensors is POOR
+    np.testing.assert_allclose(feet.contact.wrench[0] - 0.0, 0.0, atol=4.0 * sensors.wrench_force)
+    assert feet.contact.tared[0] > 1.0 > feet.contact.tared[1]
+    tare = feet.contact._tare[0] - feet.bias[0]
+    assert np.abs(tare[:3]).max() < 0.5 * sensors.wrench_force
+    # Both must have swung before the wrenches are known.
+    assert not feet.contact.known
+    feet.update(1.0, 0.0, ticks=40)
+    feet.update(1.0, 0.0, above=(0.0, 0.05), ticks=200)
+    assert feet.contact.known
+
+
+def swung(sensors=GOOD):
+    feet = Feet(sensors)
+    feet.update(0.0, 1.0, ticks=40)
+    feet.update(0.0, 1.0, above=(0.05, 0.0), ticks=300)
+    return feet
+
+
+def test_a_touch_is_felt_soon_and_a_light_one_when_it_lasts():
+    assert swung().update(0.06, 0.94, ticks=20) <= 4
+    assert swung(POOR).update(0.10, 0.90, ticks=50) <= 8
+    light = swung(POOR).update(0.045, 0.955, ticks=100)
+    assert light is not None and light <= 60
+
+
+def test_a_touch_near_the_ground_is_not_tared_away():
+    feet = swung()
+    feet.update(0.02, 0.98, above=(0.001, 0.0), ticks=2000)
+    assert feet.contact.wrench[0, 2] == pytest.approx(0.02 * WEIGHT, abs=12.0)
+    high = swung()
+    high.contact.threshold = high.contact._lasting = 1e3
+    high.update(0.02, 0.98, above=(0.05, 0.0), ticks=2000)
+    assert abs(high.contact.wrench[0, 2]) < 12.0
+
+
+def test_hysteresis_holds_a_contact():
+    feet = swung()
+    feet.update(0.5, 0.5, ticks=50)
+    share = 0.75 * feet.contact.threshold / WEIGHT
+    feet.update(share, 1.0 - share, ticks=20)
+    assert feet.contact.felt[0]
+    feet.update(0.0, 1.0, ticks=20)
+    assert not feet.contact.felt[0]
+    feet.update(share, 1.0 - share, ticks=5)
+    assert not feet.contact.felt[0]
+
+
+def test_a_foot_on_its_edge_or_rolling_or_hardly_loaded_does_not_stand_still():
+    for given, firm in (
+        ({}, True),
+        ({"cop": 0.97}, False),
+        ({"rolling": 0}, False),
+    ):
+        feet = swung()
+        feet.update(0.3, 0.7, ticks=30, **given)
+        assert feet.contact.felt == [True, True]
+        assert feet.contact.firm == [firm, True], given
+    feet = swung()
+    feet.update(0.05, 0.95, ticks=30)
+    assert feet.contact.felt[0] and feet.contact.firm == [False, True]
+
+
+def test_the_last_contact_stands_whatever_its_edge():
+    feet = Feet()
+    feet.update(1.0, 0.0, cop=0.97, rolling=0, ticks=60)
+    assert feet.contact.firm == [True, False]

@@ -1,0 +1,130 @@
+"""Which soles the ground carries, by their wrenches, and the wrenches freed of what the sensors add."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from surefoot.readings import Reading
+from surefoot.wbc.estimation.parameters import ContactDetection, SensorNoise
+from surefoot.wbc.types import Array
+
+CUT, QUIET = 100.0, 5.0
+"""Highest cut-off of the wrenches' low pass, and the force noise up to which it holds [Hz, N]."""
+
+SLOW_CUT = 15.0
+"""Of a slower one, in which a light touch rises out of the noise that hides it from the other [Hz]."""
+
+CARRIES = 0.4
+"""Share of the weight above which the other foot carries, while one is tared [-]."""
+
+
+class SoleContact:
+    """Contact of both soles, decided once for filter, controller and planner.
+
+    A normal force above a threshold is felt after some ticks, and until it falls below a lower one; a smaller one is
+    felt when it lasts. While a foot swings high its sensor is tared in all six axes, by a slow low pass.
+
+    Args:
+        parameters: thresholds.
+        sensors: noise of the wrenches.
+        weight: of the robot [N].
+        half_size: half of the sole's length and width [m].
+        period: control period [s].
+
+    Attributes:
+        wrench: filtered and tared, shape (2, 6) [N, N·m].
+        felt: which soles the ground carries.
+        firm: which of these stand still: loaded, with the CoP well inside the sole.
+        tared: how long each sensor was tared [s].
+        deviation: of a filtered force and of a filtered moment [N, N·m].
+        threshold: normal force from which on a contact is felt [N].
+    """
+
+    def __init__(
+        self,
+        parameters: ContactDetection,
+        sensors: SensorNoise,
+        weight: float,
+        half_size: tuple[float, float],
+        period: float,
+    ) -> None:
+        self._parameters, self._period, self.weight, self._half = parameters, period, weight, half_size
+        noise = sensors.wrench_force
+        # Twice the noise takes a filter of about a third of the bandwidth to feel as soon and as surely.
+        cut = CUT * min(QUIET / noise, 1.0) ** (2.0 / 3.0) if noise > 0.0 else math.inf
+        self._share, left = _low_pass(cut, period)
+        self._slow_share, slowly = _low_pass(SLOW_CUT, period)
+        self.deviation = noise * left, sensors.wrench_moment * left
+        self.threshold, self._lasting = (parameters.force + parameters.certain * noise * x for x in (left, slowly))
+        self._slow = np.full(2, 0.5 * weight)
+        self._bias = sensors.wrench_bias
+        self._filtered: Array | None = None
+        self._tare = np.zeros((2, 6))
+        self._count = [0, 0]
+        self.felt, self.firm, self.tared = [True, True], [True, True], [0.0, 0.0]
+        self.wrench = np.zeros((2, 6))
+
+    @property
+    def known(self) -> bool:
+        """Whether the wrenches have no bias any more."""
+        return self._bias == 0.0 or min(self.tared) >= self._parameters.tared_after
+
+    def update(self, reading: Reading, still: Sequence[bool], above: Sequence[float]) -> None:
+        """Take the wrenches of a tick.
+
+        Args:
+            reading: of the sensors in the feet.
+            still: soles that the controller means to stand still.
+            above: how far each sole is over the ground [m].
+        """
+        if self._filtered is None:
+            self._filtered = reading.values.copy()
+        elif reading.fresh:
+            self._filtered = self._filtered + self._share * (reading.values - self._filtered)
+        self.wrench = wrench = self._filtered - self._tare
+        self._slow = self._slow + self._slow_share * (wrench[:, 2] - self._slow)
+        force = wrench[:, 2].tolist()
+        for k in (0, 1):
+            self._feel(k, force)
+            self._tare_foot(k, force, above[k])
+        if not any(self.felt) and max(force) > self.threshold:
+            self.felt[int(force[1] > force[0])] = True
+        for k in (0, 1):
+            self.firm[k] = self.felt[k] and self._flat(k, force) and still[k]
+        if not any(self.firm):
+            carrying = int(force[1] > force[0])
+            self.firm[carrying] = self.felt[carrying]
+
+    def _feel(self, k: int, force: list[float]) -> None:
+        p = self._parameters
+        # A sensor that was not tared yet says the force of its bias, too.
+        more = 2.0 * self._bias if self.tared[k] < p.tared_after else 0.0
+        if self.felt[k]:
+            touches = force[k] > p.released * (self.threshold + more)
+        else:
+            touches = bool(force[k] > self.threshold + more or self._slow[k] > self._lasting + more)
+        self._count[k] = self._count[k] + 1 if touches != self.felt[k] else 0
+        if self._count[k] >= p.ticks:
+            self.felt[k], self._count[k] = touches, 0
+
+    def _flat(self, k: int, force: list[float]) -> bool:
+        p, load = self._parameters, force[k]
+        anchored = load > p.anchor * self.weight * (0.5 if self.firm[k] else 1.0)
+        if not anchored or force[1 - k] < self.threshold:
+            return anchored or force[1 - k] < self.threshold
+        moment = self.wrench[k, 3:5].tolist()
+        reach = p.edge if not self.firm[k] else 1.05
+        return bool(abs(moment[1]) < reach * self._half[0] * load and abs(moment[0]) < reach * self._half[1] * load)
+
+    def _tare_foot(self, k: int, force: list[float], above: float) -> None:
+        swings = above > self._parameters.tare_height and not self.felt[k] and force[1 - k] > CARRIES * self.weight
+        if swings and self._bias > 0.0:
+            self.tared[k] += self._period
+            self._tare[k] += (1.0 - math.exp(-self._period / self._parameters.tare_time)) * self.wrench[k]
+
+
+def _low_pass(cut: float, period: float) -> tuple[float, float]:
+    """Share of a new value in a low pass of first order, and what it leaves of white noise [-]."""
+    share = 1.0 - math.exp(-math.tau * cut * period) if cut < math.inf else 1.0
+    return share, math.sqrt(share / (2.0 - share))

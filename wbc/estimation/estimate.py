@@ -1,0 +1,64 @@
+"""What an estimator says, how sure it is of that, and what it is told back."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from surefoot.wbc.types import Array, RobotState
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """Standard deviations of an estimate; zeros for the truth.
+
+    Attributes:
+        com: of the CoM relative to the stance foot, world axes, shape (3,) [m].
+        com_velocity: world axes, shape (3,) [m/s].
+        tilt: of the base's roll and pitch, shape (2,) [rad].
+        sole_height: of each sole's height over the ground under it, left first, shape (2,) [m].
+        force: of the horizontal external force that momentum and wrenches give over the span of the load observer [N].
+        moment: of its moment about the CoM [N·m].
+    """
+
+    com: Array
+    com_velocity: Array
+    tilt: Array
+    sole_height: Array
+    force: float
+    moment: float
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """What an estimator makes of the readings of a tick.
+
+    Attributes:
+        state: of the robot now.
+        wrench: that the ground exerts on each sole, freed of what the sensors add, sole frames, left first, shape
+            (2, 6) [N, N·m]; None for that of the readings.
+        contact: which soles the ground carries; None where the controller shall decide by the wrench.
+        deviation: how sure the estimate is; None where that is not known, which counts as the truth.
+        channels: further numbers for the log, by name.
+    """
+
+    state: RobotState
+    wrench: Array | None = None
+    contact: tuple[bool, bool] | None = None
+    deviation: Deviation | None = None
+    channels: Mapping[str, Array] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """What the controller has decided at a tick: what an estimator is told back after it.
+
+    Attributes:
+        acceleration: generalised acceleration q'' of the whole-body QP, shape (nv,) [m/s^2, rad/s^2].
+        torque: commanded to the joints, shape (nj,) [N·m].
+        contact: soles that the QP holds as contacts, left first.
+        rolling_foot: index of the foot that rolls about its toe edge, -1 for none.
+    """
+
+    acceleration: Array
+    torque: Array
+    contact: tuple[bool, bool]
+    rolling_foot: int

@@ -1,0 +1,289 @@
+"""The state of a robot from its sensors: joint observer, contacts, invariant filter, and how sure all of that is."""
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.readings import Reading, Readings
+from surefoot.wbc.estimation.contact import SoleContact
+from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
+from surefoot.wbc.estimation.invariant_filter import OFFSETS, POSITION, TURN, VELOCITY, InvariantFilter, Stand
+from surefoot.wbc.estimation.joints import KEPT, JointObserver
+from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
+from surefoot.wbc.estimation.parameters import EstimatorParameters
+from surefoot.wbc.estimation.rotations import exponential, hat, logarithm, quaternion
+from surefoot.wbc.estimation.torques import TorqueWrench
+from surefoot.wbc.external import SPAN
+from surefoot.wbc.types import GRAVITY, Array, RobotState
+
+Ground = Callable[[float, float], tuple[float, Array]]
+"""Height of the ground at x and y, and its unit normal there, shape (3,) [m, -]."""
+
+TRUSTED = 0.06
+"""A ground that is farther from a sole that lands is not the one that it lands on [m]."""
+
+FASTEST, FARTHEST = 300.0, 1e5
+"""Speed, of base and joints together, and place beyond which an estimate has diverged [m/s, rad/s, m]."""
+
+ATTITUDE = 0.1
+"""How far off the attitude may be before the soles are taken for level [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Footing:
+    """How a robot stands when an estimator starts.
+
+    Attributes:
+        position: sole centres in the world, left first, shape (2, 3) [m].
+        yaw: headings of the soles, shape (2,) [rad].
+        half_size: half of a sole's length and width [m].
+        ground: height and normal of the ground by place.
+    """
+
+    position: Array
+    yaw: Array
+    half_size: tuple[float, float]
+    ground: Ground
+
+
+class SensedState:
+    """State, wrenches and contacts of a robot from its readings, once per control tick; knows neither plan nor world.
+
+    Args:
+        model: of the robot, with a free-flyer base.
+        soles: names of the sole frames, left first.
+        mount: of the IMU.
+        footing: how it stands, on level soles, at the first tick.
+        period: control period [s].
+        parameters: noise and thresholds.
+    """
+
+    def __init__(
+        self,
+        model: pin.Model,
+        soles: tuple[str, str],
+        mount: ImuMount,
+        footing: Footing,
+        period: float,
+        parameters: EstimatorParameters,
+    ) -> None:
+        self._parameters, self._footing, self._period = parameters, footing, period
+        self._model, self._sole_names = model, soles
+        sensors = parameters.sensors
+        self._body = SensedBody(model, soles, mount)
+        self._weight = GRAVITY * self._body.mass
+        self._joints = JointObserver(model.nv - 6, period, parameters.joint_bandwidth, sensors.encoder)
+        self._contact = SoleContact(parameters.contact, sensors, self._weight, footing.half_size, period)
+        self._every = max(1, round(1.0 / (parameters.covariance_rate * period)))
+        self._torques: TorqueWrench | None = None
+        self._filter: InvariantFilter | None = None
+        self._tick, self._imu_at = -1, 0
+        self._base_told: deque[Array] = deque(maxlen=KEPT)
+        self._still = [True, True]
+        self._lost = False
+        self._state: RobotState | None = None
+        self._deviation: Deviation | None = None
+        self._height, self._above = 0.0, [0.0, 0.0]
+
+    @property
+    def filter(self) -> InvariantFilter:
+        """The filter; there is none before the first tick."""
+        assert self._filter is not None
+        return self._filter
+
+    def told(self, planned: Planned) -> None:
+        """Hear what the controller does until the next tick."""
+        self._joints.told(planned.acceleration[6:])
+        self._base_told.append(planned.acceleration[:6].copy())
+        self._still = [planned.contact[k] and k != planned.rolling_foot for k in (0, 1)]
+
+    def sense(self, readings: Readings) -> Estimate:
+        """The estimate of a tick."""
+        self._tick += 1
+        q, qd = self._joints.update(readings)
+        wrench = self._wrench(readings)
+        if self._filter is None:
+            self._filter = self._start(readings.joint_position.values)
+            self._contact.update(wrench, self._still, self._above)
+            self._state = self._now(readings, q, qd)
+            self._deviation = self._uncertainty(self._body.offset_jacobians())
+        elif not self._lost:
+            kept = self._state
+            with np.errstate(all="ignore"):
+                self._step(readings, wrench)
+                self._state = self._now(readings, q, qd)
+            if not self._sound(self._state):
+                self._lost, self._state = True, kept
+        state = self._state
+        assert state is not None
+        if self._lost:
+            # The walk is lost with it; what is left falls as a body does.
+            state = RobotState(np.concatenate((state.q[:7], q)), np.concatenate((np.zeros(6), qd)))
+        self._state = state
+        felt = self._contact.felt
+        return Estimate(state, self._contact.wrench, (felt[0], felt[1]), self._deviation, self._channels())
+
+    def _channels(self) -> dict[str, Array]:
+        s = self.filter.stand
+        return {"gyro_bias": s.gyro_bias, "force_bias": s.force_bias, "offsets": s.offsets}
+
+    def _wrench(self, readings: Readings) -> Reading:
+        """Of the feet, by their sensors or by the torques of the joints."""
+        if readings.wrench is not None:
+            return readings.wrench
+        if self._torques is None:
+            self._torques = TorqueWrench(self._model, self._sole_names, self._period)
+        if self._state is None:
+            half = np.zeros((2, 6))
+            half[:, 2] = 0.5 * self._weight
+            return Reading(half, 0.0, True)
+        return Reading(self._torques.update(self._state, readings.joint_torque.values), 0.0, True)
+
+    def _start(self, joints: Array) -> InvariantFilter:
+        body, footing = self._body, self._footing
+        body.update(joints)
+        turned = []
+        for k in (0, 1):
+            _, up = footing.ground(*footing.position[k, :2].tolist())
+            turned.append(_sole(float(footing.yaw[k]), up) @ body.rotation[k].T)
+        R = turned[0] @ exponential(0.5 * logarithm(turned[0].T @ turned[1]))
+        p = (footing.position - body.position @ R.T).mean(axis=0)
+        m = len(body.chain)
+        columns = np.vstack((np.zeros(3), p, footing.position))
+        stand = Stand(R, columns, np.zeros((2, 3, 3)), np.zeros(3), np.zeros(3), np.zeros(m))
+        filter_ = InvariantFilter(stand, self._parameters.sensors, self._parameters.ground, self._period)
+        J = body.offset_jacobians()
+        normals = np.stack([footing.ground(*footing.position[k, :2].tolist())[1] for k in (0, 1)])
+        filter_.begin(body.position, body.rotation, J, normals, ATTITUDE)
+        body.update(self._known(joints, filter_.stand.offsets))
+        filter_.weigh(J)
+        return filter_
+
+    def _known(self, joints: Array, offsets: Array) -> Array:
+        """Angles of the encoders less what their zeros are known to be off."""
+        known = joints.copy()
+        known[self._body.chain] -= offsets
+        return known
+
+    def _step(self, readings: Readings, wrench: Reading) -> None:
+        filter_, contact, body = self.filter, self._contact, self._body
+        rate, force = readings.mean_angular_velocity, readings.specific_force
+        at = self._tick - round(rate.age / self._period)
+        if at > self._imu_at:
+            filter_.propagate(rate.values, force.values, (at - self._imu_at) * self._period)
+            self._imu_at = at
+        contact.update(wrench, self._still, self._above)
+        body.update(self._known(readings.joint_position.values, filter_.stand.offsets))
+        changed = contact.firm != filter_.standing
+        due = changed or self._tick % self._every == 0
+        if due:
+            J = body.offset_jacobians()
+            force_z = contact.wrench[:, 2] / self._weight
+            filter_.spread((max(float(force_z[0]), 0.0), max(float(force_z[1]), 0.0)))
+            if changed:
+                self._change(J)
+            filter_.weigh(J)
+        if readings.joint_position.fresh:
+            slipped = filter_.correct(body.position, body.rotation)
+            if slipped is not None:
+                J = body.offset_jacobians()
+                filter_.spread((0.5, 0.5))
+                self._land(slipped, J)
+                filter_.weigh(J)
+        if due:
+            self._deviation = self._uncertainty(J)
+            self._above = [self._over_ground(k) for k in (0, 1)]
+
+    def _change(self, J: Array) -> None:
+        filter_, firm = self.filter, self._contact.firm
+        for k in (0, 1):
+            if filter_.standing[k] and not firm[k]:
+                filter_.lift(k)
+        for k in (0, 1):
+            if firm[k] and not filter_.standing[k]:
+                self._land(k, J)
+
+    def _land(self, k: int, J: Array) -> None:
+        filter_, body, noise = self.filter, self._body, self._parameters.ground
+        s = filter_.stand
+        foot = s.p + s.R @ body.position[k]
+        height, _ = self._footing.ground(float(foot[0]), float(foot[1]))
+        near = abs(height - float(foot[2])) < TRUSTED and noise.height > 0.0
+        known = (height, noise.height) if near else None
+        filter_.land(k, body.position[k], body.rotation[k], J[k], known, noise.landing, noise.landing_turn)
+
+    def _over_ground(self, k: int) -> float:
+        """How far a sole is over the ground [m]."""
+        s = self.filter.stand
+        x, y, z = (s.p + s.R @ self._body.position[k]).tolist()
+        return float(z - self._footing.ground(x, y)[0])
+
+    def _now(self, readings: Readings, q: Array, qd: Array) -> RobotState:
+        """The state now, which is older by the age of the IMU's readings."""
+        s = self.filter.stand
+        late = self._tick - self._imu_at
+        rate = readings.angular_velocity.values - s.gyro_bias
+        q = self._known(q, s.offsets)
+        base, p, velocity = self._body.base(s.R, s.p, s.v, rate, q, qd)
+        if late and self._base_told:
+            # What the controller has planned since; its velocity is that of the base in its own axes.
+            told = self._base_told
+            gained = self._period * sum(told[-back] for back in range(1, min(late, len(told)) + 1))
+            way = (late * self._period) * (velocity + 0.5 * gained)
+            half = base @ exponential(0.5 * way[3:])
+            p, base, velocity = p + half @ way[:3], half @ exponential(0.5 * way[3:]), velocity + gained
+        return RobotState(np.concatenate((p, quaternion(base), q)), np.concatenate((velocity, qd)))
+
+    def _sound(self, state: RobotState) -> bool:
+        far, fast = float(state.q[:7] @ state.q[:7]), float(state.v @ state.v)
+        # Nothing that is not finite is less than a number.
+        return far < FARTHEST**2 and fast < FASTEST**2 and (self._tick % self._every != 0 or self.filter.finite)
+
+    def _uncertainty(self, J: Array) -> Deviation:
+        """Standard deviations by the covariance of the filter; J as of `SensedBody.offset_jacobians`."""
+        filter_, body, sensors = self.filter, self._body, self._parameters.sensors
+        s, P = filter_.stand, filter_.P
+        force = self._contact.wrench[:, 2]
+        lever, by_joints, moving = body.com_jacobians(int(force[1] > force[0]))
+        by_joints = s.R @ by_joints
+        rows = np.zeros((5, len(P)))
+        rows[:3, TURN] = -hat(s.R @ lever)
+        rows[:3, OFFSETS] = -by_joints[:, body.chain]
+        for k in (0, 1):
+            rows[3 + k, TURN] = -hat(s.R @ body.position[k] + s.p)[2]
+            rows[3 + k, POSITION.stop - 1] = 1.0
+            rows[3 + k, OFFSETS] = -s.R[2] @ J[k, :3]
+        self._height = float(lever @ s.R[2])
+        place = np.maximum(np.einsum("ij,jk,ik->i", rows, P, rows), 0.0)
+        by_joints[:, body.chain] = 0.0
+        com = place[:3] + (by_joints**2).sum(axis=1) * sensors.encoder_offset**2
+        spread = np.diagonal(P)
+        speed = spread[VELOCITY] + ((s.R @ moving) ** 2).sum(axis=1) * self._joints.rate_noise**2
+        com, speed, tilt = np.sqrt(com), np.sqrt(speed), np.sqrt(spread[:2])
+        load = self._of_load(speed, com, float(tilt.max()))
+        return Deviation(com, speed, tilt, np.sqrt(place[3:]), *load)
+
+    def _of_load(self, speed: Array, com: Array, tilt: float) -> tuple[float, float]:
+        """Deviations of the force and the moment that the load observer sees within its span."""
+        if not self._contact.known:
+            return math.inf, math.inf
+        force, moment = self._contact.deviation
+        # The change of velocity over a span, and the soles' forces, which lean with the estimate.
+        shaken = self._body.mass * math.sqrt(2.0) * float(np.hypot(*speed[:2])) / SPAN
+        leaning = self._weight * tilt
+        lateral = math.hypot(shaken, leaning, force)
+        # What does not change from span to span no median takes out: it counts twice.
+        wrong = math.hypot(self._weight * float(np.hypot(*com[:2])), leaning * self._height, force * self._height)
+        return lateral, math.hypot(2.0 * wrong, moment)
+
+
+def _sole(yaw: float, up: Array) -> Array:
+    """Orientation of a sole with a heading, flat on ground with a normal, shape (3, 3)."""
+    ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
+    side = np.cross(up, ahead)
+    side /= np.linalg.norm(side)
+    return np.column_stack((np.cross(side, up), side, up))

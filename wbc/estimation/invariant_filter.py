@@ -1,0 +1,316 @@
+"""Right-invariant extended Kalman filter of IMU and foot poses.
+
+Hartley, Ghaffari, Eustice and Grizzle, "Contact-aided invariant extended Kalman filtering for robot state estimation",
+International Journal of Robotics Research 2020, with the orientations of the feet as Bloesch et al. have them ("State
+estimation for legged robots: consistent fusion of leg kinematics and IMU", RSS 2012; Rotella et al. 2014), and with the
+zeros of the encoders as states.
+
+The state is X = (R, v, p, d_0, d_1) of SE_4(3), the orientations Z_0, Z_1 of the soles, the biases b_g and b_a and the
+offsets o of the encoders. Its error ξ is that of the right, X = exp(ξ) X̂, Z = exp(ζ) Ẑ, so that R' = R hat(ω) and
+v' = R a + g give (eq. 28 and 37 there)
+
+    ξ_R' = -R̂ β_g,   ξ_v' = hat(g) ξ_R - hat(v̂) R̂ β_g - R̂ β_a,   ξ_p' = ξ_v - hat(p̂) R̂ β_g,   ξ_d' = -hat(d̂) R̂ β_g,
+
+which but for the biases β knows no state: group-affine. A sole at y with orientation Y in the frame of the IMU, by the
+encoders less their offsets, gives for a foot that stands (eq. 33, with J the Jacobian of y and Y to the joints)
+
+    R̂ y + p̂ - d̂ = ξ_d - ξ_p + R̂ J_y o,   log(R̂ Y Ẑᵀ) = ζ - ξ_R + R̂ J_Y o.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from surefoot.similarity import GRAVITY
+from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
+from surefoot.wbc.estimation.rotations import exponential, hat, logarithm
+from surefoot.wbc.types import Array
+
+TURN, VELOCITY, POSITION = slice(0, 3), slice(3, 6), slice(6, 9)
+FOOT, SOLE = (slice(9, 12), slice(12, 15)), (slice(15, 18), slice(18, 21))
+GYRO, FORCE, OFFSETS = slice(21, 24), slice(24, 27), slice(27, None)
+"""Places in the error: R, v, p, d, Z, biases of gyroscope and accelerometer, offsets of the encoders."""
+
+FIXED = 27
+"""Numbers of the error beside the offsets."""
+
+_SIX = (np.r_[FOOT[0], SOLE[0]], np.r_[FOOT[1], SOLE[1]])
+_BODY = np.r_[POSITION, TURN]
+_FALL = np.array([0.0, 0.0, -GRAVITY])
+_FALLING = hat(_FALL)
+_UNIT = np.eye(3)
+
+GATE = 50.0
+"""Square of the normalised residual of two feet from which on one has slipped: by chance in one of 10^6 ticks [-]."""
+
+
+@dataclass(slots=True)
+class Stand:
+    """Where the filter believes that the IMU and the soles are.
+
+    Attributes:
+        R: orientation of the IMU in the world, shape (3, 3).
+        columns: velocity and position of the IMU, left and right sole centre, world axes, shape (4, 3) [m/s, m].
+        Z: orientations of the soles, shape (2, 3, 3).
+        gyro_bias: shape (3,) [rad/s].
+        force_bias: of the accelerometer, shape (3,) [m/s^2].
+        offsets: of the encoders of the chain, shape (m,) [rad].
+    """
+
+    R: Array
+    columns: Array
+    Z: Array
+    gyro_bias: Array
+    force_bias: Array
+    offsets: Array
+
+    @property
+    def v(self) -> Array:
+        """Velocity of the IMU, shape (3,) [m/s]."""
+        velocity: Array = self.columns[0]
+        return velocity
+
+    @property
+    def p(self) -> Array:
+        """Position of the IMU, shape (3,) [m]."""
+        position: Array = self.columns[1]
+        return position
+
+    @property
+    def d(self) -> Array:
+        """Sole centres, shape (2, 3) [m]."""
+        return self.columns[2:]
+
+    def move(self, x: Array) -> None:
+        """Apply exp(x) from the left; of the group's V-matrix the identity is taken, for small x."""
+        E = exponential(x[TURN])
+        self.R = E @ self.R
+        self.columns = self.columns @ E.T + x[3:15].reshape(4, 3)
+        self.Z = np.stack((exponential(x[SOLE[0]]) @ self.Z[0], exponential(x[SOLE[1]]) @ self.Z[1]))
+        self.gyro_bias = self.gyro_bias + x[GYRO]
+        self.force_bias = self.force_bias + x[FORCE]
+        self.offsets = self.offsets + x[OFFSETS]
+
+
+class InvariantFilter:
+    """The filter. Propagation and correction of the state at every tick, covariance and gain when they are asked for.
+
+    Between two computations the gain holds; it is that of a tick, and the covariance counts all ticks of its span.
+
+    Args:
+        stand: where everything is at the start; the soles are level on the ground.
+        sensors: noise of the sensors.
+        ground: what feet and ground add.
+        period: control period [s].
+
+    Attributes:
+        stand: the state.
+        P: covariance of its error, shape (27 + m, 27 + m).
+        acceleration: of the IMU in the world, last, shape (3,) [m/s^2].
+        standing: feet that stand, left first.
+    """
+
+    def __init__(self, stand: Stand, sensors: SensorNoise, ground: GroundNoise, period: float) -> None:
+        self.stand, self._sensors, self._ground, self._period = stand, sensors, ground, period
+        n = FIXED + len(stand.offsets)
+        self.P, self._F = np.zeros((n, n)), np.eye(n)
+        self.acceleration = np.zeros(3)
+        self.standing = [True, True]
+        self._since, self._ticks = 0.0, 0
+        self._gain: Array | None = None
+        self._feet: list[int] = []
+        spread = np.zeros(n)
+        spread[VELOCITY], spread[GYRO], spread[FORCE] = 1e-3, sensors.gyro_bias, sensors.accelerometer_bias
+        spread[OFFSETS] = sensors.encoder_offset
+        self.P[np.diag_indices(n)] = spread**2
+
+    def begin(self, y: Array, Y: Array, J: Array, normals: Array, tilt: float) -> None:
+        """Attitude and height from soles that are level on the ground.
+
+        Args:
+            y: sole centres in the frame of the IMU, shape (2, 3) [m].
+            Y: their orientations, shape (2, 3, 3).
+            J: Jacobians of both to the joints of the chain, shape (2, 6, m).
+            normals: of the ground under them, shape (2, 3).
+            tilt: how far the attitude may be off before [rad].
+        """
+        s, n = self.stand, len(self.P)
+        P = self.P
+        P[0, 0] = P[1, 1] = tilt**2
+        P[8, 8] = tilt**2
+        lever = np.eye(n)
+        lever[POSITION, TURN] = hat(s.p)
+        self.P = lever @ P @ lever.T
+        rows, wanted = np.zeros((6, n)), np.zeros(6)
+        for k in (0, 1):
+            # Sole normals R̂ Y e_z turn by ξ_R - R̂ J_Y o, sole heights move by ξ_p + hat-terms of ξ_R - R̂ J_y o.
+            up, turned = normals[k], s.R @ J[k, 3:]
+            side = np.cross(up, [0.0, 1.0, 0.0])
+            side /= np.linalg.norm(side)
+            for i, axis in enumerate((side, np.cross(up, side))):
+                row = rows[3 * k + i]
+                row[TURN], row[OFFSETS] = axis, -axis @ turned
+                wanted[3 * k + i] = axis @ np.cross(s.R @ Y[k, :, 2], up)
+            foot = s.R @ y[k] + s.p
+            row = rows[3 * k + 2]
+            row[TURN], row[POSITION], row[OFFSETS] = -hat(foot)[2], _UNIT[2], -(s.R @ J[k, :3])[2]
+            wanted[3 * k + 2] = s.d[k, 2] - foot[2]
+        noise = np.tile([self._ground.level] * 2 + [self._ground.landing], 2)
+        self._correct(rows, wanted, noise**2)
+        for k in (0, 1):
+            self.land(k, y[k], Y[k], J[k], None, self._ground.kinematics, self._ground.turning)
+
+    def _correct(self, rows: Array, wanted: Array, noise: Array) -> None:
+        """Plain Kalman update by linear measurements of the error."""
+        PH = self.P @ rows.T
+        S = rows @ PH + np.diag(noise)
+        K = np.linalg.solve(S, PH.T).T
+        self.P = self.P - K @ PH.T
+        self.P = 0.5 * (self.P + self.P.T)
+        self.stand.move(K @ wanted)
+
+    def propagate(self, rate: Array, force: Array, time: float) -> None:
+        """Go on with what the IMU says.
+
+        Args:
+            rate: mean angular velocity, shape (3,) [rad/s].
+            force: mean specific force, shape (3,) [m/s^2].
+            time: that both are of [s].
+        """
+        s = self.stand
+        # The mean force is of the frame half way through the turn.
+        half = exponential((rate - s.gyro_bias) * (0.5 * time))
+        middle = s.R @ half
+        self.acceleration = a = middle @ (force - s.force_bias) + _FALL
+        v, p = s.columns[:2]
+        s.columns[1] = p + time * v + (0.5 * time * time) * a
+        s.columns[0] = v + time * a
+        s.R = middle @ half
+        self._since += time
+        self._ticks += 1
+
+    def transition(self, time: float) -> tuple[Array, Array]:
+        """What becomes of an error over a time [s], shape (n, n), and what turns about world axes do, shape (15, 3)."""
+        s, F, B = self.stand, self._F, np.empty((15, 3))
+        B[:3] = _UNIT
+        for i, column in enumerate(s.columns):
+            B[3 + 3 * i : 6 + 3 * i] = hat(column)
+        F[VELOCITY, TURN] = time * _FALLING
+        F[POSITION, VELOCITY] = time * _UNIT
+        F[POSITION, TURN] = (0.5 * time * time) * _FALLING
+        F[:15, GYRO] = -time * (B @ s.R)
+        F[VELOCITY, FORCE] = -time * s.R
+        return F, B
+
+    def spread(self, loads: tuple[float, float]) -> None:
+        """Covariance of the way since it was computed last; loads are shares of the weight on the soles [-]."""
+        dt, self._since = self._since, 0.0
+        if dt <= 0.0:
+            return
+        sensors, ground = self._sensors, self._ground
+        F, B = self.transition(dt)
+        P = F @ self.P @ F.T
+        P[:15, :15] += (sensors.gyro_density**2 * dt) * (B @ B.T)
+        D = np.einsum("ii->i", P)
+        D[VELOCITY] += (sensors.accelerometer_density**2 + ground.model**2) * dt
+        D[GYRO] += sensors.gyro_walk**2 * dt
+        D[FORCE] += sensors.accelerometer_walk**2 * dt
+        for k in (0, 1):
+            more = 1.0 + (ground.light - 1.0) * (1.0 - min(2.0 * loads[k], 1.0))
+            if self.standing[k]:
+                D[FOOT[k]] += (more * ground.creep) ** 2 * dt
+                D[SOLE[k]] += (more * ground.rocking) ** 2 * dt
+        self.P = P
+
+    def land(
+        self, k: int, y: Array, Y: Array, J: Array, height: tuple[float, float] | None, place: float, turn: float
+    ) -> None:
+        """A foot stands from now on: it is where the kinematics say.
+
+        Args:
+            k: foot.
+            y: its sole's centre in the frame of the IMU, shape (3,) [m].
+            Y: its orientation, shape (3, 3).
+            J: Jacobian of both to the joints of the chain, shape (6, m).
+            height: of the ground there, and its deviation; None where that is not known [m].
+            place: deviation of where it comes to rest [m].
+            turn: likewise of how it is turned [rad].
+        """
+        s, n = self.stand, len(self.P)
+        s.columns[2 + k], s.Z[k] = s.p + s.R @ y, s.R @ Y
+        T = np.eye(n)
+        i, j = FOOT[k], SOLE[k]
+        T[i], T[j] = 0.0, 0.0
+        T[i, POSITION], T[j, TURN] = _UNIT, _UNIT
+        T[i, OFFSETS], T[j, OFFSETS] = -s.R @ J[:3], -s.R @ J[3:]
+        self.P = P = T @ self.P @ T.T
+        D = np.einsum("ii->i", P)
+        D[i] += place**2
+        D[j] += turn**2
+        self.standing[k] = True
+        if height is not None:
+            row = np.zeros((1, n))
+            row[0, i] = _UNIT[2]
+            row[0, TURN] = -hat(s.d[k])[2]
+            self._correct(row, np.array([height[0] - s.d[k, 2]]), np.array([height[1] ** 2]))
+
+    def lift(self, k: int) -> None:
+        """A foot stands no longer."""
+        self.standing[k] = False
+
+    def weigh(self, J: Array) -> None:
+        """Gain of a tick, and covariance after as many ticks as since the last time; J as in `begin`."""
+        self._feet = feet = [k for k in (0, 1) if self.standing[k]]
+        ticks, self._ticks = max(self._ticks, 1), 0
+        if not feet:
+            self._gain = None
+            return
+        rows = np.concatenate([_SIX[k] for k in feet])
+        columns = np.tile(_BODY, len(feet))
+        R = self.stand.R
+        turned = np.concatenate([(R @ J[k].reshape(2, 3, -1)).reshape(6, -1) for k in feet])
+        PH = self.P[:, rows] - self.P[:, columns] + self.P[:, OFFSETS] @ turned.T
+        S = PH[rows] - PH[columns] + turned @ PH[OFFSETS]
+        ground, encoder = self._ground, self._sensors.encoder
+        levers = (J[feet].reshape(-1, J.shape[2]) ** 2).sum(axis=1) * encoder**2
+        noise = levers + np.tile([ground.kinematics**2] * 3 + [ground.turning**2] * 3, len(feet))
+        many = S.copy()
+        many[np.diag_indices_from(S)] += noise / ticks
+        S[np.diag_indices_from(S)] += noise
+        self.P = self.P - PH @ np.linalg.solve(many, PH.T)
+        self.P = 0.5 * (self.P + self.P.T)
+        inverse = np.linalg.inv(S)
+        self._gain, self._weights = PH @ inverse, inverse
+
+    def residual(self, y: Array, Y: Array) -> Array:
+        """How far the standing feet are from where the kinematics say, shape (6 feet,) [m, rad]."""
+        s, found = self.stand, np.empty(6 * len(self._feet))
+        for i, k in enumerate(self._feet):
+            found[6 * i : 6 * i + 3] = s.R @ y[k] - s.columns[2 + k] + s.columns[1]
+            found[6 * i + 3 : 6 * i + 6] = logarithm(s.R @ Y[k] @ s.Z[k].T)
+        return found
+
+    def correct(self, y: Array, Y: Array) -> int | None:
+        """Take the kinematics of a tick; arguments as of `begin`.
+
+        Returns:
+            the foot that has slipped, which is then to land anew; None where none has.
+        """
+        if self._gain is None:
+            return None
+        r = self.residual(y, Y)
+        if len(self._feet) == 2 and float(r @ self._weights @ r) > GATE:
+            return self._slipped(r)
+        self.stand.move(self._gain @ r)
+        return None
+
+    def _slipped(self, r: Array) -> int:
+        """The foot whose own residual is the less likely."""
+        blocks = [self._weights[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] for i in (0, 1)]
+        likely = [float(r[6 * i : 6 * i + 6] @ block @ r[6 * i : 6 * i + 6]) for i, block in enumerate(blocks)]
+        return self._feet[int(np.argmax(likely))]
+
+    @property
+    def finite(self) -> bool:
+        """Whether state and covariance are numbers."""
+        return bool(np.isfinite(self.stand.columns.sum() + np.trace(self.P)))

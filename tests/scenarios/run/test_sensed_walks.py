@@ -158,7 +158,8 @@ def test_a_push_is_survived_from_good_sensors(tmp_path):
 
 
 @pytest.mark.physics
-def test_a_robot_without_foot_sensors_walks_by_its_torques(tmp_path):
+def test_a_robot_without_foot_sensors_walks_on_by_its_torques(tmp_path):
+    """It takes all steps; what it takes for an error of the DCM moves some of them, and may add one."""
     keys = {"seed": 1, "gait.steps": 6, "criteria": {}, "sensing.wrench": "none", **GOOD_SENSORS}
     verdict = surefoot.run(surefoot.load("walk", keys), out=tmp_path).verdict
-    assert not verdict["fell"] and verdict["steps_taken"] == 6
+    assert not verdict["fell"] and verdict["steps_taken"] >= 6

@@ -180,9 +180,8 @@ def test_a_few_experiments_end_to_end(tmp_path):
     """In processes of their own, pendulum and full physics, with every figure."""
     short = Study("walk", "Walk", "paper-walk", SHORT[:3])
     every = tuple(Experiment(short, "default", world) for world in ("cart-table", "pendulum", "full"))
-    written = page.paper(tmp_path, 2, every=every)
-    found = written.results
+    written, found = page.paper(tmp_path, 2, every=every)
     assert (len(found.outcomes), found.falls, found.failures) == (3, 0, ())
-    text = written.page.read_text()
+    text = written.read_text()
     assert Page(text).asked == []
     assert text.count("<svg ") == 9

@@ -6,6 +6,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 
 from surefoot.errors import ParameterError
 from surefoot.guard import Guard, MisfitError
@@ -24,7 +25,6 @@ from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.estimator import Footing, SensedState
 from surefoot.wbc.estimation.kinematics import ImuMount
 from surefoot.wbc.estimation.parameters import ContactDetection, EstimatorParameters, GroundNoise, SensorNoise
-from surefoot.wbc.estimation.rotations import from_quaternion
 from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
 
 _OPTIONS = ("sensing", "options")
@@ -63,7 +63,7 @@ def sensed_state(walk: Walk, **options: Any) -> SensedState:
 def imu_mount(robot: RobotDescription) -> ImuMount:
     """Where a robot's IMU is, in the estimator's terms."""
     place = robot.imu
-    turned = from_quaternion(place.quaternion)
+    turned = pin.Quaternion(*place.quaternion).matrix()
     return ImuMount(place.body, place.position, tuple(map(tuple, turned.tolist())))
 
 
@@ -88,7 +88,6 @@ def sensor_noise(errors: SensorErrors, period: float) -> SensorNoise:
         accelerometer_walk=errors.accelerometer_walk,
         encoder=math.hypot(errors.encoder_noise, rounding),
         encoder_offset=errors.encoder_offset,
-        joint_torque=errors.joint_torque_noise,
         wrench_force=errors.wrench_noise,
         wrench_moment=errors.moment_noise,
         wrench_bias=errors.wrench_bias,

@@ -15,7 +15,6 @@ from surefoot.wbc.estimation.invariant_filter import OFFSETS, POSITION, TURN, VE
 from surefoot.wbc.estimation.joints import KEPT, JointObserver
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
 from surefoot.wbc.estimation.parameters import EstimatorParameters
-from surefoot.wbc.estimation.rotations import exponential, hat, logarithm, quaternion
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.external import SPAN
 from surefoot.wbc.types import GRAVITY, Array, RobotState
@@ -150,7 +149,7 @@ class SensedState:
         for k in (0, 1):
             _, up = footing.ground(*footing.position[k, :2].tolist())
             turned.append(_sole(float(footing.yaw[k]), up) @ body.rotation[k].T)
-        R = turned[0] @ exponential(0.5 * logarithm(turned[0].T @ turned[1]))
+        R = turned[0] @ pin.exp3(0.5 * pin.log3(turned[0].T @ turned[1]))
         p = (footing.position - body.position @ R.T).mean(axis=0)
         m = len(body.chain)
         columns = np.vstack((np.zeros(3), p, footing.position))
@@ -234,9 +233,9 @@ class SensedState:
             told = self._base_told
             gained = self._period * sum(told[-back] for back in range(1, min(late, len(told)) + 1))
             way = (late * self._period) * (velocity + 0.5 * gained)
-            half = base @ exponential(0.5 * way[3:])
-            p, base, velocity = p + half @ way[:3], half @ exponential(0.5 * way[3:]), velocity + gained
-        return RobotState(np.concatenate((p, quaternion(base), q)), np.concatenate((velocity, qd)))
+            half = base @ pin.exp3(0.5 * way[3:])
+            p, base, velocity = p + half @ way[:3], half @ pin.exp3(0.5 * way[3:]), velocity + gained
+        return RobotState(np.concatenate((p, pin.Quaternion(base).coeffs(), q)), np.concatenate((velocity, qd)))
 
     def _sound(self, state: RobotState) -> bool:
         far, fast = float(state.q[:7] @ state.q[:7]), float(state.v @ state.v)
@@ -251,10 +250,10 @@ class SensedState:
         lever, by_joints, moving = body.com_jacobians(int(force[1] > force[0]))
         by_joints = s.R @ by_joints
         rows = np.zeros((5, len(P)))
-        rows[:3, TURN] = -hat(s.R @ lever)
+        rows[:3, TURN] = -pin.skew(s.R @ lever)
         rows[:3, OFFSETS] = -by_joints[:, body.chain]
         for k in (0, 1):
-            rows[3 + k, TURN] = -hat(s.R @ body.position[k] + s.p)[2]
+            rows[3 + k, TURN] = -pin.skew(s.R @ body.position[k] + s.p)[2]
             rows[3 + k, POSITION.stop - 1] = 1.0
             rows[3 + k, OFFSETS] = -s.R[2] @ J[k, :3]
         self._height = float(lever @ s.R[2])

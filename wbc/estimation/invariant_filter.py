@@ -20,10 +20,10 @@ encoders less their offsets, gives for a foot that stands (eq. 33, with J the Ja
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio as pin
 
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
-from surefoot.wbc.estimation.rotations import exponential, hat, logarithm
 from surefoot.wbc.types import Array
 
 TURN, VELOCITY, POSITION = slice(0, 3), slice(3, 6), slice(6, 9)
@@ -37,7 +37,7 @@ FIXED = 27
 _SIX = (np.r_[FOOT[0], SOLE[0]], np.r_[FOOT[1], SOLE[1]])
 _BODY = np.r_[POSITION, TURN]
 _FALL = np.array([0.0, 0.0, -GRAVITY])
-_FALLING = hat(_FALL)
+_FALLING = pin.skew(_FALL)
 _UNIT = np.eye(3)
 
 GATE = 50.0
@@ -83,10 +83,10 @@ class Stand:
 
     def move(self, x: Array) -> None:
         """Apply exp(x) from the left; of the group's V-matrix the identity is taken, for small x."""
-        E = exponential(x[TURN])
+        E = pin.exp3(x[TURN])
         self.R = E @ self.R
         self.columns = self.columns @ E.T + x[3:15].reshape(4, 3)
-        self.Z = np.stack((exponential(x[SOLE[0]]) @ self.Z[0], exponential(x[SOLE[1]]) @ self.Z[1]))
+        self.Z = np.stack((pin.exp3(x[SOLE[0]]) @ self.Z[0], pin.exp3(x[SOLE[1]]) @ self.Z[1]))
         self.gyro_bias = self.gyro_bias + x[GYRO]
         self.force_bias = self.force_bias + x[FORCE]
         self.offsets = self.offsets + x[OFFSETS]
@@ -139,7 +139,7 @@ class InvariantFilter:
         P[0, 0] = P[1, 1] = tilt**2
         P[8, 8] = tilt**2
         lever = np.eye(n)
-        lever[POSITION, TURN] = hat(s.p)
+        lever[POSITION, TURN] = pin.skew(s.p)
         self.P = lever @ P @ lever.T
         rows, wanted = np.zeros((6, n)), np.zeros(6)
         for k in (0, 1):
@@ -153,7 +153,7 @@ class InvariantFilter:
                 wanted[3 * k + i] = axis @ np.cross(s.R @ Y[k, :, 2], up)
             foot = s.R @ y[k] + s.p
             row = rows[3 * k + 2]
-            row[TURN], row[POSITION], row[OFFSETS] = -hat(foot)[2], _UNIT[2], -(s.R @ J[k, :3])[2]
+            row[TURN], row[POSITION], row[OFFSETS] = -pin.skew(foot)[2], _UNIT[2], -(s.R @ J[k, :3])[2]
             wanted[3 * k + 2] = s.d[k, 2] - foot[2]
         noise = np.tile([self._ground.level] * 2 + [self._ground.landing], 2)
         self._correct(rows, wanted, noise**2)
@@ -179,7 +179,7 @@ class InvariantFilter:
         """
         s = self.stand
         # The mean force is of the frame half way through the turn.
-        half = exponential((rate - s.gyro_bias) * (0.5 * time))
+        half = pin.exp3((rate - s.gyro_bias) * (0.5 * time))
         middle = s.R @ half
         self.acceleration = a = middle @ (force - s.force_bias) + _FALL
         v, p = s.columns[:2]
@@ -194,7 +194,7 @@ class InvariantFilter:
         s, F, B = self.stand, self._F, np.empty((15, 3))
         B[:3] = _UNIT
         for i, column in enumerate(s.columns):
-            B[3 + 3 * i : 6 + 3 * i] = hat(column)
+            B[3 + 3 * i : 6 + 3 * i] = pin.skew(column)
         F[VELOCITY, TURN] = time * _FALLING
         F[POSITION, VELOCITY] = time * _UNIT
         F[POSITION, TURN] = (0.5 * time * time) * _FALLING
@@ -251,7 +251,7 @@ class InvariantFilter:
         if height is not None:
             row = np.zeros((1, n))
             row[0, i] = _UNIT[2]
-            row[0, TURN] = -hat(s.d[k])[2]
+            row[0, TURN] = -pin.skew(s.d[k])[2]
             self._correct(row, np.array([height[0] - s.d[k, 2]]), np.array([height[1] ** 2]))
 
     def lift(self, k: int) -> None:
@@ -287,7 +287,7 @@ class InvariantFilter:
         s, found = self.stand, np.empty(6 * len(self._feet))
         for i, k in enumerate(self._feet):
             found[6 * i : 6 * i + 3] = s.R @ y[k] - s.columns[2 + k] + s.columns[1]
-            found[6 * i + 3 : 6 * i + 6] = logarithm(s.R @ Y[k] @ s.Z[k].T)
+            found[6 * i + 3 : 6 * i + 6] = pin.log3(s.R @ Y[k] @ s.Z[k].T)
         return found
 
     def correct(self, y: Array, Y: Array) -> int | None:

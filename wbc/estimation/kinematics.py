@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from surefoot.wbc.estimation.rotations import hat
 from surefoot.wbc.model import cross
 from surefoot.wbc.types import Array
 
@@ -93,7 +92,7 @@ class SensedBody:
             R, p = self.rotation[k], self.position[k]
             sole = pin.getFrameJacobian(model, data, frame, _LOCAL)[:, columns]
             # What turns the IMU turns the sole the other way about it.
-            found[k, :3] = R @ sole[:3] - base[:3] + hat(p) @ base[3:]
+            found[k, :3] = R @ sole[:3] - base[:3] + pin.skew(p) @ base[3:]
             found[k, 3:] = R @ sole[3:] - base[3:]
         return found
 

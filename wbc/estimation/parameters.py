@@ -1,8 +1,8 @@
 """Numbers that the estimator of the state counts on, each a standard deviation unless it says otherwise.
 
-What sensors add comes from their data sheets, or from `surefoot.scenarios.run.noise` for simulated ones. What feet and
-ground add no data sheet says: those numbers were measured in simulated walks. Forces and moments are those of the
-reference robot (see `surefoot.similarity`); an IMU is one of any size.
+What sensors add comes from their data sheets, or from the scenario for simulated ones. What feet and ground add no data
+sheet says: those numbers were measured in simulated walks. Forces and moments are those of the reference robot (see
+`surefoot.similarity`); an IMU is one of any size.
 """
 
 from dataclasses import dataclass
@@ -12,10 +12,7 @@ from surefoot.wbc.tunable import check, number
 
 @dataclass(frozen=True, slots=True)
 class SensorNoise:
-    """What the sensors add; the defaults are those of a well built robot.
-
-    Sources of the defaults: the data sheets of Xsens' MTi-100 and VectorNav's VN-100 for the IMU, absolute encoders of
-    19 bits, and six-axis force sensors of ATI's Mini class.
+    """What the sensors add; the defaults are those of the preset `good` (docs/sensors.md).
 
     Raises:
         ParameterError: one is negative or not finite.
@@ -29,7 +26,6 @@ class SensorNoise:
     accelerometer_walk: float = number(1e-4, "m/s^2/√s", "of what that bias gains")
     encoder: float = number(1.1e-5, "rad", "of an encoder's reading, rounding included")
     encoder_offset: float = number(5e-4, "rad", "of an encoder's zero, constant in a run")
-    joint_torque: float = number(0.5, "N·m", "of a motor's torque")
     wrench_force: float = number(5.0, "N", "of a foot sensor's force")
     wrench_moment: float = number(0.2, "N·m", "of a foot sensor's moment")
     wrench_bias: float = number(5.0, "N", "of a force's bias before it was tared")

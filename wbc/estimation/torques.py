@@ -36,8 +36,6 @@ class TorqueWrench:
         self._gain = 1.0 - np.exp(-2.0 * np.pi * BANDWIDTH * period)
         self._residual: Array | None = None
         self._momentum, self._driven = np.zeros(model.nv), np.zeros(model.nv)
-        self.deviation = 1.0
-        """Force that a torque of 1 N·m in every joint comes to [N]."""
 
     def update(self, state: RobotState, torque: Array) -> Array:
         """Wrenches in the sole frames, shape (2, 6) [N, N·m].
@@ -75,5 +73,4 @@ class TorqueWrench:
         normal = A.T @ A
         normal[np.diag_indices(12)] += DAMPING * np.trace(normal) / 12.0 * DAMPING
         solution = np.linalg.solve(normal, A.T @ r)
-        self.deviation = float(np.sqrt(np.linalg.inv(normal)[2, 2]))
         return (scale * solution).reshape(2, 6)

@@ -5,11 +5,10 @@ import pinocchio as pin
 import pytest
 
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
-from surefoot.wbc.estimation.rotations import exponential
 
 pytestmark = pytest.mark.unit
 
-TURNED = tuple(map(tuple, exponential(np.array([0.3, -0.2, 0.9])).tolist()))
+TURNED = tuple(map(tuple, pin.exp3(np.array([0.3, -0.2, 0.9])).tolist()))
 MOUNTS = [ImuMount(), ImuMount(None, (0.05, 0.01, -0.08), TURNED), ImuMount("torso", (0.02, 0.03, 0.2), TURNED)]
 
 

@@ -151,7 +151,8 @@ class Senses:
             return Estimate(self._estimate(measurement))
         self.readings = readings = self.suite.read(measurement, tick)
         estimate: Estimate = self._sense(readings)
-        return estimate
+        felt = readings.wrench
+        return estimate if estimate.wrench is not None or felt is None else replace(estimate, wrench=felt.values)
 
     def told(self, reference: WbcReference, report: WbcReport) -> None:
         """Tell the estimator what was decided, if it wants to know."""

@@ -135,7 +135,7 @@ class PlannerSensing:
         com, velocity = state.com.copy(), state.com_velocity.copy()
         com[:2] += noise[1]
         velocity[:2] += noise[2]
-        measured, measured_zmp = CentroidalState(state.time, com, velocity, state.lasting), zmp + noise[0]
+        measured, measured_zmp = replace(state, com=com, com_velocity=velocity), zmp + noise[0]
         kalman = self._filter
         if kalman is None:
             return PlannerState(measured, measured_zmp, measured, self._nothing, self._nothing)

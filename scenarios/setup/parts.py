@@ -88,6 +88,8 @@ def _estimate(answer: Estimate, readings: "Readings") -> Estimate:
     fit(answer.state.v, (6 + joints,), "v", finite=False)
     if answer.wrench is not None:
         fit(answer.wrench, (2, 6), "wrench")
+    elif readings.wrench is None:
+        raise MisfitError("gave no wrench, and the feet have no force sensors")
     if answer.contact is not None:
         fit(answer.contact, (2,), "contact")
     if answer.deviation is not None:

@@ -5,7 +5,8 @@ import pytest
 
 import surefoot
 from surefoot.readings import Readings
-from surefoot.scenarios.log import read
+from surefoot.scenarios.log import NoLog, read
+from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.run.sensed import sensed_state, sensor_noise
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.sensor_errors import CHEAP, GOOD, PERFECT
@@ -106,6 +107,41 @@ def test_a_standing_robot_is_known_as_far_as_its_sensors_tell(tmp_path):
     # The log says what the controller was given: readings with noise, not the truth.
     noise = log["/readings"].field("joint_position") - log["/measurement"].field("joint_position")
     assert np.abs(noise).max() > 1e-4
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize("keys", [GOOD_SENSORS, {}])
+def test_the_planner_is_told_how_sure_the_state_is(keys):
+    planning = closed_loop(resolve(surefoot.load("walk", keys)), NoLog())
+    update, told = planning.planning.planner.update, []
+
+    def heard(state, feet):
+        told.append((*state.deviation, *feet.height_deviation))
+        return update(state, feet)
+
+    planning.planning.planner.update = heard
+    for _ in range(30):
+        planning.step()
+    assert told and all((np.array(one) > 0.0).all() if keys else not any(one) for one in told)
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize("wrench", ["feet", "none"])
+def test_without_a_wrench_of_the_estimator_the_controller_has_that_of_the_sensors_and_never_the_truth(wrench, tmp_path):
+    class Bare(Listening):
+        def sense(self, readings):
+            return Estimate(self.inner.sense(readings).state)
+
+    keys = {"sensing.source": "ekf", "sensing.preset": "cheap", "sensing.wrench": wrench}
+    result = stand(Bare, tmp_path, **keys)
+    log = read(result.log)
+    if wrench == "none":
+        assert "gave no wrench, and the feet have no force sensors" in log.metadata["end"]["reason"]
+        return
+    for side in ("wrench_left", "wrench_right"):
+        used, said, true = (log[channel].field(side) for channel in ("/estimation", "/readings", "/measurement"))
+        np.testing.assert_array_equal(used, said)
+        assert np.abs(used - true).max() > 10.0
 
 
 class Diverging(Listening):

@@ -195,7 +195,7 @@ def test_a_push_is_survived_from_good_sensors(tmp_path):
 
 @pytest.mark.physics
 def test_a_robot_without_foot_sensors_walks_on_by_its_torques(tmp_path):
-    """It takes all steps; what it takes for an error of the DCM moves some of them, and may add one."""
+    """It takes all steps; what it takes for an error of the DCM moves some of them, and may add some."""
     keys = {"seed": 1, "gait.steps": 6, "criteria": {}, "sensing.wrench": "none", **GOOD_SENSORS}
     verdict = surefoot.run(surefoot.load("walk", keys), out=tmp_path).verdict
     assert not verdict["fell"] and verdict["steps_taken"] >= 6

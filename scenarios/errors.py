@@ -7,7 +7,6 @@ import shutil
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from shlex import quote
 from types import ModuleType
@@ -128,6 +127,8 @@ def install_command(extra: str) -> str:
 
 def _installed_from() -> str:
     """Address of the archive, folder or repository that pip was given; empty when it came from an index."""
+    from importlib.metadata import PackageNotFoundError, distribution
+
     try:
         origin = json.loads(distribution("surefoot").read_text("direct_url.json") or "{}")
     except PackageNotFoundError:

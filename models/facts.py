@@ -4,7 +4,6 @@ Masses and shapes are those of the robot upright with straight legs, in MuJoCo.
 """
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from surefoot.models.types import RobotDescription
 from surefoot.similarity import REFERENCE_SIZE, Similarity
+from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     import mujoco

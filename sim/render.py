@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import repeat
 
 import mujoco
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.sim.gl import make_context
 from surefoot.sim.marks import Mark, draw
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

@@ -2,7 +2,6 @@
 
 import itertools
 from contextlib import suppress
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -14,6 +13,7 @@ from surefoot.models.robot_file.reduced import Reduced, points_of
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.upper import Upper
 from surefoot.models.types import Array, RobotError, nearest
+from surefoot.values import dataclass
 
 MOST_POINTS = 80
 _LIGHTEST = 0.004

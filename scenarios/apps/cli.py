@@ -10,7 +10,6 @@ import os
 import sys
 import traceback
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -34,6 +33,7 @@ from surefoot.scenarios.show.options import (
     with_options,
 )
 from surefoot.scenarios.study import commands as studies
+from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer

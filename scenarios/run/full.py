@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from operator import index
 from typing import Any
 
@@ -44,6 +44,7 @@ from surefoot.sim.drives import IDEAL, Drives
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.world import World
+from surefoot.values import dataclass
 from surefoot.wbc.controller import Sole, WholeBodyController
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.limits import JointLimits

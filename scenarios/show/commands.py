@@ -1,7 +1,6 @@
 """The commands that show a log: inspect, plot, compare, recover and replay."""
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,6 +8,7 @@ import typer
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.show.options import MISSED, AsJson, From, LogFile, Replace, To, with_options
+from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.scenarios.log import Log

@@ -1,7 +1,6 @@
 """The commands that make many runs: sweep, check and paper."""
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +16,7 @@ from surefoot.scenarios.show.options import (
     settings,
     with_options,
 )
+from surefoot.values import dataclass
 
 app = typer.Typer()
 

@@ -2,10 +2,10 @@
 
 from dataclasses import astuple
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 
+from surefoot.engine import mujoco
 from surefoot.models.convert import Array, mujoco_acceleration_to_pinocchio, pinocchio_to_mujoco, velocity_map
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription

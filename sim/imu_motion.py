@@ -2,9 +2,9 @@
 
 import math
 
-import mujoco
 import numpy as np
 
+from surefoot.engine import mujoco
 from surefoot.models.types import ImuPlace
 from surefoot.sim.measurement import Array
 from surefoot.values import dataclass

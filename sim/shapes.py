@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from typing import Literal
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.engine import mujoco
 from surefoot.sim.measurement import Array
 from surefoot.values import dataclass
 

@@ -3,10 +3,10 @@
 import itertools
 from contextlib import suppress
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 
+from surefoot.engine import mujoco
 from surefoot.models.robot_file.legs import SIDES, Leg
 from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.reduced import Reduced, points_of

@@ -23,7 +23,10 @@ NEVER = {
     "list --json": {*ENGINES, *LOGS},
     "show walk": {*ENGINES, *LOGS, "numpy", "pydantic", "importlib.metadata"},
     "schema": {*ENGINES, *LOGS, "numpy", "pydantic", "yaml"},
-    "run diagonal-walk": {"qpsolvers", "matplotlib", "viser", "asyncio", "multiprocessing.pool", "scipy.spatial"},
+    "run diagonal-walk": {
+        *("qpsolvers", "matplotlib", "viser", "asyncio", "multiprocessing.pool", "scipy.spatial"),
+        *("glfw.library", "numpy.ma"),
+    },
 }
 
 

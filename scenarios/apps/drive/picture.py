@@ -4,10 +4,10 @@ import math
 from collections import deque
 from collections.abc import Iterator, Sequence
 
-import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from surefoot.engine import mujoco
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.planner.geometry import points_seen_from
 from surefoot.planner.plan import WalkPlan

@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import asdict, replace
 from typing import Any
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 from rich.console import Console
 
+from surefoot.engine import mujoco
 from surefoot.models.consistency import EnginePair
 from surefoot.models.facts import facts_of
 from surefoot.models.registry import UnknownRobotError, explain

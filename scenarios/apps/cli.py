@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from surefoot.errors import PluginError
+from surefoot.lazy import importing
 from surefoot.scenarios.apps.drive import command as drive
 from surefoot.scenarios.apps.robots import command as robots
 from surefoot.scenarios.apps.words import Commands
@@ -119,11 +120,12 @@ class RunOptions:
 @with_options(RunOptions)
 def run(told: RunOptions) -> None:
     """Run a scenario, write its log and judge it."""
-    from surefoot.native.library import is_missed
-    from surefoot.scenarios.run.run import run_scenario
-    from surefoot.scenarios.setup.load import load, locate
-    from surefoot.scenarios.show.console import ProgressLine, print_result
-    from surefoot.scenarios.show.replay.beside import LiveView, check
+    with importing():
+        from surefoot.native.library import is_missed
+        from surefoot.scenarios.run.run import run_scenario
+        from surefoot.scenarios.setup.load import load, locate
+        from surefoot.scenarios.show.console import ProgressLine, print_result
+        from surefoot.scenarios.show.replay.beside import LiveView, check
 
     asked = overrides(told.set_, told.seed)
     loaded = load(told.scenario, asked)

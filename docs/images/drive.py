@@ -17,7 +17,7 @@ from PIL import Image
 from websockets.sync.client import connect
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "scenarios"))
+sys.path.insert(0, str(ROOT / "tests"))
 
 from animate import palette, save  # noqa: E402  of all pictures
 from browser import Browser  # noqa: E402  the tests' own

@@ -13,6 +13,23 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
+class Spent:
+    """Wall-clock time that deciding took in one control tick.
+
+    Attributes:
+        state: to find the state and its terms [s].
+        plan: to plan; zero where no plan was due [s].
+        build: to build the whole-body QP [s].
+        solve: to solve it and to make torques of it [s].
+    """
+
+    state: float = 0.0
+    plan: float = 0.0
+    build: float = 0.0
+    solve: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Look:
     """A look at a walker after a step; arrays may be overwritten by the next one.
 

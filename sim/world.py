@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from surefoot.forces import Push
+from surefoot.joints import JointCommand
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription, nearest
 from surefoot.planner.ground.terrain import Terrain
@@ -152,6 +153,10 @@ class World:
         if not np.dot(self._qacc, self._qacc) < ACCELERATION_LIMIT**2:
             self._diverge()
         self.tick = end
+
+    def act(self, command: JointCommand, period: float) -> None:
+        """Simulate what is commanded for so long, a whole number of physics steps [s]; errors as of `advance`."""
+        self.advance(command.torque, round(period * self.physics_rate))
 
     def _diverge(self) -> None:
         self._qpos[:] = self._last_qpos

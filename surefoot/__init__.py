@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from surefoot.scenarios.log.reader import Log, read
     from surefoot.scenarios.run.controller import Controller, Parts
     from surefoot.scenarios.run.planning import RunFault
+    from surefoot.scenarios.run.plant import Plant
     from surefoot.scenarios.run.run import Result, run
     from surefoot.scenarios.run.simulation import Simulation, Tick
     from surefoot.scenarios.setup.load import load
@@ -46,6 +47,7 @@ __all__ = [
     "ParameterError",
     "PartError",
     "Parts",
+    "Plant",
     "PluginError",
     "Reading",
     "Readings",
@@ -81,6 +83,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "scenarios.judge.verdict": ("Verdict", "judge"),
             "scenarios.log.reader": ("Log", "read"),
             "scenarios.run.planning": ("RunFault",),
+            "scenarios.run.plant": ("Plant",),
             "scenarios.run.controller": ("Controller", "Parts"),
             "scenarios.run.run": ("Result", "run"),
             "scenarios.setup.load": ("load",),

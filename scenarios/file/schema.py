@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 
 from surefoot.plugins import PluginError
+from surefoot.scenarios.file.control import PlantSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
 from surefoot.scenarios.file.names import OneOf
@@ -325,6 +326,7 @@ class Scenario(Group):
     start: Start = key(Start(), "the start pose")
     errors: BeliefErrors = key(BeliefErrors(), "the planner's belief minus the truth")
     motors: MotorSettings | None = key(None, "what motors do beside what is commanded, null: nothing")
+    plant: PlantSettings | None = key(None, "what moves the robot, null: the simulated world")
     wbc: ControllerSettings | None = key(None, "the whole-body controller, null: as it is")
     pendulum: PendulumSettings = key(PendulumSettings(), "the plant of fidelity pendulum")
     pushes: Many[PushSettings] = key((), "disturbances")

@@ -41,6 +41,7 @@ from surefoot.wbc.types import Array, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
 if TYPE_CHECKING:
+    from surefoot.scenarios.run.plant import PlantMaker
     from surefoot.sim.measurement import Measurement
 
 
@@ -52,11 +53,14 @@ class Parts:
         controller: makes the whole-body controller; takes the arguments of `WholeBodyController` by name.
         estimator: makes the state estimator of a walk; None for the one that the scenario names.
         tasks: make tasks of the whole-body QP, which go after the default ones and those that the scenario names.
+        plant: makes what moves the robot, a `surefoot.Plant`, of a walk; None for the one that the scenario names. A
+            `Controller` has none.
     """
 
     controller: Callable[..., WholeBodyController] = WholeBodyController
     estimator: Callable[[Walk], Estimator | SensorEstimator] | None = None
     tasks: tuple[TaskFactory, ...] = ()
+    plant: "PlantMaker | None" = None
 
     @classmethod
     def of(cls, **chosen: Any) -> "Parts":

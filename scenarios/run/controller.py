@@ -3,7 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from operator import index
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +32,7 @@ from surefoot.scenarios.setup.parts import TASK, guarded
 from surefoot.scenarios.setup.stance import body_of, feet_at
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.similarity import GRAVITY
+from surefoot.values import dataclass
 from surefoot.wbc.controller import Sole, WholeBodyController
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.falling import GivingWay

@@ -3,12 +3,12 @@
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
 from surefoot.readings import Reading, Readings
+from surefoot.values import dataclass
 from surefoot.wbc.estimation.contact import SoleContact
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.invariant_filter import OFFSETS, POSITION, TURN, VELOCITY, InvariantFilter, Stand

@@ -156,7 +156,15 @@ class World:
 
     def act(self, command: JointCommand, period: float) -> None:
         """Simulate what is commanded for so long, a whole number of physics steps [s]; errors as of `advance`."""
-        self.advance(command.torque, round(period * self.physics_rate))
+        steps = round(period * self.physics_rate)
+        if command.servo is None:
+            self.advance(command.torque, steps)
+            return
+        pushed = np.zeros(3)
+        for _ in range(steps):
+            self.advance(command.torque_at(self._qpos[7:], self._qvel[6:]), 1)
+            pushed += self._pushes.mean
+        self._pushes.mean[:] = pushed / steps
 
     def _diverge(self) -> None:
         self._qpos[:] = self._last_qpos

@@ -19,7 +19,7 @@ from surefoot.lazy import face
 
 if TYPE_CHECKING:
     from surefoot.errors import ParameterError, PartError, PluginError
-    from surefoot.joints import JointCommand
+    from surefoot.joints import JointCommand, Servo
     from surefoot.planner.steps.commands import Command
     from surefoot.planner.types import Twist
     from surefoot.readings import Reading, Readings
@@ -55,6 +55,7 @@ __all__ = [
     "RunFault",
     "Scenario",
     "ScenarioError",
+    "Servo",
     "SetupError",
     "Simulation",
     "Tick",
@@ -73,7 +74,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
         __name__,
         {
             "errors": ("ParameterError", "PartError", "PluginError"),
-            "joints": ("JointCommand",),
+            "joints": ("JointCommand", "Servo"),
             "planner.steps.commands": ("Command",),
             "planner.types": ("Twist",),
             "readings": ("Reading", "Readings"),

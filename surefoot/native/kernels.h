@@ -376,6 +376,16 @@ typedef struct {
 
 void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequence);
 
+/* Arrays that make up a row, by address and length, read where they are. */
+typedef struct {
+    int64_t count;
+    const int64_t *sources;
+    const int64_t *sizes;
+    double *values;
+} RowSources;
+
+void log_row_gather(const RowSources *row);
+
 /* Counterpart of `scenarios.record.body.Recorder._derived`, for one row. */
 typedef struct {
     int64_t joints;

@@ -26,6 +26,13 @@ void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequen
     }
 }
 
+/* Fills a row from the arrays that it is made of. */
+void log_row_gather(const RowSources *row) {
+    double *values = row->values;
+    for (int64_t k = 0; k < row->count; values += row->sizes[k++])
+        memcpy(values, (const void *)(intptr_t)row->sources[k], row->sizes[k] * sizeof(double));
+}
+
 /* ZMP and centres of pressure of both soles; counterpart of `scenarios.record.body.contact_points`. */
 static void contact_points(const BodyRow *row) {
     double total = 0.0, height = 0.0, x = 0.0, y = 0.0, force[2][3], torque[2][3];

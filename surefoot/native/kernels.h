@@ -376,6 +376,19 @@ typedef struct {
 
 void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequence);
 
+/* Counterpart of `scenarios.log.spec.Template.encode`; places are those of bytes in the message at an address. */
+typedef struct {
+    int64_t message;
+    const double *values;
+    int64_t count;
+    const int64_t *places;
+    const int64_t *picked;
+    int64_t stamps;
+    const int64_t *stamp_places;
+} MessageTemplate;
+
+void template_fill(const MessageTemplate *message, int64_t seconds, int64_t nanos);
+
 /* Arrays that make up a row, by address and length, read where they are. */
 typedef struct {
     int64_t count;

@@ -262,7 +262,7 @@ class CompiledRows(RowWriter):
     def _look(self, vectors: Sequence[Array], before: Sequence[Array]) -> None:
         """Look where arrays are, which are kept as long as the kernel may read them."""
         if sum(vector.size for vector in vectors) != len(self._row):
-            raise ValueError(f"a row of other vectors than those that fill its {len(self._row)} places")
+            raise ValueError(f"vectors of a row that do not fill its {len(self._row)} places")
         for k, (vector, last) in enumerate(zip_longest(vectors, before[: len(vectors)])):
             if vector is not last:
                 if vector.dtype != np.float64 or not vector.flags.c_contiguous:

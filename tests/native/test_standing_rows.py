@@ -59,7 +59,7 @@ def test_arrays_that_are_not_as_the_kernel_reads_them_are_refused(kernels, tmp_p
     with LogWriter(tmp_path / "log.mcap", {}) as writer:
         row = row_of(writer)
         row.append(0, (0.0,), np.zeros(3), np.zeros((2, 2)))
-        with pytest.raises(ValueError, match="of a row|a row of other vectors"):
+        with pytest.raises(ValueError, match="of a row"):
             row.append(1, (1.0,), *vectors)
 
 

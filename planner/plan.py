@@ -1,7 +1,7 @@
 """What the planner hands over at every tick, and the references that follow from it at any instant."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -24,6 +24,7 @@ from surefoot.planner.types import (
     PhaseKind,
     PlanStatus,
 )
+from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 import struct
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import zip_longest
 from operator import is_
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from surefoot.native.library import Library
 from surefoot.scenarios.log.channel import ChannelWriter, Clock
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 Columns = Sequence[tuple[ChannelWriter, Sequence[str]]]

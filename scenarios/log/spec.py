@@ -12,7 +12,6 @@ where values shall come, and then only these are written anew. Doubles take eigh
 import json
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from math import prod
 from typing import Any, Literal, NamedTuple
@@ -24,6 +23,7 @@ from mcap.opcode import Opcode
 from numpy.typing import ArrayLike, NDArray
 
 from surefoot.native.library import Library, library
+from surefoot.values import dataclass
 
 Kind = Literal["double", "int"]
 

@@ -115,7 +115,7 @@ class RowWriter:
             LogError: the chunk that this row completes cannot be written.
         """
         if vectors:
-            np.concatenate([vector.ravel() for vector in vectors], out=self._vectors[len(self._times)])
+            np.concatenate(tuple(map(np.ndarray.ravel, vectors)), out=self._vectors[len(self._times)])
         self._numbers.append(numbers)
         self._times.append(time_ns)
         if time_ns >= self._clock.due or len(self._times) == self._capacity:

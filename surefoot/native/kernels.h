@@ -784,9 +784,11 @@ typedef struct {
     const double *gain;
     const double *half_size;
     double *decay;
+    double *nominal;
 } Outlook;
 
 void outlook_decay(const Outlook *ahead);
+void outlook_nominal(const Outlook *ahead);
 double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin);
 
 /* Counterpart of `planner.swing.leg_reach.LegReach`; its unit ways are rows of values at so many shares of a swing. */

@@ -48,13 +48,19 @@ FADE, FADE_DAMPING = 0.05, 0.02
 
 @dataclass(frozen=True, slots=True)
 class Sole:
-    """The sole's contact: half sizes [m] and the friction coefficient that the controller counts on [-]."""
+    """The sole's contact.
+
+    Attributes:
+        half_length: half the sole's length [m].
+        half_width: half its width [m].
+        friction: Coulomb coefficient that the controller counts on [-].
+        cop_share: share of the half sizes that the planned CoP may use [-].
+    """
 
     half_length: float
     half_width: float
     friction: float
     cop_share: float = 0.9
-    """Share of the half sizes that the planned CoP may use [-]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from surefoot.readings import Reading, Readings
 from surefoot.scenarios.file.control import ControlSettings
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.run.driven import driven_joints
 from surefoot.scenarios.run.landing import Landing
 from surefoot.scenarios.run.output import Output
 from surefoot.scenarios.run.planning import FaultSchedule, Measured, Planning, RunFault
@@ -37,6 +38,7 @@ from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.similarity import GRAVITY
 from surefoot.values import dataclass
 from surefoot.wbc.controller import Sole, WholeBodyController
+from surefoot.wbc.driven import DrivenRows
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.model import RobotTerms
@@ -133,6 +135,7 @@ class Controller:
         self._next = -math.inf
         self._estimates = walk.sensing.force_estimate
         self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
+        self._gives_way = walk.control.give_way is not False
         self._giving_way = GivingWay(body.limits, walk.size)
         self._landed, self._load = (True, True), NO_LOAD
         self._landing: Landing | None = None
@@ -187,12 +190,19 @@ class Controller:
         horizon, tasks = self.planning.planner.parameters.horizon, self.whole_body.task_layout
         return Sizes(nj=layout.joints, nq=len(self.posture), nv=layout.nv, horizon=horizon, tasks=tasks)
 
-    def step(self, readings: "Readings | Measurement", command: Command | None = None) -> JointCommand:
+    def step(
+        self,
+        readings: "Readings | Measurement",
+        command: Command | None = None,
+        driven_joints: JointCommand | None = None,
+    ) -> JointCommand:
         """What the joints shall do from now on.
 
         Args:
             readings: what sensors say; of an estimator that is given the truth, that.
             command: what the walk is to do from its next plan on; None goes on.
+            driven_joints: what those joints are given that somebody else drives, by the key ``control.driven_joints``;
+                other joints in it mean nothing. None where nobody tells.
 
         Raises:
             RunFault: the state is not finite, or nothing was measured for too long.
@@ -223,12 +233,14 @@ class Controller:
         reference = self._references.reference(self.planning.plan, until)
         sensing = foot_sensing(self.estimate, self.wrench, self._estimates)
         fails = self._faults is not None and self._faults.active("qp_failure", self.planning.tick(now))
+        if self.whole_body.driven is not None:
+            self._tell(self.whole_body.driven, driven_joints)
         self.report = report = self.whole_body.update(reference, sensing, fails)
         self.senses.told(reference, report)
         self._landed, self._load = report.active, report.load
         self.spent = Spent(state_time, plan_time, report.build_time, report.solve_time)
         # What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
-        falling, state = self.planning.plan.status.falling, self.state
+        falling, state = self._gives_way and self.planning.plan.status.falling, self.state
         torque = self._giving_way.torque(state.q[7:], state.v[6:]) if falling else report.torque
         self._command = JointCommand(torque)
         if self._output.servo:
@@ -249,6 +261,15 @@ class Controller:
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
         self.state = state
         self.terms: RobotTerms = self.whole_body.observe(state)
+
+    def _tell(self, driven: DrivenRows, told: JointCommand | None) -> None:
+        """Tell the whole-body controller what drives the joints that are not its own."""
+        if told is None:
+            driven.tell(None)
+            return
+        q, v, servo = self.state.q[7:], self.state.v[6:], told.servo
+        torque = told.torque_at(q + self._output.period * v, v)
+        driven.tell(torque, *((servo.stiffness, servo.damping) if servo is not None else ()))
 
     def _inferred(self, readings: "Readings | Measurement", state: RobotState, passed: float) -> Array:
         """Wrenches of soles that feel none, by the torques of the joints, shape (2, 6) [N, N·m]."""
@@ -334,6 +355,7 @@ def _whole_body(controller: Controller, parts: Parts) -> WholeBodyController:
         # A foot feels for a time, not for a number of commands.
         ticks = max(1, round(parameters.schedule.felt_ticks * rate / walk.rates.control))
         parameters = replace(parameters, schedule=replace(parameters.schedule, felt_ticks=ticks))
+    driven = driven_joints(walk.control, robot)
     shoulders = robot.joint_indices(robot.roles.arm_swing or ())
     return parts.controller(
         model=body.model,
@@ -348,4 +370,5 @@ def _whole_body(controller: Controller, parts: Parts) -> WholeBodyController:
         arm_joints=(shoulders[0], shoulders[1]) if shoulders else None,
         arm_back=robot.roles.arm_back,
         tasks=tuple(_tasks(controller, parts)),
+        **({} if driven is None else {"driven": driven}),
     )

@@ -86,7 +86,8 @@ TEXTS = {
     "commands": """
         duration: 0.3
         commands:
-          - {time: 0.1, v_x: 0.1, v_y: 0.02, yaw_rate: 0.1, single_support: 1, double_support: 0.4, swing_height: 0.04}
+          - {time: 0.1, v_x: 0.1, v_y: 0.02, yaw_rate: 0.1, march: true,
+             single_support: 1, double_support: 0.4, swing_height: 0.04}
           - {time: 0.2, place: {x: 0.4, y: 0.1, yaw: 0.2}, live: true}
         gait: {initial_stand: 0.2}
         fidelity: pendulum

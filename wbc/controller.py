@@ -24,7 +24,7 @@ from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
 from surefoot.wbc.separation import Separation
-from surefoot.wbc.solvers import Daqp, QpSolution, equalities_only, make_solver
+from surefoot.wbc.solvers import Daqp, EqualityFirst, QpSolution, equalities_only, make_solver
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
 from surefoot.wbc.tasks.registry import TaskLayout
@@ -175,6 +175,8 @@ class WholeBodyController:
         if driven is not None and driven.any():
             self.driven = DrivenRows(self.layout, driven, control_period)
             self._solvers = (Daqp(fixed=self.driven.fixed), self._solvers[1])
+        if isinstance(self._solvers[0], EqualityFirst):
+            self._solvers[0].prepare(self.qp)
         self._limits, self._toe = limits, toe
         self._fading = control_period / (FADE * size.time), FADE_DAMPING * size.time
         self._seen: list[tuple[int, Array]] = []

@@ -23,7 +23,8 @@ from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.run.controller import Controller, Parts
+from surefoot.scenarios.run.assembly import Parts
+from surefoot.scenarios.run.controller import Controller
 from surefoot.scenarios.run.driven import Somebody
 from surefoot.scenarios.run.planning import FaultSchedule, Planning, RunFault
 from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant

@@ -21,7 +21,7 @@ from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
 from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED
-from surefoot.scenarios.run.controller import Parts
+from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing

@@ -27,7 +27,7 @@ def reference():
     return module
 
 
-@pytest.mark.parametrize("name", ["keys", "metrics", "channels", "robot-keys", "handed"])
+@pytest.mark.parametrize("name", ["keys", "metrics", "channels", "robot-keys", "handed", "standing", "field"])
 def test_tables_are_up_to_date(reference, name):
     page, table = reference.TABLES[name]
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
@@ -69,7 +69,12 @@ def test_every_key_of_the_table_is_one_and_takes_its_default(reference):
     scenario = Scenario.model_validate(keys)
     errors = scenario.errors.model_copy(update={"payload": None})  # groups of keys that are null as a whole
     planner = scenario.planner.model_copy(update={"recovery": None})
-    assert scenario.model_copy(update={"wbc": None, "motors": None, "planner": planner, "errors": errors}) == Scenario()
+    assert (
+        scenario.model_copy(
+            update={"wbc": None, "motors": None, "plant": None, "control": None, "planner": planner, "errors": errors}
+        )
+        == Scenario()
+    )
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/scenarios.md"])

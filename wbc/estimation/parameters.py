@@ -26,6 +26,7 @@ class SensorNoise:
     accelerometer_walk: float = number(1e-4, "m/s^2/√s", "of what that bias gains")
     encoder: float = number(1.1e-5, "rad", "of an encoder's reading, rounding included")
     encoder_offset: float = number(5e-4, "rad", "of an encoder's zero, constant in a run")
+    joint_torque: float = number(0.5, "N·m", "of a motor's measured torque")
     wrench_force: float = number(5.0, "N", "of a foot sensor's force")
     wrench_moment: float = number(0.2, "N·m", "of a foot sensor's moment")
     wrench_bias: float = number(5.0, "N", "of a force's bias before it was tared")

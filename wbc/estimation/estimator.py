@@ -129,7 +129,7 @@ class SensedState:
 
     def _channels(self) -> dict[str, Array]:
         s = self.filter.stand
-        return {"gyro_bias": s.gyro_bias, "force_bias": s.force_bias, "offsets": s.offsets}
+        return {"gyro_bias": s.gyro_bias.copy(), "force_bias": s.force_bias.copy(), "offsets": s.offsets.copy()}
 
     def _feeling(self, readings: Readings) -> SoleContact:
         """Contact by sensors in the feet, or by the torques of the joints."""
@@ -263,10 +263,11 @@ class SensedState:
         if late and self._base_told:
             # What the controller has planned since; its velocity is that of the base in its own axes.
             told = self._base_told
-            gained = self._period * sum(told[-back] for back in range(1, min(late, len(told)) + 1))
+            gained = self._period * (told[-1] if late == 1 else sum(list(told)[-late:]))
             way = (late * self._period) * (velocity + 0.5 * gained)
-            half = base @ pin.exp3(0.5 * way[3:])
-            p, base, velocity = p + half @ way[:3], half @ pin.exp3(0.5 * way[3:]), velocity + gained
+            turn = pin.exp3(0.5 * way[3:])
+            half = base @ turn
+            p, base, velocity = p + half @ way[:3], half @ turn, velocity + gained
         return RobotState(np.concatenate((p, pin.Quaternion(base).coeffs(), q)), np.concatenate((velocity, qd)))
 
     def _sound(self, state: RobotState) -> bool:

@@ -63,7 +63,10 @@ def test_in_free_fall_there_are_none_whatever_the_joints_do(robot):
 def test_a_force_that_sets_in_is_followed_within_its_bandwidth(robot):
     q = robot.standing
     (_, torque), (other, changed) = balanced(robot, q, 0.5), balanced(robot, q, 0.8)
-    found, state = TorqueWrench(robot.model, robot.frames.soles, PERIOD, SensorNoise()), RobotState(q, np.zeros(robot.nv))
+    found, state = (
+        TorqueWrench(robot.model, robot.frames.soles, PERIOD, SensorNoise()),
+        RobotState(q, np.zeros(robot.nv)),
+    )
     found.update(state, torque)
     for _ in range(20):
         seen = found.update(state, changed)

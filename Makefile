@@ -4,7 +4,7 @@ PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test unit physics check long gate format coverage mutants bench clean
+.PHONY: walk test unit physics check long gate format coverage mutants bench docs clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
@@ -48,6 +48,10 @@ format: $(VENV)/.installed-dev
 bench: $(VENV)/.installed-dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks $(SECTIONS)
 
+# The documentation site in build/site, strictly; its index.html opens without a server.
+docs: $(VENV)/.installed-docs
+	$(BIN)/python docs/site/build.py
+
 clean:
 	rm -rf $(VENV) runs dist build
 
@@ -63,4 +67,8 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	@$(BIN)/python -m surefoot.native
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-docs: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
 	@touch $@ $(VENV)/.installed

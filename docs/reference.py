@@ -9,7 +9,7 @@ page between `<!-- value: name -->` and `<!-- end -->`.
 import inspect
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args, get_origin
@@ -253,16 +253,19 @@ def main() -> None:
 
 
 def _key_rows(prefix: str, group: type[BaseModel]) -> list[str]:
-    """Rows of a group's keys; a group inside is followed key by key, and a list of groups by those of an element."""
-    rows: list[str] = []
+    """Rows of a group's keys."""
+    return [_key_row(name, field) for name, field in every_key(group, prefix)]
+
+
+def every_key(group: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
+    """Keys by name; a group inside is followed key by key, and a list of groups by those of an element."""
     for name, field in group.model_fields.items():
         element = _LISTS.get(prefix + name)
         inner = element or _group_of(field.annotation)
         if isinstance(inner, type) and issubclass(inner, BaseModel):
-            rows += _key_rows(f"{prefix}{name}{'[]' if element else ''}.", inner)
+            yield from every_key(inner, f"{prefix}{name}{'[]' if element else ''}.")
         else:
-            rows.append(_key_row(prefix + name, field))
-    return rows
+            yield prefix + name, field
 
 
 def _group_of(annotation: Any) -> Any:
@@ -274,10 +277,15 @@ def _group_of(annotation: Any) -> Any:
 
 
 def _key_row(name: str, field: FieldInfo) -> str:
-    default = "required" if field.is_required() else _default(field.get_default(call_default_factory=True))
+    default = default_of(field)
     unit = unit_of(field.annotation, field.metadata)
     meaning = (field.description or "").replace("|", "/") + (f" [{unit}]" if unit else "")
     return f"| `{name}` | {default} | {meaning} |"
+
+
+def default_of(field: FieldInfo) -> str:
+    """What a key is where nobody sets it, as it is read."""
+    return "required" if field.is_required() else _default(field.get_default(call_default_factory=True))
 
 
 def _default(value: Any) -> str:

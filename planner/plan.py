@@ -1,6 +1,6 @@
 """What the planner hands over at every tick, and the references that follow from it at any instant."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Protocol
 
 import numpy as np
@@ -23,6 +23,7 @@ from surefoot.planner.types import (
     PhaseKind,
     PlanStatus,
 )
+from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,9 +5,9 @@ import logging
 from collections.abc import Sequence
 from functools import lru_cache
 
-import mujoco
 import numpy as np
 
+from surefoot.engine import mujoco
 from surefoot.forces import Push
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription, nearest

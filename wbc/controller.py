@@ -3,13 +3,14 @@
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.similarity import Similarity
+from surefoot.values import dataclass
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.compiled import CompiledTick

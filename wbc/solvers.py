@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Protocol
 
 import daqp
@@ -10,6 +9,7 @@ import numpy as np
 from proxsuite import proxqp
 
 from surefoot.native.library import Library, library
+from surefoot.values import dataclass
 from surefoot.wbc.parameters import SOLVER_NAMES
 from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
 from surefoot.wbc.types import Array

@@ -5,7 +5,7 @@ Robot states follow Pinocchio: ``q = [base position, base quaternion xyzw, joint
 foot first. Wrenches are ``[fx, fy, fz, tx, ty, tz]`` at the sole centre in the sole frame. Units are SI.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import IntEnum
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.similarity import GRAVITY as GRAVITY
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,6 @@
 """What a scenario can name, and which package brings it; nothing of it is imported to be listed."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from surefoot.models.names import ROBOTS
@@ -11,6 +10,7 @@ from surefoot.scenarios import catalogue
 from surefoot.scenarios.file.registries import SOURCES, TERRAIN_KINDS
 from surefoot.scenarios.judge.names import METRICS
 from surefoot.scenarios.study.campaigns.shipped import shipped
+from surefoot.values import dataclass
 from surefoot.wbc.tasks.registry import TASKS
 
 _REGISTRIES: Mapping[str, Registry[Any]] = {

@@ -2,13 +2,14 @@
 
 import struct
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.native.library import Library
 from surefoot.scenarios.log.channel import ChannelWriter, Clock
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 Columns = Sequence[tuple[ChannelWriter, Sequence[str]]]

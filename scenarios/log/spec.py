@@ -12,7 +12,6 @@ where values shall come, and then only these are written anew. Doubles take eigh
 import json
 import struct
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from math import prod
 from typing import Any, Literal, NamedTuple
@@ -22,6 +21,8 @@ from google.protobuf import descriptor_pb2
 from google.protobuf.message import Message
 from mcap.opcode import Opcode
 from numpy.typing import ArrayLike, NDArray
+
+from surefoot.values import dataclass
 
 Kind = Literal["double", "int"]
 

@@ -3,7 +3,6 @@
 import zlib
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
@@ -17,6 +16,7 @@ from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress
 from surefoot.scenarios.log.rows import CompiledRows, RowLayout, RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec, file_descriptor_set
 from surefoot.scenarios.output import reason
+from surefoot.values import dataclass
 
 
 class Output:

@@ -3,7 +3,6 @@
 import math
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
 from operator import attrgetter
 
 import numpy as np
@@ -19,6 +18,7 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import RowLayout
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

@@ -21,7 +21,7 @@ from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
 from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED
-from surefoot.scenarios.run.full import Parts
+from surefoot.scenarios.run.controller import Parts
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing
@@ -254,7 +254,7 @@ class Simulation:
             fault = error.errors(include_url=False)[0]
             what = f"a command with {fault['loc'][-1]} {fault['input']!r}"
             raise ParameterError(("command", *map(str, fault["loc"])), what, fault["msg"]) from None
-        self._loop.planning.command(command_of(settings), self._loop.tick)
+        self._loop.planning.command(command_of(settings), self._loop.time)
         self._told += 1
         record = json.dumps(settings.model_dump(mode="json", exclude_none=True))
         self._writer.add_metadata(f"{COMMAND_RECORD}{self._told}", {"command": record})

@@ -1,14 +1,15 @@
 """The commands that show a log: inspect, plot, compare, recover and replay."""
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from surefoot.lazy import importing
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.show.options import MISSED, AsJson, From, LogFile, Replace, To, with_options
+from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.scenarios.log import Log
@@ -34,9 +35,10 @@ class InspectOptions:
 @with_options(InspectOptions)
 def inspect(told: InspectOptions) -> None:
     """Show verdict, metrics, health, topics and rates of a log."""
-    from surefoot.scenarios.judge import inspection
-    from surefoot.scenarios.log import read
-    from surefoot.scenarios.show.console import print_inspection
+    with importing():
+        from surefoot.scenarios.judge import inspection
+        from surefoot.scenarios.log import read
+        from surefoot.scenarios.show.console import print_inspection
 
     opened = read(told.log)
     if told.topic is not None:

@@ -62,13 +62,13 @@ class TorqueWrench:
         self._rows: NDArray[np.intp] | None = None
         self.wrench, self.deviation = np.zeros((2, 6)), (0.0, 0.0)
 
-    def update(self, state: RobotState, torque: Array, time: float | None = None) -> Array:
+    def update(self, state: RobotState, torque: Array, passed: float | None = None) -> Array:
         """Wrenches in the sole frames, shape (2, 6) [N, N·m].
 
         Args:
             state: of the robot at the instant of the torque.
             torque: of the joints over the tick that ended, shape (nj,) [N·m].
-            time: since the call before; None for a control period [s].
+            passed: since the call before; None for a control period [s].
         """
         model, data, q, v = self._model, self._data, state.q, state.v
         pin.computeCoriolisMatrix(model, data, q, v)
@@ -82,7 +82,7 @@ class TorqueWrench:
             self._residual = -driven
         else:
             # The exact discrete low pass of what drives the momentum beside all that is known.
-            span = time or self._period
+            span = passed or self._period
             lacking = (momentum - self._momentum) / span - 0.5 * (driven + self._driven)
             gain = 1.0 - (1.0 - self._gain) ** (span / self._period)
             self._residual = self._residual + gain * (lacking - self._residual)

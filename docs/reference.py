@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
+import yaml
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
@@ -142,12 +143,70 @@ def _of_preset(name: str, errors: SensorErrors) -> str:
     return "none" if value == math.inf else f"{value:.3g}"
 
 
+STANDING: tuple[tuple[str, str, str], ...] = (
+    ("steady walk", "walk-fast", "speed_mean"),
+    ("stairs of the tallest risers, edge under the sole", "stairs-tall", "stair_edge_margin_min"),
+    ("stairs of the tallest risers, worst torque", "stairs-tall", "torque_ratio_max"),
+    ("natural walk, ZMP against its reference", "walk", "zmp_error_rms"),
+    ("natural walk, footsteps against the plan", "walk", "footstep_error_max"),
+    ("natural walk, cost of transport", "walk", "cost_of_transport"),
+    ("natural walk, bend of the knees", "walk", "knee_angle_mean"),
+)
+"""What is told of where it stands: in words, the scenario, and the metric of its baseline."""
+
+PUSHES = ("forward", "backward", "to the swing foot", "over the stance foot")
+
+
+def standing_table() -> str:
+    """What the baselines measured, and the pushes that the README tells."""
+    rows = [
+        f"| {what} | {_measured(scenario, metric)} | `{scenario}`, `{metric}` |" for what, scenario, metric in STANDING
+    ]
+    terrain = read_scenario_file("stairs-tall")["terrain"]
+    rows.append(
+        f"| stairs, one foot per tread | {terrain['riser']} m risers on {terrain['tread']} m treads | `stairs-tall` |"
+    )
+    for phase, cells in push_rows().items():
+        told = ", ".join(f"{value} {where}" for where, value in zip(PUSHES, cells, strict=True))
+        rows.append(f"| push of 0.1 s {phase} [N·s/kg] | {told} | [README](../README.md) |")
+    return "\n".join(["| what | value | from |", "|---|---|---|", *rows])
+
+
+def push_rows() -> dict[str, tuple[str, ...]]:
+    """Impulses of the README's table of pushes, by phase, in the order of `PUSHES` [N·s/kg]."""
+    text = (FOLDER.parent / "README.md").read_text(encoding="utf-8")
+    found = re.findall(r"(?m)^\| (in mid-swing|at any time) \| (.*) \|$", text)
+    return {phase: tuple(cells.split(" | ")) for phase, cells in found}
+
+
+def read_scenario_file(name: str) -> Any:
+    """A scenario of the catalogue as its file has it."""
+    return yaml.safe_load((FOLDER.parent / "scenarios" / "catalogue" / f"{name}.yaml").read_text(encoding="utf-8"))
+
+
+def _measured(scenario: str, name: str) -> str:
+    """A metric of a baseline as it is shown."""
+    path = FOLDER.parent / "scenarios" / "baselines" / f"{scenario}.baseline.yaml"
+    value, metric = yaml.safe_load(path.read_text(encoding="utf-8"))["metrics"][name], OWN[name]
+    numbers = value if isinstance(value, list) else [value]
+    return f"{', '.join(f'{metric.scale * number:.3g}' for number in numbers)} {metric.shown}".strip(" -")
+
+
+def field_table() -> str:
+    """What others have reached, with where it is from."""
+    quoted = yaml.safe_load((FOLDER / "field.yaml").read_text(encoding="utf-8"))
+    rows = [f"| {r['what']} | {r['value']} | {r['who']} | {r['evidence']} | {r['source']} |" for r in quoted]
+    return "\n".join(["| what | value | who | evidence | source |", "|---|---|---|---|---|", *rows])
+
+
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "keys": ("scenarios.md", keys_table),
     "metrics": ("scenarios.md", metrics_table),
     "channels": ("log.md", channels_table),
     "robot-keys": ("robot-files.md", robot_keys_table),
     "sensors": ("sensors.md", sensors_table),
+    "standing": ("standing.md", standing_table),
+    "field": ("standing.md", field_table),
 }
 
 

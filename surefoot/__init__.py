@@ -19,7 +19,7 @@ from surefoot.lazy import face
 
 if TYPE_CHECKING:
     from surefoot.errors import ParameterError, PartError, PluginError
-    from surefoot.joints import JointCommand
+    from surefoot.joints import JointCommand, Servo
     from surefoot.planner.steps.commands import Command
     from surefoot.planner.types import Twist
     from surefoot.readings import Reading, Readings
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from surefoot.scenarios.log.reader import Log, read
     from surefoot.scenarios.run.controller import Controller, Parts
     from surefoot.scenarios.run.planning import RunFault
+    from surefoot.scenarios.run.plant import Plant
     from surefoot.scenarios.run.run import Result, run
     from surefoot.scenarios.run.simulation import Simulation, Tick
     from surefoot.scenarios.setup.load import load
@@ -46,6 +47,7 @@ __all__ = [
     "ParameterError",
     "PartError",
     "Parts",
+    "Plant",
     "PluginError",
     "Reading",
     "Readings",
@@ -53,6 +55,7 @@ __all__ = [
     "RunFault",
     "Scenario",
     "ScenarioError",
+    "Servo",
     "SetupError",
     "Simulation",
     "Tick",
@@ -71,7 +74,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
         __name__,
         {
             "errors": ("ParameterError", "PartError", "PluginError"),
-            "joints": ("JointCommand",),
+            "joints": ("JointCommand", "Servo"),
             "planner.steps.commands": ("Command",),
             "planner.types": ("Twist",),
             "readings": ("Reading", "Readings"),
@@ -81,6 +84,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "scenarios.judge.verdict": ("Verdict", "judge"),
             "scenarios.log.reader": ("Log", "read"),
             "scenarios.run.planning": ("RunFault",),
+            "scenarios.run.plant": ("Plant",),
             "scenarios.run.controller": ("Controller", "Parts"),
             "scenarios.run.run": ("Result", "run"),
             "scenarios.setup.load": ("load",),

@@ -21,6 +21,8 @@ from generated import DOCS, ROOT, pages
 FROM_ROOT = {
     "CHANGELOG.md": "project/changelog.md",
     "CONTRIBUTING.md": "project/contributing.md",
+    "changes/README.md": "project/changes.md",
+    "SECURITY.md": "project/security.md",
     "LICENSE": "project/licence.md",
 }
 """Files of the root that are pages of the site."""

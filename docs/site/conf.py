@@ -13,6 +13,7 @@ language = "en"
 
 myst_heading_anchors = 4
 default_role = "code"
+smartquotes = False  # they are primes in equations
 highlight_language = "none"
 
 autodoc_member_order = "bysource"

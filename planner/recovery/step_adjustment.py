@@ -107,7 +107,7 @@ class StepProblem:
         place, face = _landing_place(step, schedule.step(landed), numbers.parallel)
         return cls(
             place=place,
-            swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
+            swing=np.array(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
             double=0.0 if swings else phase.left,
             single=phase.left if swings else step.single * clock.sample_time,
             cycle=schedule.gait.period,

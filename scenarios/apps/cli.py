@@ -11,6 +11,7 @@ import sys
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -90,6 +91,18 @@ def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocom
     from surefoot.scenarios.apps.starter import starter
 
     typer.echo(starter(scenario), nl=False)
+
+
+@app.command()
+def new(
+    name: Annotated[str, typer.Argument(help="Of the package, such as my-package.")],
+    out: Annotated[Path, typer.Option(help="Directory that gets the package's own folder.")] = Path(),
+) -> None:
+    """Write a package with parts of one's own, to start from."""
+    from surefoot.scenarios.apps.package import new as write
+
+    place = write(name, out)
+    typer.echo(f"{place}\nnext: cd {quote(str(place))} && pip install -e '.[test]' && pytest")
 
 
 @app.command()

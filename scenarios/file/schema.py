@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 
 from surefoot.plugins import PluginError
+from surefoot.scenarios.file.control import ControlSettings, PlantSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
 from surefoot.scenarios.file.names import OneOf
@@ -327,6 +328,8 @@ class Scenario(Group):
     start: Start = key(Start.model_construct(), "the start pose")
     errors: BeliefErrors = key(BeliefErrors.model_construct(), "the planner's belief minus the truth")
     motors: MotorSettings | None = key(None, "what motors do beside what is commanded, null: nothing")
+    plant: PlantSettings | None = key(None, "what moves the robot, null: the simulated world")
+    control: ControlSettings | None = key(None, "what the joints are given, null: torques, each control tick")
     wbc: ControllerSettings | None = key(None, "the whole-body controller, null: as it is")
     pendulum: PendulumSettings = key(PendulumSettings.model_construct(), "the plant of fidelity pendulum")
     pushes: Many[PushSettings] = key((), "disturbances")

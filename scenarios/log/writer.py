@@ -260,7 +260,8 @@ class LogWriter:
 
     def _begin_clock(self) -> None:
         self._writing: Iterator[None] = iter(())
-        self._next, self._late = CHUNK_PERIOD_NS, 0
+        # The first is shorter: whole tenths of a second are when plans are made, too.
+        self._next, self._late = CHUNK_PERIOD_NS - _WRITING_NS, 0
         self._clock = Clock(self._next, self._go_on, self._full)
 
     def _full(self, time_ns: int) -> None:

@@ -2,12 +2,13 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import fields
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields, replace
 from operator import index
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from pydantic import ValidationError
 
 from surefoot.errors import ParameterError
 from surefoot.forces import NO_LOAD, ExternalLoad
@@ -18,9 +19,11 @@ from surefoot.models.types import RobotDescription
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.readings import Reading, Readings
+from surefoot.scenarios.file.control import ControlSettings
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.run.landing import Landing
+from surefoot.scenarios.run.output import Output
 from surefoot.scenarios.run.planning import FaultSchedule, Measured, Planning, RunFault
 from surefoot.scenarios.run.reference import ReferenceMaker
 from surefoot.scenarios.run.sensed import Senses, foot_sensing, unsure
@@ -43,6 +46,7 @@ from surefoot.wbc.types import Array, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
 if TYPE_CHECKING:
+    from surefoot.scenarios.run.plant import PlantMaker
     from surefoot.sim.measurement import Measurement
 
 
@@ -54,11 +58,14 @@ class Parts:
         controller: makes the whole-body controller; takes the arguments of `WholeBodyController` by name.
         estimator: makes the state estimator of a walk; None for the one that the scenario names.
         tasks: make tasks of the whole-body QP, which go after the default ones and those that the scenario names.
+        plant: makes what moves the robot, a `surefoot.Plant`, of a walk; None for the one that the scenario names. A
+            `Controller` has none.
     """
 
     controller: Callable[..., WholeBodyController] = WholeBodyController
     estimator: Callable[[Walk], Estimator | SensorEstimator] | None = None
     tasks: tuple[TaskFactory, ...] = ()
+    plant: "PlantMaker | None" = None
 
     @classmethod
     def of(cls, **chosen: Any) -> "Parts":
@@ -87,6 +94,7 @@ class Controller:
         robot: name of a robot, path of a robot file, or a description.
         gait: a scenario, whatever `surefoot.load` takes to find one, or a resolved walk. What it says of the world, of
             pushes and of the true robot has no effect.
+        control: keys of the group ``control`` of a scenario, in the place of those of the gait.
         parts: in place of surefoot's own.
 
     Attributes:
@@ -106,9 +114,14 @@ class Controller:
     """
 
     def __init__(
-        self, robot: str | RobotDescription, gait: Scenario | Walk | str = "commanded", *, parts: Parts | None = None
+        self,
+        robot: str | RobotDescription,
+        gait: Scenario | Walk | str = "commanded",
+        *,
+        control: Mapping[str, Any] | None = None,
+        parts: Parts | None = None,
     ) -> None:
-        self.walk = walk = _walk(robot, gait)
+        self.walk = walk = _walk(robot, gait, control)
         self._parts = parts = parts or Parts()
         self.body = body = body_of(walk.robot)
         self.posture, self._leg = made_ready(walk, body)
@@ -117,6 +130,8 @@ class Controller:
         self._references = ReferenceMaker()
         self._faults = FaultSchedule(walk.faults, walk.rates.control) if walk.faults else None
         self._period = 1.0 / walk.rates.control
+        self._output = Output(walk.control, walk.robot, walk.size, walk.rates.control)
+        self._next = -math.inf
         self._estimates = walk.sensing.force_estimate
         self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
         self._giving_way = GivingWay(body.limits, walk.size)
@@ -144,7 +159,7 @@ class Controller:
         if self._now >= 0.0:
             self.whole_body, self.senses = _whole_body(self, self._parts), _senses(self.walk, self._parts)
             self._landed, self._load, self._torques = (True, True), NO_LOAD, None
-        self._begin, self._now = math.nan, -math.inf
+        self._begin, self._now, self._next = math.nan, -math.inf, -math.inf
         self._landing = Landing(self.body, self.posture, self.walk.size) if q is None else None
         if q is not None:
             self._stand(q)
@@ -200,7 +215,12 @@ class Controller:
         begin = time.perf_counter()
         self._observe(readings, now)
         state_time = time.perf_counter() - begin
-        self.sample, until, plan_time = self.planning.follow(now, self._period, self._measured)
+        self.sample, until, plan_time = self.planning.follow(now, self._output.period, self._measured)
+        if now < self._next:
+            self.spent = Spent(state_time, plan_time)
+            return self._command
+        if self._output.holds:
+            self._next = self._output.after(now)
         reference = self._references.reference(self.planning.plan, until)
         sensing = foot_sensing(self.estimate, self.wrench, self._estimates)
         fails = self._faults is not None and self._faults.active("qp_failure", self.planning.tick(now))
@@ -212,6 +232,8 @@ class Controller:
         falling, state = self.planning.plan.status.falling, self.state
         torque = self._giving_way.torque(state.q[7:], state.v[6:]) if falling else report.torque
         self._command = JointCommand(torque)
+        if self._output.servo:
+            self._command = self._output.command(torque, state.q[7:], state.v[6:], report.acceleration[6:])
         return self._command
 
     def _observe(self, readings: "Readings | Measurement", now: float) -> None:
@@ -261,19 +283,26 @@ class Controller:
         return None if load is NO_LOAD else load.per_mass(load.mass_scale * self.whole_body.terms.model_mass)
 
 
-def _walk(robot: str | RobotDescription, gait: Scenario | Walk | str) -> Walk:
+def _walk(robot: str | RobotDescription, gait: Scenario | Walk | str, control: Mapping[str, Any] | None) -> Walk:
     """The walk of a robot."""
     if isinstance(gait, Walk):
         return gait
     scenario = load(gait) if isinstance(gait, str) else gait
-    if not isinstance(robot, str):
-        return resolve(scenario, robot)
-    if robot == scenario.robot:
-        return resolve(scenario)
-    if not isinstance(gait, str):
-        what = f"a scenario of {scenario.robot} for {robot}"
-        raise ParameterError(("robot",), what, "give the scenario of this robot, or the name of one to be scaled to it")
-    return resolve(load(gait, {"robot": robot, "sized_for": scenario.sized_for or scenario.robot}))
+    if isinstance(robot, str) and robot != scenario.robot:
+        if not isinstance(gait, str):
+            what = f"a scenario of {scenario.robot} for {robot}"
+            right = "give the scenario of this robot, or the name of one to be scaled to it"
+            raise ParameterError(("robot",), what, right)
+        scenario = load(gait, {"robot": robot, "sized_for": scenario.sized_for or scenario.robot})
+    if control is not None:
+        try:
+            keys = ControlSettings.model_validate(dict(control))
+        except ValidationError as error:
+            fault = error.errors(include_url=False)[0]
+            key = ("control", *fault["loc"])
+            raise ParameterError(key, f"{'.'.join(map(str, key))} {fault['input']!r}", fault["msg"]) from None
+        scenario = scenario.model_copy(update={"control": keys})
+    return resolve(scenario, None if isinstance(robot, str) else robot)
 
 
 def _senses(walk: Walk, parts: Parts) -> Senses:
@@ -301,6 +330,11 @@ def _tasks(controller: Controller, parts: Parts) -> Iterator[Task]:
 
 def _whole_body(controller: Controller, parts: Parts) -> WholeBodyController:
     walk, body, robot = controller.walk, controller.body, controller.walk.robot
+    rate, parameters = walk.control.output_rate or walk.rates.control, walk.controller
+    if rate != walk.rates.control:
+        # A foot feels for a time, not for a number of commands.
+        ticks = max(1, round(parameters.schedule.felt_ticks * rate / walk.rates.control))
+        parameters = replace(parameters, schedule=replace(parameters.schedule, felt_ticks=ticks))
     shoulders = robot.joint_indices(robot.roles.arm_swing or ())
     return parts.controller(
         model=body.model,
@@ -309,8 +343,8 @@ def _whole_body(controller: Controller, parts: Parts) -> WholeBodyController:
         limits=body.limits,
         posture=controller.posture[7:],
         leg_joints=body.leg_joints,
-        control_period=1.0 / walk.rates.control,
-        parameters=walk.controller,
+        control_period=1.0 / rate,
+        parameters=parameters,
         limbs=limb_shapes(robot),
         arm_joints=(shoulders[0], shoulders[1]) if shoulders else None,
         arm_back=robot.roles.arm_back,

@@ -1,15 +1,21 @@
 """The closed loop in full physics: a simulated robot under its controller, and the log around it."""
 
 import math
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.forces import Push
+from surefoot.guard import Guard
 from surefoot.joints import JointCommand
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.plugins import Registry
 from surefoot.readings import Readings
+from surefoot.scenarios.file.control import PlantSettings
+from surefoot.scenarios.file.registries import DEFAULTS, PLANT_NAMES
 from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.record.body import Recorder
@@ -19,6 +25,7 @@ from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.controller import Controller, Parts
 from surefoot.scenarios.run.planning import FaultSchedule, Planning, RunFault
+from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.hardware import refuse_unread
@@ -53,30 +60,63 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     controller = Controller(walk.robot, walk, parts=parts)
     body = controller.body
     q = pressed(disturbed(controller.posture, walk, body), walk.size.length)
-    world = World(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, walk.pushes, walk.size, _drives(walk))
+    world = simulated(walk)
+    plant = _plant(walk, world, parts or Parts(), controller.senses.reads)
     torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length)
     world.reset(q, torque=torque)
+    if not isinstance(plant, World):
+        plant.reset(q, torque=torque)
+        for push in walk.pushes:
+            push_plant(plant, push)
     controller.reset(q)
     sizes = controller.sizes
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
-    sensors = None
-    if controller.senses.reads:
+    sensors: SensorSuite | Sensors | None = None
+    if not controller.senses.reads:
+        refuse_unread(walk.sensing)
+    elif isinstance(plant, World):
         sensors = SensorSuite(world, walk.hardware.sensors, walk.rates.control, walk.seed)
     else:
-        refuse_unread(walk.sensing)
+        sensors = cast("Sensors", plant)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
     sensed = EstimationRecorder(writer, sizes) if sensors is not None else None
-    walker = SimulatedRobot(controller, world, sensors, body_recorder, view, sensed)
+    walker = WholeBody(controller, plant, sensors, body_recorder, view, sensed)
     return ClosedLoop.of(walk, walker, recorder)
 
 
-class SimulatedRobot:
-    """The robot in MuJoCo under its controller; a `Walker`.
+def simulated(walk: Walk) -> World:
+    """The simulated world of MuJoCo, with the true robot on the true ground, its motors and the scenario's pushes."""
+    errors = walk.hardware.drives
+    drives = None if errors == IDEAL else Drives(walk.robot, errors, walk.rates.physics, walk.seed)
+    rate, size = walk.rates.physics, walk.size
+    return World(walk.true_robot, walk.ground.true_terrain, rate, walk.pushes, size, drives)
+
+
+PLANTS: Registry[PlantMaker] = PLANT_NAMES.filled(None, {"mujoco": simulated})
+"""What makes a plant of a walk and of ``plant.options`` by name, by the value of ``plant.name``."""
+
+
+def _plant(walk: Walk, world: World, parts: Parts, senses: bool) -> Plant:
+    """The plant that a program hands over, else that which the scenario names, else the simulated world."""
+    keys = walk.keys.plant or PlantSettings()
+    name, options = keys.name or DEFAULTS["plant"], keys.options or {}
+    if parts.plant is not None:
+        return made(parts.plant, walk, options, Guard.of_program("plant", parts.plant), senses)
+    if name != DEFAULTS["plant"]:
+        return made(PLANTS[name], walk, options, PLANTS.guard(name), senses)
+    if options:
+        what = f"plant.options of the simulated world, which takes none: {', '.join(options)}"
+        raise ParameterError(("plant", "options"), what, "leave them out, or let plant.name name another")
+    return world
+
+
+class WholeBody:
+    """A robot under its controller; a `Walker`.
 
     Args:
         mind: its controller, reset to the start.
-        world: likewise.
+        plant: what moves it, likewise.
         sensors: that the estimator reads; None for one that is given the measurement.
         recorder: of its channels.
         view: of what MCAP viewers show.
@@ -84,27 +124,28 @@ class SimulatedRobot:
 
     Attributes:
         mind: its controller.
-        world: the simulated world.
+        plant: what moves it.
         measurement: of this tick; its arrays are overwritten by the next.
     """
 
     def __init__(
         self,
         mind: Controller,
-        world: World,
-        sensors: SensorSuite | None,
+        plant: Plant,
+        sensors: "SensorSuite | Sensors | None",
         recorder: Recorder,
         view: BodyView,
         sensed: EstimationRecorder | None = None,
     ) -> None:
-        self.mind, self.world, self._sensors = mind, world, sensors
+        self.mind, self.plant, self._sensors = mind, plant, sensors
+        self._foreign = not isinstance(plant, World)
         self._recorder, self._view, self._sensed = recorder, view, sensed
         walk = mind.walk
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
         known = mind.senses.is_truth and walk.true_robot is walk.robot
         self._own_truth = None if known else RobotTerms(pinocchio_model(walk.true_robot), frames_of(walk.robot))
         self._faults = FaultSchedule(walk.faults, walk.rates.control) if walk.faults else None
-        self._steps = walk.rates.physics // walk.rates.control
+        self._period = 1.0 / walk.rates.control
         self._nominal_height = walk.true_com_height
         self._no_torque = JointCommand(np.zeros(mind.whole_body.layout.joints))
         self.measurement: Measurement
@@ -121,7 +162,7 @@ class SimulatedRobot:
 
     def sense(self, tick: int, now: float) -> None:
         """See `Walker`."""
-        self.measurement = measurement = self.world.measure()
+        self.measurement = measurement = self.plant.measure()
         self._readings = measurement if self._sensors is None else self._sensors.read(measurement, tick)
         if self._own_truth is not None:
             self._own_truth.update(measurement.q, measurement.v)
@@ -133,6 +174,8 @@ class SimulatedRobot:
         self._truth = self._own_truth or mind.terms
         lost = self._faults is not None and self._faults.active("torque_loss", tick)
         self._command = self._no_torque if lost else command
+        if self._foreign:
+            self.measurement = completed(self.measurement, mind.wrench, self._command.torque)
         return mind.sample, mind.spent
 
     def record(self, now_ns: int, sample: PlanSample) -> None:
@@ -159,7 +202,7 @@ class SimulatedRobot:
     def advance(self, now: float) -> None:
         """See `Walker`."""
         try:
-            self.world.advance(self._command.torque, self._steps)
+            self.plant.act(self._command, self._period)
         except SimulationDiverged as fault:
             raise RunFault(str(fault)) from None
 
@@ -172,10 +215,4 @@ class SimulatedRobot:
 
     def push(self, push: Push) -> None:
         """See `Walker`."""
-        self.world.push(push)
-
-
-def _drives(walk: Walk) -> Drives | None:
-    """The motors of a walk, if they do anything but what is commanded."""
-    errors = walk.hardware.drives
-    return None if errors == IDEAL else Drives(walk.robot, errors, walk.rates.physics, walk.seed)
+        push_plant(self.plant, push)

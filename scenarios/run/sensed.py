@@ -167,7 +167,7 @@ def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool) -> FootSensing
         wrench: of the soles, shape (2, 6) [N, N·m].
         wanted: whether a lasting force is to be found.
     """
-    forces, sure = (float(wrench[0, 2]), float(wrench[1, 2])), estimate.deviation
+    forces, sure = (wrench.item(2), wrench.item(8)), estimate.deviation
     if sure is None:
         return FootSensing(forces, wrench if wanted else None, estimate.contact)
     return FootSensing(forces, wrench if wanted else None, estimate.contact, (sure.force, sure.moment))

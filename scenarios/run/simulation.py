@@ -32,6 +32,7 @@ from surefoot.scenarios.setup.walk import Walk, resolve
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
+    from surefoot.scenarios.run.plant import PlantMaker
     from surefoot.scenarios.run.sensing import Estimator
     from surefoot.wbc.controller import WholeBodyController
     from surefoot.wbc.tasks import TaskFactory
@@ -57,6 +58,7 @@ class Simulation:
         estimator: makes the state estimator from the walk; see `surefoot.scenarios.run.sensing.Estimator`.
         robot: a description in place of the robot that the scenario names.
         tasks: make tasks for the whole-body QP beside its own; see `surefoot.wbc.tasks.Task`.
+        plant: makes what moves the robot, from the walk; see `surefoot.Plant`.
 
     Attributes:
         scenario: what is simulated.
@@ -80,12 +82,13 @@ class Simulation:
         estimator: "Callable[[Walk], Estimator] | None" = None,
         robot: "RobotDescription | None" = None,
         tasks: "Sequence[TaskFactory]" = (),
+        plant: "PlantMaker | None" = None,
     ) -> None:
         loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
         self.scenario = loaded if seed is None else loaded.model_copy(update={"seed": seed})
         with refusing():
             self.walk = resolve(self.scenario, robot, planner)
-        self._parts = Parts.of(controller=controller, estimator=estimator, tasks=tuple(tasks) or None)
+        self._parts = Parts.of(controller=controller, estimator=estimator, tasks=tuple(tasks) or None, plant=plant)
         self._given = {"planner": planner, "robot": robot, **self._parts.given()}
         self._path = None if log is None else Path(log)
         self._writer: LogWriter

@@ -22,6 +22,7 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import FeetState, Twist
+from surefoot.scenarios.file.control import ControlSettings
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Start
 from surefoot.scenarios.file.sensing import Sensing
@@ -307,6 +308,11 @@ class Walk:
     def controller(self) -> WbcParameters:
         """Weights and gains of the whole-body controller."""
         return controller_parameters(self.keys.wbc, self.size)
+
+    @property
+    def control(self) -> ControlSettings:
+        """What the joints are given."""
+        return self.keys.control or ControlSettings()
 
     @cached_property
     def hardware(self) -> Hardware:

@@ -57,4 +57,4 @@ def test_the_examples_are_there_and_on_the_page():
     names = {path.stem for path in (Path(__file__).parents[2] / "examples").glob("*.py")}
     told = re.search(r"(?s)\[examples/\]\(examples\) has short programs.*?\n\n", TEXT)[0]
     assert set(re.findall(r"`(\w+)`", told)) == names
-    assert len(names) == 11
+    assert len(names) == 12

@@ -20,6 +20,7 @@ TOLD = {
     "own_metric": "the CoM sways",
     "own_estimator": "estimation error 2.00 mm",
     "own_loop": "walked 0.28 m",
+    "own_plant": "<Result pass",
 }
 
 

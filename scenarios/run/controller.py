@@ -27,6 +27,7 @@ from surefoot.scenarios.setup.stance import body_of, feet_at
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.driven import DrivenRows
+from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.model import RobotTerms
@@ -233,7 +234,7 @@ class Controller:
     def _inferred(self, readings: "Readings | Measurement", state: RobotState, passed: float) -> Array:
         """Wrenches of soles that feel none, by the torques of the joints, shape (2, 6) [N, N·m]."""
         if self._torques is None:
-            self._torques = TorqueWrench(self.body.model, self.body.frames.soles, self._period)
+            self._torques = TorqueWrench(self.body.model, self.body.frames.soles, self._period, SensorNoise())
             half = np.zeros((2, 6))
             half[:, 2] = 0.5 * GRAVITY * float(self.walk.robot.mass)
             return half

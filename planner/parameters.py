@@ -180,8 +180,8 @@ class RecoveryParameters:
         unheld_share: the same of feet whose CoP cannot be moved at will, as a share of the ZMP box [-].
         stand_share: share of the ZMP box of a stand that holds a DCM error without any step [-].
         time_changes: changes of the times left that are tried, close where a swing's reach grows fast [s].
-        least_double: time that a double support is not cut below; the load has to go over [s].
-        least_single: time that a single support is not cut below; a foot has to lift and land [s].
+        least_double: time left of a double support below which none is cut; the load has to go over [s].
+        least_single: time left of a single support below which none is cut; a foot has to lift and land [s].
         apart: distance of a foot from its place beside the other at which it is brought back there [m].
         calm: DCM error below which a standing robot brings it back; a step at more would be a second push [m].
         margin_times: shares between the shortest and longest single support at which the margin is evaluated [-].

@@ -442,3 +442,15 @@ def test_a_baseline_is_read_as_it_was_written(kept):
     assert set(again.trace.values) == set(COLUMNS) - {name for sign in SIGNS if sign.body for name in sign.columns}
     for name, samples in baseline.trace.values.items():
         np.testing.assert_array_equal(again.trace.values[name], samples)
+
+
+def test_every_baseline_of_the_catalogue_holds_all_that_is_compared():
+    every = [case for case in cases([]) if case.baseline.exists()]
+    assert len(every) > 20
+    kept = {case.scenario.name: read_baseline(case.baseline) for case in every}
+    world = set(kept["walk"].world)
+    assert len(world) > 40 and "com_error_rms" in kept["walk"].metrics
+    for name, baseline in kept.items():
+        assert set(kept["walk"].metrics) == set(baseline.metrics), name
+        assert set(COLUMNS) == set(baseline.trace.values), name
+        assert set(baseline.world) == world, name

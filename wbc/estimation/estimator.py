@@ -96,7 +96,9 @@ class SensedState:
 
     def told(self, planned: Planned) -> None:
         """Hear what the controller does until the next tick."""
-        self._joints.told(planned.acceleration[6:])
+        # What is planned for a state that is lost is no motion of the robot.
+        bend = planned.acceleration[6:]
+        self._joints.told(np.zeros_like(bend) if self._lost else bend)
         self._base_told.append(planned.acceleration[:6].copy())
         self._still = [planned.contact[k] and k != planned.rolling_foot for k in (0, 1)]
 

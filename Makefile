@@ -4,7 +4,7 @@ PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test unit physics check long gate format coverage mutants bench clean
+.PHONY: walk test unit physics check long gate format coverage mutants bench docs dist dist-test scenario changelog clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
@@ -48,6 +48,29 @@ format: $(VENV)/.installed-dev
 bench: $(VENV)/.installed-dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks $(SECTIONS)
 
+# The documentation site in build/site, strictly; its index.html opens without a server.
+docs: $(VENV)/.installed-docs
+	$(BIN)/python docs/site/build.py
+
+# make scenario NAME=walk SUMMARY=file walks one scenario against its baseline, and adds its table to a file.
+scenario: $(VENV)/.installed
+	$(BIN)/surefoot check $(NAME) --out runs/check --markdown runs/check.md --force; \
+	code=$$?; cat runs/check.md >> $(or $(SUMMARY),/dev/stdout); exit $$code
+
+# Wheel and sdist in dist/, and whether an index would take them.
+dist: $(VENV)/.installed-release
+	rm -rf dist
+	$(BIN)/python -m hatchling build
+	$(BIN)/twine check --strict dist/*
+
+# Each in an empty environment, where it walks.
+dist-test: dist
+	$(BIN)/python tests/packaging/empty_environment.py dist/*
+
+# Put the files of changes/ into CHANGELOG.md.
+changelog: $(VENV)/.installed
+	$(BIN)/python docs/changelog.py
+
 clean:
 	rm -rf $(VENV) runs dist build
 
@@ -63,4 +86,12 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	@$(BIN)/python -m surefoot.native
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-docs: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-release: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[release]'
 	@touch $@ $(VENV)/.installed

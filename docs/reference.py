@@ -9,11 +9,12 @@ page between `<!-- value: name -->` and `<!-- end -->`.
 import inspect
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
+import yaml
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
@@ -142,12 +143,70 @@ def _of_preset(name: str, errors: SensorErrors) -> str:
     return "none" if value == math.inf else f"{value:.3g}"
 
 
+STANDING: tuple[tuple[str, str, str], ...] = (
+    ("steady walk", "walk-fast", "speed_mean"),
+    ("stairs of the tallest risers, edge under the sole", "stairs-tall", "stair_edge_margin_min"),
+    ("stairs of the tallest risers, worst torque", "stairs-tall", "torque_ratio_max"),
+    ("natural walk, ZMP against its reference", "walk", "zmp_error_rms"),
+    ("natural walk, footsteps against the plan", "walk", "footstep_error_max"),
+    ("natural walk, cost of transport", "walk", "cost_of_transport"),
+    ("natural walk, bend of the knees", "walk", "knee_angle_mean"),
+)
+"""What is told of where it stands: in words, the scenario, and the metric of its baseline."""
+
+PUSHES = ("forward", "backward", "to the swing foot", "over the stance foot")
+
+
+def standing_table() -> str:
+    """What the baselines measured, and the pushes that the README tells."""
+    rows = [
+        f"| {what} | {_measured(scenario, metric)} | `{scenario}`, `{metric}` |" for what, scenario, metric in STANDING
+    ]
+    terrain = read_scenario_file("stairs-tall")["terrain"]
+    rows.append(
+        f"| stairs, one foot per tread | {terrain['riser']} m risers on {terrain['tread']} m treads | `stairs-tall` |"
+    )
+    for phase, cells in push_rows().items():
+        told = ", ".join(f"{value} {where}" for where, value in zip(PUSHES, cells, strict=True))
+        rows.append(f"| push of 0.1 s {phase} [N·s/kg] | {told} | [README](../README.md) |")
+    return "\n".join(["| what | value | from |", "|---|---|---|", *rows])
+
+
+def push_rows() -> dict[str, tuple[str, ...]]:
+    """Impulses of the README's table of pushes, by phase, in the order of `PUSHES` [N·s/kg]."""
+    text = (FOLDER.parent / "README.md").read_text(encoding="utf-8")
+    found = re.findall(r"(?m)^\| (in mid-swing|at any time) \| (.*) \|$", text)
+    return {phase: tuple(cells.split(" | ")) for phase, cells in found}
+
+
+def read_scenario_file(name: str) -> Any:
+    """A scenario of the catalogue as its file has it."""
+    return yaml.safe_load((FOLDER.parent / "scenarios" / "catalogue" / f"{name}.yaml").read_text(encoding="utf-8"))
+
+
+def _measured(scenario: str, name: str) -> str:
+    """A metric of a baseline as it is shown."""
+    path = FOLDER.parent / "scenarios" / "baselines" / f"{scenario}.baseline.yaml"
+    value, metric = yaml.safe_load(path.read_text(encoding="utf-8"))["metrics"][name], OWN[name]
+    numbers = value if isinstance(value, list) else [value]
+    return f"{', '.join(f'{metric.scale * number:.3g}' for number in numbers)} {metric.shown}".strip(" -")
+
+
+def field_table() -> str:
+    """What others have reached, with where it is from."""
+    quoted = yaml.safe_load((FOLDER / "field.yaml").read_text(encoding="utf-8"))
+    rows = [f"| {r['what']} | {r['value']} | {r['who']} | {r['evidence']} | {r['source']} |" for r in quoted]
+    return "\n".join(["| what | value | who | evidence | source |", "|---|---|---|---|---|", *rows])
+
+
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "keys": ("scenarios.md", keys_table),
     "metrics": ("scenarios.md", metrics_table),
     "channels": ("log.md", channels_table),
     "robot-keys": ("robot-files.md", robot_keys_table),
     "sensors": ("sensors.md", sensors_table),
+    "standing": ("standing.md", standing_table),
+    "field": ("standing.md", field_table),
 }
 
 
@@ -253,16 +312,19 @@ def main() -> None:
 
 
 def _key_rows(prefix: str, group: type[BaseModel]) -> list[str]:
-    """Rows of a group's keys; a group inside is followed key by key, and a list of groups by those of an element."""
-    rows: list[str] = []
+    """Rows of a group's keys."""
+    return [_key_row(name, field) for name, field in every_key(group, prefix)]
+
+
+def every_key(group: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
+    """Keys by name; a group inside is followed key by key, and a list of groups by those of an element."""
     for name, field in group.model_fields.items():
         element = _LISTS.get(prefix + name)
         inner = element or _group_of(field.annotation)
         if isinstance(inner, type) and issubclass(inner, BaseModel):
-            rows += _key_rows(f"{prefix}{name}{'[]' if element else ''}.", inner)
+            yield from every_key(inner, f"{prefix}{name}{'[]' if element else ''}.")
         else:
-            rows.append(_key_row(prefix + name, field))
-    return rows
+            yield prefix + name, field
 
 
 def _group_of(annotation: Any) -> Any:
@@ -274,10 +336,15 @@ def _group_of(annotation: Any) -> Any:
 
 
 def _key_row(name: str, field: FieldInfo) -> str:
-    default = "required" if field.is_required() else _default(field.get_default(call_default_factory=True))
+    default = default_of(field)
     unit = unit_of(field.annotation, field.metadata)
     meaning = (field.description or "").replace("|", "/") + (f" [{unit}]" if unit else "")
     return f"| `{name}` | {default} | {meaning} |"
+
+
+def default_of(field: FieldInfo) -> str:
+    """What a key is where nobody sets it, as it is read."""
+    return "required" if field.is_required() else _default(field.get_default(call_default_factory=True))
 
 
 def _default(value: Any) -> str:

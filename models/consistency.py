@@ -1,14 +1,15 @@
 """Do the two engines compute the same robot? Both sides of every comparison come from the same MJCF text."""
 
-from dataclasses import astuple, dataclass
+from dataclasses import astuple
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 
+from surefoot.engine import mujoco
 from surefoot.models.convert import Array, mujoco_acceleration_to_pinocchio, pinocchio_to_mujoco, velocity_map
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
+from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,6 @@ Masses and shapes are those of the robot upright with straight legs, in MuJoCo.
 """
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -13,9 +12,10 @@ from numpy.typing import NDArray
 
 from surefoot.models.types import RobotDescription
 from surefoot.similarity import REFERENCE_SIZE, Similarity
+from surefoot.values import dataclass
 
 if TYPE_CHECKING:
-    import mujoco
+    from surefoot.engine import mujoco
 
 Array = NDArray[np.float64]
 
@@ -201,7 +201,7 @@ def com_height(robot: RobotDescription) -> float:
 
 def swing_acceleration(robot: RobotDescription) -> tuple[float, float]:
     """Of the left leg's sole with the share of its hip's torque, forward and sideways [m/s^2]."""
-    import mujoco
+    from surefoot.engine import mujoco
 
     model, data = _upright(robot)
     hips = robot.roles.left_leg[: robot.roles.left_leg.index(robot.roles.knees[0])]
@@ -291,7 +291,7 @@ def _upright(robot: RobotDescription) -> "tuple[mujoco.MjModel, mujoco.MjData]":
 @lru_cache(maxsize=8)
 def _compiled(mjcf: str, angles: tuple[float, ...]) -> "tuple[mujoco.MjModel, mujoco.MjData]":
     """A text with its joints at angles, all kinematics made; nobody may write to it."""
-    import mujoco
+    from surefoot.engine import mujoco
 
     model = mujoco.MjModel.from_xml_string(mjcf)
     data = mujoco.MjData(model)

@@ -1,6 +1,8 @@
 """Inertials of uniform solids whose principal axes are the body's axes."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+
+from surefoot.values import dataclass
 
 Vector = tuple[float, float, float]
 

@@ -8,12 +8,12 @@ Robot geoms have contype 2 and conaffinity 3: they touch a terrain of contype 1 
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from enum import Enum
 from xml.etree import ElementTree
 
 from surefoot.models.actuator import Actuator
 from surefoot.models.inertia import Inertial, Vector
+from surefoot.values import dataclass
 
 AXES: dict[str, Vector] = {"roll": (1.0, 0.0, 0.0), "pitch": (0.0, 1.0, 0.0), "yaw": (0.0, 0.0, 1.0)}
 """Joint axes in the body frame; positive angles follow the right-hand rule."""

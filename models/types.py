@@ -2,12 +2,13 @@
 
 import difflib
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

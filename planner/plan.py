@@ -1,7 +1,8 @@
 """What the planner hands over at every tick, and the references that follow from it at any instant."""
 
-from dataclasses import dataclass, field, replace
-from typing import Protocol
+from collections.abc import Mapping
+from dataclasses import field, replace
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy import bool_
@@ -23,6 +24,7 @@ from surefoot.planner.types import (
     PhaseKind,
     PlanStatus,
 )
+from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +101,26 @@ class Planner(Protocol):
         """
 
 
+_put = object.__setattr__
+
+_IN_POINT: Mapping[str, slice | int] = {
+    "com": slice(7, 10),
+    "com_velocity": slice(16, 19),
+    "com_acceleration": slice(25, 28),
+    "zmp": slice(36, 38),
+    "pendulum_zmp": slice(34, 36),
+    "zmp_reference": slice(0, 2),
+    "dcm": slice(38, 40),
+    "omega": 4,
+    "stiffness": 5,
+    "load_left": 6,
+    "swing": slice(10, 16),
+    "swing_velocity": slice(19, 25),
+    "swing_acceleration": slice(28, 34),
+}
+"""Where the fields of a sample are in a point."""
+
+
 @dataclass(frozen=True, slots=True)
 class PlanSample:
     """References at one instant; world frame, arrays are fresh at every call.
@@ -143,28 +165,24 @@ class PlanSample:
 
     @classmethod
     def of_point(cls, time: float, point: Array, contacts: tuple[bool, bool], swing_foot: Foot | None) -> "PlanSample":
-        """A sample out of the numbers of the kernel, shape (POINT,)."""
-        omega, stiffness, load = point[4:7].tolist()
-        sample = cls(
-            time,
-            point[7:10],
-            point[16:19],
-            point[25:28],
-            point[36:38],
-            point[34:36],
-            point[:2],
-            point[38:],
-            omega,
-            stiffness,
-            contacts,
-            load,
-            swing_foot,
-            point[10:16],
-            point[19:25],
-            point[28:34],
-        )
-        object.__setattr__(sample, "point", point)
+        """A sample out of the numbers of the kernel, shape (POINT,), which become fields when they are first read."""
+        sample = cls.__new__(cls)
+        _put(sample, "time", time)
+        _put(sample, "contacts", contacts)
+        _put(sample, "swing_foot", swing_foot)
+        _put(sample, "point", point)
         return sample
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """A field that has not been read before."""
+            if name not in _IN_POINT:
+                raise AttributeError(f"{type(self).__name__} has no attribute '{name}'")
+            place = _IN_POINT[name]
+            value = self.point[place] if isinstance(place, slice) else self.point.item(place)
+            _put(self, name, value)
+            return value
 
     def until(self, middle: "PlanSample") -> "PlanSample":
         """What is to be done over a time that begins with this sample: its state, and all else of the middle."""
@@ -195,8 +213,7 @@ class PlanSampler:
     def __init__(self, plan: WalkPlan, kernel: PlanKernel | None = None) -> None:
         self.plan, self._kernel = plan, kernel
         self._last = len(plan.jerk) - 1
-        self._interval = -1
-        self._landed = False
+        self._entered = (-1, False)
         self._touchdown = np.inf if plan.swing is None else plan.swing.touchdown_time - TOUCHING
         single = plan.phase.kind is PhaseKind.SINGLE
         self._lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
@@ -247,7 +264,8 @@ class PlanSampler:
         if self._kernel is None or self._place(middle) != now:
             sample = self.sample(time)
             return sample, sample.until(self.sample(middle))
-        self._go_to(time)
+        if now != self._entered:
+            self._enter(*now)
         at, over = self._kernel.sample(self._local(time), self._local(middle))
         foot = self._swing_foot
         return (
@@ -257,25 +275,26 @@ class PlanSampler:
 
     def _place(self, time: float) -> tuple[int, bool]:
         """The interval of an instant, and whether the swing foot has landed by then."""
-        since = (time - self.plan.time) / self.plan.sample_time
-        return min(max(int(since + 1e-6), 0), self._last), time >= self._touchdown
+        plan = self.plan
+        interval = int((time - plan.time) / plan.sample_time + 1e-6)
+        return 0 if interval < 0 else min(interval, self._last), time >= self._touchdown
 
     def _go_to(self, time: float) -> None:
-        interval, landed = self._place(time)
-        if interval != self._interval or landed != self._landed:
-            self._enter(interval, landed)
+        place = self._place(time)
+        if place != self._entered:
+            self._enter(*place)
 
     def _local(self, time: float) -> float:
         """Time since the begin of the interval [s]."""
         return min(max(time - self._start, 0.0), self.plan.sample_time)
 
     def _contacts_at(self, time: float) -> tuple[bool, bool]:
-        return (True, True) if self._interval == 0 and time >= self._lands else self._contacts
+        return self._contacts if time < self._lands or self._entered[0] else (True, True)
 
     def _enter(self, i: int, landed: bool) -> None:
         """Prepare an interval: contacts, the foot that swings, and all functions of time."""
         plan = self.plan
-        self._interval, self._landed, self._start = i, landed, plan.time + i * plan.sample_time
+        self._entered, self._start = (i, landed), plan.time + i * plan.sample_time
         left, right = plan.contacts[i].tolist()
         self._contacts, self._swing_foot, swing = (left, right), None, None
         if plan.swing is not None and not plan.contacts[i, plan.swing.foot]:

@@ -6,12 +6,12 @@ import json
 import shutil
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from shlex import quote
 from types import ModuleType
 from typing import Any
+
+from surefoot.values import dataclass
 
 Key = tuple[str | int, ...]
 """Path of a value in a scenario: keys and list indices."""
@@ -128,6 +128,8 @@ def install_command(extra: str) -> str:
 
 def _installed_from() -> str:
     """Address of the archive, folder or repository that pip was given; empty when it came from an index."""
+    from importlib.metadata import PackageNotFoundError, distribution
+
     try:
         origin = json.loads(distribution("surefoot").read_text("direct_url.json") or "{}")
     except PackageNotFoundError:

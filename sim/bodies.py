@@ -1,7 +1,6 @@
 """Where the bodies of a robot are, by MuJoCo's kinematics."""
 
-import mujoco
-
+from surefoot.engine import mujoco
 from surefoot.sim.measurement import Array
 
 _WXYZ = (6, 3, 4, 5)

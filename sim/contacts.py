@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
+
+from surefoot.engine import mujoco
 
 _TERRAIN, _FOOT, _BODY = 0, 1, 3
 """Codes of geoms: the sum over a contact's two tells its kind; 3 is a body other than a foot on the terrain."""

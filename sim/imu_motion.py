@@ -1,13 +1,13 @@
 """How the IMU moves: its frame in the world from the true state, through the joints between it and the base."""
 
 import math
-from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 
+from surefoot.engine import mujoco
 from surefoot.models.types import ImuPlace
 from surefoot.sim.measurement import Array
+from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

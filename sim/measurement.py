@@ -1,9 +1,9 @@
 """What the sensors of the simulated robot say at one instant."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
+
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 
@@ -22,11 +22,11 @@ class Measurement:
         time: instant [s].
         joint_position: encoders, shape (nj,) [rad].
         joint_velocity: encoders, shape (nj,) [rad/s].
-        joint_torque: applied by the motors, after their limits, shape (nj,) [N m].
+        joint_torque: applied by the motors, after their limits, shape (nj,) [N m]; NaN where it is not known.
         gyro: angular velocity of the IMU in its frame, shape (3,) [rad/s].
         accelerometer: specific force (acceleration minus gravity) of the IMU in its frame, shape (3,) [m/s^2].
         wrench: force and torque that the ground exerts on the left and the right foot, at the sole centre in the sole
-            frame, shape (2, 6) [N, N m].
+            frame, shape (2, 6) [N, N m]; NaN where no foot feels any.
         q: true configuration in Pinocchio's convention, shape (7 + nj,) [m, -, rad].
         v: true velocity in Pinocchio's convention, shape (6 + nj,) [m/s, rad/s].
         external_force: sum of the pushes, mean over the `World.advance` that ended at `time`, world, shape (3,) [N].
@@ -46,3 +46,21 @@ class Measurement:
     external_force: Array
     nonfoot_contact: bool
     self_contact: bool
+
+    @classmethod
+    def of_state(
+        cls, time: float, q: Array, v: Array, joint_torque: Array | None = None, wrench: Array | None = None
+    ) -> "Measurement":
+        """What is seen of a robot whose state is known from elsewhere, with no IMU and nothing that touches it.
+
+        Args:
+            time: instant [s].
+            q: configuration in Pinocchio's convention, shape (7 + nj,) [m, -, rad].
+            v: velocity in Pinocchio's convention, shape (6 + nj,) [m/s, rad/s].
+            joint_torque: as of the attribute; None where it is not known.
+            wrench: likewise.
+        """
+        torque = np.full(len(v) - 6, np.nan) if joint_torque is None else joint_torque
+        felt = np.full((2, 6), np.nan) if wrench is None else wrench
+        unseen = np.full(3, np.nan)
+        return cls(time, q[7:], v[6:], torque, v[3:6], unseen, felt, q, v, np.zeros(3), False, False)

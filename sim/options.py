@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
+
+from surefoot.engine import mujoco
 
 Option = float | str | list[float] | list[str]
 

@@ -34,7 +34,7 @@ class SensorSuite:
     """
 
     def __init__(self, world: World, errors: SensorErrors, rate: int, seed: int) -> None:
-        self._period = 1.0 / rate
+        self._rate, self._period = rate, 1.0 / rate
         joints = len(world.description.joint_names)
         self._encoders = _Encoders(errors, joints, seed)
         self._imu = _Imu(world, errors, self._period, seed)
@@ -54,7 +54,7 @@ class SensorSuite:
         rate, mean_rate, force = self._by_imu.through(tick, self._imu.sample(measurement))
         wrench = None if self._feet is None else self._by_feet.through(tick, self._feet.sample(measurement))[0]
         return Readings(
-            time=tick * self._period,
+            time=tick / self._rate,
             joint_position=position,
             joint_velocity=velocity if self._encoders.say_velocity else None,
             joint_torque=torque,

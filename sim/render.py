@@ -2,16 +2,16 @@
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import repeat
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.engine import mujoco
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.sim.gl import make_context
 from surefoot.sim.marks import Mark, draw
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 
-import mujoco
 import numpy as np
 
+from surefoot.engine import mujoco
 from surefoot.models.convert import mujoco_to_pinocchio
 from surefoot.models.types import RobotDescription
 from surefoot.native.library import Library, library

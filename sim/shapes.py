@@ -1,14 +1,14 @@
 """What there is to draw of a world: the geoms of a MuJoCo model as plain shapes on bodies."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Literal
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.engine import mujoco
 from surefoot.sim.measurement import Array
+from surefoot.values import dataclass
 
 Color = tuple[float, float, float, float]
 Kind = Literal["box", "ellipsoid", "cylinder", "capsule", "mesh"]

@@ -5,10 +5,11 @@ import logging
 from collections.abc import Sequence
 from functools import lru_cache
 
-import mujoco
 import numpy as np
 
+from surefoot.engine import mujoco
 from surefoot.forces import Push
+from surefoot.joints import JointCommand
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription, nearest
 from surefoot.planner.ground.terrain import Terrain
@@ -152,6 +153,18 @@ class World:
         if not np.dot(self._qacc, self._qacc) < ACCELERATION_LIMIT**2:
             self._diverge()
         self.tick = end
+
+    def act(self, command: JointCommand, period: float) -> None:
+        """Simulate what is commanded for so long, a whole number of physics steps [s]; errors as of `advance`."""
+        steps = round(period * self.physics_rate)
+        if command.servo is None:
+            self.advance(command.torque, steps)
+            return
+        pushed = np.zeros(3)
+        for _ in range(steps):
+            self.advance(command.torque_at(self._qpos[7:], self._qvel[6:]), 1)
+            pushed += self._pushes.mean
+        self._pushes.mean[:] = pushed / steps
 
     def _diverge(self) -> None:
         self._qpos[:] = self._last_qpos

@@ -19,32 +19,47 @@ from surefoot.lazy import face
 
 if TYPE_CHECKING:
     from surefoot.errors import ParameterError, PartError, PluginError
+    from surefoot.joints import JointCommand, Servo
+    from surefoot.planner.steps.commands import Command
+    from surefoot.planner.types import Twist
+    from surefoot.readings import Reading, Readings
     from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
     from surefoot.scenarios.file.schema import Scenario
     from surefoot.scenarios.judge.verdict import Verdict, judge
     from surefoot.scenarios.log.reader import Log, read
-    from surefoot.scenarios.run.full import Parts
+    from surefoot.scenarios.run.controller import Controller, Parts
     from surefoot.scenarios.run.planning import RunFault
+    from surefoot.scenarios.run.plant import Plant
     from surefoot.scenarios.run.run import Result, run
     from surefoot.scenarios.run.simulation import Simulation, Tick
     from surefoot.scenarios.setup.load import load
     from surefoot.scenarios.setup.walk import Walk
+    from surefoot.sim.measurement import Measurement
     from surefoot.version import __version__
 
 __all__ = [
+    "Command",
+    "Controller",
+    "JointCommand",
     "Log",
     "LogError",
+    "Measurement",
     "ParameterError",
     "PartError",
     "Parts",
+    "Plant",
     "PluginError",
+    "Reading",
+    "Readings",
     "Result",
     "RunFault",
     "Scenario",
     "ScenarioError",
+    "Servo",
     "SetupError",
     "Simulation",
     "Tick",
+    "Twist",
     "Verdict",
     "Walk",
     "__version__",
@@ -59,12 +74,18 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
         __name__,
         {
             "errors": ("ParameterError", "PartError", "PluginError"),
+            "joints": ("JointCommand", "Servo"),
+            "planner.steps.commands": ("Command",),
+            "planner.types": ("Twist",),
+            "readings": ("Reading", "Readings"),
+            "sim.measurement": ("Measurement",),
             "scenarios.errors": ("LogError", "ScenarioError", "SetupError"),
             "scenarios.file.schema": ("Scenario",),
             "scenarios.judge.verdict": ("Verdict", "judge"),
             "scenarios.log.reader": ("Log", "read"),
             "scenarios.run.planning": ("RunFault",),
-            "scenarios.run.full": ("Parts",),
+            "scenarios.run.plant": ("Plant",),
+            "scenarios.run.controller": ("Controller", "Parts"),
             "scenarios.run.run": ("Result", "run"),
             "scenarios.setup.load": ("load",),
             "scenarios.setup.walk": ("Walk",),

@@ -1,6 +1,8 @@
 """Faces whose names are imported when they are first asked for, so that a package costs nothing until it is used."""
 
-from collections.abc import Callable, Iterable, Mapping
+import gc
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
@@ -26,3 +28,20 @@ def face(package: str, homes: Mapping[str, Iterable[str]]) -> tuple[Callable[[st
         return sorted(places)
 
     return get, names
+
+
+@contextmanager
+def importing() -> Iterator[None]:
+    """What a program imports meanwhile stays to its end, and nobody looks through it for garbage.
+
+    Looking takes a seventh of the time of importing all of the package, and finds next to nothing.
+    """
+    if not gc.isenabled():
+        yield
+        return
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()

@@ -8,17 +8,19 @@ A package says in its ``pyproject.toml`` what it has, and every command finds it
 Nothing is imported before the name is asked for. Whatever such an object does, a `Guard` stands around its calls.
 """
 
+import os
 import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import redirect_stdout
 from functools import lru_cache
-from importlib import import_module, metadata
-from importlib.metadata import EntryPoint, EntryPoints
-from pathlib import Path
-from typing import TypeVar, cast
+from importlib import import_module
+from typing import TYPE_CHECKING, TypeVar, cast
 
 from surefoot.errors import PluginError
 from surefoot.guard import OWN_GUARD, OWN_PACKAGE, Guard, said
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint, EntryPoints
 
 __all__ = ["OWN_PACKAGE", "Declared", "PluginError", "Registry", "entry_points", "package_of"]
 
@@ -151,7 +153,7 @@ class Registry(Mapping[str, T]):
             return refusal
         return None
 
-    def _entries(self, name: str) -> list[EntryPoint]:
+    def _entries(self, name: str) -> "list[EntryPoint]":
         return [entry for entry in entry_points(group=self.group) if entry.name == name]
 
     def _checked(self, thing: object, who: str) -> T:
@@ -219,30 +221,33 @@ class Declared(Registry[T]):
         return made
 
 
-def entry_points(group: str) -> EntryPoints:
+def entry_points(group: str) -> "EntryPoints":
     """Every entry point of a group, of the packages on ``sys.path``."""
-    return _entry_points(group, tuple((place, _changed(place)) for place in sys.path))
+    return _entry_points(tuple((place, _changed(place)) for place in sys.path))(group)
 
 
-@lru_cache(maxsize=16)
-def _entry_points(group: str, _places: tuple[tuple[str, int], ...]) -> EntryPoints:
-    """Found once, and again when a package was installed since, which alters one of the places."""
-    return metadata.entry_points(group=group)
+@lru_cache(maxsize=1)
+def _entry_points(_places: tuple[tuple[str, int], ...]) -> "Callable[[str], EntryPoints]":
+    """Those of any group, found once, and again when a package was installed since, which alters one of the places."""
+    from importlib import metadata  # which imports what reads letters, and a command may need no package
+
+    found = metadata.entry_points()
+    return lru_cache(maxsize=None)(lambda group: found.select(group=group))
 
 
 def _changed(place: str) -> int:
     try:
-        return Path(place).stat().st_mtime_ns
+        return os.stat(place or ".").st_mtime_ns  # noqa: PTH116  twenty paths for each look, and several looks a run
     except OSError:
         return 0
 
 
-def package_of(entry: EntryPoint) -> str:
+def package_of(entry: "EntryPoint") -> str:
     """Name of the package that an entry point is of, for messages."""
     return entry.dist.name if entry.dist is not None else entry.value
 
 
-def _load(entry: EntryPoint) -> object:
+def _load(entry: "EntryPoint") -> object:
     """What an entry point leads to; what its package prints meanwhile goes to where messages go.
 
     Raises:

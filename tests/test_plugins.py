@@ -12,6 +12,7 @@ from surefoot.planner.laws.profiles import PROFILES
 from surefoot.plugins import OWN_PACKAGE, Declared, PluginError, Registry
 from surefoot.scenarios.catalogue import SCENARIOS
 from surefoot.scenarios.judge.metrics import METRICS
+from surefoot.scenarios.run.full import PLANTS
 from surefoot.scenarios.run.sensing import ESTIMATORS
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.wbc.tasks import TASKS
@@ -143,7 +144,7 @@ def test_a_name_of_two_packages_is_refused(lengths, others):
 
 def test_every_registry_of_surefoot_has_a_row_in_the_documentation():
     page = (Path(__file__).parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
-    registries = (METRICS, PROFILES, TASKS, ESTIMATORS, ROBOTS, SCENARIOS, KINDS)
+    registries = (METRICS, PROFILES, TASKS, ESTIMATORS, PLANTS, ROBOTS, SCENARIOS, KINDS)
     groups = {registry.group for registry in registries}
     assert len(groups) == len(registries)
     for group in groups:

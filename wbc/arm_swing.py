@@ -1,9 +1,8 @@
 """Arms that swing against the legs: a posture that moves with the stride and takes up the legs' yaw momentum."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from surefoot.values import dataclass
 from surefoot.wbc.model import RobotTerms
 
 

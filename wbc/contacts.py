@@ -1,7 +1,6 @@
 """Which contacts the whole-body QP holds, and how much load each may take: plan and feeling combined."""
 
-from dataclasses import dataclass
-
+from surefoot.values import dataclass
 from surefoot.wbc.parameters import ContactParameters
 from surefoot.wbc.types import FootSensing, WbcReference
 

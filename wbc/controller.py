@@ -3,13 +3,14 @@
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.similarity import Similarity
+from surefoot.values import dataclass
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.compiled import CompiledTick
@@ -22,7 +23,7 @@ from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
 from surefoot.wbc.separation import Separation
-from surefoot.wbc.solvers import QpSolution, equalities_only, make_solver
+from surefoot.wbc.solvers import EqualityFirst, QpSolution, equalities_only, make_solver
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
 from surefoot.wbc.tasks.registry import TaskLayout
@@ -163,6 +164,8 @@ class WholeBodyController:
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._observer = LoadObserver(self.terms.mass, control_period, size, self.terms.compiled)
         self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
+        if isinstance(self._solvers[0], EqualityFirst):
+            self._solvers[0].prepare(self.qp)
         self._limits, self._toe = limits, toe
         self._fading = control_period / (FADE * size.time), FADE_DAMPING * size.time
         self._seen: list[tuple[int, Array]] = []

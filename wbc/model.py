@@ -1,12 +1,11 @@
 """The Pinocchio terms of one state, computed once and shared by every task, contact and limit."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import pinocchio as pin
 
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.native.library import library
+from surefoot.values import dataclass
 from surefoot.wbc.compiled import CompiledTerms
 from surefoot.wbc.leaning import line_centre, line_frame
 from surefoot.wbc.qp import WRENCH_UNIT

@@ -1,10 +1,10 @@
 """The whole-body QP: its layout, its data and its residuals. Building, solving and interpreting are apart."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.values import dataclass
 from surefoot.wbc.types import Array
 
 FOOT_ROWS = 6

@@ -48,6 +48,7 @@ class Separation:
             for pair in geometry.collisionPairs
         ]
         self._points, self._row = np.zeros((3, 3)), np.zeros(model.nv)
+        self._clear: Array | None = None  # rows that were last written without any pair
         self._rates = [self._compiled(compiled, *joints) for joints in self._joints] if compiled else None
         self._due = _DuePairs(compiled, geometry, self._joints, parameters.attention) if compiled else None
 
@@ -63,9 +64,9 @@ class Separation:
         """
         p = self._parameters
         distances = self._all_distances(data) if self._due is None else self._due_distances(data, self._due)
-        if not distances:
-            rows[:], lower[:] = 0.0, -unbounded
+        if not distances and self._clear is rows:
             return
+        self._clear = None if distances else rows
         near = [k for k, distance in distances.items() if 0.0 < distance < p.attention]
         near.sort(key=distances.__getitem__)
         for slot in range(p.slots):
@@ -78,7 +79,9 @@ class Separation:
                 rate = float(row @ v)
             else:
                 result, row = self._results[near[slot]], self._row
-                self._points[:] = -result.normal, result.getNearestPoint1(), result.getNearestPoint2()
+                normal, first, second = self._points
+                np.negative(result.normal, out=normal)
+                first[:], second[:] = result.getNearestPoint1(), result.getNearestPoint2()
                 rate = self._rates[near[slot]]()
             rows[slot] = row
             lower[slot] = -2.0 / p.horizon * rate - gap / p.horizon**2

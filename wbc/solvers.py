@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Protocol
 
 import daqp
@@ -10,6 +9,7 @@ import numpy as np
 from proxsuite import proxqp
 
 from surefoot.native.library import Library, library
+from surefoot.values import dataclass
 from surefoot.wbc.parameters import SOLVER_NAMES
 from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
 from surefoot.wbc.types import Array
@@ -138,6 +138,11 @@ class EqualityFirst:
         kernels = library()
         self._compiled = None if kernels is None else CompiledEqualities(kernels, accuracy)
 
+    def prepare(self, qp: QpData) -> None:
+        """Bind the kernel to a QP that is to be solved, which else the first ``solve`` of it does."""
+        if self._compiled is not None:
+            self._compiled.bind(qp)
+
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
         compiled = self._compiled
@@ -182,7 +187,7 @@ class CompiledEqualities:
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``equalities_only``."""
         if qp is not self._qp:
-            self._bind(qp)
+            self.bind(qp)
         violation = self._run(self._split)
         return QpSolution(self._x.copy(), violation, 0) if math.isfinite(violation) else None
 
@@ -195,7 +200,8 @@ class CompiledEqualities:
         # Beside what counts as none there is rounding, as of DAQP, which scales its rows.
         return QpSolution(self._x.copy(), violation, rounds) if violation <= 100.0 * self._accuracy else None
 
-    def _bind(self, qp: QpData) -> None:
+    def bind(self, qp: QpData) -> None:
+        """Work on another QP from now on."""
         n, rows, eq = qp.g.shape[0], qp.A.shape[0], EQUALITY_ROWS
         # A right side for each equality and for the gradient, and room to make their number a multiple of four.
         width = eq + 4

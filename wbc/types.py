@@ -5,14 +5,18 @@ Robot states follow Pinocchio: ``q = [base position, base quaternion xyzw, joint
 foot first. Wrenches are ``[fx, fy, fz, tx, ty, tz]`` at the sole centre in the sole frame. Units are SI.
 """
 
-from dataclasses import dataclass, field
+import math
+from collections.abc import Mapping
+from dataclasses import field
 from enum import IntEnum
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.similarity import GRAVITY as GRAVITY
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 
@@ -59,6 +63,34 @@ class FootSensing:
     wrench: Array | None = None
     contact: tuple[bool, bool] | None = None
     load_deviation: tuple[float, float] = (0.0, 0.0)
+
+
+_put = object.__setattr__
+
+_ARRAYS: Mapping[str, tuple[int, tuple[int, ...]]] = {
+    "com": (0, (3,)),
+    "com_velocity": (3, (3,)),
+    "com_acceleration": (6, (3,)),
+    "zmp": (9, (2,)),
+    "zmp_offset": (11, (2,)),
+    "swing_position": (13, (3,)),
+    "swing_velocity": (16, (3,)),
+    "swing_acceleration": (19, (3,)),
+    "swing_angular_velocity": (22, (3,)),
+    "swing_angular_acceleration": (25, (3,)),
+    "swing_rotation": (28, (3, 3)),
+    "ground_normal": (37, (2, 3)),
+}
+_IN_NUMBERS: Mapping[str, tuple[int, tuple[int, ...]]] = {
+    **_ARRAYS,
+    "omega": (43, ()),
+    "stiffness": (44, ()),
+    "heading": (45, ()),
+    "heading_rate": (46, ()),
+    "load_share": (47, (2,)),
+    "roll": (49, (3,)),
+}
+"""Where the fields of a reference are in its numbers, and their shapes; arrays first, then plain numbers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,36 +165,31 @@ class WbcReference:
         swing_progress: float,
         rolling_foot: int,
     ) -> "WbcReference":
-        """A reference out of the numbers of the kernels' struct ``Reference``, and what they do not know of it."""
-        omega, stiffness, heading, heading_rate, left, right, *roll, _, _ = numbers[43:].tolist()
-        reference = cls(
-            numbers[:3],
-            numbers[3:6],
-            numbers[6:9],
-            numbers[9:11],
-            numbers[11:13],
-            omega,
-            stiffness,
-            heading,
-            heading_rate,
-            planned_contact,
-            (left, right),
-            time_to_switch,
-            lifting_foot,
-            swing_foot,
-            swing_progress,
-            numbers[13:16],
-            numbers[16:19],
-            numbers[19:22],
-            numbers[28:37].reshape(3, 3),
-            numbers[22:25],
-            numbers[25:28],
-            numbers[37:43].reshape(2, 3),
-            rolling_foot,
-            tuple(roll),
-        )
-        object.__setattr__(reference, "numbers", numbers)
+        """A reference out of the numbers of the kernels' struct ``Reference``, and what they do not know of it.
+
+        Those numbers become fields when they are first read.
+        """
+        reference = cls.__new__(cls)
+        _put(reference, "numbers", numbers)
+        _put(reference, "planned_contact", planned_contact)
+        _put(reference, "time_to_switch", time_to_switch)
+        _put(reference, "lifting_foot", lifting_foot)
+        _put(reference, "swing_foot", swing_foot)
+        _put(reference, "swing_progress", swing_progress)
+        _put(reference, "rolling_foot", rolling_foot)
         return reference
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """A field that has not been read before."""
+            if name not in _IN_NUMBERS:
+                raise AttributeError(f"{type(self).__name__} has no attribute '{name}'")
+            start, shape = _IN_NUMBERS[name]
+            part = self.numbers[start : start + math.prod(shape)]
+            value = part.reshape(shape) if name in _ARRAYS else tuple(part.tolist()) if shape else part.item()
+            _put(self, name, value)
+            return value
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,6 +31,7 @@ SOURCES: dict[str, tuple[str, ...]] = {
         PALETTE,
         *(f"scenarios/show/{name}.py" for name in ("figures/motion", "figures/page", "kit/shading", "kit/figures")),
     ),
+    **{f"{name}.svg": ("docs/images/drawings.py",) for name in ("tick", "planner", "qp", "recovery", "estimation")},
 }
 """What a picture looks like by; the map's looks are its own, and its content changes with every part of the stack."""
 
@@ -42,6 +43,8 @@ def digest(name: str) -> str:
 
 def noted(name: str) -> str:
     """The digest that a picture was drawn with."""
+    if name.endswith(".svg"):
+        return (FOLDER / name).read_text(encoding="utf-8").partition(f"{KEY}: ")[2][:16]
     with Image.open(FOLDER / name) as picture:
         found = picture.info.get("comment", b"").decode() or picture.info.get(KEY, "")
     return str(found)
@@ -94,11 +97,23 @@ def gait_map(_: Path) -> None:
         draw_map([str(swept.folder / "table.csv")])
 
 
+def drawing(name: str) -> Callable[[Path], None]:
+    """Boxes and arrows, which follow from no run."""
+
+    def draw(_: Path) -> None:
+        from drawings import DRAWINGS
+
+        (FOLDER / name).write_text(DRAWINGS[name].svg(digest(name)), encoding="utf-8")
+
+    return draw
+
+
 PICTURES: dict[str, tuple[str, Callable[[Path], None]]] = {
     "walk.png": ("walk", walk),
     "walk.gif": ("walk", animation),
     "figures.png": ("diagonal-walk", figures),
     "gait-map.png": ("", gait_map),
+    **{name: ("", drawing(name)) for name in SOURCES if name.endswith(".svg")},
 }
 """The scenario that a picture shows, if it is one, and what draws it from its log."""
 

@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import os
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict, fields
@@ -13,10 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from surefoot import kept
 from surefoot.models.robot_file.document import MESH, Kind, content, signature
 from surefoot.models.types import ImuPlace, JointRoles, RobotDescription, RobotError
 
 _ENGINES = ("pin", "coal", "mujoco", "numpy", "scipy", "fast-simplification")
+_ROOM = "robots"
 _KEPT = 64
 """Descriptions in the folder; older ones go."""
 
@@ -54,37 +55,20 @@ def _code() -> bytes:
 def load(key: str) -> tuple[RobotDescription, tuple[str, ...], tuple[str, ...]] | None:
     """A description with what was derived and noted; None if it is not there or not as it was stored."""
     try:
-        seal, _, text = content(_entry(key), _ENTRY).partition(b"\n")
+        text = kept.opened(key, content(kept.place(_ROOM, key), _ENTRY))
     except RobotError:
         return None
-    if seal != _seal(key, text):
+    if text is None:
         return None
-    kept = json.loads(text)
-    return _description(kept["description"]), tuple(kept["derived"]), tuple(kept["notes"])
+    found = json.loads(text)
+    return _description(found["description"]), tuple(found["derived"]), tuple(found["notes"])
 
 
 def store(key: str, description: RobotDescription, derived: tuple[str, ...], notes: tuple[str, ...]) -> None:
     """Keep a description; where the folder cannot be written nothing is kept."""
     values = {name: _plain(value) for name, value in asdict(description).items()}
     text = json.dumps({"description": values, "derived": derived, "notes": notes}).encode()
-    entry = _entry(key)
-    with suppress(OSError):
-        entry.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = entry.with_suffix(f".{os.getpid()}")
-        unfinished.write_bytes(_seal(key, text) + b"\n" + text)
-        unfinished.replace(entry)
-        for old in sorted(entry.parent.glob("*.json"), key=lambda file: file.lstat().st_mtime)[:-_KEPT]:
-            old.unlink()
-
-
-def _entry(key: str) -> Path:
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "surefoot" / "robots" / f"{key}.json"
-
-
-def _seal(key: str, text: bytes) -> bytes:
-    """Digest of an entry under its key, by which one that was changed or moved is known."""
-    return hashlib.sha256(f"{key}\n".encode() + text).hexdigest().encode()
+    kept.store(_ROOM, key, text, _KEPT)
 
 
 def _plain(value: Any) -> Any:

@@ -3,13 +3,13 @@
 import re
 import stat
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 from xml.etree import ElementTree
 from xml.parsers import expat
 
 from surefoot.models.types import RobotError
+from surefoot.values import dataclass
 
 MOST_ELEMENTS = 20_000
 """Of a model with all that it includes."""

@@ -5,7 +5,7 @@ fields, keyframes, cameras, sizes of memory.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path, PurePosixPath
 from xml.sax.saxutils import quoteattr
 
@@ -13,6 +13,7 @@ from surefoot.models.robot_file.document import DEEPEST, MOST_ELEMENTS, Node, nu
 from surefoot.models.robot_file.paths import is_file, resolve
 from surefoot.models.robot_file.quantities import check_numbers, of_mjcf
 from surefoot.models.robot_file.urdf import MOST_SHAPES
+from surefoot.values import dataclass
 
 _MOST_FILES = 200
 _OF_ALL = ("size", "visual", "statistic", "option", "custom", "keyframe", "sensor", "deformable")

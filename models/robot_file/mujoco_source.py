@@ -3,10 +3,10 @@
 import re
 from pathlib import Path, PurePath
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 
+from surefoot.engine import mujoco
 from surefoot.models.robot_file.mesh_file import binary_stl, burden, mesh_content, triangles
 from surefoot.models.robot_file.meshes import thinned
 from surefoot.models.robot_file.mjcf import Assembled

@@ -1,7 +1,6 @@
 """A model with the joints that walk: others locked, limits and rotors complete, x of the base ahead."""
 
 import fnmatch
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.robot_file.source import RESERVED, SITES, Source
 from surefoot.models.robot_file.turning import turn, upward
 from surefoot.models.types import Array, RobotError, nearest
+from surefoot.values import dataclass
 
 _LEAST = 1e-10
 """Mass [kg] and moment of inertia [kg m^2] that a body has to have."""

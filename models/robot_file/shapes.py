@@ -3,7 +3,6 @@
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -15,6 +14,7 @@ from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.paths import is_file, resolve
 from surefoot.models.robot_file.quantities import LENGTH
 from surefoot.models.types import Array, RobotError
+from surefoot.values import dataclass
 
 Colour = tuple[float, float, float, float]
 

@@ -2,18 +2,18 @@
 
 import itertools
 from contextlib import suppress
-from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 
+from surefoot.engine import mujoco
 from surefoot.models.robot_file.legs import SIDES, Leg
 from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.reduced import Reduced, points_of
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.upper import Upper
 from surefoot.models.types import Array, RobotError, nearest
+from surefoot.values import dataclass
 
 MOST_POINTS = 80
 _LIGHTEST = 0.004

@@ -1,7 +1,7 @@
 """Soft TVMPC with the footsteps as variables of the QP (Herdt et al., 2010): profiles `default` and `lti`."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from surefoot.planner.model.jerk import Prediction, block_moves, predict, zmp_re
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.leg_offset import softening
 from surefoot.planner.types import GRAVITY, Array, SolverStatus
+from surefoot.values import dataclass
 
 _EXTRA = 4
 """Variables after the moves: two footstep shifts, ZMP slack, terminal slack [-]."""

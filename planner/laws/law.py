@@ -5,12 +5,12 @@ makes it. Laws that solve QPs do so in three public steps, `build`, `solve` and 
 at and tested without the others.
 """
 
-from dataclasses import dataclass
 from typing import Protocol
 
 from surefoot.planner.laws.qp import Qp, QpSolution
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import Array, SolverStatus
+from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,6 @@
 """The QP of one axis, and its solution by the first solver that succeeds."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import daqp
@@ -10,6 +9,7 @@ import numpy as np
 from surefoot.native.library import library
 from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.types import Array
+from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     import qpsolvers

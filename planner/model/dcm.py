@@ -8,13 +8,13 @@ nor a leg that swings in a third of a second; planned with them alone, fast step
 So the optimiser plans only what differs from this motion.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from surefoot.native.library import Bound, Library
 from surefoot.planner.types import Array
+from surefoot.values import dataclass
 
 
 def natural_frequency(stiffness: Array, sample_time: float) -> Array:

@@ -5,13 +5,13 @@ CoM, the knees from hips and soles, and with them the mass of every link: a rod 
 """
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from surefoot.native.library import Bound, Library
 from surefoot.planner.types import Array
+from surefoot.values import dataclass
 
 _REST = 4e-3
 """Share of the first guess's error that the hips may keep; a constant rest does no harm [-]."""

@@ -4,13 +4,14 @@ The clock counts planner samples, as a real number: a phase may last any time. W
 the clock follows a quintic to that instant, and goes at its own rate again from there on.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
 from surefoot.planner.geometry import quintic
 from surefoot.planner.types import Array
+from surefoot.values import dataclass
 
 CLOCK_ROUNDING = 1e-9
 """Instants on the clock are sums of durations and are compared with this tolerance [samples]."""

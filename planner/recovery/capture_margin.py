@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from surefoot.native.library import library
-from surefoot.planner.model.dcm import viability_weights
+from surefoot.planner.model.dcm import nominal_dcm, viability_weights
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.recovery.compiled import CompiledMargins, CompiledOutlook
 from surefoot.planner.recovery.step_adjustment import StepProblem
@@ -64,6 +64,13 @@ class PlannedMargin:
         if self.outlook is None or self.outlook.count != len(window.stiffness):
             return planned_margin(dcm, window, self._sample_time, self._foot_margin)
         return self.outlook.margin(dcm, window, self._foot_margin)
+
+    def nominal(self, window: Window) -> Array:
+        """The DCM now that a window's ZMP keeps bounded, shape (2,) [m]."""
+        if self.outlook is None or self.outlook.count != len(window.stiffness):
+            nominal = nominal_dcm(window.stiffness, window.omega, window.driving.point, self._sample_time)
+            return np.asarray(nominal[0])
+        return self.outlook.nominal(window)
 
 
 class CaptureMargin:

@@ -70,16 +70,25 @@ class CompiledOutlook:
         self.count = n = parameters.horizon + parameters.preview + 1
         names = {"stiffness": (n,), "omega": (n,), "point": (n, 2), "gain": (n, 2), "half_size": (n, 2)}
         self._arrays = {name: np.zeros(shape) for name, shape in names.items()}
-        self.bound: Bound = kernels.fill(
-            "Outlook", count=n, sample_time=parameters.sample_time, decay=np.zeros(n), **self._arrays
+        self._nominal = np.zeros(2)
+        made = {"decay": np.zeros(n), "nominal": self._nominal}
+        self.bound: Bound = kernels.fill("Outlook", count=n, sample_time=parameters.sample_time, **made, **self._arrays)
+        self._margin, self._decay, self._mean = (
+            kernels.bind(f"outlook_{name}", self.bound) for name in ("margin", "decay", "nominal")
         )
-        self._margin, self._decay = (kernels.bind(name, self.bound) for name in ("outlook_margin", "outlook_decay"))
         self._window: Window | None = None
 
     def margin(self, dcm: Array, window: Window, foot_margin: float) -> float:
         """See `planner.recovery.capture_margin.planned_margin`."""
         self.tell(window)
         found: float = self._margin(float(dcm[0]), float(dcm[1]), foot_margin)
+        return found
+
+    def nominal(self, window: Window) -> Array:
+        """The DCM now that a window's ZMP keeps bounded, shape (2,) [m]."""
+        self.tell(window)
+        self._mean()
+        found: Array = self._nominal.copy()
         return found
 
     def tell(self, window: Window) -> None:

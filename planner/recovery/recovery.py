@@ -3,7 +3,6 @@
 import numpy as np
 
 from surefoot.planner.geometry import signed_distance
-from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.capture_margin import CaptureMargin, PlannedMargin
 from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepBounds, StepProblem
@@ -41,8 +40,7 @@ class Recovery:
         if self.adjustment is None or not stands:
             return False
         numbers, standing = self._parameters.recovery, execution.phase.kind is PhaseKind.STAND
-        nominal = nominal_dcm(window.stiffness, window.omega, window.driving.point, self._parameters.sample_time)
-        error = _dcm(local, window) - nominal[0]
+        error = _dcm(local, window) - self._planned.nominal(window)
         if (np.abs(error) <= numbers.stand_share * window.driving.half_size[-1]).all():
             # Once it is at rest the robot brings its feet side by side again.
             # Feet without a CoP of their own would end in a wide step, since there is no time to shift the weight.

@@ -28,7 +28,7 @@ boxes and the legs' reach in turn. So times and boxes are enumerated, all at onc
 docs/recovery.md has every formula.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -44,6 +44,7 @@ from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import Step, room_left, shortest_swing
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseKind
+from surefoot.values import dataclass
 
 _NO_GAIN = 1e-9
 """Gain of a step below which it counts as this: one that lands where the window ends does nothing to its DCM [-]."""
@@ -106,7 +107,7 @@ class StepProblem:
         place, face = _landing_place(step, schedule.step(landed), numbers.parallel)
         return cls(
             place=place,
-            swing=np.stack(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
+            swing=np.array(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
             double=0.0 if swings else phase.left,
             single=phase.left if swings else step.single * clock.sample_time,
             cycle=schedule.gait.period,

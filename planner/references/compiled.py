@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from surefoot.planner.references.window import Sight
 
 
+_ROOM = 64
+"""Phases, steps and support points for which there is memory from the start; a walk that sees more takes more [-]."""
+
+
 class CompiledPreview:
     """Kernels beside the plain methods of a `ReferencePreview`.
 
@@ -87,7 +91,7 @@ class CompiledPreview:
             kernels.bind(name, self._bound) for name in ("preview_look", "preview_weigh", "preview_transition")
         )
         self._support: Support | None = None
-        self._room, self._sight = 0, kernels.fill("Sight")
+        self._make_room(_ROOM)
         self.support_table = CompiledTable(kernels).fill
 
     def sight(self, execution: Execution, support: Support, moved: Callable[[Execution, Array], Array]) -> "Sight":
@@ -167,7 +171,7 @@ class CompiledTable:
 
     def __init__(self, kernels: Library) -> None:
         self._kernels = kernels
-        self._make_room(0)
+        self._make_room(_ROOM)
 
     def fill(
         self, schedule: Schedule, landed: int, free: tuple[bool, bool], half_size: Array, stay: bool = False

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from surefoot.planner.geometry import quintic
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.types import Array
+from surefoot.values import dataclass
 
 _ROUNDING = 1e-9
 """Accelerations are compared with this tolerance, since they are sums of rounded products [m/s^2]."""

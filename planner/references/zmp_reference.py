@@ -1,7 +1,6 @@
 """ZMP planner: the present support, and the ZMP reference over a window, linear in the next two footsteps."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +11,7 @@ from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
 from surefoot.polygon import convex_hull
+from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """A step: where and when it lands, and what its swing over the ground takes."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from operator import attrgetter
 
 import numpy as np
@@ -17,6 +17,7 @@ from surefoot.planner.swing.leg_reach import PEAK, LegReach
 from surefoot.planner.swing.step_region import check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, Foot, Footstep, Twist
+from surefoot.values import dataclass
 
 _MEASURED = 6
 """Decimals to which heights of footholds are compared: start feet may be some nanometres off the ground [-]."""

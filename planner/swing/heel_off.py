@@ -6,7 +6,6 @@ front foot can carry it.
 """
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from surefoot.planner.geometry import frame_rotation, sole_rates, sole_rotation
 from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.types import Array, Foot, Footstep
+from surefoot.values import dataclass
 
 _BEGIN = 0.25
 """Share of the weight shift after which the heel leaves the ground [-]."""

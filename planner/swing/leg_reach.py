@@ -1,7 +1,7 @@
 """What legs can do to catch a body: where a foot may land beside its stance foot, how hard hips swing it there."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.step_region import soles_apart
 from surefoot.planner.swing.trajectory import SwingTrajectory, detour
 from surefoot.planner.types import Array, Footstep
+from surefoot.values import dataclass
 
 PEAK = 5.77
 """Greatest acceleration of a quintic from rest to rest, over way / T²: 10 / √3 [-]."""

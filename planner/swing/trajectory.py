@@ -1,13 +1,14 @@
 """Swing foot trajectory: quintic over the ground, up to an apex and softly down, replanned at every planner tick."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from surefoot.planner.geometry import quintic, shifted
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
 from surefoot.planner.types import Array, Foot
+from surefoot.values import dataclass
 
 TOUCHING = 1e-9
 """Times of ticks carry rounding; a piece begins this much early [s]."""

@@ -9,19 +9,18 @@ import json
 import os
 import sys
 import traceback
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from shlex import quote
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer._click.exceptions import NoArgsIsHelpError, NoSuchOption, UsageError
-from typer.core import TyperGroup
 
 from surefoot.errors import PluginError
+from surefoot.lazy import importing
 from surefoot.scenarios.apps.drive import command as drive
 from surefoot.scenarios.apps.robots import command as robots
+from surefoot.scenarios.apps.words import Commands
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.show import commands as shown
@@ -31,49 +30,17 @@ from surefoot.scenarios.show.options import (
     AsJson,
     Seed,
     Settings,
-    keys_from,
     overrides,
     scenarios_from,
     with_options,
 )
 from surefoot.scenarios.study import commands as studies
+from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
-    from typer._click.core import Context
 
 DEFECT, BAD_INPUT, UNREAD = 70, 2, 141
-
-
-@contextmanager
-def _one_sentence() -> Iterator[None]:
-    """Say what is wrong with the words of a command as of any other bad input: what, where, and what would be right."""
-    try:
-        yield
-    except NoArgsIsHelpError:
-        raise
-    except UsageError as error:
-        path = error.ctx.command_path if error.ctx else "surefoot"
-        what = error.format_message().rstrip(".")
-        right = f"`{path} -h` tells what there is"
-        if isinstance(error, NoSuchOption) and path.endswith(" run"):
-            key = error.option_name.lstrip("-").replace("-", "_")
-            right = f"a key of the scenario is given as --set {key}=VALUE" if key in keys_from(key) else right
-        raise ScenarioError([f"{path}: {what[:1].lower()}{what[1:]}; {right}"]) from None
-
-
-class Commands(TyperGroup):
-    """All commands."""
-
-    def parse_args(self, ctx: "Context", args: list[str]) -> list[str]:
-        """Find the command."""
-        with _one_sentence():
-            return super().parse_args(ctx, args)
-
-    def invoke(self, ctx: "Context") -> Any:
-        """Give it its words and run it."""
-        with _one_sentence():
-            return super().invoke(ctx)
 
 
 app = typer.Typer(
@@ -127,11 +94,23 @@ def show(scenario: Annotated[str, typer.Argument(help="Catalogue name.", autocom
 
 
 @app.command()
+def new(
+    name: Annotated[str, typer.Argument(help="Of the package, such as my-package.")],
+    out: Annotated[Path, typer.Option(help="Directory that gets the package's own folder.")] = Path(),
+) -> None:
+    """Write a package with parts of one's own, to start from."""
+    from surefoot.scenarios.apps.package import new as write
+
+    place = write(name, out)
+    typer.echo(f"{place}\nnext: cd {quote(str(place))} && pip install -e '.[test]' && pytest")
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors."""
-    from surefoot.scenarios.setup.criteria import published
+    from surefoot.scenarios.apps.published import schema_text
 
-    typer.echo(json.dumps(published(), indent=2))
+    typer.echo(schema_text())
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,11 +133,12 @@ class RunOptions:
 @with_options(RunOptions)
 def run(told: RunOptions) -> None:
     """Run a scenario, write its log and judge it."""
-    from surefoot.native.library import is_missed
-    from surefoot.scenarios.run.run import run_scenario
-    from surefoot.scenarios.setup.load import load, locate
-    from surefoot.scenarios.show.console import ProgressLine, print_result
-    from surefoot.scenarios.show.replay.beside import LiveView, check
+    with importing():
+        from surefoot.native.library import is_missed
+        from surefoot.scenarios.run.run import run_scenario
+        from surefoot.scenarios.setup.load import load, locate
+        from surefoot.scenarios.show.console import ProgressLine, print_result
+        from surefoot.scenarios.show.replay.beside import LiveView, check
 
     asked = overrides(told.set_, told.seed)
     loaded = load(told.scenario, asked)

@@ -1,16 +1,16 @@
 """What a scenario can name, and which package brings it; nothing of it is imported to be listed."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from surefoot.models.names import ROBOTS
 from surefoot.planner.laws.names import PROFILES
 from surefoot.plugins import OWN_PACKAGE, Declared, Registry
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.file.registries import SOURCES, TERRAIN_KINDS
+from surefoot.scenarios.file.registries import PLANT_NAMES, SOURCES, TERRAIN_KINDS
 from surefoot.scenarios.judge.names import METRICS
 from surefoot.scenarios.study.campaigns.shipped import shipped
+from surefoot.values import dataclass
 from surefoot.wbc.tasks.registry import TASKS
 
 _REGISTRIES: Mapping[str, Registry[Any]] = {
@@ -18,6 +18,7 @@ _REGISTRIES: Mapping[str, Registry[Any]] = {
     "profile": PROFILES,
     "terrain": TERRAIN_KINDS,
     "estimator": SOURCES,
+    "plant": PLANT_NAMES,
     "task": TASKS,
     "metric": METRICS,
 }
@@ -29,7 +30,7 @@ class Entry:
     """Something that can be run, or that a scenario can name.
 
     Attributes:
-        kind: scenario, control, campaign, robot, profile, terrain, estimator, task or metric.
+        kind: scenario, control, campaign, robot, profile, terrain, estimator, plant, task or metric.
         name: its name.
         package: what brings it.
         doc: what it is, in one line; empty where nothing says so.

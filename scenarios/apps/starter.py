@@ -1,15 +1,14 @@
 """The text to start a scenario of one's own from."""
 
+import json
 import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 import yaml
 
+from surefoot.kept import from_sources
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.judge.metrics import OWN
-from surefoot.scenarios.show.options import keys
 from surefoot.scenarios.study.campaigns.shipped import shipped
 
 _EDITOR = """\
@@ -28,7 +27,7 @@ def starter(name: str) -> str:
     Raises:
         ScenarioError: its file is too large or no UTF-8, or there is none.
     """
-    if name not in catalogue.names() and name in (campaigns := shipped()):
+    if name not in catalogue.OURS and name not in catalogue.names() and name in (campaigns := shipped()):
         return campaigns[name].read_text(encoding="utf-8")
     text = catalogue.text(name)[0]
     lines = text.splitlines(keepends=True)
@@ -40,7 +39,7 @@ def starter(name: str) -> str:
 
 def _explained(lines: Sequence[str]) -> Iterator[str]:
     """Lines of a scenario, with a comment after each key of whose meaning something is known."""
-    meanings = {**dict(keys(Scenario)), **{f"criteria.{name}": metric.meaning for name, metric in OWN.items()}}
+    meanings: dict[str, str] = json.loads(from_sources("meanings", _meanings))
     path: list[tuple[int, str]] = []
     for line in lines:
         key = _KEY.fullmatch(line.rstrip())
@@ -50,6 +49,15 @@ def _explained(lines: Sequence[str]) -> Iterator[str]:
         path = [*((indent, name) for indent, name in path if indent < len(key[1])), (len(key[1]), key[2])]
         meaning = meanings.get(".".join(name for _, name in path), "")
         yield f"{key[0]:<{_COLUMN}}  # {meaning}\n" if meaning not in ("", key[2]) else line
+
+
+def _meanings() -> str:
+    """What each key of a scenario is, by its dotted name, as JSON."""
+    from surefoot.scenarios.file.schema import Scenario
+    from surefoot.scenarios.judge.metrics import OWN
+    from surefoot.scenarios.show.options import keys
+
+    return json.dumps({**dict(keys(Scenario)), **{f"criteria.{name}": metric.meaning for name, metric in OWN.items()}})
 
 
 def _content(text: str) -> Any:

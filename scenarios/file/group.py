@@ -21,7 +21,9 @@ T = TypeVar("T")
 class Group(BaseModel):
     """A group of keys: immutable, strictly typed, closed to unknown keys."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, validate_default=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, validate_default=True, allow_inf_nan=False, defer_build=True
+    )
 
 
 def key(default: Any, description: str) -> Any:

@@ -28,7 +28,13 @@ SOURCES: Declared[Any] = Declared(
 )
 """Of ``sensing.source``; what estimates the state, `surefoot.scenarios.run.sensing` brings."""
 
-DEFAULTS = {"terrain": "flat", "planner": "default", "sensing": "truth", "robot": "humanoid100"}
+PLANT_NAMES: Declared[Any] = Declared(
+    "surefoot.plants",
+    {"mujoco": "The simulated world of MuJoCo, with the true robot on the true ground"},
+)
+"""Of ``plant.name``; what moves the robot, `surefoot.scenarios.run.plant` brings."""
+
+DEFAULTS = {"terrain": "flat", "planner": "default", "sensing": "truth", "plant": "mujoco", "robot": "humanoid100"}
 """Names that are always there, by the group of the key."""
 
 REGISTRIES: dict[Key, Registry[Any]] = {
@@ -37,5 +43,6 @@ REGISTRIES: dict[Key, Registry[Any]] = {
     ("planner", "profile"): PROFILES,
     ("sensing", "source"): SOURCES,
     ("wbc", "tasks"): TASKS,
+    ("plant", "name"): PLANT_NAMES,
 }
 """By the key that names a part, or several."""

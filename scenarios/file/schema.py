@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 
 from surefoot.plugins import PluginError
+from surefoot.scenarios.file.control import ControlSettings, PlantSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
 from surefoot.scenarios.file.names import OneOf
@@ -305,6 +306,8 @@ class Rates(Group):
 class Scenario(Group):
     """A walk to simulate and the criteria it must meet."""
 
+    # Defaults of groups are constructed and not validated, so that no validator is built before a file is read.
+
     name: str = Field(default="scenario", min_length=1, max_length=100, pattern=NAME, description="name")
     robot: str = key(DEFAULTS["robot"], "name of a robot, see `surefoot list`, or the path of a robot file")
     sized_for: str | None = key(
@@ -315,20 +318,22 @@ class Scenario(Group):
     fidelity: Literal["full", "pendulum"] = key("full", "whole body in MuJoCo, or the pendulum alone")
     seed: Annotated[int, Field(ge=0, lt=2**32), WHOLE] = key(0, "seed of everything random [-]")
     duration: Span | None = key(None, "simulated time, null: until the gait has ended")
-    robot_options: RobotSettings = key(RobotSettings(), "changes to the robot")
+    robot_options: RobotSettings = key(RobotSettings.model_construct(), "changes to the robot")
     terrain: Annotated[SerializeAsAny[TerrainSettings], BeforeValidator(_by_its_kind)] = key(
-        TerrainSettings(), "the ground"
+        TerrainSettings.model_construct(), "the ground"
     )
-    gait: Gait = key(Gait(), "the walk")
-    planner: PlannerSettings = key(PlannerSettings(), "the planner")
-    sensing: Sensing = key(Sensing(), "the sensors")
-    start: Start = key(Start(), "the start pose")
-    errors: BeliefErrors = key(BeliefErrors(), "the planner's belief minus the truth")
+    gait: Gait = key(Gait.model_construct(), "the walk")
+    planner: PlannerSettings = key(PlannerSettings.model_construct(), "the planner")
+    sensing: Sensing = key(Sensing.model_construct(), "the sensors")
+    start: Start = key(Start.model_construct(), "the start pose")
+    errors: BeliefErrors = key(BeliefErrors.model_construct(), "the planner's belief minus the truth")
     motors: MotorSettings | None = key(None, "what motors do beside what is commanded, null: nothing")
+    plant: PlantSettings | None = key(None, "what moves the robot, null: the simulated world")
+    control: ControlSettings | None = key(None, "what the joints are given, null: torques, each control tick")
     wbc: ControllerSettings | None = key(None, "the whole-body controller, null: as it is")
-    pendulum: PendulumSettings = key(PendulumSettings(), "the plant of fidelity pendulum")
+    pendulum: PendulumSettings = key(PendulumSettings.model_construct(), "the plant of fidelity pendulum")
     pushes: Many[PushSettings] = key((), "disturbances")
     commands: Many[CommandSettings] = key((), "what the walk is told while it goes on")
     faults: Many[Fault] = key((), "injected faults")
-    rates: Rates = key(Rates(), "the clock")
+    rates: Rates = key(Rates.model_construct(), "the clock")
     criteria: dict[str, Bound] = Field(default_factory=standing_walk, description="bounds on metrics")

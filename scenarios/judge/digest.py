@@ -192,7 +192,9 @@ class Digest(Window):
         held = _united((HELD, *reads))
         topics = [topic for topic in held if topic in log.numeric]
         kept, self.reduced = Columns(), Columns()
-        for channels in _in_step(log.windows(topics)):
+        for number, channels in enumerate(_in_step(log.windows(topics))):
+            if number and not any(map(len, channels.values())):
+                continue  # nothing was put off: of nothing, the first part has told all kinds of fields
             for topic, channel in channels.items():
                 kept.add((topic, TIME), channel.time_ns)
                 for name in held[topic]:

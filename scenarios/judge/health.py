@@ -1,7 +1,7 @@
 """Health checks: pure functions of a log that name the likely cause of what they find."""
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any, Literal
 
 import numpy as np
@@ -10,6 +10,7 @@ from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge import balance, effort, feet, sensed, walking
 from surefoot.scenarios.judge.digest import SENSED, Array, Digest, Reads, RunView
 from surefoot.scenarios.judge.metric import Reduction
+from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

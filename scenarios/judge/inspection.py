@@ -1,6 +1,6 @@
 """What a log says about itself: verdict, health, topics and rates."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.judge.verdict import Verdict, judge, scenario_of
 from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.log.reader import RECOVERED
+from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,6 @@ import keyword
 import math
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from operator import attrgetter
@@ -17,6 +16,7 @@ from typing import Any, Generic, TypeVar, Union, get_args, get_origin, get_type_
 
 from surefoot.errors import ParameterError
 from surefoot.scenarios.judge.digest import Array, Reads, RunView
+from surefoot.values import dataclass
 
 __all__ = ["RESERVED", "TRUTH", "Metric", "Reads", "Reduction", "RunView", "metric", "reduction"]
 

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from html import escape
 from io import BytesIO
 from pathlib import Path
@@ -25,6 +25,7 @@ from surefoot.scenarios.judge.metrics import digest, known, measure
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE, Agenda, Event
+from surefoot.values import dataclass
 
 _SAME_TIME = 1e-8
 """Times of ticks are sums and carry rounding [s]."""

@@ -181,7 +181,7 @@ class ChannelWriter(Waiting):
     def take(self, offset: int) -> tuple[memoryview, bytes]:
         """See `Waiting`."""
         n, records = self.count, self._records
-        stamps = np.array(self.times, np.uint64)
+        stamps = records["_log_time"][:n] if self._stamped else np.array(self.times, np.uint64)
         if not self._stamped:
             for name in ("_stamp", "_log_time", "_publish_time"):
                 records[name][:n] = stamps

@@ -2,13 +2,16 @@
 
 import struct
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
+from itertools import zip_longest
+from operator import is_
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.native.library import Library
 from surefoot.scenarios.log.channel import ChannelWriter, Clock
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 Columns = Sequence[tuple[ChannelWriter, Sequence[str]]]
@@ -61,6 +64,7 @@ class RowLayout:
         more_vectors: name and size of vectors that only `derive` needs; they come after the others.
         more_numbers: names of numbers that only `derive` needs; they come after the others.
         compiled: gives a kernel that does what `derive` does, to one row.
+        standing: whether most vectors of a row are the very arrays of the row before, whose memory kernels then read.
     """
 
     vectors: Columns
@@ -70,6 +74,7 @@ class RowLayout:
     more_vectors: Mapping[str, int] = field(default_factory=dict)
     more_numbers: Sequence[str] = ()
     compiled: CompiledDerive | None = None
+    standing: bool = False
 
 
 class RowWriter:
@@ -103,14 +108,14 @@ class RowWriter:
         Args:
             time_ns: simulated time [ns].
             numbers: the row's numbers.
-            vectors: float64 vectors that make up the rest of the row.
+            vectors: contiguous float64 arrays whose values, row by row, make up the rest of the row.
 
         Raises:
             ValueError: the vectors do not fill the row, or the numbers of a row of this chunk did not.
             LogError: the chunk that this row completes cannot be written.
         """
         if vectors:
-            np.concatenate(vectors, out=self._vectors[len(self._times)])
+            np.concatenate(tuple(map(np.ndarray.ravel, vectors)), out=self._vectors[len(self._times)])
         self._numbers.append(numbers)
         self._times.append(time_ns)
         if time_ns >= self._clock.due or len(self._times) == self._capacity:
@@ -196,9 +201,17 @@ class CompiledRows(RowWriter):
         # From plain numbers straight into memory: an array of them would take longer.
         self._pack, self._bytes, self._behind = struct.Struct(f"{numbers}d").pack_into, row.data.cast("B"), 8 * vectors
         self._put = self._bind(kernels, row, places)
-        self._deriving: Callable[[], None] | None = None
+        steps = []
+        if layout.standing:
+            self._sources, self._sizes = np.zeros((2, vectors), dtype=np.int64)
+            self._source = kernels.fill(
+                "RowSources", count=0, sources=self._sources, sizes=self._sizes, values=self._row
+            )
+            steps.append(kernels.bind("log_row_gather", self._source))
         if layout.compiled is not None:
-            self._deriving = layout.compiled(kernels, lambda first, last: row[places[first].start : places[last].stop])
+            steps.append(layout.compiled(kernels, lambda first, last: row[places[first].start : places[last].stop]))
+        self._standing: Sequence[Array] | None = () if layout.standing else None
+        self._complete = kernels.sequence(steps) if steps else None
 
     def _bind(self, kernels: Library, row: Array, places: Mapping[Place, slice]) -> Callable[[int, int, int], None]:
         records = [writer.records for writer in self._writers]
@@ -229,19 +242,34 @@ class CompiledRows(RowWriter):
 
     def append(self, time_ns: int, numbers: tuple[float, ...], *vectors: Array) -> None:
         """See `RowWriter`; numbers that are not as many as announced are refused at once."""
-        if vectors:
-            np.concatenate(vectors, out=self._row)
+        standing = self._standing
+        if standing is None:
+            if vectors:
+                np.concatenate(vectors, out=self._row)
+        elif len(vectors) != len(standing) or not all(map(is_, vectors, standing)):
+            self._look(vectors, standing)
         if len(numbers) != self._announced:
             raise ValueError(f"a row of {len(numbers)} numbers, where there are places for {self._announced}")
         self._pack(self._bytes, self._behind, *numbers)
-        if self._deriving is not None:
-            self._deriving()
+        if self._complete is not None:
+            self._complete()
         times = self._times
         count = len(times)
         self._put(count, time_ns, self._writers[0].total + count)
         times.append(time_ns)
         if time_ns >= self._clock.due or count + 1 == self._capacity:
             self._clock.look(time_ns, count + 1 == self._capacity)
+
+    def _look(self, vectors: Sequence[Array], before: Sequence[Array]) -> None:
+        """Look where arrays are, which are kept as long as the kernel may read them."""
+        if sum(vector.size for vector in vectors) != len(self._row):
+            raise ValueError(f"vectors of a row that do not fill its {len(self._row)} places")
+        for k, (vector, last) in enumerate(zip_longest(vectors, before[: len(vectors)])):
+            if vector is not last:
+                if vector.dtype != np.float64 or not vector.flags.c_contiguous:
+                    raise ValueError(f"vector {k} of a row is no contiguous array of float64")
+                self._sources[k], self._sizes[k] = vector.ctypes.data, vector.size
+        self._source.struct.count, self._standing = len(vectors), vectors
 
     def spread(self) -> None:
         """See `RowWriter`."""

@@ -11,8 +11,7 @@ where values shall come, and then only these are written anew. Doubles take eigh
 
 import json
 import struct
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
 from math import prod
 from typing import Any, Literal, NamedTuple
@@ -22,6 +21,9 @@ from google.protobuf import descriptor_pb2
 from google.protobuf.message import Message
 from mcap.opcode import Opcode
 from numpy.typing import ArrayLike, NDArray
+
+from surefoot.native.library import Library, library
+from surefoot.values import dataclass
 
 Kind = Literal["double", "int"]
 
@@ -249,13 +251,31 @@ class Template:
         if missing:
             raise ValueError(f"value {min(missing)} has no place in the message; it must stand in it at least once")
         self.size = size
-        self._bytes = np.frombuffer(data, np.uint8)
-        self._pick = np.array([index for _, index in places], np.intp)
+        self._bytes = np.frombuffer(data, np.uint8).copy()
+        self._pick = np.array([index for _, index in places], np.int64)
         self._values_at = _spans([place for place, _ in places], 8)
         self._stamps_at = _spans(_all(data, _stamp(SECONDS, NANOS)), _STAMP.size)
+        self._values, kernels = np.zeros(size), library()
+        self._fill = None if kernels is None else self._compile(kernels)
+
+    def _compile(self, kernels: Library) -> Callable[[int, int], None]:
+        return kernels.bind(
+            "template_fill",
+            message=self._bytes.ctypes.data,
+            values=self._values,
+            count=len(self._pick),
+            places=self._values_at[:, 0].copy(),
+            picked=self._pick,
+            stamps=len(self._stamps_at),
+            stamp_places=self._stamps_at[:, 0].copy(),
+        )
 
     def encode(self, time_ns: int, values: ArrayLike) -> bytes:
         """Encode the message with these values and this time [ns] in every stamp."""
+        if self._fill is not None:
+            self._values[:] = values
+            self._fill(*divmod(time_ns, 1_000_000_000))
+            return self._bytes.tobytes()
         made = self._bytes.copy()
         picked = np.asarray(values, "<f8")[self._pick]
         made[self._values_at] = picked.view(np.uint8).reshape(-1, 8)
@@ -263,9 +283,9 @@ class Template:
         return made.tobytes()
 
 
-def _spans(starts: Sequence[int], size: int) -> NDArray[np.intp]:
+def _spans(starts: Sequence[int], size: int) -> NDArray[np.int64]:
     """Places of so many bytes from each start on, shape (starts, size)."""
-    return np.add.outer(np.array(starts, np.intp), np.arange(size))
+    return np.add.outer(np.array(starts, np.int64), np.arange(size))
 
 
 def _slot_bytes(index: int) -> bytes:

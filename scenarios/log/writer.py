@@ -3,7 +3,6 @@
 import zlib
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
@@ -17,6 +16,7 @@ from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress
 from surefoot.scenarios.log.rows import CompiledRows, RowLayout, RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec, file_descriptor_set
 from surefoot.scenarios.output import reason
+from surefoot.values import dataclass
 
 
 class Output:
@@ -260,7 +260,8 @@ class LogWriter:
 
     def _begin_clock(self) -> None:
         self._writing: Iterator[None] = iter(())
-        self._next, self._late = CHUNK_PERIOD_NS, 0
+        # The first is shorter: whole tenths of a second are when plans are made, too.
+        self._next, self._late = CHUNK_PERIOD_NS - _WRITING_NS, 0
         self._clock = Clock(self._next, self._go_on, self._full)
 
     def _full(self, time_ns: int) -> None:

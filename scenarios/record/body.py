@@ -94,7 +94,10 @@ class Recorder:
             (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
         )
         more = _MORE_VECTORS, _MORE_NUMBERS
-        self._row = writer.rows(RowLayout(vectors, numbers, derived, self._derived, *more, self._compiled))
+        layout = RowLayout(vectors, numbers, derived, self._derived, *more, self._compiled, standing=True)
+        self._row = writer.rows(layout)
+        self._given: tuple[Array, Array] | None = None
+        self._base: tuple[Array, Array]
 
     def tick(
         self, time_ns: int, measurement: Measurement, truth: RobotTerms, terms: RobotTerms, planned: PlanSample,
@@ -112,16 +115,16 @@ class Recorder:
             torque: the torque commanded, shape (nj,) [N·m].
         """
         m, r = measurement, report
+        if self._given is None or terms.q is not self._given[0] or terms.v is not self._given[1]:
+            self._given, self._base = (terms.q, terms.v), (terms.q[:3], terms.v[:6])
         numbers = (
             m.nonfoot_contact, m.self_contact, r.load.mass_scale * terms.model_mass,
-            *planned.contacts, *r.active, *r.felt, *_solved(r), planned.omega, truth.torso_rotation[2, 2],
+            *planned.contacts, *r.active, *r.felt, *_solved(r), planned.omega, truth.torso_rotation.item(8),
         )  # fmt: skip
         self._row.append(
-            time_ns, numbers, *_sensed(m), m.wrench.ravel(), m.external_force,
-            *_state(m), *_true(truth), truth.sole_pose.ravel(),
-            terms.com, terms.com_velocity, terms.q[:3], terms.v[:6], r.load.force, r.load.moment,
-            r.acceleration, r.wrench.ravel(), r.task_error, torque,
-            truth.sole_rotation.ravel(),
+            time_ns, numbers, *_sensed(m), m.wrench, m.external_force, *_state(m), *_true(truth), truth.sole_pose,
+            terms.com, terms.com_velocity, *self._base, r.load.force, r.load.moment,
+            r.acceleration, r.wrench, r.task_error, torque, truth.sole_rotation,
         )  # fmt: skip
 
     def _derived(self, rows: Rows) -> dict[tuple[str, str], Array]:

@@ -7,7 +7,7 @@ import math
 import platform
 import subprocess
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -18,6 +18,7 @@ from pydantic import TypeAdapter
 from surefoot.native.library import library
 from surefoot.scenarios.errors import LogError
 from surefoot.similarity import Similarity
+from surefoot.values import dataclass
 
 RECORD = "run"
 """Name of the metadata record."""

@@ -3,7 +3,6 @@
 import math
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
 from operator import attrgetter
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from surefoot.native.library import library
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.plan_kernel import POINT
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, SolverStatus
@@ -19,6 +19,7 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import RowLayout
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 
@@ -91,7 +92,7 @@ class WalkRecorder:
         reference = writer.channel(channels.reference(sizes))
         vectors = (*_SAMPLED, "swing_position", "swing_velocity", "support")
         numbers = ("omega", "roll", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
-        self._reference = writer.rows(RowLayout(((reference, vectors),), ((reference, numbers),)))
+        self._reference = writer.rows(RowLayout(((reference, vectors),), ((reference, numbers),), standing=True))
         self._state = writer.channel(channels.planner_state(sizes)).filler(_STATE)
         self._plan = writer.channel(channels.plan(sizes)).filler(_PLAN, ("slack", "held", "capture_margin"))
         self._footsteps = writer.channel(channels.footsteps(sizes)).filler({}, _FOOTSTEPS)
@@ -105,6 +106,10 @@ class WalkRecorder:
         self._looked = -1
         self._support = np.zeros((SUPPORT_VERTICES, 2))
         self._rolled = level, rates, position, velocity = np.zeros(6), np.zeros(6), np.zeros(3), np.zeros(3)
+        # The numbers of a sample that the kernel has made lie in one place, from which the row takes them.
+        self._point = np.zeros(POINT)
+        seen = PlanSample.of_point(0.0, self._point, (True, True), None)
+        self._sampled = *_sampled(seen), seen.swing[:3], seen.swing_velocity[:3], self._support
         self._roll: Callable[[float, float, float], None] | None = None
         if kernels := library():
             self._roll = kernels.bind("roll_centre", level=level, rates=rates, position=position, velocity=velocity)
@@ -152,16 +157,20 @@ class WalkRecorder:
     def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
         """The reference of a control tick and the gait's clock; the swing foot's sole is where its roll takes it."""
         phase, roll = plan.phase, plan.roll if self._rolls else None
-        position, velocity = sample.swing[:3], sample.swing_velocity[:3]
         pitch = 0.0 if roll is None else roll.evaluate(sample.time)[0]
-        if roll is not None and pitch and roll.foot is sample.swing_foot:
-            position, velocity = self._centre(roll, sample)
         pitches = (pitch, 0.0) if roll is not None and roll.foot is Foot.LEFT else (0.0, pitch)
         numbers = (
             sample.omega, *pitches, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
             phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
         )  # fmt: skip
-        self._reference.append(time_ns, numbers, *_sampled(sample), position, velocity, self._support.ravel())
+        vectors = self._sampled
+        if sample.point is None:
+            vectors = *_sampled(sample), sample.swing[:3], sample.swing_velocity[:3], self._support
+        else:
+            self._point[:] = sample.point
+        if roll is not None and pitch and roll.foot is sample.swing_foot:
+            vectors = *vectors[:6], *self._centre(roll, sample), self._support
+        self._reference.append(time_ns, numbers, *vectors)
 
     def _centre(self, roll: FootRoll, sample: PlanSample) -> tuple[Array, Array]:
         """See `FootRoll.centre`."""

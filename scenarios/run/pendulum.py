@@ -21,9 +21,9 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import PointView
 from surefoot.scenarios.record.walk import PendulumRecorder, WalkRecorder
-from surefoot.scenarios.run.planning import FaultSchedule, RunFault
+from surefoot.scenarios.run.planning import FaultSchedule, Measured, Planning, RunFault
 from surefoot.scenarios.run.skeleton import ClosedLoop
-from surefoot.scenarios.run.tick import Look
+from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.walk import Walk
 
 Array = NDArray[np.float64]
@@ -131,7 +131,7 @@ def pendulum_loop(walk: Walk, writer: LogWriter) -> ClosedLoop:
     sizes = Sizes(nj=0, nq=0, nv=0, horizon=planner.parameters.horizon)
     point_recorder, recorder = PendulumRecorder(writer, sizes, walk.true_mass), WalkRecorder(writer, sizes)
     view = PointView(writer, walk.sole, walk.rates.control)
-    return ClosedLoop.of(walk, PointMass(walk, point_recorder, view), planner, recorder)
+    return ClosedLoop.of(walk, PointMass(walk, Planning.of(walk, planner), point_recorder, view), recorder)
 
 
 class PointMass:
@@ -141,10 +141,12 @@ class PointMass:
 
     Args:
         walk: what is run.
+        planning: its planner.
         recorder: of its channels.
         view: of what MCAP viewers show.
 
     Attributes:
+        planning: its planner.
         state: true state of this tick.
         zmp: true ZMP, shape (2,) [m].
         feet: the ideal feet.
@@ -152,7 +154,8 @@ class PointMass:
 
     controller = None
 
-    def __init__(self, walk: Walk, recorder: PendulumRecorder, view: PointView) -> None:
+    def __init__(self, walk: Walk, planning: Planning, recorder: PendulumRecorder, view: PointView) -> None:
+        self.planning = planning
         self._recorder, self._view = recorder, view
         self._period, self._height_error = 1.0 / walk.rates.control, walk.height_error
         self._half_size = 0.5 * np.array(walk.sole)
@@ -185,17 +188,18 @@ class PointMass:
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
         self.state, self._now = CentroidalState(now, position, velocity), now
 
-    def measured(self, now: float) -> tuple[CentroidalState, Array, FeetState]:
-        """See `Walker`."""
+    def measured(self) -> Measured:
+        """What the planner may measure."""
         state = self.state
         believed = CentroidalState(state.time, np.append(state.com[:2], self._height), state.com_velocity)
         return believed, self._plant.zmp, self._feet.state
 
-    def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
+    def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:
         """See `Walker`."""
+        sample, until, spent = self.planning.follow(now, self._period, self.measured)
         self._force = mean_force(self._pushes, self._now, self._period)
-        self._support = self._support_of(sample.contacts)
-        return 0.0, 0.0
+        self._support = self._support_of(until.contacts)
+        return sample, Spent(plan=spent)
 
     def record(self, now_ns: int, sample: PlanSample) -> None:
         """See `Walker`."""
@@ -213,9 +217,9 @@ class PointMass:
         state = self.state
         self._view.picture(tick, now_ns, state.com, state.com_velocity, self._plant.zmp, plan, sample)
 
-    def advance(self, now: float, sampler: PlanSampler) -> None:
+    def advance(self, now: float) -> None:
         """Drive the plant through the tick, then move feet and height to its end."""
-        period = self._period
+        period, sampler = self._period, self.planning.sampler
         self._plant.drive(sampler, now, period, self._support, self._force)
         end = sampler.sample(now + period)
         self._height, self._climb = float(end.com[2]), float(end.com_velocity[2])
@@ -232,6 +236,7 @@ class PointMass:
                 ("force",), "a vertical push on a pendulum, whose height is prescribed", "use [x, y, 0]"
             )
         self._pushes.append(push)
+        self._force = mean_force(self._pushes, self._now, self._period)  # it may begin in this tick
 
     def _support_of(self, contacts: tuple[bool, bool]) -> Array:
         """Hull of the soles in contact, shape (v, 2); they rest, so it changes with the contacts only."""

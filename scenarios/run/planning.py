@@ -1,7 +1,9 @@
-"""The planner inside a closed loop, on its own clock and logged."""
+"""The planner under a controller or a point mass: on its own clock, told and logged."""
 
+import time
 from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Protocol, cast
 
 import numpy as np
@@ -10,7 +12,7 @@ from numpy.typing import NDArray
 from surefoot.errors import ParameterError
 from surefoot.guard import OWN_GUARD, Guard
 from surefoot.native.library import library
-from surefoot.planner.plan import Planner, PlanSampler, WalkPlan
+from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.plan_kernel import PlanKernel
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
@@ -19,9 +21,17 @@ from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.sensing import PlannerSensing
 from surefoot.scenarios.setup.events import FaultWindow
 from surefoot.scenarios.setup.parts import plan as taken_plan
+from surefoot.scenarios.setup.walk import Walk
 
 ROUNDING = 1e-6
 """Times of commands are compared with those of ticks with this tolerance [ticks]."""
+
+
+Measured = tuple[CentroidalState, NDArray[np.float64], FeetState]
+"""What a planner may measure: CoM, ZMP, shape (2,) [m], and feet."""
+
+MOST_MISSED = 25
+"""Plans that are made up for at once where readings have failed to come; a longer gap ends the walk [-]."""
 
 
 class RunFault(Exception):  # noqa: N818  the event, not a mistake of the caller
@@ -63,9 +73,9 @@ class Planning:
     Args:
         planner: what plans.
         sensing: what it is told of the state.
-        recorder: of its channels.
+        recorder: of its channels; None for no record.
         faults: injected.
-        rates: of the clock.
+        rates: of the clock; that of the planner need not divide that of the control ticks.
         commands: that it hears while the walk goes on.
         guard: around the calls of the planner.
 
@@ -73,21 +83,23 @@ class Planning:
         planner: what plans.
         plan: the latest plan; there is none before the first `update`.
         sampler: of the latest plan.
+        recorder: of its channels; None for no record.
     """
 
     def __init__(
         self,
         planner: Planner,
         sensing: PlannerSensing,
-        recorder: WalkRecorder,
+        recorder: WalkRecorder | None,
         faults: FaultSchedule,
         rates: Rates,
         commands: Sequence[Command] = (),
         guard: Guard = OWN_GUARD,
     ) -> None:
-        self.planner, self._sensing, self._recorder, self._faults = planner, sensing, recorder, faults
+        self.planner, self._sensing, self.recorder, self._faults = planner, sensing, recorder, faults
         self._guard = guard
-        self._every, self._rate = rates.control // rates.planner, rates.control
+        self._plan_rate, self._rate = rates.planner, rates.control
+        self._due = 0
         self.plan: WalkPlan
         self.sampler: PlanSampler
         kernels = library()
@@ -98,9 +110,54 @@ class Planning:
         self._aim: Footstep | None = None
         self._landing: Footstep | None = None
 
-    def due(self, tick: int) -> bool:
-        """Whether the planner measures at a control tick."""
-        return tick % self._every == 0
+    @classmethod
+    def of(cls, walk: Walk, planner: Planner) -> "Planning":
+        """That of a walk around its planner, at its start and without a record."""
+        faults = FaultSchedule(walk.faults, walk.rates.control)
+        return cls(planner, PlannerSensing(walk), None, faults, walk.rates, walk.commands, walk.formulation.guard)
+
+    def tick(self, now: float) -> int:
+        """The number of the control tick of an instant [s]."""
+        return round(now * self._rate)
+
+    def follow(
+        self, now: float, period: float, measure: Callable[[], Measured]
+    ) -> tuple[PlanSample, PlanSample, float]:
+        """Plan where a plan is due, and look the plan up.
+
+        A plan is that of its place on the planner's own clock, whenever the readings come: what is measured since is
+        taken back to there. Plans that were due while no readings came are made up for.
+
+        Args:
+            now: instant of what is measured, which goes on from call to call [s].
+            period: time for which what is decided now acts [s].
+            measure: gives what is measured; asked only where a plan is due.
+
+        Returns:
+            the sample of now; that of what is to be done for the period, its state that of now and all else that of its
+            middle (see `PlanSample.until`); and the wall-clock time that planning took [s].
+
+        Raises:
+            RunFault: nothing was measured for too long.
+        """
+        begin = time.perf_counter()
+        latest = now + ROUNDING / self._rate
+        if (self._due + MOST_MISSED) / self._plan_rate < now:
+            raise RunFault(
+                f"nothing was measured for {now - (self._due - 1) / self._plan_rate:.3f} s before {now:.3f} s"
+            )
+        while (due := self._due / self._plan_rate) <= latest:
+            state, zmp, feet = measure()
+            late = now - due
+            if abs(late) * self._rate > ROUNDING:
+                state = replace(state, time=due, com=state.com - late * state.com_velocity)
+            self._due += 1
+            tick = self.tick(now)
+            self.update(tick, tick * 1_000_000_000 // self._rate, state, zmp, feet)
+        spent = time.perf_counter() - begin
+        # What is decided now acts until the next tick, so that it is to do what is planned for the middle of that; the
+        # state is held against that of now, from which on it does so.
+        return *self.sampler.tick(now, now + 0.5 * period), spent
 
     def update(self, tick: int, now_ns: int, state: CentroidalState, zmp: NDArray[np.float64], feet: FeetState) -> None:
         """Measure and plan; a frozen planner only measures, but the first plan is made whatever the faults say.
@@ -114,28 +171,33 @@ class Planning:
         """
         before = self.plan if self._started else None
         sensed = self._sensing.sense(state, zmp, before)
-        self._recorder.planner_state(now_ns, sensed)
+        if self.recorder is not None:
+            self.recorder.planner_state(now_ns, sensed)
         if self._started and self._faults.active("planner_freeze", tick):
             return
         self._tell(tick)
         update: Callable[[CentroidalState, FeetState], WalkPlan] = self._guard.function(self.planner.update, taken_plan)
-        self.plan = plan = update(sensed.given, feet)
-        self.sampler = PlanSampler(plan, self._kernel)
+        self.plan = update(sensed.given, feet)
+        self.sampler = PlanSampler(self.plan, self._kernel)
         self._started = True
-        self._recorder.plan(now_ns, plan)
-        if self._told:
-            self._recorder.command(now_ns, self.orders)
-            self._told = False
-        self._book(now_ns, before, feet)
+        if self.recorder is not None:
+            self._record(self.recorder, now_ns, before, feet)
 
-    def command(self, command: Command, tick: int) -> None:
-        """Tell the planner something at a control tick, from the next plan on.
+    def _record(self, recorder: WalkRecorder, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
+        recorder.plan(now_ns, self.plan)
+        if self._told:
+            recorder.command(now_ns, self.orders)
+            self._told = False
+        self._book(recorder, now_ns, before, feet)
+
+    def command(self, command: Command, now: float) -> None:
+        """Tell the planner something at an instant [s], from the next plan on.
 
         Raises:
             ParameterError: it is a planner that takes no commands, or cannot do this.
         """
         self._commanded  # noqa: B018  refuses before the planner hears what it was to hear earlier
-        self._tell(tick)
+        self._tell(self.tick(now))
         self._say(command)
 
     @property
@@ -165,7 +227,7 @@ class Planning:
         while self._commands and self._commands[0].time * self._rate <= tick + ROUNDING:
             self._say(self._commands.popleft())
 
-    def _book(self, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
+    def _book(self, recorder: WalkRecorder, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
         """Record a footstep once its swing is over and its foot has touched down, which it may never do.
 
         What was planned of it is what the last plan before the touchdown said: the planner moves the footstep of a foot
@@ -178,7 +240,7 @@ class Planning:
         if landing is not None and landing.foot is swinging:
             self._landing = None
         elif landing is not None and feet.contact[landing.foot]:
-            self._recorder.touchdown(now_ns, landing, feet)
+            recorder.touchdown(now_ns, landing, feet)
             self._landing = None
         if swinging is not None and not self.plan.status.early_touchdown:
             self._aim = self.plan.footsteps[0]

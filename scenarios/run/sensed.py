@@ -17,9 +17,7 @@ from surefoot.readings import Readings
 from surefoot.scenarios.setup.parts import ESTIMATE, guarded
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
-from surefoot.sim.readings import SensorSuite
 from surefoot.sim.sensor_errors import SensorErrors
-from surefoot.sim.world import World
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.estimator import Footing, SensedState
@@ -118,38 +116,38 @@ class Senses:
     Args:
         estimator: made of the walk, not yet behind its guard.
         guard: of its package.
-        world: whose sensors are read.
-        walk: what is run.
 
     Attributes:
         is_truth: whether it hands on the true state.
-        suite: sensors that it reads; None where it is given the measurement.
-        readings: the last that it was given; there are none of one that is given the measurement.
+        reads: whether it is given what sensors say, in place of the measurement.
 
     Raises:
         MisfitError: it is of neither kind.
     """
 
-    def __init__(self, estimator: Any, guard: Guard, world: World, walk: Walk) -> None:
-        senses, told = callable(getattr(estimator, "sense", None)), callable(getattr(estimator, "told", None))
-        if not senses and not callable(getattr(estimator, "estimate", None)):
+    def __init__(self, estimator: Any, guard: Guard) -> None:
+        self.reads, told = callable(getattr(estimator, "sense", None)), callable(getattr(estimator, "told", None))
+        if not self.reads and not callable(getattr(estimator, "estimate", None)):
             raise MisfitError("has neither a method sense nor a method estimate")
         part = guarded(estimator, guard, ESTIMATE)
-        self.is_truth = not senses and bool(part.is_truth)
-        self.suite: SensorSuite | None = None
-        self.readings: Readings
-        if senses:
-            self.suite = SensorSuite(world, walk.hardware.sensors, walk.rates.control, walk.seed)
+        self.is_truth = not self.reads and bool(part.is_truth)
+        if self.reads:
             self._sense = part.sense
         else:
             self._estimate = part.estimate
-        self._told: Callable[[Planned], None] | None = part.told if senses and told else None
+        self._told: Callable[[Planned], None] | None = part.told if self.reads and told else None
 
-    def __call__(self, measurement: Measurement, tick: int) -> Estimate:
-        """The estimate of a tick."""
-        if self.suite is None:
-            return Estimate(self._estimate(measurement))
-        self.readings = readings = self.suite.read(measurement, tick)
+    def __call__(self, readings: Readings | Measurement) -> Estimate:
+        """The estimate of a tick, with the wrenches of the sensors where the estimator has none of its own.
+
+        Raises:
+            ParameterError: it is given what an estimator of the other kind needs.
+        """
+        if self.reads != isinstance(readings, Readings):
+            wanted = "what sensors say, as surefoot.Readings" if self.reads else "the state, as surefoot.Measurement"
+            raise ParameterError(("readings",), f"a {type(readings).__name__} for this estimator", f"give {wanted}")
+        if isinstance(readings, Measurement):
+            return Estimate(self._estimate(readings), readings.wrench)
         estimate: Estimate = self._sense(readings)
         felt = readings.wrench
         return estimate if estimate.wrench is not None or felt is None else replace(estimate, wrench=felt.values)
@@ -168,7 +166,7 @@ def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool) -> FootSensing
         wrench: of the soles, shape (2, 6) [N, N·m].
         wanted: whether a lasting force is to be found.
     """
-    forces, sure = (float(wrench[0, 2]), float(wrench[1, 2])), estimate.deviation
+    forces, sure = (wrench.item(2), wrench.item(8)), estimate.deviation
     if sure is None:
         return FootSensing(forces, wrench if wanted else None, estimate.contact)
     return FootSensing(forces, wrench if wanted else None, estimate.contact, (sure.force, sure.moment))

@@ -118,6 +118,7 @@ class PlannerSensing:
         com = sensing.com_noise
         speed = walk.size.times(VELOCITY_NOISE, "1/s") * com
         self._deviation = np.repeat([sensing.zmp_noise, com, speed], 2).reshape(3, 2)
+        self._noisy = bool(self._deviation.any())
         self._rng = np.random.default_rng(np.random.SeedSequence(walk.seed, spawn_key=(_STREAM,)))
         self._filter, self._nothing = _filter(walk), np.full(2, np.nan)
         self._ground = float(walk.ground.stance.position[:, 2].mean())
@@ -130,13 +131,8 @@ class PlannerSensing:
             zmp: ZMP without noise, shape (2,) [m]; NaN when the feet carry no load.
             plan: what has been done since the last measurement, None at the first.
         """
-        # numpy.clip and numpy.append take ten times as long.
-        noise = self._deviation * np.minimum(np.maximum(self._rng.standard_normal((3, 2)), -CLIP), CLIP)
-        com, velocity = state.com.copy(), state.com_velocity.copy()
-        com[:2] += noise[1]
-        velocity[:2] += noise[2]
-        measured, measured_zmp = replace(state, com=com, com_velocity=velocity), zmp + noise[0]
-        kalman = self._filter
+        measured, measured_zmp = self._disturbed(state, zmp) if self._noisy else (state, zmp)
+        kalman, com, velocity = self._filter, measured.com, measured.com_velocity
         if kalman is None:
             return PlannerState(measured, measured_zmp, measured, self._nothing, self._nothing)
         self._estimate(kalman, measured, measured_zmp, plan)
@@ -144,6 +140,15 @@ class PlannerSensing:
         given = replace(state, com=np.append(x, com[2]), com_velocity=np.append(v, velocity[2]))
         innovation = kalman.innovation
         return PlannerState(measured, measured_zmp, given, a, np.full(2, np.nan) if innovation is None else innovation)
+
+    def _disturbed(self, state: CentroidalState, zmp: Array) -> tuple[CentroidalState, Array]:
+        """State and ZMP with noise."""
+        # numpy.clip and numpy.append take ten times as long.
+        noise = self._deviation * np.minimum(np.maximum(self._rng.standard_normal((3, 2)), -CLIP), CLIP)
+        com, velocity = state.com.copy(), state.com_velocity.copy()
+        com[:2] += noise[1]
+        velocity[:2] += noise[2]
+        return replace(state, com=com, com_velocity=velocity), zmp + noise[0]
 
     def _estimate(self, kalman: CentroidalFilter, measured: CentroidalState, zmp: Array, plan: WalkPlan | None) -> None:
         if plan is None:

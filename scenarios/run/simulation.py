@@ -21,7 +21,7 @@ from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
 from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED
-from surefoot.scenarios.run.full import Parts
+from surefoot.scenarios.run.controller import Parts
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing
@@ -32,6 +32,7 @@ from surefoot.scenarios.setup.walk import Walk, resolve
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
+    from surefoot.scenarios.run.plant import PlantMaker
     from surefoot.scenarios.run.sensing import Estimator
     from surefoot.wbc.controller import WholeBodyController
     from surefoot.wbc.tasks import TaskFactory
@@ -57,6 +58,7 @@ class Simulation:
         estimator: makes the state estimator from the walk; see `surefoot.scenarios.run.sensing.Estimator`.
         robot: a description in place of the robot that the scenario names.
         tasks: make tasks for the whole-body QP beside its own; see `surefoot.wbc.tasks.Task`.
+        plant: makes what moves the robot, from the walk; see `surefoot.Plant`.
 
     Attributes:
         scenario: what is simulated.
@@ -80,12 +82,13 @@ class Simulation:
         estimator: "Callable[[Walk], Estimator] | None" = None,
         robot: "RobotDescription | None" = None,
         tasks: "Sequence[TaskFactory]" = (),
+        plant: "PlantMaker | None" = None,
     ) -> None:
         loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
         self.scenario = loaded if seed is None else loaded.model_copy(update={"seed": seed})
         with refusing():
             self.walk = resolve(self.scenario, robot, planner)
-        self._parts = Parts.of(controller=controller, estimator=estimator, tasks=tuple(tasks) or None)
+        self._parts = Parts.of(controller=controller, estimator=estimator, tasks=tuple(tasks) or None, plant=plant)
         self._given = {"planner": planner, "robot": robot, **self._parts.given()}
         self._path = None if log is None else Path(log)
         self._writer: LogWriter
@@ -254,7 +257,7 @@ class Simulation:
             fault = error.errors(include_url=False)[0]
             what = f"a command with {fault['loc'][-1]} {fault['input']!r}"
             raise ParameterError(("command", *map(str, fault["loc"])), what, fault["msg"]) from None
-        self._loop.planning.command(command_of(settings), self._loop.tick)
+        self._loop.planning.command(command_of(settings), self._loop.time)
         self._told += 1
         record = json.dumps(settings.model_dump(mode="json", exclude_none=True))
         self._writer.add_metadata(f"{COMMAND_RECORD}{self._told}", {"command": record})

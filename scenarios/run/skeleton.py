@@ -3,26 +3,23 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from traceback import format_exception
 from typing import Literal, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from surefoot.errors import PartError
 from surefoot.forces import Push
-from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
-from surefoot.planner.types import CentroidalState, FeetState, PhaseInfo, PhaseKind
+from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.types import PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.record.provenance import AFTER_FALL
 from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
-from surefoot.scenarios.run.planning import ROUNDING, FaultSchedule, Planning, RunFault
-from surefoot.scenarios.run.sensing import PlannerSensing
-from surefoot.scenarios.run.tick import Look
+from surefoot.scenarios.run.planning import ROUNDING, Planning, RunFault
+from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.gait import PushPoint
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.walk import Walk
+from surefoot.values import dataclass
 from surefoot.wbc.controller import WholeBodyController
 
 _PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}
@@ -100,6 +97,11 @@ class Walker(Protocol):
     """
 
     @property
+    def planning(self) -> Planning:
+        """Its planner, on its own clock."""
+        ...
+
+    @property
     def controller(self) -> WholeBodyController | None:
         """Its whole-body controller; None without one."""
         ...
@@ -112,18 +114,8 @@ class Walker(Protocol):
         """
         ...
 
-    def measured(self, now: float) -> tuple[CentroidalState, NDArray[np.float64], FeetState]:
-        """What the planner may measure, without noise: CoM, ZMP, shape (2,) [m], and feet."""
-        ...
-
-    def act(self, tick: int, plan: WalkPlan, sample: PlanSample) -> tuple[float, float]:
-        """Decide what to do until the next tick; returns the time to build and to solve the controller's QP [s].
-
-        Args:
-            tick: number of the tick.
-            plan: that is followed.
-            sample: of it, its state that of now, and all else that of the middle of the tick (see `PlanSample.until`).
-        """
+    def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:
+        """Plan, and decide what to do until the next tick; returns the reference of now, and the time it took."""
         ...
 
     def record(self, now_ns: int, sample: PlanSample) -> None:
@@ -138,7 +130,7 @@ class Walker(Protocol):
         """Write what MCAP viewers show of the tick."""
         ...
 
-    def advance(self, now: float, sampler: PlanSampler) -> None:
+    def advance(self, now: float) -> None:
         """Simulate until the next tick.
 
         Raises:
@@ -183,11 +175,10 @@ class Watch:
 
 
 class ClosedLoop:
-    """One run: a walker, its planner and their records on one integer clock.
+    """One run: a walker and its records on one integer clock.
 
     Args:
         walker: what walks.
-        planning: its planner.
         recorder: gets the reference and the timing of every tick.
         rate: of the control ticks [Hz].
         duration: simulated time [s].
@@ -207,13 +198,12 @@ class ClosedLoop:
     def __init__(
         self,
         walker: Walker,
-        planning: Planning,
         recorder: WalkRecorder,
         rate: int,
         duration: float,
         pushes: Sequence[tuple[PushPoint, Push]] = (),
     ) -> None:
-        self.walker, self.planning = walker, planning
+        self.walker, self.planning = walker, walker.planning
         self._recorder, self.rate = recorder, rate
         self._ticks = self._last = round(duration * rate)
         self.tick = 0
@@ -225,11 +215,10 @@ class ClosedLoop:
         self.fault: RunFault | PartError | None = None
 
     @classmethod
-    def of(cls, walk: Walk, walker: Walker, planner: Planner, recorder: WalkRecorder) -> "ClosedLoop":
-        """The loop of a walk around what walks it and what plans it, at its start."""
-        faults, guard = FaultSchedule(walk.faults, walk.rates.control), walk.formulation.guard
-        planning = Planning(planner, PlannerSensing(walk), recorder, faults, walk.rates, walk.commands, guard)
-        return cls(walker, planning, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
+    def of(cls, walk: Walk, walker: Walker, recorder: WalkRecorder) -> "ClosedLoop":
+        """The loop of a walk around what walks it, at its start."""
+        walker.planning.recorder = recorder
+        return cls(walker, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
 
     @property
     def time(self) -> float:
@@ -277,31 +266,24 @@ class ClosedLoop:
     def _step(self, tick: int) -> tuple[PlanSample, bool]:
         watch, busy = Watch.start(), time.thread_time_ns()
         begin = watch.last
-        walker, planning, rate = self.walker, self.planning, self.rate
+        walker, rate = self.walker, self.rate
         now, now_ns = tick / rate, tick * 1_000_000_000 // rate
         walker.sense(tick, now)
-        state_time = watch.lap()
-        planner_time = 0.0
-        if planning.due(tick):
-            planning.update(tick, now_ns, *walker.measured(now))
-            planner_time = watch.lap()
-        plan = planning.plan
-        if self._pushes:
-            self._push(now, plan)
-        # What is decided now acts until the next tick, so that it is to do what is planned for the middle of that; the
-        # state is held against that of now, from which on it does so.
-        sample, until = planning.sampler.tick(now, now + 0.5 / rate)
-        build_time, solve_time = walker.act(tick, plan, until)
+        sense_time = watch.lap()
+        sample, spent = walker.control(tick, now)
         busy = time.thread_time_ns() - busy
         watch.lap()
+        plan = self.planning.plan
+        if self._pushes:
+            self._push(now, plan)
         walker.record(now_ns, sample)
         self._recorder.reference(now_ns, plan, sample)
         fallen = walker.fallen(sample)
         walker.draw(tick, now_ns, plan, sample, fallen)
         log_time = watch.lap()
-        walker.advance(now, planning.sampler)
+        walker.advance(now)
         physics_time = watch.lap()
-        parts = (state_time, build_time, solve_time, planner_time, physics_time, log_time)
+        parts = (sense_time + spent.state, spent.build, spent.solve, spent.plan, physics_time, log_time)
         self._recorder.timing(now_ns, TickTiming(*parts, watch.last - begin, 1e-9 * busy))
         return sample, fallen
 

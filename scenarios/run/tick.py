@@ -1,16 +1,32 @@
 """What there is to see of a control tick: of what walks, and of a simulation that is stepped from outside."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.types import PhaseKind
 from surefoot.sim.measurement import Measurement
+from surefoot.values import dataclass
 from surefoot.wbc.types import RobotState, WbcReport
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Spent:
+    """Wall-clock time that deciding took in one control tick.
+
+    Attributes:
+        state: to find the state and its terms [s].
+        plan: to plan; zero where no plan was due [s].
+        build: to build the whole-body QP [s].
+        solve: to solve it and to make torques of it [s].
+    """
+
+    state: float = 0.0
+    plan: float = 0.0
+    build: float = 0.0
+    solve: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations
@@ -19,6 +19,7 @@ from surefoot.scenarios.record.provenance import Event
 from surefoot.scenarios.setup.gait import command_of, gait_of, push_time, twist_of, uncommanded, velocities_of
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.pushes import physics_window
+from surefoot.values import dataclass
 
 LEAST = 1e-9
 """Least impulse per kilogram that pushes, with which a robot moves by a nanometre in a second, and the least of other

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -27,6 +27,7 @@ from surefoot.scenarios.setup.gait import longest_landing, step_region
 from surefoot.scenarios.setup.parts import profile_guard
 from surefoot.scenarios.setup.terrain.ground import Ground
 from surefoot.similarity import Similarity
+from surefoot.values import dataclass
 
 LEG_SHARE = 0.9
 """Share of the span of the legs that steps on command make use of: with all of it both are straight at touchdown, and

@@ -241,6 +241,9 @@ def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
 
 def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     """Translate a file for the robot that it is run with, whose knees are to be bent as the other one's."""
+    told = overrides if isinstance(overrides, Mapping) else [one.partition("=")[0].strip() for one in overrides]
+    if "sized_for" not in source.value and "sized_for" not in told:
+        return
     before = copy.deepcopy(source.value)
     names = say_for(source, overrides, robots)
     if names is None:

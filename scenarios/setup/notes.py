@@ -57,7 +57,7 @@ def _without_effect(walk: Walk) -> Iterator[str]:
         yield from (f"{key} has no effect on a {walker.thing}" for key in _given(walk, group, (name,)))
     if walker.has_body:
         return
-    for group in ("motors", "wbc"):
+    for group in ("control", "motors", "plant", "wbc"):
         if getattr(keys, group) is not None:
             yield f"{group} has no effect on a pendulum"
     if keys.rates.physics not in (Rates().physics, clock(Rates(), walk.size.time).physics):

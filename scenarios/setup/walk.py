@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property, lru_cache
 from operator import index
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,7 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import FeetState, Twist
+from surefoot.scenarios.file.control import ControlSettings
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Start
 from surefoot.scenarios.file.sensing import Sensing
@@ -44,6 +45,7 @@ from surefoot.scenarios.setup.robot import describe, true_robot
 from surefoot.scenarios.setup.terrain import kind_of
 from surefoot.scenarios.setup.terrain.ground import Ground, tiles_of, tilt_of
 from surefoot.similarity import REFERENCE_SIZE, Similarity
+from surefoot.values import dataclass
 from surefoot.wbc.parameters import WbcParameters
 
 if TYPE_CHECKING:
@@ -306,6 +308,11 @@ class Walk:
     def controller(self) -> WbcParameters:
         """Weights and gains of the whole-body controller."""
         return controller_parameters(self.keys.wbc, self.size)
+
+    @property
+    def control(self) -> ControlSettings:
+        """What the joints are given."""
+        return self.keys.control or ControlSettings()
 
     @cached_property
     def hardware(self) -> Hardware:

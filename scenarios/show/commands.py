@@ -1,14 +1,15 @@
 """The commands that show a log: inspect, plot, compare, recover and replay."""
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from surefoot.lazy import importing
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.show.options import MISSED, AsJson, From, LogFile, Replace, To, with_options
+from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.scenarios.log import Log
@@ -34,9 +35,10 @@ class InspectOptions:
 @with_options(InspectOptions)
 def inspect(told: InspectOptions) -> None:
     """Show verdict, metrics, health, topics and rates of a log."""
-    from surefoot.scenarios.judge import inspection
-    from surefoot.scenarios.log import read
-    from surefoot.scenarios.show.console import print_inspection
+    with importing():
+        from surefoot.scenarios.judge import inspection
+        from surefoot.scenarios.log import read
+        from surefoot.scenarios.show.console import print_inspection
 
     opened = read(told.log)
     if told.topic is not None:
@@ -144,6 +146,7 @@ class ReplayOptions:
     log: Annotated[Path, typer.Argument(help="A log, also a truncated or growing one.")]
     html: Annotated[Path | None, typer.Option(help="Write one page that opens offline.")] = None
     video: Annotated[Path | None, typer.Option(help="Write an mp4 video.")] = None
+    rrd: Annotated[Path | None, typer.Option(help="Write a recording for the viewer rerun.")] = None
     live: Annotated[bool, typer.Option("--live", help="Serve it on this machine, following a growing log.")] = False
     start: From = None
     end: To = None
@@ -158,9 +161,9 @@ class ReplayOptions:
 @app.command()
 @with_options(ReplayOptions)
 def replay(told: ReplayOptions) -> None:
-    """Show a log in 3D: as a page, as a video or live."""
-    if (told.html is not None) + (told.video is not None) + told.live != 1:
-        raise typer.BadParameter("give one of --html FILE, --video FILE and --live")
+    """Show a log in 3D: as a page, as a video, in rerun or live."""
+    if (told.html is not None) + (told.video is not None) + (told.rrd is not None) + told.live != 1:
+        raise typer.BadParameter("give one of --html FILE, --video FILE, --rrd FILE and --live")
     if told.video is None and (told.speed, told.camera, told.size) != (1.0, "follow", "1280x720"):
         raise typer.BadParameter("--speed, --camera and --size are of a video; give them with --video FILE")
     from surefoot.scenarios.show.replay.content import ReplayWindow
@@ -176,6 +179,11 @@ def replay(told: ReplayOptions) -> None:
 
         write_video(told.log, told.video, window, Film.of(told.speed, told.camera, told.size), told.force)
         typer.echo(str(told.video))
+    elif told.rrd is not None:
+        from surefoot.scenarios.show.replay.rrd import write_rrd
+
+        write_rrd(told.log, told.rrd, window, told.force)
+        typer.echo(str(told.rrd))
     else:
         from surefoot.scenarios.show.replay.live import serve
 

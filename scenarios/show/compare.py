@@ -1,7 +1,7 @@
 """``surefoot compare``: two logs side by side."""
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,7 @@ from surefoot.scenarios.show.differences import (
     unreadable,
 )
 from surefoot.scenarios.show.logview import LogView
+from surefoot.values import dataclass
 
 TOLERANCE = 1e-6
 

@@ -1,7 +1,6 @@
 """Where two runs part, channel by channel, bit by bit and by a tolerance; and what their logs were made of."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 
@@ -14,6 +13,7 @@ from surefoot.scenarios.file.units import is_number
 from surefoot.scenarios.judge.metrics import measure
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE
+from surefoot.values import dataclass
 
 WALL_CLOCK = ("/process", "/timing")
 """Topics that differ between any two runs."""

@@ -1,12 +1,12 @@
 """The commands that make many runs: sweep, check and paper."""
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from surefoot.lazy import importing
 from surefoot.scenarios.show.options import (
     INTERRUPTED,
     MISSED,
@@ -17,6 +17,7 @@ from surefoot.scenarios.show.options import (
     settings,
     with_options,
 )
+from surefoot.values import dataclass
 
 app = typer.Typer()
 
@@ -53,9 +54,10 @@ def sweep(
 
     Begun again, it goes on where it stopped.
     """
-    from surefoot.scenarios.study.campaigns.campaign import read_campaign
-    from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
-    from surefoot.scenarios.study.campaigns.sweep import sweep as run_sweep
+    with importing():
+        from surefoot.scenarios.study.campaigns.campaign import read_campaign
+        from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
+        from surefoot.scenarios.study.campaigns.sweep import sweep as run_sweep
 
     if jobs is not None and cluster is not None:
         raise typer.BadParameter("--jobs is of this machine; give it without --cluster")
@@ -97,11 +99,12 @@ class CheckOptions:
 @with_options(CheckOptions)
 def check(told: CheckOptions) -> None:
     """Hold scenarios against their baselines."""
-    from surefoot.scenarios.output import refuse_existing
-    from surefoot.scenarios.show.console import plain_console
-    from surefoot.scenarios.study.campaigns.sweep import cores
-    from surefoot.scenarios.study.checks import check as checking
-    from surefoot.scenarios.study.checks import report
+    with importing():
+        from surefoot.scenarios.output import refuse_existing
+        from surefoot.scenarios.show.console import plain_console
+        from surefoot.scenarios.study.campaigns.sweep import cores
+        from surefoot.scenarios.study.checks import check as checking
+        from surefoot.scenarios.study.checks import report
 
     console = plain_console()
     for report_file in (told.junit, told.markdown):
@@ -133,9 +136,10 @@ def paper(
 
     Begun again, it goes on where it stopped.
     """
-    from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
-    from surefoot.scenarios.study.paper.page import judged, tally
-    from surefoot.scenarios.study.paper.page import paper as run_paper
+    with importing():
+        from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
+        from surefoot.scenarios.study.paper.page import judged, tally
+        from surefoot.scenarios.study.paper.page import paper as run_paper
 
     try:
         page, results = run_paper(out, jobs or cores(), force)

@@ -13,19 +13,27 @@ void outlook_decay(const Outlook *ahead) {
     }
 }
 
-/* Counterpart of `planner.recovery.capture_margin.planned_margin`. */
-double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin) {
+/* Mean of pairs of values ahead by the weights of `planner.model.dcm.viability_weights`. */
+static void weigh(const Outlook *ahead, const double *values, double *mean) {
     const int64_t last = ahead->count - 1;
-    const double *decay = ahead->decay, dcm[2] = {x, y};
-    double point[2] = {0.0}, half[2] = {0.0}, margin = INFINITY;
+    const double *decay = ahead->decay;
+    mean[0] = mean[1] = 0.0;
     for (int64_t k = 0; k <= last; k++) {
         const double before = k > 0 ? 0.5 * (decay[k - 1] - decay[k]) : 0.0;
         const double weight = before + (k < last ? 0.5 * (decay[k] - decay[k + 1]) : decay[k]);
-        for (int i = 0; i < 2; i++) {
-            point[i] += weight * ahead->point[2 * k + i];
-            half[i] += weight * ahead->half_size[2 * k + i];
-        }
+        for (int i = 0; i < 2; i++) mean[i] += weight * values[2 * k + i];
     }
+}
+
+/* The first DCM of `planner.model.dcm.nominal_dcm`. */
+void outlook_nominal(const Outlook *ahead) { weigh(ahead, ahead->point, ahead->nominal); }
+
+/* Counterpart of `planner.recovery.capture_margin.planned_margin`. */
+double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin) {
+    const double dcm[2] = {x, y};
+    double point[2], half[2], margin = INFINITY;
+    weigh(ahead, ahead->point, point);
+    weigh(ahead, ahead->half_size, half);
     for (int i = 0; i < 2; i++) margin = fmin(margin, half[i] / foot_margin - fabs(dcm[i] - point[i]));
     return margin;
 }

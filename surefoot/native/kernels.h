@@ -376,6 +376,29 @@ typedef struct {
 
 void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequence);
 
+/* Counterpart of `scenarios.log.spec.Template.encode`; places are those of bytes in the message at an address. */
+typedef struct {
+    int64_t message;
+    const double *values;
+    int64_t count;
+    const int64_t *places;
+    const int64_t *picked;
+    int64_t stamps;
+    const int64_t *stamp_places;
+} MessageTemplate;
+
+void template_fill(const MessageTemplate *message, int64_t seconds, int64_t nanos);
+
+/* Arrays that make up a row, by address and length, read where they are. */
+typedef struct {
+    int64_t count;
+    const int64_t *sources;
+    const int64_t *sizes;
+    double *values;
+} RowSources;
+
+void log_row_gather(const RowSources *row);
+
 /* Counterpart of `scenarios.record.body.Recorder._derived`, for one row. */
 typedef struct {
     int64_t joints;
@@ -761,9 +784,11 @@ typedef struct {
     const double *gain;
     const double *half_size;
     double *decay;
+    double *nominal;
 } Outlook;
 
 void outlook_decay(const Outlook *ahead);
+void outlook_nominal(const Outlook *ahead);
 double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin);
 
 /* Counterpart of `planner.swing.leg_reach.LegReach`; its unit ways are rows of values at so many shares of a swing. */

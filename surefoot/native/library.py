@@ -12,7 +12,6 @@ import math
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, partial
 from itertools import accumulate
 from typing import Any
@@ -21,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.native.build import FOLDER, LIBRARY, build, is_built
+from surefoot.values import dataclass
 
 VARIABLE = "SUREFOOT_NATIVE"
 """Environment variable that asks for plain Python where it is 0."""

@@ -26,6 +26,31 @@ void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequen
     }
 }
 
+/* Fills a row from the arrays that it is made of. */
+void log_row_gather(const RowSources *row) {
+    double *values = row->values;
+    for (int64_t k = 0; k < row->count; values += row->sizes[k++])
+        memcpy(values, (const void *)(intptr_t)row->sources[k], row->sizes[k] * sizeof(double));
+}
+
+/* A varint of five bytes behind its tag. */
+static void put_varint(char *place, char tag, int64_t value) {
+    place[0] = tag;
+    for (int k = 0; k < 5; k++) place[1 + k] = (char)((value >> 7 * k & 127) | (k < 4 ? 128 : 0));
+}
+
+/* Writes values and stamps into a message. */
+void template_fill(const MessageTemplate *message, int64_t seconds, int64_t nanos) {
+    char *bytes = at(message->message);
+    for (int64_t k = 0; k < message->count; k++)
+        memcpy(bytes + message->places[k], message->values + message->picked[k], sizeof(double));
+    for (int64_t k = 0; k < message->stamps; k++) {
+        char *stamp = bytes + message->stamp_places[k];
+        put_varint(stamp, 0x08, seconds);
+        put_varint(stamp + 6, 0x10, nanos);
+    }
+}
+
 /* ZMP and centres of pressure of both soles; counterpart of `scenarios.record.body.contact_points`. */
 static void contact_points(const BodyRow *row) {
     double total = 0.0, height = 0.0, x = 0.0, y = 0.0, force[2][3], torque[2][3];

@@ -12,8 +12,8 @@ from surefoot.scenarios.file.group import Group, controller_parameters
 from surefoot.scenarios.file.schema import PlannerSettings, Scenario
 from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
-NOT_YET = {"sensing.options"}
-"""Keys whose values are what an estimator takes."""
+NOT_YET = {"sensing.options", "plant.options", "control.gains"}
+"""Keys whose values are what an estimator or a plant takes, or are by names of joints."""
 
 _SENSORS = {"preset": "cheap", "wrench": "feet", "encoder_velocity": True, "encoder_bits": 16, "latency": 0.002}
 SENSORS = {name: _SENSORS.get(name, 10.0 if name.endswith("_range") else 1e-3) for name in SENSOR_KEYS}
@@ -68,6 +68,8 @@ TEXTS = {
                  payload: {mass: 1, body: torso}, friction: 0.1, ground_noise: 0.005, torso_mass: 1.02,
                  ground: [{x: 0.6, y: 0.05, length: 0.2, width: 1, height: 0.01, friction: 0.5}]}
         motors: {damping: 0.5, friction_loss: 0.2, delay: 0.002, noise: 0.1, torque_speed: 0.6}
+        plant: {name: mujoco}
+        control: {output: position, output_rate: 100, stiffness: 1.2, damping: 0.012, feed_forward: false}
         pushes: [{time: 0.02, duration: 0.02, force: [10, 0, 0], body: pelvis, live: true}]
         faults: [{kind: qp_failure, time: 0.04, duration: 0.01}]
         """,

@@ -19,11 +19,14 @@ ENGINES = {"mujoco", "pinocchio", "coal", "proxsuite", "daqp", "qpsolvers", "sci
 LOGS = {"mcap", "google", "lz4", "zstandard"}
 NEVER = {
     "--help": {*ENGINES, *LOGS, "numpy", "pydantic", "yaml"},
-    "list": {*ENGINES, *LOGS, "numpy"},
+    "list": {*ENGINES, *LOGS, "numpy", "pydantic"},
     "list --json": {*ENGINES, *LOGS},
-    "show walk": {*ENGINES, *LOGS},
-    "schema": {*ENGINES, *LOGS},
-    "run diagonal-walk": {"qpsolvers", "matplotlib", "viser", "asyncio", "multiprocessing.pool", "scipy.spatial"},
+    "show walk": {*ENGINES, *LOGS, "numpy", "pydantic", "importlib.metadata"},
+    "schema": {*ENGINES, *LOGS, "numpy", "pydantic", "yaml"},
+    "run diagonal-walk": {
+        *("qpsolvers", "matplotlib", "viser", "asyncio", "multiprocessing.pool", "scipy.spatial"),
+        *("glfw.library", "numpy.ma"),
+    },
 }
 
 

@@ -23,7 +23,10 @@ def make():
     return module
 
 
-@pytest.mark.parametrize("name", ["walk.png", "walk.gif", "figures.png"])
+DRAWN = ("tick", "planner", "qp", "recovery", "estimation")
+
+
+@pytest.mark.parametrize("name", ["walk.png", "walk.gif", "figures.png", *(f"{name}.svg" for name in DRAWN)])
 def test_a_picture_is_of_the_present_colours_and_lines(make, name):
     assert make.noted(name) == make.digest(name), f"run python docs/images/make.py {name}"
 
@@ -58,7 +61,7 @@ def test_the_moving_picture_of_the_readme_is_smooth_and_small(make):
 
 
 def test_every_picture_that_a_page_shows_can_be_made(make):
-    pages = (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))
+    pages = (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))
     shown = {name for page in pages for name in re.findall(r"!\[[^\]]*\]\(\S*images/(\S+)\)", page.read_text("utf-8"))}
     drawn = {
         path.name for path in (ROOT / "docs" / "images").iterdir() if path.suffix in (".png", ".gif", ".svg", ".webp")

@@ -22,6 +22,7 @@ def checkout(tmp_path):
     shutil.copytree(FOLDER, tmp_path / "surefoot" / "native", ignore=shutil.ignore_patterns(LIBRARY.name, "__*__"))
     for name in ("__init__.py", "__main__.py"):
         shutil.copy(FOLDER / name, tmp_path / "surefoot" / "native")
+    shutil.copy(FOLDER.parent / "values.py", tmp_path / "surefoot")
     (tmp_path / "surefoot" / "__init__.py").touch()
     (tmp_path / "pyproject.toml").touch()
     return tmp_path

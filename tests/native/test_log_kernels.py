@@ -49,9 +49,11 @@ def test_messages_are_those_of_plain_python(kernels, tmp_path, monkeypatch, name
             assert {type(rows) for rows in one._rows} == {CompiledRows}
             assert {type(rows) for rows in other._rows} == {RowWriter}
             for (kind, _), *pair in zip(kinds, compiled, plain, strict=True):
-                owners = [loop.walker] if kind is Recorder else [loop, loop.planning]
-                for owner in owners:
-                    monkeypatch.setattr(owner, "_recorder", Both(*pair))
+                owners = {loop.walker: "_recorder"}
+                if kind is WalkRecorder:
+                    owners = {loop: "_recorder", loop.planning: "recorder"}
+                for owner, attribute in owners.items():
+                    monkeypatch.setattr(owner, attribute, Both(*pair))
             while simulation.time < seconds:
                 simulation.advance()
     first, second = read(tmp_path / "compiled.mcap"), read(tmp_path / "plain.mcap")

@@ -7,7 +7,7 @@ import pytest
 
 from surefoot.native.library import VARIABLE
 from surefoot.planner.model.dcm import nominal_dcm
-from surefoot.planner.recovery.capture_margin import CaptureMargin
+from surefoot.planner.recovery.capture_margin import CaptureMargin, PlannedMargin
 from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepProblem
 from surefoot.planner.swing.leg_reach import ANYWHERE
 from surefoot.planner.types import Foot, Footstep
@@ -99,6 +99,27 @@ def test_steps_are_adjusted_as_by_plain_python(made, adaptation):
     assert (("more", False) in seen) is (("other time", True) in seen)
     assert (("other time", True) in seen) is (adaptation != "location")
     assert (("crosses", True) in seen) is (adaptation == "crossing")
+
+
+@pytest.mark.parametrize("length", [None, 100])
+def test_the_dcm_that_a_window_keeps_bounded_is_that_of_plain_python(made, monkeypatch, length):
+    _, window = made("crossing")
+    parameters = resolve(load("walk")).parameters
+    monkeypatch.delenv(VARIABLE)
+    window = replace(
+        window,
+        driving=window.driving.part(slice(length)),
+        stiffness=window.stiffness[:length],
+        omega=window.omega[:length],
+    )
+    compiled = PlannedMargin(parameters)
+    monkeypatch.setenv(VARIABLE, "0")
+    plain = PlannedMargin(parameters)
+    assert (plain.outlook is None, compiled.outlook is None) == (True, False)
+    found, wanted = compiled.nominal(window), plain.nominal(window)
+    np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-13)
+    later = window.driving.point[-1]
+    assert np.abs(found - later).max() > 0.01
 
 
 def test_kernels_step_aside_for_a_window_of_another_length(made):

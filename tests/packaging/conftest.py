@@ -18,6 +18,7 @@ from surefoot.planner.laws.profiles import PROFILES
 from surefoot.scenarios.apps import cli
 from surefoot.scenarios.catalogue import SCENARIOS
 from surefoot.scenarios.judge.metrics import METRICS
+from surefoot.scenarios.run.full import PLANTS
 from surefoot.scenarios.run.sensing import ESTIMATORS
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.wbc.tasks import TASKS
@@ -129,7 +130,7 @@ def importing() -> Iterator[None]:
     for name in set(sys.modules) - before:
         if name.startswith(("my_package", "broken")):
             del sys.modules[name]
-    for registry in (KINDS, PROFILES, ESTIMATORS, TASKS, ROBOTS, METRICS, SCENARIOS):
+    for registry in (KINDS, PROFILES, ESTIMATORS, PLANTS, TASKS, ROBOTS, METRICS, SCENARIOS):
         registry._loaded.clear()
 
 

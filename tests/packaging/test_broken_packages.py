@@ -10,6 +10,7 @@ USES = {
     "surefoot.profiles": "planner.profile={}",
     "surefoot.estimators": "sensing.source={}",
     "surefoot.tasks": "wbc.tasks=[{}]",
+    "surefoot.plants": "plant.name={}",
     "surefoot.robots": "robot={}",
     "surefoot.terrains": "terrain.kind={}",
     "surefoot.metrics": "criteria.{}=true",
@@ -20,6 +21,7 @@ RIGHT = {
     "surefoot.profiles": "it must be a Profile",
     "surefoot.estimators": "it must be a function or a class",
     "surefoot.tasks": "it must be a function or a class",
+    "surefoot.plants": "it must be a function or a class",
     "surefoot.robots": "it must be a Robot",
     "surefoot.terrains": "it must be a TerrainKind",
     "surefoot.metrics": "it must be a Metric",
@@ -28,6 +30,7 @@ RIGHT = {
 OURS = {
     "surefoot.profiles": "paper",
     "surefoot.estimators": "truth",
+    "surefoot.plants": "mujoco",
     "surefoot.robots": "humanoid100",
     "surefoot.terrains": "stairs",
 }

@@ -17,6 +17,7 @@ from surefoot.planner import Motion, PlannerParameters, Profile, WalkingPlanner
 from surefoot.planner.laws.footstep_tvmpc import FootstepTvmpc
 from surefoot.scenarios.judge.metric import metric
 from surefoot.scenarios.setup.terrain import TerrainKind
+from surefoot.sim import Measurement
 from surefoot.wbc import RobotState
 
 
@@ -77,6 +78,21 @@ class Estimator:
         return {"none": None, "nan": RobotState(np.nan * q, q)}.get(how, RobotState(q[:5], measurement.v))
 
 
+class Plant:
+    def __init__(self, how):
+        self.how = how
+
+    def reset(self, q, v=None, torque=None):
+        self.q, self.v = q, np.zeros(len(q) - 1)
+
+    def measure(self):
+        q = {"short": self.q[:9], "nan": np.nan * self.q}.get(fail(self.how), self.q)
+        return None if self.how == "none" else Measurement.of_state(0.0, q, self.v)
+
+    def act(self, command, period):
+        pass
+
+
 class Law:
     def __init__(self, parameters, how):
         self.count, self.how = parameters.horizon, how
@@ -126,6 +142,7 @@ def leaves(run) -> float:
 KINDS = {
     "task": ("surefoot.tasks", "wbc.tasks=[{}]"),
     "estimator": ("surefoot.estimators", "sensing.source={}"),
+    "plant": ("surefoot.plants", "plant.name={}"),
     "profile": ("surefoot.profiles", "planner.profile={}"),
     "terrain": ("surefoot.terrains", "terrain.kind={}"),
     "robot": ("surefoot.robots", "robot={}"),
@@ -136,6 +153,7 @@ KINDS = {
 MADE = {
     "task": "lambda model, frames: Task('{}')",
     "estimator": "lambda walk: Estimator('{}')",
+    "plant": "lambda walk: Plant('{}')",
     "law": "law('{}')",
     "planner": "planner('{}')",
     "terrain": "Ground('{}')",
@@ -188,6 +206,7 @@ RAISED = {
         *(("planner", how, POINT) for how in ("leaves", "none")),
         *(("task", how, SHORT) for how in ("leaves", "lazily", "short", "nan")),
         *(("estimator", how, SHORT) for how in ("leaves", "short", "nan")),
+        *(("plant", how, SHORT) for how in ("leaves", "root", "mute", "deep", "none", "short", "nan")),
     ],
 )
 def test_in_a_run_it_is_the_reason_with_its_authors_line(hop, at_hand, tmp_path, part, how, keys):

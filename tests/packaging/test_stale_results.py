@@ -35,7 +35,7 @@ def mine(site):
 
 
 @pytest.mark.unit
-@pytest.mark.parametrize("kind", ["metrics", "robots", "profiles", "tasks", "estimators", "terrains"])
+@pytest.mark.parametrize("kind", ["metrics", "robots", "profiles", "tasks", "estimators", "plants", "terrains"])
 @pytest.mark.parametrize("file", [MODULE, "my_package/data/robot.xml"])
 def test_any_file_of_a_package_that_brings_a_part_is_in_it(mine, now, kind, file):
     mine.register(f"surefoot.{kind}", part="my_package.parts:X")

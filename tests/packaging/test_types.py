@@ -56,6 +56,7 @@ FAULTS = {
     "controller=WholeBodyController,": "controller=4,",
     "    estimator=Believing,": "    estimator=Hand,",
     "tasks=[Hand]": "tasks=[Law]",
+    "    plant=Still,": "    plant=Hand,",
     "sim.step()": "sim.stepp()",
     "tick.com[0]": "tick.comm[0]",
     "tick.reference.com[2]": "tick.reference.foot[2]",

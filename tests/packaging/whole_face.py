@@ -66,6 +66,18 @@ class Believing:
         return RobotState(measurement.q, measurement.v)
 
 
+class Still:
+    def __init__(self, walk: surefoot.Walk) -> None: ...
+
+    def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
+        self.q = q
+
+    def measure(self) -> Measurement:
+        return Measurement.of_state(0.0, self.q, np.zeros(len(self.q) - 1))
+
+    def act(self, command: surefoot.JointCommand, period: float) -> None: ...
+
+
 @metric(unit="m", reads={"/truth": ("com",)})
 def sway(run: RunView) -> float:
     """Standard deviation of the CoM's lateral position [m]."""
@@ -88,7 +100,7 @@ TASKS.add("hand", Hand)
 kind: TerrainKind = KINDS["mine"]
 scenario = surefoot.load("walk", {"gait.steps": 4})
 steps: int = scenario.gait.steps
-parts = surefoot.Parts(tasks=(hand,), estimator=Believing)
+parts = surefoot.Parts(tasks=(hand,), estimator=Believing, plant=Still)
 result = surefoot.run(scenario, seed=1, out="runs", planner=profile, parts=parts)
 passed: bool = result.verdict.passed
 path: Path = result.log
@@ -99,6 +111,7 @@ sim = surefoot.Simulation(
     controller=WholeBodyController,
     estimator=Believing,
     tasks=[Hand],
+    plant=Still,
 )
 tick: surefoot.Tick = sim.step()
 where: float = tick.time + float(tick.com[0])

@@ -1,8 +1,9 @@
 """What an estimator says, how sure it is of that, and what it is told back."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from surefoot.values import dataclass
 from surefoot.wbc.types import Array, RobotState
 
 

@@ -3,12 +3,12 @@
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
 from surefoot.readings import Reading, Readings
+from surefoot.values import dataclass
 from surefoot.wbc.estimation.contact import SoleContact
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.invariant_filter import OFFSETS, POSITION, TURN, VELOCITY, InvariantFilter, Stand
@@ -80,7 +80,7 @@ class SensedState:
         self._every = max(1, round(1.0 / (parameters.covariance_rate * period)))
         self._torques: TorqueWrench | None = None
         self._filter: InvariantFilter | None = None
-        self._tick, self._imu_at = -1, 0
+        self._tick, self._imu_at, self._from = -1, 0, 0.0
         self._base_told: deque[Array] = deque(maxlen=KEPT)
         self._still = [True, True]
         self._lost = False
@@ -103,8 +103,10 @@ class SensedState:
         self._still = [planned.contact[k] and k != planned.rolling_foot for k in (0, 1)]
 
     def sense(self, readings: Readings) -> Estimate:
-        """The estimate of a tick."""
-        self._tick += 1
+        """The estimate of a tick, by the time of its readings, which may come at any."""
+        if self._tick < 0:
+            self._from = readings.time
+        self._tick = round((readings.time - self._from) / self._period)
         q, qd = self._joints.update(readings)
         wrench = self._wrench(readings)
         if self._filter is None:

@@ -1,10 +1,9 @@
 """Where the soles are from the IMU, how encoder zeros move them, and where the base is from the IMU."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import pinocchio as pin
 
+from surefoot.values import dataclass
 from surefoot.wbc.model import cross
 from surefoot.wbc.types import Array
 

@@ -5,8 +5,7 @@ sheet says: those numbers were measured in simulated walks. Forces and moments a
 `surefoot.similarity`); an IMU is one of any size.
 """
 
-from dataclasses import dataclass
-
+from surefoot.values import dataclass
 from surefoot.wbc.tunable import check, number
 
 

@@ -33,17 +33,19 @@ class TorqueWrench:
     def __init__(self, model: pin.Model, soles: tuple[str, str], period: float) -> None:
         self._model, self._data, self._period = model, model.createData(), period
         self._soles = tuple(model.getFrameId(name) for name in soles)
-        self._gain = 1.0 - np.exp(-2.0 * np.pi * BANDWIDTH * period)
         self._residual: Array | None = None
         self._momentum, self._driven = np.zeros(model.nv), np.zeros(model.nv)
 
-    def update(self, state: RobotState, torque: Array) -> Array:
+    def update(self, state: RobotState, torque: Array, passed: float | None = None) -> Array:
         """Wrenches in the sole frames, shape (2, 6) [N, N·m].
 
         Args:
             state: of the robot now.
             torque: of the joints over the tick that ended, shape (nj,) [N·m].
+            passed: how long that was [s]; None for the control period.
         """
+        period = passed or self._period
+        gain = 1.0 - np.exp(-2.0 * np.pi * BANDWIDTH * period)
         model, data, q, v = self._model, self._data, state.q, state.v
         pin.computeCoriolisMatrix(model, data, q, v)
         pin.crba(model, data, q)
@@ -56,8 +58,8 @@ class TorqueWrench:
             self._residual = -driven
         else:
             # The exact discrete low pass of what drives the momentum beside all that is known.
-            lacking = (momentum - self._momentum) / self._period - 0.5 * (driven + self._driven)
-            self._residual = self._residual + self._gain * (lacking - self._residual)
+            lacking = (momentum - self._momentum) / period - 0.5 * (driven + self._driven)
+            self._residual = self._residual + gain * (lacking - self._residual)
         self._momentum, self._driven = momentum, driven
         return self._wrenches(q)
 

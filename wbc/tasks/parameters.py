@@ -1,7 +1,6 @@
 """Weights and gains of the tasks."""
 
-from dataclasses import dataclass
-
+from surefoot.values import dataclass
 from surefoot.wbc.tunable import check, number
 
 

@@ -1,12 +1,12 @@
 """What a task is to the whole-body QP, and what several tasks have in common."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Protocol
 
 import pinocchio as pin
 
 from surefoot.native.library import Bound
+from surefoot.values import dataclass
 from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.tasks.registry import TaskLayout

@@ -3,12 +3,11 @@
 import math
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from surefoot.engine import mujoco
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.planner.geometry import points_seen_from
 from surefoot.planner.plan import WalkPlan
@@ -24,6 +23,7 @@ from surefoot.scenarios.show.replay.content import PUSH_SHOWN, Array, Facts, Rep
 from surefoot.scenarios.show.replay.extract import surfaces
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.scene import world_mjcf
+from surefoot.values import dataclass
 from surefoot.wbc.model import RobotTerms
 
 FOLLOW_TIME = 0.4

@@ -2,15 +2,15 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import Any
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 from rich.console import Console
 
+from surefoot.engine import mujoco
 from surefoot.models.consistency import EnginePair
 from surefoot.models.facts import facts_of
 from surefoot.models.registry import UnknownRobotError, explain
@@ -21,6 +21,7 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.judge.metrics import plain
 from surefoot.scenarios.setup.stance import Body, TorqueMargin, body_of, on_one_foot, standing
 from surefoot.scenarios.show.console import plain_table
+from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,6 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import cast
 
-import mujoco
 import numpy as np
 from foxglove_schemas_protobuf.ArrowPrimitive_pb2 import ArrowPrimitive
 from foxglove_schemas_protobuf.Color_pb2 import Color
@@ -30,6 +29,7 @@ from google.protobuf.message import Message
 from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import NDArray
 
+from surefoot.engine import mujoco
 from surefoot.planner.geometry import CORNERS
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import Footstep

@@ -200,11 +200,14 @@ class BodyView:
     def picture(
         self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
     ) -> None:
-        """Draw a control tick, if it is one that is drawn; ``terms`` are those of the true state."""
-        if tick % self.every:
-            return
+        """Draw a control tick, if it is one that is drawn; ``terms`` are those of the true state.
+
+        The first is the one after that of the first plan, so that hardly a tick makes both a plan and a picture.
+        """
         if tick % self._scene_every == 0:
             self._scene.append(time_ns, self._scene_data)
+        if (tick - 1) % self.every:
+            return
         m, poses = measurement, self._poses
         poses.update(m.q)
         self._tf.append(time_ns, np.concatenate((poses.position.ravel(), poses.quaternion.ravel())))

@@ -3,7 +3,6 @@
 import html
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from importlib.resources import files
 from io import StringIO
 from typing import Any
@@ -13,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.typing import RcKeyType
 
 from surefoot.scenarios.show.kit.figures import in_style
+from surefoot.values import dataclass
 
 MISSING = "–"
 """Stands where there is no number."""

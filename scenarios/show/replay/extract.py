@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from surefoot.engine import mujoco
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import torso
 from surefoot.scenarios.judge.digest import RunView

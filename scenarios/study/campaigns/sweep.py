@@ -5,7 +5,6 @@ import queue
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -20,6 +19,7 @@ from surefoot.scenarios.study.campaigns.engine import Worker, cluster_workers, i
 from surefoot.scenarios.study.campaigns.journal import Journal, outcome_of
 from surefoot.scenarios.study.campaigns.points import Outcome, Point, Record, Runs, RunStatus, Searched, cells, facts
 from surefoot.scenarios.study.campaigns.table import has_parquet, runs_table, thresholds_table, wilson, write_table
+from surefoot.values import dataclass
 
 SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", "table", "thresholds"
 STATUSES: tuple[RunStatus, ...] = get_args(RunStatus)

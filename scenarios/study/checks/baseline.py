@@ -4,7 +4,6 @@ import contextlib
 import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,6 +20,7 @@ from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.study.checks.signs import COLUMNS, FAR, SIGNS, Trace
 from surefoot.sim.options import Option, world_options
+from surefoot.values import dataclass
 
 ENDING = ".baseline.yaml"
 

@@ -5,7 +5,7 @@ import re
 import shutil
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
@@ -22,6 +22,7 @@ from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.study.campaigns.engine import side_by_side
 from surefoot.scenarios.study.checks.baseline import ENDING, Baseline, Move, read_baseline, write_baseline
 from surefoot.scenarios.study.checks.signs import Parting
+from surefoot.values import dataclass
 
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""

@@ -247,7 +247,7 @@ def test_interrupted_before_the_run(surefoot, scenario, monkeypatch):
         (["inspect", "{file}"], "not an MCAP file; give a log that `surefoot run` has written"),
         (["inspect", "{folder}"], "a directory; give {folder}/x.mcap"),
         (["inspect", "{folder}/x.mcap"], "not an MCAP file"),
-        (["replay", "{folder}/x.mcap"], "give one of --html FILE, --video FILE and --live"),
+        (["replay", "{folder}/x.mcap"], "give one of --html FILE, --video FILE, --rrd FILE and --live"),
         (["compare", "{file}"], "surefoot compare: missing argument 'B'"),
         (["paper", "--jobs", "0"], "invalid value for '--jobs': Input should be greater than or equal to 1"),
         (["inspect", "/dev/null"], "not an MCAP file"),

@@ -1,6 +1,6 @@
 import pytest
 
-from surefoot.scenarios.run.pendulum import PointMass
+from surefoot.scenarios.run.planning import Planning
 from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.load import load as load_scenario
 
@@ -9,13 +9,14 @@ pytestmark = pytest.mark.unit
 
 def test_what_is_decided_for_a_tick_is_what_is_planned_for_its_middle(monkeypatch):
     """A torque is held for a tick; planned for its begin, the ZMP would lag by half of it."""
-    acted, act = [], PointMass.act
+    acted, follow = [], Planning.follow
 
-    def noted(walker, tick, plan, sample):
-        acted.append(sample.time)
-        return act(walker, tick, plan, sample)
+    def noted(*given):
+        sample, until, spent = follow(*given)
+        acted.append(until.time)
+        return sample, until, spent
 
-    monkeypatch.setattr(PointMass, "act", noted)
+    monkeypatch.setattr(Planning, "follow", noted)
     with Simulation(load_scenario("walk", ("fidelity=pendulum",))) as simulation:
         ticks = [simulation.step() for _ in range(20)]
         rate = simulation.walk.rates.control

@@ -198,8 +198,8 @@ def test_missing_opengl_is_named(surefoot, log_path, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "give one of --html FILE, --video FILE and --live"),
-        (["--html", "x", "--live"], "give one of --html FILE, --video FILE and --live"),
+        ([], "give one of --html FILE, --video FILE, --rrd FILE and --live"),
+        (["--html", "x", "--live"], "give one of --html FILE, --video FILE, --rrd FILE and --live"),
         (["--html", "x", "--from", "9"], "the log goes from"),
         (["--html", "/no/such/x.html"], "cannot be written"),
     ],

@@ -45,11 +45,12 @@ class Browser:
             "binary": shutil.which("chromium"),
         }
         waits = {"script": 180_000, "pageLoad": 180_000}  # [ms]; pictures are drawn in software, beside other work
-        wanted = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": options, "timeouts": waits}}
+        asked = {"goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}, "timeouts": waits}
+        wanted = {"alwaysMatch": {"browserName": "chrome", **asked}}
         self._session = ""
         try:
             self._session = f"/session/{self._started(wanted)['sessionId']}"
-            self._call("POST", "/url", {"url": page if isinstance(page, str) else page.as_uri()})
+            self.open(page)
         except BaseException:
             self.__exit__()
             raise
@@ -70,9 +71,25 @@ class Browser:
         with urllib.request.urlopen(request, timeout=200) as answer:
             return json.load(answer)["value"]
 
-    def run(self, script: str) -> Any:
-        """Run JavaScript in the page; gives what it returns."""
-        return self._call("POST", "/execute/sync", {"script": script, "args": []})
+    def open(self, page: Path | str) -> None:
+        """Go to another page."""
+        self._call("POST", "/url", {"url": page if isinstance(page, str) else page.as_uri()})
+
+    def complaints(self) -> list[str]:
+        """What the console has told as an error since it was last asked."""
+        told = self._call("POST", "/se/log", {"type": "browser"})
+        return [entry["message"] for entry in told if entry["level"] == "SEVERE"]
+
+    def run(self, script: str, *given: Any) -> Any:
+        """Run JavaScript in the page, with what it is given in `arguments`; gives what it returns, or its promise."""
+        return self._call("POST", "/execute/sync", {"script": script, "args": list(given)})
+
+    def show_as(self, width: int, height: int, dark: bool = False) -> None:
+        """Show pages as on a screen of this size [px], also of a phone, in the colours that its owner prefers."""
+        screen = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        colours = {"features": [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]}
+        for command, given in (("setDeviceMetricsOverride", screen), ("setEmulatedMedia", colours)):
+            self._call("POST", "/goog/cdp/execute", {"cmd": f"Emulation.{command}", "params": given})
 
     def wait_for(self, script: str, seconds: float = 180.0) -> Any:
         """Wait until JavaScript returns something true."""

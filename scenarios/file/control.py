@@ -1,0 +1,44 @@
+"""The keys of what stands on both ends of a joint: what moves the robot, and what its joints are given."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from surefoot.scenarios.file.group import WHOLE, Group, as_tuple, key
+from surefoot.scenarios.file.names import OneOf
+from surefoot.scenarios.file.units import Unit
+
+_Gain = Annotated[float, Field(ge=0, le=1e6)]
+_Gains = Annotated[tuple[_Gain, _Gain], BeforeValidator(as_tuple)]
+
+
+class PlantSettings(Group):
+    """What moves the robot: its own simulation, or another simulator or a machine that a package brings."""
+
+    name: Annotated[str, OneOf("plant", "name")] | None = key(
+        None, "what is measured and moved, null: mujoco, the simulated world"
+    )
+    options: dict[str, Any] | None = key(None, "given to it by name, null: none")
+
+
+class ControlSettings(Group):
+    """What the joints are given; `surefoot.Controller` takes the same keys."""
+
+    output: Literal["torque", "position"] | None = key(
+        None, "torques, or targets with gains that the drives follow by themselves, null: torque"
+    )
+    output_rate: Annotated[int, Field(ge=1, le=100_000), WHOLE, Unit("Hz")] | None = key(
+        None, "commands in a second, each held until the next, null: rates.control"
+    )
+    stiffness: Annotated[_Gain, Unit("1/rad")] | None = key(
+        None, "torque of a target per angle over the largest torque of its joint, null: 1"
+    )
+    damping: Annotated[_Gain, Unit("s/rad")] | None = key(None, "likewise per speed, null: 0.01")
+    gains: dict[str, _Gains] | None = key(
+        None,
+        "stiffness and damping of joints by regular expressions of their names, over the two keys above, null: none "
+        "[N·m/rad, N·m·s/rad]",
+    )
+    feed_forward: bool | None = key(
+        None, "targets come with a torque and a velocity, false: both are in the position, null: true"
+    )

@@ -1,0 +1,127 @@
+"""What moves a robot and measures it: Surefoot's simulated world, another simulator, or a machine."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, Protocol, cast
+
+import numpy as np
+
+from surefoot.errors import ParameterError, PartError
+from surefoot.forces import Push
+from surefoot.guard import Guard, Guarded, taken_for
+from surefoot.joints import JointCommand
+from surefoot.readings import Readings
+from surefoot.scenarios.setup.parts import fit
+from surefoot.scenarios.setup.walk import Walk
+from surefoot.sim.measurement import Array, Measurement
+
+
+class Plant(Protocol):
+    """What a closed loop asks of that which moves the robot; its joints are in the order of the robot's description.
+
+    The loop calls `reset`, and then in turn `measure` and `act`, once each in a control tick. What a plant raises ends
+    the run with a fault that names it. Two methods more are asked only of plants that have them: ``push``, which takes
+    a `surefoot.forces.Push` before it begins, and ``read``, which gives `surefoot.Readings` of a `Measurement`
+    and the number of the control tick, to estimators that sense.
+    """
+
+    def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
+        """Stand at the start of a walk.
+
+        Args:
+            q: configuration in Pinocchio's convention, shape (7 + nj,) [m, -, rad].
+            v: velocity likewise, shape (6 + nj,) [m/s, rad/s]; None for rest.
+            torque: of the joints, that hold it, shape (nj,) [N·m].
+        """
+        ...
+
+    def measure(self) -> Measurement:
+        """What is so now; `q` and `v` count as the truth, by which a run is judged."""
+        ...
+
+    def act(self, command: JointCommand, period: float) -> None:
+        """Do what is commanded for so long [s]."""
+        ...
+
+
+class Sensors(Protocol):
+    """What says of a measurement what sensors say."""
+
+    def read(self, measurement: Measurement, tick: int) -> Readings:
+        """What has arrived at a control tick."""
+        ...
+
+
+PlantMaker = Callable[..., Plant]
+
+
+def made(maker: PlantMaker, walk: Walk, options: Mapping[str, Any], guard: Guard, senses: bool) -> Plant:
+    """A plant of others, behind its guard.
+
+    Args:
+        maker: of the plant.
+        walk: what is run.
+        options: given to it by name.
+        guard: of its package.
+        senses: whether its sensors are to be read.
+
+    Raises:
+        ParameterError: it can do less than the scenario asks.
+    """
+    with guard.making:
+        plant = maker(walk, **options)
+        able = {verb: callable(getattr(plant, verb, None)) for verb in (*_VERBS, "push", "read")}
+    for verb in _VERBS:
+        if not able[verb]:
+            raise ParameterError(("plant", "name"), f"a plant without a method {verb}", "give it one")
+    if not able["push"] and (walk.pushes or walk.gait_pushes):
+        what = "pushes of a plant without a method push"
+        raise ParameterError(("pushes",), what, "leave them out, or push it yourself")
+    if senses and not able["read"]:
+        what = "an estimator that senses, of a plant without a method read"
+        raise ParameterError(("sensing", "source"), what, "let sensing.source be truth, or give the plant one")
+    return cast("Plant", Guarded(plant, guard, {"measure": _measured(len(walk.robot.joint_names))}))
+
+
+_VERBS = ("reset", "measure", "act")
+
+
+def push_plant(plant: Plant, push: Push) -> None:
+    """Push a plant.
+
+    Raises:
+        ParameterError: it cannot be pushed.
+    """
+    try:
+        given = plant.push  # type: ignore[attr-defined]
+    except (AttributeError, PartError):
+        raise ParameterError(("push",), "a push of a plant without a method push", "push it yourself") from None
+    given(push)
+
+
+def _measured(joints: int) -> Callable[..., Measurement]:
+    """What is taken for a measurement of a plant of so many joints."""
+
+    def take(answer: Measurement, *_: Any) -> Measurement:
+        taken_for(Measurement)(answer)
+        fit(answer.q, (7 + joints,), "q")
+        fit(answer.v, (6 + joints,), "v")
+        for name in ("joint_position", "joint_velocity", "joint_torque"):
+            fit(getattr(answer, name), (joints,), name, finite=False)
+        fit(answer.wrench, (2, 6), "wrench", finite=False)
+        fit(answer.external_force, (3,), "external_force")
+        return answer
+
+    return take
+
+
+def completed(measurement: Measurement, wrench: Array, torque: Array) -> Measurement:
+    """A measurement with what is not measured as it is inferred: wrenches of the soles and torques of the joints."""
+    if math.isnan(measurement.wrench.item(2)):
+        measurement = replace(measurement, wrench=wrench)
+    if math.isnan(measurement.joint_torque.item(0)):
+        measurement = replace(measurement, joint_torque=torque)
+    if math.isnan(measurement.accelerometer.item(0)):
+        measurement = replace(measurement, accelerometer=np.zeros(3))
+    return measurement

@@ -1,0 +1,50 @@
+"""What goes between a controller and the joints of a robot."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.values import dataclass
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Servo:
+    """Targets that the drives of the joints follow by themselves, with gains that never change.
+
+    Attributes:
+        position: shape (nj,) [rad].
+        velocity: shape (nj,) [rad/s].
+        stiffness: shape (nj,) [N·m/rad].
+        damping: shape (nj,) [N·m·s/rad].
+    """
+
+    position: Array
+    velocity: Array
+    stiffness: Array
+    damping: Array
+
+
+@dataclass(frozen=True, slots=True)
+class JointCommand:
+    """What the joints are to do until the next command; the joint order is that of the robot description.
+
+    Attributes:
+        torque: of the motors, which a servo adds to, shape (nj,) [N·m].
+        servo: targets to be followed; None for the torque alone.
+    """
+
+    torque: Array
+    servo: Servo | None = None
+
+    def torque_at(self, position: Array, velocity: Array) -> Array:
+        """Torque at joint angles and speeds, before the limits of the motors, shape (nj,) [N·m].
+
+        Args:
+            position: shape (nj,) [rad].
+            velocity: shape (nj,) [rad/s].
+        """
+        s = self.servo
+        if s is None:
+            return self.torque
+        return self.torque + s.stiffness * (s.position - position) + s.damping * (s.velocity - velocity)
